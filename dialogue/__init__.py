@@ -1,0 +1,1 @@
+"""Dialogue scripts: pure state machines of prompts, answers and resolutions."""

@@ -1,0 +1,51 @@
+"""The agent core: what drives one robot, seen from its end of the link.
+
+It is synchronous and knows no network: the link hands it commands, lets it advance, and takes its
+reports. Simulated and real robots, and tests, drive the same core.
+"""
+
+from collections.abc import Callable
+from typing import Any, Protocol
+
+from robots.link.messages import CommandBody, Hello, Picture, ReportBody
+
+Emit = Callable[[ReportBody, float, dict[str, Any] | None], None]
+"""Takes a report's body, the time (s, robot's clock) and a simulated world's state or None."""
+
+EmitPicture = Callable[[Picture], None]
+
+
+class AgentCore(Protocol):
+    """One robot, without its link."""
+
+    def hello(self, boot: str) -> Hello:
+        """What the robot is, and what it is doing now."""
+        ...
+
+    def attach(self, emit: Emit, emit_picture: EmitPicture) -> None:
+        """Say where reports and pictures go; called once, before anything else."""
+        ...
+
+    def handle(self, command_id: str, body: CommandBody) -> None:
+        """Take a command. One that cannot be carried out is answered by a `Rejected` report."""
+        ...
+
+    def advance(self, duration_s: float) -> bool:
+        """Let up to `duration_s` of the robot's clock pass; False when there is nothing to do.
+
+        Emits what happens. Returns early when a report was emitted that the service must see
+        before more time passes (an issue, a finished behavior, a look's answer).
+        """
+        ...
+
+    @property
+    def pace(self) -> float | None:
+        """Simulated seconds per wall second wanted now; None as fast as possible."""
+        ...
+
+    def time_s(self) -> float: ...
+
+    @property
+    def shut_down(self) -> bool:
+        """Whether a `shutdown` command came."""
+        ...

@@ -1,0 +1,160 @@
+"""The body: what behaviors, monitors and looks may ask of one robot's hardware.
+
+A body is a simulated or a real arm with a gripper and cameras. It is synchronous: nothing moves
+or is measured except in `advance_cycle`, which advances one control cycle. Lengths are metres,
+angles radians, times seconds of the world's clock; poses are 4x4 matrices or `ToolPose`s in the
+robot's base frame (x forward, y left, z up).
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+Matrix4 = NDArray[np.float64]
+"""A homogeneous transform, shape (4, 4)."""
+
+
+@dataclass(frozen=True, slots=True)
+class ToolPose:
+    """The tool point with the gripper pointing straight down; `yaw` turns its opening direction.
+
+    The fingers open along (cos yaw, sin yaw, 0).
+    """
+
+    x: float
+    y: float
+    z: float
+    yaw: float
+
+
+@dataclass(frozen=True, slots=True)
+class CameraImage:
+    """One picture with what is needed to measure in it.
+
+    `bgr`: (height, width, 3) uint8. `depth_m`: (height, width) float32 along the optical axis, or
+    None for a camera without depth. `pose`: the optical frame (z forward, x right, y down) in the
+    base frame. A pixel (u, v) is at ((u - cx) / f * d, (v - cy) / f * d, d) in the optical frame.
+    """
+
+    bgr: NDArray[np.uint8]
+    depth_m: NDArray[np.float32] | None
+    pose: Matrix4
+    focal_px: float
+    center_px: tuple[float, float]
+    time: float
+
+
+class Camera(Protocol):
+    """A camera on a robot."""
+
+    @property
+    def period_s(self) -> float:
+        """How often it takes a picture, in seconds of the world's clock."""
+        ...
+
+    def capture(self) -> CameraImage:
+        """Take a picture now."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Reach:
+    """The graspable range: distances in metres from `origin` (base frame), in the plane."""
+
+    origin: tuple[float, float]
+    min_m: float
+    max_m: float
+
+
+class ArmPath(Protocol):
+    """A checked arm motion through the waypoints that it was planned for, in segments.
+
+    Segment i leads to waypoint i (segment 0 from where the arm was).
+    """
+
+    @property
+    def segments(self) -> int: ...
+
+
+class Body(Protocol):
+    """One robot's hardware: an arm, a gripper and cameras."""
+
+    @property
+    def control_period_s(self) -> float:
+        """The duration of one control cycle."""
+        ...
+
+    @property
+    def cameras(self) -> Mapping[str, Camera]:
+        """The cameras by name; `head` (with depth) and `forearm` for `pick_and_place`."""
+        ...
+
+    @property
+    def reach(self) -> Reach: ...
+
+    def time_s(self) -> float:
+        """The world's clock."""
+        ...
+
+    def advance_cycle(self) -> None:
+        """Let one control cycle pass."""
+        ...
+
+    def plan_path(self, waypoints: Sequence[ToolPose]) -> ArmPath | None:
+        """Plan through all waypoints from where the arm is; None if any part cannot be reached.
+
+        Waypoints that differ in z only are joined by a straight vertical line.
+        """
+        ...
+
+    def plan_neutral(self) -> ArmPath:
+        """Plan to the neutral pose, where the arm hides nothing from the head camera."""
+        ...
+
+    def plan_hand_over(self) -> ArmPath:
+        """Plan to the pose in which the robot takes an object from a person."""
+        ...
+
+    def follow(self, path: ArmPath, segment: int, speed: float) -> None:
+        """Start one segment; `speed` in (0, 1] scales it. Replaces what was under way."""
+        ...
+
+    def set_speed(self, speed: float) -> None:
+        """Change the speed of the motion under way from the next cycle on."""
+        ...
+
+    def stop(self) -> None:
+        """Stop the arm within one control cycle and hold it where it is."""
+        ...
+
+    def open_gripper(self) -> None: ...
+
+    def close_gripper(self) -> None: ...
+
+    @property
+    def moving(self) -> bool:
+        """Whether an arm or gripper motion is under way."""
+        ...
+
+    @property
+    def progress(self) -> float:
+        """The fraction in [0, 1] of the motion under way that is done; 1 when none is."""
+        ...
+
+    def tool_pose(self) -> Matrix4:
+        """The tool point's pose from the joint positions (forward kinematics).
+
+        x: approach direction (down), y: opening direction of the fingers.
+        """
+        ...
+
+    def gripper_opening_m(self) -> float:
+        """The distance between the finger tips, from the joint positions."""
+        ...
+
+    def contact_force_n(self) -> float:
+        """The force against the arm (not between the fingers), as its effort sensors tell it."""
+        ...

@@ -1,0 +1,354 @@
+"""The protocol between the service and a robot: every message, as docs/robot_protocol.md says.
+
+JSON text frames over one WebSocket. The robot sends `hello`, `report`, `heartbeat` and `picture`;
+the service sends `welcome`, `ack`, `command` and `error`. Reports are durable: the robot keeps
+each in its outbox under (robot, boot, seq) until the service has acknowledged it, which it does
+after it has committed it. Commands are idempotent: a robot carries out a command `id` once.
+All lengths are metres, angles radians, times seconds of the robot's clock, poses in its base frame.
+"""
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
+
+from tasks.intervention import Intervention
+
+PROTOCOL_VERSION = 1
+
+Identifier = Annotated[str, Field(min_length=1, max_length=128)]
+
+
+class Message(BaseModel):
+    """A wire message: unknown fields are ignored, so that a newer peer may add some."""
+
+    model_config = ConfigDict(extra="ignore", strict=True, frozen=True, allow_inf_nan=False)
+
+
+class Position(Message):
+    """A point in the robot's base frame."""
+
+    x: float
+    y: float
+    z: float
+
+
+class Sighting(Message):
+    """Where the head camera saw an object; `yaw` of its long axis; `time` of the picture."""
+
+    x: float
+    y: float
+    z: float
+    yaw: float
+    time: float
+
+
+class ReachLimits(Message):
+    """The graspable range in the plane: distances in metres from (x, y)."""
+
+    x: float
+    y: float
+    min_m: float
+    max_m: float
+
+
+class Detection(Message):
+    """What a monitor saw: blob centre and expected centre in pixels (u, v), blob area in px."""
+
+    camera: str
+    center: tuple[float, float] | None = None
+    expected: tuple[float, float] | None = None
+    tolerance_px: float | None = None
+    area_px: int = 0
+    explanation: str = ""
+
+
+class ActiveExecution(Message):
+    """What a robot was doing when it said hello."""
+
+    execution: str
+    state: Literal["running", "holding", "retreating"]
+    step: int
+
+
+# --- Reports: robot to service, durable -------------------------------------------------------
+
+
+class StepStarted(Message):
+    """A behavior's step has begun; steps count from 1."""
+
+    type: Literal["step_started"] = "step_started"
+    execution: str
+    step: int
+    name: str
+
+
+class IssueDetected(Message):
+    """A monitor detected a fault. `interrupts`: the robot stops the behavior by itself."""
+
+    type: Literal["issue"] = "issue"
+    execution: str
+    issue: str
+    step: int
+    interrupts: bool
+    detection: Detection | None = None
+    jpeg: str | None = None
+    """The picture in which the fault was seen, base64 JPEG."""
+
+
+class Holding(Message):
+    """The robot has stopped and holds: after an interrupt, or of itself after a fault."""
+
+    type: Literal["holding"] = "holding"
+    execution: str | None
+    at: Literal["neutral", "in_place", "hand_over"]
+
+
+class Resumed(Message):
+    """The behavior goes on, at `step`."""
+
+    type: Literal["resumed"] = "resumed"
+    execution: str
+    step: int
+
+
+class Finished(Message):
+    """The behavior is through all its steps. `found_in_place`: there was nothing left to do."""
+
+    type: Literal["finished"] = "finished"
+    execution: str
+    found_in_place: bool = False
+
+
+class Looked(Message):
+    """What a look saw, in answer to a `look` command.
+
+    `objects`: every object seen, by name. `gripper`: where the tool point is. `fulfilled`: whether
+    what was expected came to be within the time given; None when nothing was expected.
+    """
+
+    type: Literal["looked"] = "looked"
+    command: str
+    objects: dict[str, Sighting]
+    gripper: Position
+    fulfilled: bool | None = None
+
+
+class Held(Message):
+    """The clock has reached what a `hold` command asked for."""
+
+    type: Literal["held"] = "held"
+    command: str
+
+
+class Intervened(Message):
+    """A person did something in a simulated world. `ok` False: it could not be done (`detail`)."""
+
+    type: Literal["intervened"] = "intervened"
+    intervention: Intervention
+    by: str
+    ok: bool = True
+    detail: str = ""
+
+
+class Rejected(Message):
+    """The robot cannot carry out a command."""
+
+    type: Literal["rejected"] = "rejected"
+    command: str
+    reason: str
+
+
+ReportBody = Annotated[
+    StepStarted
+    | IssueDetected
+    | Holding
+    | Resumed
+    | Finished
+    | Looked
+    | Held
+    | Intervened
+    | Rejected,
+    Field(discriminator="type"),
+]
+
+
+# --- Commands: service to robot, idempotent ---------------------------------------------------
+
+
+class Start(Message):
+    """Start a behavior with its parameters under a new execution id."""
+
+    type: Literal["start"] = "start"
+    execution: str
+    node: str
+    behavior: str
+    parameters: dict[str, Any]
+
+
+class Interrupt(Message):
+    """Stop within one control cycle. `retreat`: then let go, move to neutral, end the execution."""
+
+    type: Literal["interrupt"] = "interrupt"
+    retreat: bool
+
+
+class Resume(Message):
+    """Go on with the held execution where the robot's own state allows it."""
+
+    type: Literal["resume"] = "resume"
+    execution: str
+
+
+class Look(Message):
+    """Look with the cameras.
+
+    Without `expect`: one look at everything. With it: keep looking until it is so or `within_s`
+    have passed. `at_place`: `object` rests at `place`; `in_reach`: `object` rests within the
+    graspable range; `in_gripper`: take `object` from a person (move to the hand-over pose, open,
+    close once it is seen between the fingers); `way_clear`: nothing is in the arm's way.
+    """
+
+    type: Literal["look"] = "look"
+    object: str | None = None
+    place: str | None = None
+    expect: Literal["at_place", "in_reach", "in_gripper", "way_clear"] | None = None
+    within_s: float = 0.0
+
+
+class SlowDown(Message):
+    """Scale all motion from now on; 1 is normal."""
+
+    type: Literal["slow_down"] = "slow_down"
+    factor: Annotated[float, Field(gt=0, le=1)]
+
+
+class Hold(Message):
+    """Simulated worlds: let the clock run, the arm holding still, until `until` or a command.
+
+    `rate` is simulated seconds per second; None as fast as possible.
+    """
+
+    type: Literal["hold"] = "hold"
+    until: float
+    rate: float | None = None
+
+
+class Intervene(Message):
+    """Simulated worlds: a person does this, now or when the clock reaches `at`."""
+
+    type: Literal["intervene"] = "intervene"
+    intervention: Intervention
+    by: str
+    at: float | None = None
+
+
+class TakePicture(Message):
+    """Send a `picture` of a camera."""
+
+    type: Literal["take_picture"] = "take_picture"
+    camera: str
+
+
+class Shutdown(Message):
+    """Simulated robots: end the process."""
+
+    type: Literal["shutdown"] = "shutdown"
+
+
+CommandBody = Annotated[
+    Start | Interrupt | Resume | Look | SlowDown | Hold | Intervene | TakePicture | Shutdown,
+    Field(discriminator="type"),
+]
+
+
+# --- Envelopes --------------------------------------------------------------------------------
+
+
+class Hello(Message):
+    """First message of a robot on every connection.
+
+    `boot` is new at every start of the robot's program. `suitability`: per behavior, in (0, 1].
+    `executing`: what it is doing, if anything. `restored`: True when a simulated world was rebuilt
+    from a snapshot.
+    """
+
+    type: Literal["hello"] = "hello"
+    protocol: int
+    robot: Identifier
+    boot: Identifier
+    behaviors: list[str]
+    cameras: list[str]
+    reach: ReachLimits
+    suitability: dict[str, float] = {}
+    executing: ActiveExecution | None = None
+    time: float
+    simulated: bool = False
+
+
+class Report(Message):
+    """A durable report; `seq` counts from 1 within a boot.
+
+    `world`: a simulated world's state after it, from which it can be rebuilt.
+    """
+
+    type: Literal["report"] = "report"
+    seq: Annotated[int, Field(ge=1)]
+    time: float
+    body: ReportBody
+    world: dict[str, Any] | None = None
+
+
+class Heartbeat(Message):
+    """Sent at least every `heartbeat_s` of the welcome, in wall time; not durable."""
+
+    type: Literal["heartbeat"] = "heartbeat"
+    time: float
+
+
+class Picture(Message):
+    """A camera's picture, base64 JPEG; not durable. `command` asked for it."""
+
+    type: Literal["picture"] = "picture"
+    command: str
+    camera: str
+    jpeg: str
+
+
+RobotMessage = Annotated[Hello | Report | Heartbeat | Picture, Field(discriminator="type")]
+
+
+class Welcome(Message):
+    """The service's answer to a hello. `received`: the last seq it has of this boot."""
+
+    type: Literal["welcome"] = "welcome"
+    protocol: int
+    received: int
+    heartbeat_s: float
+
+
+class Ack(Message):
+    """All reports up to `seq` of this boot are committed."""
+
+    type: Literal["ack"] = "ack"
+    seq: int
+
+
+class Command(Message):
+    """A command; the robot carries out an `id` once, however often it comes."""
+
+    type: Literal["command"] = "command"
+    id: Identifier
+    body: CommandBody
+
+
+class LinkError(Message):
+    """The last message was not understood, or the connection is refused; in one sentence."""
+
+    type: Literal["error"] = "error"
+    detail: str
+
+
+ServiceMessage = Annotated[Welcome | Ack | Command | LinkError, Field(discriminator="type")]
+
+robot_message: TypeAdapter[Hello | Report | Heartbeat | Picture] = TypeAdapter(RobotMessage)
+service_message: TypeAdapter[Welcome | Ack | Command | LinkError] = TypeAdapter(ServiceMessage)

@@ -1,0 +1,1 @@
+"""The asyncio service: runs, live dialogues, journal, API and command line."""

@@ -1,0 +1,355 @@
+"""Every event of every run, as the journal keeps it and clients receive it.
+
+`seq` is one sequence for the whole journal, `time` seconds of the run's clock, `wall_time` UTC,
+`node` the path of child indices from the root (`/0/2/1`; the root is `/`).
+"""
+
+from datetime import datetime
+from typing import Annotated, Any, Literal
+from uuid import UUID
+
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
+
+from dialogue.script import CloseReason, Help
+from robots.link.messages import Detection
+from tasks.intervention import Intervention
+from tasks.resolution import Resolution
+
+
+class EventModel(BaseModel):
+    """Base of events and their parts."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class Event(EventModel):
+    """What every event has. `seq` is 0 until the journal has given it its number."""
+
+    seq: int = 0
+    time: float
+    wall_time: datetime
+    run: UUID
+
+
+class NodeEvent(Event):
+    """An event of one node."""
+
+    node: str
+    name: str
+
+
+class Candidate(EventModel):
+    """One leaf that could have been started, and why it was or was not."""
+
+    node: str
+    name: str
+    level: float
+    potential: float
+    attempts: int
+
+
+class AnswerOption(EventModel):
+    """One way to answer a prompt, and what it will do."""
+
+    value: Literal["yes", "no"]
+    effect: str
+
+
+class RunStarted(Event):
+    """A run began; everything needed to fold it again is here.
+
+    `tree` and `scene` are the checked definitions in their JSON form; `options` the request's
+    remaining fields.
+    """
+
+    type: Literal["run_started"] = "run_started"
+    tree_name: str
+    tree: dict[str, Any]
+    scene: dict[str, Any]
+    world: str
+    robots: list[str]
+    seed: int
+    speed: float | Literal["max"]
+    scenario: str | None
+    options: dict[str, Any]
+
+
+class NodeStarted(NodeEvent):
+    """A leaf was chosen for a robot; journaled before any command is sent."""
+
+    type: Literal["node_started"] = "node_started"
+    robot: str
+    execution: UUID
+    attempt: int
+    candidates: list[Candidate]
+
+
+class StepStarted(NodeEvent):
+    """A behavior's step has begun (1 is the first)."""
+
+    type: Literal["step_started"] = "step_started"
+    robot: str
+    execution: UUID
+    step: int
+    step_name: str
+
+
+class IssueRaised(NodeEvent):
+    """A monitor detected a fault. `picture` names the image at `/api/pictures/{picture}`."""
+
+    type: Literal["issue_raised"] = "issue_raised"
+    robot: str
+    issue: str
+    object: str | None
+    place: str | None
+    execution: UUID
+    step: int
+    interrupts: bool
+    detection: Detection | None = None
+    picture: UUID | None = None
+
+
+class DialogueEvent(NodeEvent):
+    """An event of one dialogue."""
+
+    dialogue: UUID
+    robot: str
+    issue: str
+    object: str | None
+
+
+class DialogueOpened(DialogueEvent):
+    """A dialogue began."""
+
+    type: Literal["dialogue_opened"] = "dialogue_opened"
+
+
+class Prompt(DialogueEvent):
+    """The robot says something, or asks a yes/no question.
+
+    `prompt` stays the same when a question is repeated; `version` counts up. `to` is the helper
+    that it is meant for first, None for everyone. `deadline` is in the run's clock.
+    """
+
+    type: Literal["prompt"] = "prompt"
+    prompt: UUID
+    version: int
+    kind: Literal["say", "ask"]
+    text: str
+    answers: list[AnswerOption] = []
+    deadline: float | None = None
+    to: str | None = None
+
+
+class Claimed(DialogueEvent):
+    """A helper is on it; others see so until the lease ends (wall time)."""
+
+    type: Literal["claimed"] = "claimed"
+    helper: str
+    lease_until: datetime
+
+
+class Released(DialogueEvent):
+    """A claim ended: by the helper, or because its lease ran out."""
+
+    type: Literal["released"] = "released"
+    helper: str
+    expired: bool = False
+
+
+class Answered(DialogueEvent):
+    """The first answer to a prompt; it won."""
+
+    type: Literal["answered"] = "answered"
+    prompt: UUID
+    version: int
+    answer: Literal["yes", "no"]
+    helper: str
+
+
+class Escalated(DialogueEvent):
+    """Nobody answered in time: the question goes to somebody else."""
+
+    type: Literal["escalated"] = "escalated"
+    channel: Literal["helper", "mail"]
+    to: str
+
+
+class HelpAwaited(DialogueEvent):
+    """A helper promised physical help; the robot watches for it until `until` (run's clock)."""
+
+    type: Literal["help_awaited"] = "help_awaited"
+    help: Help
+    helper: str
+    until: float
+
+
+class HelpVerified(DialogueEvent):
+    """The robot saw that the help really happened."""
+
+    type: Literal["help_verified"] = "help_verified"
+    help: Help
+
+
+class HelpNotSeen(DialogueEvent):
+    """The robot did not see the promised help in time."""
+
+    type: Literal["help_not_seen"] = "help_not_seen"
+    help: Help
+
+
+class Resolved(DialogueEvent):
+    """The issue is resolved, and so what becomes of the leaf."""
+
+    type: Literal["resolved"] = "resolved"
+    resolution: Resolution
+    helped: bool
+
+
+class DialogueClosed(DialogueEvent):
+    """The dialogue is over."""
+
+    type: Literal["dialogue_closed"] = "dialogue_closed"
+    reason: CloseReason
+
+
+class InterventionDone(Event):
+    """A person did something in a simulated world; `by` says who (scenario, helper, api, ...)."""
+
+    type: Literal["intervention"] = "intervention"
+    act: str
+    object: str | None
+    intervention: Intervention
+    by: str
+    ok: bool = True
+    detail: str = ""
+
+
+class NodeDone(NodeEvent):
+    """A leaf is done: `by` the robot, a human, or both."""
+
+    type: Literal["node_done"] = "node_done"
+    robot: str | None
+    by: Literal["robot", "human", "both"]
+
+
+class NodeReset(NodeEvent):
+    """A leaf was put back: not active, not done, eligible again where the tree allows it."""
+
+    type: Literal["node_reset"] = "node_reset"
+    robot: str | None
+    reason: str
+    failed_attempt: bool
+
+
+class NodeAbandoned(NodeEvent):
+    """An alternative of an OR is given up for good, because `leaf` could not be done."""
+
+    type: Literal["node_abandoned"] = "node_abandoned"
+    leaf: str
+    reason: str
+
+
+class RunPaused(Event):
+    type: Literal["run_paused"] = "run_paused"
+
+
+class RunResumed(Event):
+    type: Literal["run_resumed"] = "run_resumed"
+
+
+class MissingPart(EventModel):
+    """A finished leaf whose object the last look did not find at its place."""
+
+    node: str
+    name: str
+    object: str
+    place: str
+
+
+class RunFinished(Event):
+    """The task is done. `missing`: what a last look did not find at its place."""
+
+    type: Literal["run_finished"] = "run_finished"
+    missing: list[MissingPart]
+
+
+class RunFailed(Event):
+    """The run cannot go on; `node` is the leaf that could not be done, if it was one."""
+
+    type: Literal["run_failed"] = "run_failed"
+    reason: str
+    node: str | None = None
+
+
+class RunAborted(Event):
+    type: Literal["run_aborted"] = "run_aborted"
+    reason: str = ""
+
+
+class RobotEvent(Event):
+    robot: str
+
+
+class RobotLost(RobotEvent):
+    """The robot's connection or process is gone."""
+
+    type: Literal["robot_lost"] = "robot_lost"
+    reason: str
+
+
+class RobotBack(RobotEvent):
+    """The robot is there (again); `continues`: with the execution that it had."""
+
+    type: Literal["robot_back"] = "robot_back"
+    boot: str
+    continues: bool
+
+
+class RobotHolding(RobotEvent):
+    """The robot has stopped and holds."""
+
+    type: Literal["robot_holding"] = "robot_holding"
+    at: str
+
+
+class RobotResumed(RobotEvent):
+    """The robot moves again, at `step` of its behavior."""
+
+    type: Literal["robot_resumed"] = "robot_resumed"
+    step: int
+
+
+AnyEvent = Annotated[
+    RunStarted
+    | NodeStarted
+    | StepStarted
+    | IssueRaised
+    | DialogueOpened
+    | Prompt
+    | Claimed
+    | Released
+    | Answered
+    | Escalated
+    | HelpAwaited
+    | HelpVerified
+    | HelpNotSeen
+    | Resolved
+    | DialogueClosed
+    | InterventionDone
+    | NodeDone
+    | NodeReset
+    | NodeAbandoned
+    | RunPaused
+    | RunResumed
+    | RunFinished
+    | RunFailed
+    | RunAborted
+    | RobotLost
+    | RobotBack
+    | RobotHolding
+    | RobotResumed,
+    Field(discriminator="type"),
+]
+
+any_event: TypeAdapter[Any] = TypeAdapter(AnyEvent)

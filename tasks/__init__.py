@@ -1,0 +1,1 @@
+"""What is to be done: task trees, activation spreading, resolutions, scenes and their files."""

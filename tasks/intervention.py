@@ -1,0 +1,50 @@
+"""Interventions: what a person does in a world."""
+
+from enum import StrEnum
+from typing import Annotated, Literal, Self
+
+from pydantic import Field, model_validator
+
+from tasks.scene import Name, Pose, StrictModel
+
+
+class Act(StrEnum):
+    """The kinds of intervention."""
+
+    STEAL = "steal"
+    """Take the object away, out of the robot's gripper if need be."""
+    PUT_BACK = "put_back"
+    """Put the object to where it started."""
+    PLACE = "place"
+    """Put the object to its final place."""
+    HAND_OVER = "hand_over"
+    """Hold the object between the fingers until the robot has gripped it."""
+    MOVE = "move"
+    """Put the object somewhere else (`to`)."""
+    BLOCK = "block"
+    """Stand in the way of the arm."""
+    RELEASE = "release"
+    """Get out of the way."""
+
+
+class Intervention(StrictModel):
+    """One thing that a person does in a world.
+
+    `object` is required by every act but `block` and `release`; `place` (a name of the scene) by
+    `place`; `to` by `move`. `manner` says how `steal` takes the object: `vanish` at once, or
+    `pull` it out of the gripper by force.
+    """
+
+    act: Annotated[Act, Field(strict=False)]
+    object: Name | None = None
+    place: Name | None = None
+    to: Pose | None = None
+    manner: Literal["vanish", "pull"] = "vanish"
+
+    @model_validator(mode="after")
+    def _require_what_the_act_needs(self) -> Self:
+        if self.act not in (Act.BLOCK, Act.RELEASE) and self.object is None:
+            raise ValueError(f"act '{self.act}' needs an 'object'")
+        if self.act is Act.MOVE and self.to is None:
+            raise ValueError("act 'move' needs a pose 'to'")
+        return self

@@ -1,0 +1,76 @@
+"""Scenes: the objects and places that a task file speaks of.
+
+All lengths are metres, angles radians, poses in the robot's base frame (x forward, y left, z up).
+"""
+
+from typing import Annotated
+
+from pydantic import BaseModel, ConfigDict, Field
+
+Metres = Annotated[float, Field(ge=-100.0, le=100.0, allow_inf_nan=False)]
+Length = Annotated[float, Field(gt=0.0, le=10.0, allow_inf_nan=False)]
+Radians = Annotated[float, Field(ge=-6.2832, le=6.2832, allow_inf_nan=False)]
+Name = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_\-]{0,63}$")]
+Channel = Annotated[float, Field(ge=0.0, le=1.0, allow_inf_nan=False)]
+
+
+class StrictModel(BaseModel):
+    """A model that takes neither unknown fields nor values of another type."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+
+
+class Pose(StrictModel):
+    """Where the bottom centre of something is; `z` None means on the table."""
+
+    x: Metres
+    y: Metres
+    z: Metres | None = None
+    yaw: Radians = 0.0
+
+
+class SceneObject(StrictModel):
+    """A part: a coloured box, or a plate with a knob to grasp it by.
+
+    `color` is linear RGB in [0, 1]; `size` the full extents x, y, z; `knob` the full extents of a
+    box on top of the plate. A gripper closes across the thinner horizontal extent of what it
+    grasps (the knob where there is one).
+    """
+
+    color: tuple[Channel, Channel, Channel]
+    size: tuple[Length, Length, Length]
+    knob: tuple[Length, Length, Length] | None = None
+    pose: Pose
+    mass_kg: Annotated[float, Field(gt=0.0, le=50.0)] = 0.12
+    needs_help: bool = False
+
+
+class Place(StrictModel):
+    """A target: where the bottom centre of an object is to rest."""
+
+    pose: Pose
+
+
+class Table(StrictModel):
+    """The work surface: an upright box whose top is at `height`."""
+
+    height: Metres = 0.70
+    center: tuple[Metres, Metres] = (0.70, -0.10)
+    size: tuple[Length, Length] = (0.70, 1.30)
+
+
+class Scatter(StrictModel):
+    """How far a world may move an object's start pose, uniformly, by its seed."""
+
+    xy: Annotated[float, Field(ge=0.0, le=0.5)] = 0.0
+    yaw: Annotated[float, Field(ge=0.0, le=3.15)] = 0.0
+
+
+class Scene(StrictModel):
+    """Everything that a task's leaves may name."""
+
+    name: Name
+    table: Table = Table()
+    objects: dict[Name, SceneObject]
+    places: dict[Name, Place]
+    scatter: Scatter = Scatter()
