@@ -2,8 +2,27 @@
 
 from typing import Any, Protocol
 
+from robots.agent import AgentCore
 from robots.body import Body
 from tasks.intervention import Intervention
+from tasks.scenario import ScriptedIntervention
+from tasks.scene import Scene, StrictModel
+
+
+class WorldSetup(StrictModel):
+    """Everything a simulated robot's process is told at its start.
+
+    `speed` is simulated seconds per second, None as fast as possible. `interventions` are a
+    scenario's, triggered by task progress. `snapshot` rebuilds an earlier world.
+    """
+
+    robot: str
+    scene: Scene
+    seed: int
+    speed: float | None
+    interventions: list[ScriptedIntervention] = []
+    options: dict[str, Any] = {}
+    snapshot: dict[str, Any] | None = None
 
 
 class World(Protocol):
@@ -35,3 +54,29 @@ class World(Protocol):
         ...
 
     def close(self) -> None: ...
+
+
+class WorldUnavailableError(Exception):
+    """A world cannot run on this machine; the message says what to install."""
+
+
+class WorldAdapter(Protocol):
+    """What the entry point group `mend.worlds` provides: one kind of world."""
+
+    @property
+    def own_process(self) -> bool:
+        """Whether it has to run in a process of its own (it blocks, or may crash)."""
+        ...
+
+    @property
+    def lays_out_anything(self) -> bool:
+        """Whether it makes up objects and places that a tree names and no scene file describes."""
+        ...
+
+    def check_available(self) -> None:
+        """Raise `WorldUnavailableError` if it cannot run here."""
+        ...
+
+    def create_agent(self, setup: WorldSetup) -> AgentCore:
+        """Build the world and the robot in it."""
+        ...

@@ -1,0 +1,32 @@
+"""What the service refuses, and why: each becomes one problem document on the API."""
+
+from uuid import UUID
+
+
+class ServiceError(Exception):
+    """Base: the message is one clear sentence for the user."""
+
+
+class NotFoundError(ServiceError):
+    """There is no such run, dialogue, prompt, tree, robot, camera or picture."""
+
+
+class ConflictError(ServiceError):
+    """The state of the thing does not allow what was asked."""
+
+
+class LostRaceError(ConflictError):
+    """Somebody else answered first."""
+
+    def __init__(self, prompt: UUID, answered_by: str) -> None:
+        super().__init__(f"this question was already answered by {answered_by}")
+        self.prompt = prompt
+        self.answered_by = answered_by
+
+
+class InvalidError(ServiceError):
+    """What was sent cannot be used; `problems` has one sentence per mistake."""
+
+    def __init__(self, message: str, problems: list[str] | None = None) -> None:
+        super().__init__(message)
+        self.problems = problems or []

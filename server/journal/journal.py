@@ -1,0 +1,85 @@
+"""The journal: the append-only record of every event of every run, behind one narrow interface."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+from uuid import UUID
+
+from server.journal.events import Event
+
+
+@dataclass(frozen=True, slots=True)
+class Receipt:
+    """That a robot's report was received; committed with what follows from it."""
+
+    robot: str
+    boot: str
+    seq: int
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """What is committed together, all or nothing.
+
+    `world` replaces the run's latest world state (`world_run` says whose); `pictures` are JPEGs.
+    """
+
+    events: Sequence[Event] = ()
+    receipt: Receipt | None = None
+    world_run: UUID | None = None
+    world: Mapping[str, Any] | None = None
+    pictures: Mapping[UUID, bytes] = field(default_factory=dict)
+
+
+class Journal(Protocol):
+    """Committed before it is published: `append` returns when the entry is durable."""
+
+    @property
+    def head(self) -> int:
+        """The `seq` of the last committed event; 0 when there is none."""
+        ...
+
+    async def append(self, entry: Entry) -> list[Event]:
+        """Commit an entry and return its events with their numbers, which have no gaps.
+
+        Published to subscribers in the order of `seq`, after the commit. Raises
+        `JournalClosedError` after `close`, `DuplicateReceiptError` if the receipt is there already
+        (nothing of the entry is then committed).
+        """
+        ...
+
+    async def read(self, after: int, limit: int, run: UUID | None = None) -> list[Event]:
+        """Up to `limit` events with `seq` > `after`, in order; of one run if given."""
+        ...
+
+    async def received(self, robot: str, boot: str) -> int:
+        """The last `seq` received of a robot's boot; 0 when none."""
+        ...
+
+    async def world(self, run: UUID) -> dict[str, Any] | None:
+        """A run's latest world state."""
+        ...
+
+    async def picture(self, picture: UUID) -> bytes | None: ...
+
+    async def runs(self) -> list[UUID]:
+        """Every run, in the order in which they began."""
+        ...
+
+    async def save_tree(self, name: str, text: str) -> None:
+        """Keep an uploaded task file; replaces one of the same name."""
+        ...
+
+    async def delete_tree(self, name: str) -> bool: ...
+
+    async def trees(self) -> dict[str, str]: ...
+
+    def close(self) -> None: ...
+
+
+class JournalClosedError(Exception):
+    """The journal no longer takes entries."""
+
+
+class DuplicateReceiptError(Exception):
+    """This report was received before."""

@@ -1,0 +1,53 @@
+"""The runtime as the API, the sockets and the command line see it."""
+
+from typing import Literal, Protocol
+from uuid import UUID
+
+from server.journal.events import Answered
+from server.runtime.requests import RunRequest
+from server.runtime.views import DialogueView, RobotView, RunSummary, RunView
+from tasks.intervention import Intervention
+
+
+class RunService(Protocol):
+    """Runs, dialogues and robots. Every method raises the errors of `server.errors`."""
+
+    async def start_run(self, request: RunRequest) -> RunView:
+        """Begin a run. Raises `NotFoundError` (tree, scenario, robot), `InvalidError`."""
+        ...
+
+    def runs(self) -> list[RunSummary]:
+        """All runs, newest first."""
+        ...
+
+    def run(self, run: UUID) -> RunView: ...
+
+    async def pause(self, run: UUID) -> RunView: ...
+
+    async def resume(self, run: UUID) -> RunView: ...
+
+    async def abort(self, run: UUID) -> RunView: ...
+
+    async def intervene(self, run: UUID, intervention: Intervention) -> None:
+        """Have a person do something in a simulated world. Raises `ConflictError` if it cannot."""
+        ...
+
+    async def picture(self, run: UUID, camera: str) -> bytes:
+        """A camera's picture now, as JPEG."""
+        ...
+
+    def dialogues(self, status: Literal["open", "closed"] | None) -> list[DialogueView]: ...
+
+    def dialogue(self, dialogue: UUID) -> DialogueView: ...
+
+    async def answer(
+        self, dialogue: UUID, prompt: UUID, answer: Literal["yes", "no"], helper: str
+    ) -> Answered:
+        """Answer a prompt: the first answer wins. Raises `LostRaceError`, `ConflictError`."""
+        ...
+
+    async def claim(self, dialogue: UUID, helper: str) -> DialogueView: ...
+
+    async def release(self, dialogue: UUID, helper: str) -> DialogueView: ...
+
+    def robots(self) -> list[RobotView]: ...

@@ -1,0 +1,123 @@
+"""What clients see of runs, dialogues and robots."""
+
+from datetime import datetime
+from enum import StrEnum
+from typing import Any, Literal
+from uuid import UUID
+
+from pydantic import BaseModel, ConfigDict
+
+from server.journal.events import AnswerOption, MissingPart
+
+
+class View(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class RunStatus(StrEnum):
+    RUNNING = "running"
+    PAUSED = "paused"
+    FINISHED = "finished"
+    FAILED = "failed"
+    ABORTED = "aborted"
+
+    @property
+    def ended(self) -> bool:
+        return self in (RunStatus.FINISHED, RunStatus.FAILED, RunStatus.ABORTED)
+
+
+class NodeView(View):
+    """One node's state, levels and potentials as they are now."""
+
+    node: str
+    name: str
+    kind: Literal["then", "and", "or", "behavior"]
+    behavior: str | None
+    object: str | None
+    place: str | None
+    activation_level: float
+    activation_potential: float
+    active: bool
+    done: bool
+    abandoned: bool
+    owner: str | None
+    attempts: int
+
+
+class PromptView(View):
+    """The open prompt of a dialogue."""
+
+    prompt: UUID
+    version: int
+    kind: Literal["say", "ask"]
+    text: str
+    answers: list[AnswerOption]
+    deadline: float | None
+    to: str | None
+
+
+class DialogueView(View):
+    """One dialogue. `prompt` is the latest; it is open while `status` is and it is an ask."""
+
+    dialogue: UUID
+    run: UUID
+    status: Literal["open", "closed"]
+    reason: str | None
+    issue: str
+    object: str | None
+    robot: str
+    node: str
+    name: str
+    prompt: PromptView | None
+    awaiting: Literal["answer", "help"] | None
+    answered_by: str | None
+    claimed_by: str | None
+    claimed_until: datetime | None
+    picture: UUID | None
+
+
+class RunResult(View):
+    """How a run ended."""
+
+    reason: str
+    node: str | None = None
+    missing: list[MissingPart] = []
+
+
+class RunSummary(View):
+    """One line about a run."""
+
+    id: UUID
+    tree: str
+    world: str
+    scenario: str | None
+    seed: int
+    speed: float | Literal["max"]
+    status: RunStatus
+    time: float
+    started: datetime
+    robots: list[str]
+    result: RunResult | None
+
+
+class RunView(RunSummary):
+    """Everything about a run now. `seq` is the last event it reflects."""
+
+    seq: int
+    nodes: list[NodeView]
+    dialogues: list[DialogueView]
+    """The open dialogues."""
+    options: dict[str, Any]
+
+
+class RobotView(View):
+    """A connected or known robot."""
+
+    robot: str
+    connected: bool
+    simulated: bool
+    behaviors: list[str]
+    cameras: list[str]
+    reach: dict[str, float] | None
+    run: UUID | None
+    state: Literal["idle", "working", "holding", "lost"]
