@@ -175,14 +175,29 @@ ReportBody = Annotated[
 # --- Commands: service to robot, idempotent ---------------------------------------------------
 
 
+class Location(Message):
+    """A pose on a surface; `z` None means on the table."""
+
+    x: float
+    y: float
+    z: float | None = None
+    yaw: float = 0.0
+
+
 class Start(Message):
-    """Start a behavior with its parameters under a new execution id."""
+    """Start a behavior with its parameters under a new execution id.
+
+    `size` are the full extents of the object and `target` where its bottom centre is to rest, as
+    the task's scene has them; None where it has none.
+    """
 
     type: Literal["start"] = "start"
     execution: str
     node: str
     behavior: str
     parameters: dict[str, Any]
+    size: tuple[float, float, float] | None = None
+    target: Location | None = None
 
 
 class Interrupt(Message):

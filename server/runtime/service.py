@@ -5,7 +5,7 @@ from uuid import UUID
 
 from server.journal.events import Answered
 from server.runtime.requests import RunRequest
-from server.runtime.views import DialogueView, RobotView, RunSummary, RunView
+from server.runtime.views import DialogueView, RobotView, RunSummary, RunView, Snapshot
 from tasks.intervention import Intervention
 
 
@@ -51,3 +51,7 @@ class RunService(Protocol):
     async def release(self, dialogue: UUID, helper: str) -> DialogueView: ...
 
     def robots(self) -> list[RobotView]: ...
+
+    async def snapshot(self, seq: int | None) -> Snapshot:
+        """The state after event `seq`, or after the last one without it."""
+        ...

@@ -121,3 +121,11 @@ class RobotView(View):
     reach: dict[str, float] | None
     run: UUID | None
     state: Literal["idle", "working", "holding", "lost"]
+
+
+class Snapshot(View):
+    """Every run that had not ended and every open dialogue, after the event `seq`."""
+
+    seq: int
+    runs: list[RunView]
+    dialogues: list[DialogueView]
