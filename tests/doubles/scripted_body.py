@@ -112,7 +112,7 @@ class ScriptedBody:
     def hold_out(self, name: str) -> None:
         """A person holds a part between the fingers, wherever they are."""
         self.parts.pop(name, None)
-        self.held_out = (name, _part_in_tool(name))
+        self.held_out = (name, part_in_tool(name))
 
     def placed(self) -> dict[str, object]:
         shown: dict[str, object] = dict(self.parts)
@@ -222,13 +222,13 @@ class ScriptedBody:
             return
         for name, resting in self.parts.items():
             relative = np.linalg.inv(self.tool_pose()) @ resting.matrix()
-            if np.linalg.norm(relative[:3, 3] - _part_in_tool(name)[:3, 3]) < 0.015:
+            if np.linalg.norm(relative[:3, 3] - part_in_tool(name)[:3, 3]) < 0.015:
                 del self.parts[name]
                 self.in_hand = (name, relative)
                 return
 
 
-def _part_in_tool(name: str) -> np.ndarray:
+def part_in_tool(name: str) -> np.ndarray:
     grasp = grasp_of(PARTS[name])
     pose = grasp.tool_pose(0.0, 0.0, 0.0, 0.0)
     return np.linalg.inv(tool_matrix(pose))
