@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from drawn_scene import PARTS, TABLE_Z, DrawnScene, Resting
@@ -81,7 +81,7 @@ class ScriptedBody:
     """
 
     def __init__(self, parts: dict[str, Resting], period_s: float = 1 / 30) -> None:
-        self.parts: dict[str, Resting] = dict(parts)
+        self.parts: dict[str, Resting] = {name: replace(each) for name, each in parts.items()}
         self.grey_boxes: list = []
         self.in_hand: tuple[str, np.ndarray] | None = None
         self.held_out: tuple[str, np.ndarray] | None = None
@@ -182,6 +182,10 @@ class ScriptedBody:
 
     def close_gripper(self) -> None:
         self._gripper_left, self._gripper_closed = GRIPPER_CYCLES, True
+
+    @property
+    def arm_moving(self) -> bool:
+        return self._arm_moving
 
     @property
     def moving(self) -> bool:
