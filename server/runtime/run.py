@@ -185,6 +185,10 @@ class Run:
             await self._context.commit([], receipt=receipt)
 
     async def robot_lost(self, robot: str, reason: str) -> None:
+        """A robot's connection is gone."""
+        self.tell_lost(robot, reason)
+
+    def tell_lost(self, robot: str, reason: str) -> None:
         """A robot's connection or process is gone."""
         self._put(lambda: self._lost(self._sides[robot], reason))
 
