@@ -221,6 +221,8 @@ class Look(Message):
     have passed. `at_place`: `object` rests at `place`; `in_reach`: `object` rests within the
     graspable range; `in_gripper`: take `object` from a person (move to the hand-over pose, open,
     close once it is seen between the fingers); `way_clear`: nothing is in the arm's way.
+    `rate`: simulated worlds let their clock run so fast while they look again and again; None is
+    the run's own speed.
     """
 
     type: Literal["look"] = "look"
@@ -228,6 +230,7 @@ class Look(Message):
     place: str | None = None
     expect: Literal["at_place", "in_reach", "in_gripper", "way_clear"] | None = None
     within_s: float = 0.0
+    rate: float | None = None
 
 
 class SlowDown(Message):
