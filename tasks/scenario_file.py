@@ -43,19 +43,19 @@ def scenario_names() -> list[str]:
     return sorted(path.stem for path in SCENARIOS.glob("*.yaml"))
 
 
-def load_scenario(name_or_path: str | Path) -> Scenario:
-    """Read a scenario of Mend's by its name, or anybody's by the path of its file.
+def load_scenario(name: str) -> Scenario:
+    """Read a scenario that comes with Mend; never any other file, whatever the name.
 
     Raises `ScenarioFileError`.
     """
-    path = Path(name_or_path)
-    if str(name_or_path) in scenario_names():
-        path = SCENARIOS / f"{name_or_path}.yaml"
-    elif not path.is_file():
+    if name not in scenario_names():
         known = ", ".join(scenario_names())
-        raise ScenarioFileError(
-            str(name_or_path), [f"there is no such scenario and no such file; there are {known}"]
-        )
+        raise ScenarioFileError(name, [f"there is no such scenario; there are {known}"])
+    return read_scenario(SCENARIOS / f"{name}.yaml")
+
+
+def read_scenario(path: Path) -> Scenario:
+    """Read anybody's scenario file. Raises `ScenarioFileError`."""
     try:
         text = path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:

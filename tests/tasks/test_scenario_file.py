@@ -11,6 +11,7 @@ from tasks.scenario_file import (
     ScenarioFileError,
     load_scenario,
     parse_scenario,
+    read_scenario,
     scenario_names,
     scene_problems,
 )
@@ -55,7 +56,7 @@ def test_a_scenario_may_be_written_in_json() -> None:
 def test_a_scenario_is_read_from_a_file_of_anybodys(tmp_path: Path) -> None:
     path = tmp_path / "mine.yaml"
     path.write_text(GOOD)
-    assert load_scenario(path) == parse_scenario(GOOD, "mine.yaml")
+    assert read_scenario(path) == parse_scenario(GOOD, "mine.yaml")
 
 
 def test_an_unknown_scenario_is_told_with_those_that_there_are() -> None:
@@ -63,11 +64,23 @@ def test_an_unknown_scenario_is_told_with_those_that_there_are() -> None:
         load_scenario("eket_papr")
 
 
+def test_a_name_never_leads_to_another_file(tmp_path: Path) -> None:
+    path = tmp_path / "mine.yaml"
+    path.write_text(GOOD)
+    with pytest.raises(ScenarioFileError, match="there is no such scenario"):
+        load_scenario(str(path))
+
+
+def test_a_file_that_is_not_there_is_told(tmp_path: Path) -> None:
+    with pytest.raises(ScenarioFileError, match="cannot be read"):
+        read_scenario(tmp_path / "mine.yaml")
+
+
 def test_a_file_that_is_no_text_is_told(tmp_path: Path) -> None:
     path = tmp_path / "mine.yaml"
     path.write_bytes(b"\xff\xfe\x00")
     with pytest.raises(ScenarioFileError, match="cannot be read"):
-        load_scenario(path)
+        read_scenario(path)
 
 
 def test_every_mistake_is_told_with_its_line() -> None:
