@@ -4,8 +4,6 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
-from robots.robot import Robot, TaskProgress
-
 from robots.agent import Emit, EmitPicture
 from robots.link.messages import (
     CommandBody,
@@ -25,6 +23,7 @@ from robots.link.messages import (
     StepStarted,
     TakePicture,
 )
+from robots.robot import Robot, TaskProgress
 from sim.interventions import PendingInterventions, PendingSnapshot
 from sim.world import World
 from tasks.intervention import Intervention
@@ -118,11 +117,11 @@ class SimulatedAgent:
 
     def snapshot(self) -> dict[str, Any]:
         """The state from which an agent in the same scene can be rebuilt; JSON-compatible."""
-        return AgentSnapshot(
-            world=self._world.snapshot(),
-            attempts=dict(self._attempts),
-            pending=self._pending.snapshot(),
-        ).model_dump(mode="json")
+        return {
+            "world": self._world.snapshot(),
+            "attempts": dict(self._attempts),
+            "pending": self._pending.snapshot().model_dump(mode="json"),
+        }
 
     # --- Commands -----------------------------------------------------------------------------
 
