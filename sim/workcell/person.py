@@ -128,7 +128,7 @@ class Person:
             return
         self._take(part)
         hand = Hand.take_hold(self._client, part, PULL_FORCE_N)
-        self._pulls.append(_Pull(hand, self._way_out()))
+        self._pulls.append(_Pull(hand, self._way_out(part)))
 
     def _put_back(self, intervention: Intervention) -> None:
         part = self._part(intervention)
@@ -223,11 +223,12 @@ class Person:
             return "the robot's arm"
         return None
 
-    def _way_out(self) -> Point:
-        """Sideways between the fingers and a little up."""
+    def _way_out(self, part: Part) -> Point:
+        """Sideways between the fingers and a little up; down with a plate, which would jam."""
         tool = self._pr2.tool.pose(self._pr2.arm_joints())
         sideways = tool[:3, 2] * self._rng.choice([-1.0, 1.0])
-        direction = np.array([sideways[0], sideways[1], _PULL_RISE])
+        rise = _PULL_RISE if part.definition.knob is None else -_PULL_RISE
+        direction = np.array([sideways[0], sideways[1], rise])
         x, y, z = direction / np.linalg.norm(direction)
         return float(x), float(y), float(z)
 
