@@ -4,9 +4,9 @@ from collections.abc import Iterable
 from typing import Any
 
 from pydantic import ValidationError
+
 from robots.catalogue import Catalogue
 from robots.robot import Robot
-
 from sim.simulated_agent import SimulatedAgent
 from sim.tabletop.colors import learn_colors
 from sim.tabletop.layout import lay_out
