@@ -156,7 +156,7 @@ def _bind(settings: Settings) -> socket.socket:
 
 def _reachable(host: str) -> str:
     """The host under which this machine reaches its own service."""
-    if host in ("0.0.0.0", ""):  # noqa: S104 - compared, not bound
+    if host in ("0.0.0.0", ""):
         return "127.0.0.1"
     if host == "::":
         return "[::1]"

@@ -1,5 +1,7 @@
 """Task trees and scenarios as the runtime takes them: checked, with their scenes."""
 
+from tasks.task_file import TaskFileError, read_task_text
+
 from server.errors import InvalidError, NotFoundError
 from server.runtime.runtime import LoadedTree
 from server.trees import CheckedTree, TreeLibrary
@@ -8,7 +10,6 @@ from tasks.library import load_scene
 from tasks.plugins import load_plugins
 from tasks.scenario import Scenario
 from tasks.scenario_file import ScenarioFileError, load_scenario, scenario_names
-from tasks.task_file import TaskFileError, read_task_text
 
 
 class TaskLibrary:
