@@ -75,10 +75,14 @@ class RunStarted(Event):
 
 
 class NodeStarted(NodeEvent):
-    """A leaf was chosen for a robot; journaled before any command is sent."""
+    """A leaf was chosen for a robot; journaled before any command is sent.
+
+    `boot` is the robot's boot to which the command goes: a later boot knows nothing of it.
+    """
 
     type: Literal["node_started"] = "node_started"
     robot: str
+    boot: str
     execution: UUID
     attempt: int
     candidates: list[Candidate]

@@ -1,0 +1,46 @@
+"""What is kept of a tabletop world so that it can be rebuilt."""
+
+from typing import Literal
+
+from sim.tabletop.part import PartPose
+from tasks.scene import Metres, Name, StrictModel
+
+_DECIMALS = 6
+"""A micrometre is enough, and a snapshot is written at every step."""
+
+RestPose = tuple[Metres, Metres, Metres, float]
+"""Where the bottom centre of a part rests (x, y, z in the base frame), and its yaw."""
+
+
+class HandOverSnapshot(StrictModel):
+    """Somebody holds a part out until the clock reads `until_s`."""
+
+    object: Name
+    until_s: float
+
+
+class TabletopSnapshot(StrictModel):
+    """The state of a tabletop world between two control cycles.
+
+    `moved`: where those parts last rested that are not where they started. `gone`: those that
+    somebody took away. `held` is for readers of the journal: a rebuilt robot holds nothing.
+    `blocker_at`: where somebody stands in the way, in the plane.
+    """
+
+    version: Literal[1] = 1
+    time_s: float
+    moved: dict[Name, RestPose]
+    gone: list[Name]
+    held: Name | None
+    blocker_at: tuple[float, float] | None
+    hand_over: HandOverSnapshot | None
+
+
+def to_rest_pose(pose: PartPose) -> RestPose:
+    """As it is kept."""
+    return (
+        round(pose.x, _DECIMALS),
+        round(pose.y, _DECIMALS),
+        round(pose.z, _DECIMALS),
+        round(pose.yaw, _DECIMALS),
+    )
