@@ -16,7 +16,6 @@ from server.runtime.run_state import RunState
 class RunSettings:
     """How patient a run is. Seconds of the run's clock, but for `robot_lost_timeout_s` (wall)."""
 
-    ask_deadline_s: float = 30.0
     help_window_s: float = 30.0
     robot_lost_timeout_s: float = 60.0
     max_restarts: int = 5

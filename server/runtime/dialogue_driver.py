@@ -1,22 +1,29 @@
 """Keeps a run's open dialogues going: answers, deadlines, escalation, and looking for the help."""
 
 from collections.abc import Callable, Sequence
-from datetime import timedelta
 from typing import Literal
 from uuid import UUID, uuid4
 
 import numpy as np
-from sim.person import deed
 
 from dialogue.script import Expectation, Turn
-from server.dialogues.answers import AnswerSource, ScriptedAnswer
-from server.dialogues.escalation import Exhausted, Ladder, Mail, Repeat, ToHelper
+from server.dialogues.answers import AnswerSource
+from server.dialogues.escalation import (
+    EscalationPolicy,
+    Exhausted,
+    Mail,
+    Repeat,
+    ToHelper,
+    first_helper,
+    next_rung,
+)
 from server.errors import ConflictError, LostRaceError, NotFoundError
 from server.journal import events as ev
 from server.runtime.context import RunContext
 from server.runtime.dialogue_events import DialogueEvents
 from server.runtime.robot_side import Purpose, RobotSide
 from server.runtime.run_state import EXPECTED, DialogueState, rehearse
+from sim.person import Promise, deed
 from tasks.scenario import Person
 
 TOLERANCE_S = 1e-6
@@ -36,13 +43,13 @@ class DialogueDriver:
         self,
         context: RunContext,
         answers: AnswerSource,
-        ladder: Ladder,
+        policy: EscalationPolicy,
         person: Person | None,
         send_mail: Request,
     ) -> None:
         self._context = context
         self._answers = answers
-        self._ladder = ladder
+        self._policy = policy
         self._person = person
         self._send_mail = send_mail
         self._was_right: dict[UUID, bool] = {}
@@ -127,41 +134,6 @@ class DialogueDriver:
             raise ConflictError("this prompt does not wait for an answer")
         return await self._take_answer(dialogue, ask, answer, helper, side)
 
-    async def claim(self, dialogue: DialogueState, helper: str) -> None:
-        """Let the others see that a helper is on it. Raises `ConflictError` while another is."""
-        now = self._context.utc_now()
-        claim = dialogue.claim
-        if dialogue.closed is not None:
-            raise ConflictError(f"this dialogue is closed ({dialogue.closed})")
-        if claim is not None and claim.helper != helper and claim.until > now:
-            raise ConflictError(f"{claim.helper} is on it until {claim.until:%H:%M:%S} UTC")
-        lease = timedelta(seconds=self._context.settings.claim_lease_s)
-        await self._context.commit([self._make(dialogue).claimed(helper, now + lease)])
-
-    async def release(self, dialogue: DialogueState, helper: str) -> None:
-        """Give up a claim. Raises `ConflictError` if the helper has none."""
-        if dialogue.claim is None or dialogue.claim.helper != helper:
-            raise ConflictError(f"{helper} has not claimed this dialogue")
-        await self._context.commit([self._make(dialogue).released(helper, expired=False)])
-
-    async def expire_claims(self) -> None:
-        """Release what was claimed for longer than its lease."""
-        now = self._context.utc_now()
-        for dialogue in self._context.state.open_dialogues:
-            if dialogue.claim is not None and dialogue.claim.until <= now:
-                released = self._make(dialogue).released(dialogue.claim.helper, expired=True)
-                await self._context.commit([released])
-
-    def claims_expire_in(self) -> float | None:
-        """Seconds of wall time until the next lease ends."""
-        now = self._context.utc_now()
-        leases = [
-            (each.claim.until - now).total_seconds()
-            for each in self._context.state.open_dialogues
-            if each.claim is not None
-        ]
-        return max(0.0, min(leases)) if leases else None
-
     def abort(self, dialogue: DialogueState) -> ev.DialogueClosed:
         """The event that ends a dialogue because its run, robot or alternative ends."""
         return self._make(dialogue).aborted()
@@ -177,11 +149,8 @@ class DialogueDriver:
         """The scripted answer to the open question and when it is due."""
         if self._answers.live:
             return None
-        scripted: ScriptedAnswer = self._answers.next_answer(dialogue.ask_number - 1)
-        if scripted.answer is None:
-            return None
-        first_asked = dialogue.first_asked[ask.prompt]
-        return scripted.answer, first_asked + scripted.delay_s
+        scripted = self._answers.next_answer(dialogue.ask_number)
+        return None if scripted.answer is None else (scripted.answer, ask.time + scripted.delay_s)
 
     async def _take_answer(
         self,
@@ -199,16 +168,16 @@ class DialogueDriver:
         self, dialogue: DialogueState, ask: ev.Prompt, side: RobotSide
     ) -> None:
         make = self._make(dialogue)
-        deadline = self._context.clock.now() + self._context.settings.ask_deadline_s
-        match self._ladder.rung(ask.version - 1):
-            case Repeat():
-                await self._context.commit([make.repeat(ask, deadline, ask.to)])
-            case ToHelper(name=name):
-                events = [make.escalated("helper", name), make.repeat(ask, deadline, name)]
-                await self._context.commit(events)
-            case Mail(addresses=addresses):
+        now = self._context.clock.now()
+        match next_rung(self._policy, ask.version):
+            case Repeat(helper=helper, answer_within_s=within_s):
+                await self._context.commit([make.repeat(ask, now + within_s, helper)])
+            case ToHelper(helper=helper, answer_within_s=within_s):
+                escalated = make.escalated("helper", helper)
+                await self._context.commit([escalated, make.repeat(ask, now + within_s, helper)])
+            case Mail(addresses=addresses, answer_within_s=within_s):
                 escalated = make.escalated("mail", ", ".join(addresses))
-                await self._context.commit([escalated, make.repeat(ask, deadline, ask.to)])
+                await self._context.commit([escalated, make.repeat(ask, now + within_s, ask.to)])
                 self._send_mail(escalated, dialogue)
             case Exhausted():
                 await self._converse(dialogue, "silence", [], side)
@@ -243,7 +212,8 @@ class DialogueDriver:
         now, settings = self._context.clock.now(), self._context.settings
         return make.of_turns(
             turns,
-            ask_deadline=now + settings.ask_deadline_s,
+            ask_deadline=now + self._policy.answer_within_s,
+            to=first_helper(self._policy),
             help_until=now + settings.help_window_s,
             helper=helper,
             can_go_on=can_go_on,
@@ -320,7 +290,9 @@ class DialogueDriver:
         state = self._context.state
         rng = np.random.default_rng([state.started.seed, state.helps])
         raised = dialogue.raised
-        done = deed(str(awaiting.help), raised.object, raised.place, self._person, rng)
+        promise = Promise(str(awaiting.help), raised.object, raised.place)
+        others = [name for name in state.scene.objects if name != raised.object]
+        done = deed(promise, self._person, state.scene, others, rng)
         if done is not None:
             promised = awaiting.until - self._context.settings.help_window_s
             at = self._context.clock.to_robot(promised + done.delay_s)

@@ -33,7 +33,7 @@ class DialogueEvents:
     def say(self, say: Say) -> ev.Prompt:
         return ev.Prompt(**self._fields(), prompt=uuid4(), version=1, kind="say", text=say.text)
 
-    def ask(self, ask: Ask, deadline: float) -> ev.Prompt:
+    def ask(self, ask: Ask, deadline: float, to: str | None) -> ev.Prompt:
         return ev.Prompt(
             **self._fields(),
             prompt=uuid4(),
@@ -45,6 +45,7 @@ class DialogueEvents:
                 ev.AnswerOption(value="no", effect=ask.no_effect),
             ],
             deadline=deadline,
+            to=to,
         )
 
     def repeat(self, asked: ev.Prompt, deadline: float, to: str | None) -> ev.Prompt:
@@ -93,6 +94,7 @@ class DialogueEvents:
         turns: Sequence[Turn],
         *,
         ask_deadline: float,
+        to: str | None,
         help_until: float,
         helper: str,
         can_go_on: bool,
@@ -108,7 +110,7 @@ class DialogueEvents:
                 case Say():
                     events.append(self.say(turn))
                 case Ask():
-                    events.append(self.ask(turn, ask_deadline))
+                    events.append(self.ask(turn, ask_deadline, to))
                 case AwaitHelp():
                     events.append(
                         ev.HelpAwaited(

@@ -29,6 +29,7 @@ from server.errors import ConflictError
 from server.journal import events as ev
 from server.journal.journal import Receipt
 from server.runtime.choosing import choose
+from server.runtime.claims import Claims
 from server.runtime.context import RunContext
 from server.runtime.dialogue_driver import DialogueDriver
 from server.runtime.last_look import missing_parts
@@ -78,6 +79,7 @@ class Run:
         self._dialogues = dialogues
         self._hardware = hardware
         self._reports = ReportEvents(context, dialogues)
+        self._claims = Claims(context)
         self._inbox: asyncio.Queue[_Item] = asyncio.Queue()
         self._timers: dict[str, asyncio.TimerHandle] = {}
         self.ended = asyncio.Event()
@@ -94,6 +96,10 @@ class Run:
     def dialogues(self) -> DialogueDriver:
         return self._dialogues
 
+    @property
+    def claims(self) -> Claims:
+        return self._claims
+
     # --- The actor ----------------------------------------------------------------------------
 
     async def main(self) -> None:
@@ -109,7 +115,7 @@ class Run:
                 if item is not None:
                     await self._carry_out(item)
                 if not state.status.ended:
-                    await self._dialogues.expire_claims()
+                    await self._claims.expire()
                     await self._settle()
         finally:
             await self._stop_everything()
@@ -126,7 +132,7 @@ class Run:
         return await item.done
 
     async def _next_item(self) -> _Item | None:
-        waits = [self._dialogues.claims_expire_in()]
+        waits = [self._claims.expire_in_s()]
         due = None if self._hardware.simulated else self._dialogues.next_due()
         if due is not None and self._context.state.status is RunStatus.RUNNING:
             waits.append(max(0.0, due - self._context.clock.now()))
@@ -179,6 +185,10 @@ class Run:
             await self._context.commit([], receipt=receipt)
 
     async def robot_lost(self, robot: str, reason: str) -> None:
+        """A robot's connection is gone."""
+        self.tell_lost(robot, reason)
+
+    def tell_lost(self, robot: str, reason: str) -> None:
         """A robot's connection or process is gone."""
         self._put(lambda: self._lost(self._sides[robot], reason))
 

@@ -7,10 +7,10 @@ from functools import singledispatchmethod
 from typing import Literal
 from uuid import UUID
 
-from dialogue.conversation import Conversation
 from tasks.definition import TreeDefinition
 from tasks.task_tree import TaskTree
 
+from dialogue.conversation import Conversation
 from dialogue.script import CloseReason, Expectation, Help, Script, Turn
 from server.journal import events as ev
 from server.runtime.requests import RunRequest
@@ -50,7 +50,6 @@ class DialogueState:
     prompt: ev.Prompt | None = None
     asked: ev.Prompt | None = None
     prompts: dict[UUID, ev.Prompt] = field(default_factory=dict)
-    first_asked: dict[UUID, float] = field(default_factory=dict)
     answers: dict[UUID, ev.Answered] = field(default_factory=dict)
     awaiting: ev.HelpAwaited | None = None
     claim: Claim | None = None
@@ -208,10 +207,8 @@ class RunState:
         dialogue = self.dialogues[event.dialogue]
         dialogue.prompt = dialogue.prompts[event.prompt] = event
         if event.kind == "ask":
-            if event.version == 1:
-                self.asks += 1
-                dialogue.ask_number = self.asks
-                dialogue.first_asked[event.prompt] = event.time
+            self.asks += 1
+            dialogue.ask_number = self.asks
             dialogue.asked = event
             dialogue.awaiting = None
 

@@ -14,8 +14,8 @@ from tasks.definition import TreeDefinition
 
 from dialogue.script import Script
 from robots.link.messages import CommandBody, Hello
-from server.dialogues.answers import AnswerSource, make_answers
-from server.dialogues.escalation import Ladder
+from server.dialogues.answers import answer_source
+from server.dialogues.escalation import EscalationPolicy
 from server.errors import ConflictError, InvalidError, NotFoundError
 from server.journal import events as ev
 from server.journal.journal import Entry, Journal
@@ -110,7 +110,7 @@ class Runtime:
         trees: TreeSource,
         scenarios: ScenarioSource,
         scripts: Mapping[str, Script],
-        ladder: Ladder,
+        policy: EscalationPolicy,
         send_mail: Callable[[RunState, ev.Escalated, DialogueState], None],
         settings: RunSettings,
         monotonic: Callable[[], float],
@@ -122,7 +122,7 @@ class Runtime:
         self._trees = trees
         self._scenarios = scenarios
         self._scripts = scripts
-        self._ladder = ladder
+        self._policy = policy
         self._send_mail = send_mail
         self._settings = settings
         self._monotonic = monotonic
@@ -223,8 +223,8 @@ class Runtime:
         scenario = self._scenario_of(state)
         dialogues = DialogueDriver(
             context,
-            self._answers_of(state, scenario),
-            self._ladder,
+            answer_source(state.request, scenario),
+            self._policy,
             None if live else _person_of(state, scenario),
             partial(self._send_mail, state),
         )
@@ -251,14 +251,6 @@ class Runtime:
     def _scenario_of(self, state: RunState) -> Scenario | None:
         name = state.request.scenario
         return self._scenarios.load(name) if name else None
-
-    def _answers_of(self, state: RunState, scenario: Scenario | None) -> AnswerSource:
-        request = state.request
-        if request.answers is not None:
-            return make_answers(request.answers, request.seed)
-        if scenario is not None:
-            return make_answers(scenario.answers, request.seed, scenario.answer_delay_s)
-        return make_answers(None, request.seed)
 
     # --- What there is ------------------------------------------------------------------------
 
@@ -410,14 +402,14 @@ class Runtime:
         """Show the others that a helper is on it. Raises `ConflictError` while another is."""
         state, found = self._dialogue(dialogue)
         run = self._running(state.id)
-        await run.request(lambda: run.dialogues.claim(found, helper))
+        await run.request(lambda: run.claims.claim(found, helper))
         return dialogue_view(found)
 
     async def release(self, dialogue: UUID, helper: str) -> DialogueView:
         """Give up a claim. Raises `ConflictError` without one."""
         state, found = self._dialogue(dialogue)
         run = self._running(state.id)
-        await run.request(lambda: run.dialogues.release(found, helper))
+        await run.request(lambda: run.claims.release(found, helper))
         return dialogue_view(found)
 
     # --- Robots -------------------------------------------------------------------------------
