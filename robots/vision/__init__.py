@@ -1,0 +1,1 @@
+"""What a robot sees: colour models, blobs, objects in head and forearm pictures."""

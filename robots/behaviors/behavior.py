@@ -1,0 +1,70 @@
+"""A behavior: a name, a model of its parameters and the list of its steps."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import ClassVar, Literal
+
+from robots.body import ToolPose
+from robots.catalogue import Part
+from robots.link.messages import Location
+from tasks.scene import StrictModel
+
+
+@dataclass(frozen=True, slots=True)
+class Move:
+    """Move the tool point to a pose (base frame); `speed` in (0, 1] of the arm's best."""
+
+    to: ToolPose
+    speed: float
+
+
+@dataclass(frozen=True, slots=True)
+class SetGripper:
+    """Open or close the gripper. Closing takes hold of the behavior's object, opening frees it."""
+
+    to: Literal["open", "closed"]
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """One step of a behavior; `settle_s` passes between its end and the next step."""
+
+    name: str
+    action: Move | SetGripper
+    settle_s: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Situation:
+    """What a behavior may know when it lays out its steps (lengths in metres, base frame).
+
+    `found` is where the object's bottom centre is and `target` where it is to be; None where the
+    behavior has no object or no place. `table_z` is the height of the table.
+    """
+
+    part: Part | None
+    found: Location | None
+    target: Location | None
+    table_z: float
+
+
+class Behavior(ABC):
+    """One kind of behavior. A package adds its own under the entry point `mend.behaviors`.
+
+    `parameters` is the pydantic model of its parameters in task files and commands. A behavior
+    whose parameters have an `object` is given that part, with a `place` that target.
+    `carry_from` is the step (from 1) at which to go on with the object already in the gripper.
+    """
+
+    name: ClassVar[str]
+    parameters: ClassVar[type[StrictModel]]
+    carry_from: ClassVar[int]
+
+    @abstractmethod
+    def steps(self, parameters: StrictModel, situation: Situation) -> Sequence[Step]:
+        """Lay out all steps.
+
+        Where `found` is None the steps before `carry_from` are not walked and their poses may be
+        anything.
+        """

@@ -1,0 +1,174 @@
+"""Looks: one look at everything, or looking until what is expected has come to be."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+from robots.arm import Arm, Routine
+from robots.behaviors.execution import is_at
+from robots.body import ToolPose
+from robots.catalogue import Part
+from robots.link.messages import Holding, Location, Looked, ReportBody
+from robots.senses import Senses
+from robots.vision.forearm import GripReading, GripState, steady
+from robots.vision.head import HeadSighting
+
+LOOK_PERIOD_S = 0.5
+
+_RESTS_WITHIN_M = 0.006
+"""An object rests if it is this near to where the look before saw it."""
+_STEADY_S = 0.3
+_STEADY_SPREAD_PX = 4.0
+_CLEAR_FORCE_N = 8.0
+_MOST_READINGS = 6
+
+
+@dataclass(frozen=True, slots=True)
+class Looker:
+    """What a look works with.
+
+    `way` are the poses that the held execution has still to go through; `execution` its id.
+    `may_move`: the arm may go to neutral to free the head camera's view.
+    """
+
+    arm: Arm
+    senses: Senses
+    report: Callable[[ReportBody], None]
+    execution: str | None
+    way: list[ToolPose]
+    may_move: bool
+
+    def free_view(self) -> Routine[None]:
+        """Move the arm out of the head camera's view if that is allowed."""
+        if self.may_move:
+            yield from self.arm.go_to_neutral()
+
+    def answer(self, command: str, fulfilled: bool | None) -> Looked:
+        """All that the head camera sees now."""
+        return Looked(
+            command=command,
+            objects=self.senses.sight_all(self.senses.look()),
+            gripper=self.senses.gripper(),
+            fulfilled=fulfilled,
+        )
+
+
+class Expectation(Protocol):
+    """Something that a look waits for."""
+
+    def is_fulfilled(self) -> bool:
+        """Look once more."""
+        ...
+
+
+class AtPlace:
+    """An object rests at its place."""
+
+    def __init__(self, looker: Looker, part: Part, target: Location) -> None:
+        self._looker, self._part, self._target = looker, part, target
+
+    def is_fulfilled(self) -> bool:
+        senses = self._looker.senses
+        sighting = senses.sight(self._part, senses.look())
+        height_m = senses.catalogue.height_of(self._target)
+        return sighting is not None and is_at(sighting, self._target, height_m)
+
+
+class InReach:
+    """An object rests, standing, where the arm can grasp it."""
+
+    def __init__(self, looker: Looker, part: Part) -> None:
+        self._looker, self._part = looker, part
+        self._before: HeadSighting | None = None
+
+    def is_fulfilled(self) -> bool:
+        senses = self._looker.senses
+        before, self._before = self._before, senses.sight(self._part, senses.look())
+        now = self._before
+        if before is None or now is None or not now.upright(senses.catalogue.table.height):
+            return False
+        reach = self._looker.arm.body.reach
+        distance_m = math.hypot(now.x - reach.origin[0], now.y - reach.origin[1])
+        moved_m = math.dist((now.x, now.y, now.z), (before.x, before.y, before.z))
+        return moved_m <= _RESTS_WITHIN_M and reach.min_m <= distance_m <= reach.max_m
+
+
+class WayClear:
+    """Nothing presses against the arm, and nothing unknown is where it has to go."""
+
+    def __init__(self, looker: Looker) -> None:
+        self._looker = looker
+
+    def is_fulfilled(self) -> bool:
+        if self._looker.arm.body.contact_force_n() > _CLEAR_FORCE_N:
+            return False
+        senses, way = self._looker.senses, self._looker.way
+        here = self._looker.arm.tool_pose()
+        if here is not None and not self._looker.arm.at_neutral:
+            way = [here, *way]
+        return senses.obstruction(senses.look(), way, self._looker.arm.at_neutral) is None
+
+
+def look_once(looker: Looker, command: str) -> Routine[Looked]:
+    """One look at everything."""
+    yield from looker.free_view()
+    return looker.answer(command, None)
+
+
+def look_until(
+    looker: Looker, command: str, expectation: Expectation, within_s: float
+) -> Routine[Looked]:
+    """Look every half second until it is so or `within_s` have passed."""
+    yield from looker.free_view()
+    end_s = looker.arm.body.time_s() + within_s
+    while True:
+        fulfilled = expectation.is_fulfilled()
+        left_s = end_s - looker.arm.body.time_s()
+        if fulfilled or left_s <= 1e-9:
+            return looker.answer(command, fulfilled)
+        yield from looker.arm.wait(min(LOOK_PERIOD_S, left_s))
+
+
+def take_from_person(looker: Looker, command: str, part: Part, within_s: float) -> Routine[Looked]:
+    """Go to the hand-over pose and close the gripper on what is held between its fingers."""
+    arm, senses = looker.arm, looker.senses
+    end_s = arm.body.time_s() + within_s
+    if not senses.holds(part.name):
+        senses.let_go()
+        yield from arm.go_to_hand_over()
+        yield from arm.open_gripper()
+    looker.report(Holding(execution=looker.execution, at="hand_over"))
+    while not senses.holds(part.name):
+        offered = yield from _wait_until_offered(looker, part, end_s)
+        if not offered:
+            return looker.answer(command, fulfilled=False)
+        yield from arm.close_gripper()
+        senses.watch_grip(part)
+        yield from _judge_grip(looker)
+        if not senses.holds(part.name):
+            senses.let_go()
+            yield from arm.open_gripper()
+    return looker.answer(command, fulfilled=True)
+
+
+def _wait_until_offered(looker: Looker, part: Part, end_s: float) -> Routine[bool]:
+    """Watch the forearm camera until the part is held still between the fingers."""
+    watch = looker.senses.new_watch(part)
+    period_s = looker.senses.forearm_period_s
+    needed = max(3, math.ceil(_STEADY_S / period_s))
+    readings: list[GripReading] = []
+    while looker.arm.body.time_s() < end_s - 1e-9:
+        readings = [*readings[1 - needed :], looker.senses.measure_grip(watch)]
+        if len(readings) == needed and steady(readings, _STEADY_SPREAD_PX):
+            return True
+        yield from looker.arm.wait(period_s)
+    return False
+
+
+def _judge_grip(looker: Looker) -> Routine[None]:
+    for _ in range(_MOST_READINGS):
+        reading = looker.senses.read_grip()
+        if reading is None or reading.state is not GripState.UNDECIDED:
+            return
+        yield from looker.arm.wait(looker.senses.forearm_period_s)

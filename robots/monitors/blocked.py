@@ -1,0 +1,53 @@
+"""`blocked`: something is in the arm's way, seen before it moves or felt while it does."""
+
+from collections.abc import Sequence
+from typing import ClassVar
+
+from pydantic import Field
+
+from robots.link.messages import Detection
+from robots.monitors.monitor import BEFORE_FIRST_STEP, Meanwhile, Monitor, MonitorView
+from tasks.scene import StrictModel
+
+
+class BlockedParameters(StrictModel):
+    """A force above `limit_n` against the arm for `cycles` control cycles on end is a contact."""
+
+    limit_n: float = Field(default=20.0, gt=0.0)
+    cycles: int = Field(default=4, ge=1)
+
+
+class Blocked(Monitor[BlockedParameters]):
+    """Raises `blocked` from before step 1 to step 8."""
+
+    issue: ClassVar[str] = "blocked"
+    start_step: ClassVar[int] = BEFORE_FIRST_STEP
+    stop_step: ClassVar[int] = 8
+    meanwhile: ClassVar[Meanwhile] = Meanwhile.STOP_IN_PLACE
+    camera: ClassVar[str | None] = "head"
+    parameters: ClassVar[type[StrictModel]] = BlockedParameters
+
+    def __init__(self, settings: BlockedParameters) -> None:
+        super().__init__(settings)
+        self._cycles = 0
+
+    def check(self, view: MonitorView) -> Detection | None:
+        felt = self._feel(view.contact_forces_n)
+        if felt is not None:
+            return Detection(camera="head", explanation=f"{felt:.0f} N push against the arm")
+        if view.step == BEFORE_FIRST_STEP and view.obstruction is not None:
+            x, y, z = view.obstruction.position
+            return Detection(
+                camera="head",
+                center=view.obstruction.center,
+                area_px=view.obstruction.area_px,
+                explanation=f"something unknown is in the arm's way at ({x:.2f}, {y:.2f}, {z:.2f})",
+            )
+        return None
+
+    def _feel(self, forces_n: Sequence[float]) -> float | None:
+        for force in forces_n:
+            self._cycles = self._cycles + 1 if force > self.settings.limit_n else 0
+            if self._cycles >= self.settings.cycles:
+                return force
+        return None

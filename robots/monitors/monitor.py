@@ -1,0 +1,96 @@
+"""What a fault monitor is, and all that it may look at."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from enum import StrEnum
+from typing import Any, ClassVar, Generic, TypeVar
+
+from robots.body import CameraImage, Reach
+from robots.catalogue import Part
+from robots.link.messages import Detection
+from robots.vision.forearm import GripReading
+from robots.vision.head import HeadSighting
+from robots.vision.obstruction import Obstruction
+from tasks.scene import StrictModel
+
+BEFORE_FIRST_STEP = 0
+
+P = TypeVar("P", bound=StrictModel)
+
+
+class Meanwhile(StrEnum):
+    """What the robot does once the issue is raised."""
+
+    DO_NOT_START = "do_not_start"
+    """It stays at neutral and holds."""
+    GO_TO_NEUTRAL = "go_to_neutral"
+    """It stops, lets go, moves to neutral and holds."""
+    STOP_IN_PLACE = "stop_in_place"
+    """It stops where it is and holds."""
+    SLOW_DOWN = "slow_down"
+    """It goes on, slowly, until the behavior's last step is done."""
+
+
+@dataclass(frozen=True, slots=True)
+class MonitorView:
+    """What the robot senses at one moment; nothing in it comes from a simulator.
+
+    `step` counts from 1 and is 0 before the first. `part` is the behavior's object. `sighting`
+    is where the head camera saw it, `path_found` whether the arm can go there, and `obstruction`
+    what it saw in the way; all three are from before the first step. `grip` is what the newest
+    forearm picture says, from when the gripper has closed on the object until it opens.
+    `contact_forces_n` are the readings of every control cycle since the last check.
+    """
+
+    time_s: float
+    step: int
+    part: Part | None
+    needs_help: bool
+    reach: Reach
+    table_z: float
+    sighting: HeadSighting | None = None
+    path_found: bool = True
+    obstruction: Obstruction | None = None
+    grip: GripReading | None = None
+    contact_forces_n: Sequence[float] = ()
+    pictures: Mapping[str, CameraImage] = field(default_factory=dict)
+
+
+class Monitor(ABC, Generic[P]):
+    """Watches one execution for one kind of issue; a package adds its own by an entry point.
+
+    `issue` is the kind, under which dialogue scripts are registered too. It checks from
+    `start_step` to `stop_step` (0 is before the first), at the forearm camera's period. `camera`
+    is the one whose pictures it judges, None if it judges by something else. `parameters` is the
+    pydantic model of its settings. A monitor is made anew for each execution, so it may remember
+    what it saw.
+    """
+
+    issue: ClassVar[str]
+    start_step: ClassVar[int]
+    stop_step: ClassVar[int]
+    meanwhile: ClassVar[Meanwhile]
+    camera: ClassVar[str | None] = None
+    parameters: ClassVar[type[StrictModel]]
+
+    def __init__(self, settings: P) -> None:
+        self.settings = settings
+
+    @classmethod
+    def create(cls, parameters: Mapping[str, Any]) -> "Monitor[Any]":
+        """Make one from a mapping. Raises pydantic's `ValidationError` for wrong parameters."""
+        return cls(cls.parameters.model_validate(parameters))  # type: ignore[arg-type]
+
+    @property
+    def interrupts(self) -> bool:
+        """Whether the behavior does not simply go on."""
+        return self.meanwhile is not Meanwhile.SLOW_DOWN
+
+    def watches(self, step: int) -> bool:
+        """Whether it checks in this step."""
+        return self.start_step <= step <= self.stop_step
+
+    @abstractmethod
+    def check(self, view: MonitorView) -> Detection | None:
+        """What it detected, or None if all is as it must be."""

@@ -1,0 +1,53 @@
+"""`unreachable`: the object is seen, but not where the arm can grasp it."""
+
+import math
+from typing import ClassVar
+
+from pydantic import Field
+
+from robots.link.messages import Detection
+from robots.monitors.monitor import BEFORE_FIRST_STEP, Meanwhile, Monitor, MonitorView
+from tasks.scene import StrictModel
+
+
+class UnreachableParameters(StrictModel):
+    """`margin_m` is kept from both ends of the graspable range."""
+
+    margin_m: float = Field(default=0.0, ge=0.0, le=0.5)
+
+
+class Unreachable(Monitor[UnreachableParameters]):
+    """Raises `unreachable` before step 1."""
+
+    issue: ClassVar[str] = "unreachable"
+    start_step: ClassVar[int] = BEFORE_FIRST_STEP
+    stop_step: ClassVar[int] = BEFORE_FIRST_STEP
+    meanwhile: ClassVar[Meanwhile] = Meanwhile.DO_NOT_START
+    camera: ClassVar[str | None] = "head"
+    parameters: ClassVar[type[StrictModel]] = UnreachableParameters
+
+    def check(self, view: MonitorView) -> Detection | None:
+        reason = self._reason(view)
+        if reason is None:
+            return None
+        blob = None if view.sighting is None else view.sighting.blob
+        return Detection(
+            camera="head",
+            center=None if blob is None else blob.center,
+            area_px=0 if blob is None else blob.area_px,
+            explanation=reason,
+        )
+
+    def _reason(self, view: MonitorView) -> str | None:
+        name = "the place" if view.part is None else view.part.name
+        if view.sighting is not None:
+            origin, margin = view.reach.origin, self.settings.margin_m
+            distance = math.hypot(view.sighting.x - origin[0], view.sighting.y - origin[1])
+            low, high = view.reach.min_m + margin, view.reach.max_m - margin
+            if not low <= distance <= high:
+                return f"{name} is {distance:.2f} m away; the arm grasps {low:.2f} to {high:.2f} m"
+            if not view.sighting.upright(view.table_z):
+                return f"{name} has toppled over; the arm grasps it standing only"
+        if not view.path_found:
+            return f"the arm finds no path for {name}"
+        return None

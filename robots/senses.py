@@ -1,0 +1,136 @@
+"""What one robot perceives: its cameras' pictures, and what they show."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from robots.body import Body, CameraImage, ToolPose
+from robots.catalogue import Catalogue, Part
+from robots.grasp import grasp_of
+from robots.link.messages import Position, Sighting
+from robots.vision.color_model import ColorModel, Segmentation
+from robots.vision.forearm import GripReading, GripState, GripTolerances, GripWatch
+from robots.vision.head import HeadSighting, locate
+from robots.vision.obstruction import (
+    Clearance,
+    Obstruction,
+    Segment,
+    corridor,
+    find_obstruction,
+)
+
+HEAD = "head"
+FOREARM = "forearm"
+
+_ARM_LENGTH_M = 0.7
+"""How far the arm reaches back from the tool point, for telling it from an obstacle."""
+
+
+class Senses:
+    """A body's cameras with the colour model that understands their pictures.
+
+    `grip` follows what is between the fingers, from when they closed on it until they open.
+    """
+
+    def __init__(
+        self,
+        body: Body,
+        model: ColorModel,
+        catalogue: Catalogue,
+        tolerances: GripTolerances | None = None,
+        clearance: Clearance | None = None,
+    ) -> None:
+        self._body = body
+        self._model = model
+        self._tolerances = tolerances
+        self._clearance = clearance or Clearance()
+        self._segmented: tuple[CameraImage, Segmentation] | None = None
+        self.catalogue = catalogue
+        self.grip: GripWatch | None = None
+
+    @property
+    def known_colors(self) -> tuple[str, ...]:
+        """The objects that can be recognized."""
+        return self._model.names
+
+    @property
+    def forearm_period_s(self) -> float:
+        return self._body.cameras[FOREARM].period_s
+
+    def look(self) -> CameraImage:
+        """A head picture."""
+        return self._body.cameras[HEAD].capture()
+
+    def sight(self, part: Part, image: CameraImage) -> HeadSighting | None:
+        """Where a part is in a head picture."""
+        return locate(image, self._segment(image), part)
+
+    def sight_all(self, image: CameraImage) -> dict[str, Sighting]:
+        """Where every part of the catalogue is that a head picture shows."""
+        seen = {}
+        for name, part in self.catalogue.parts.items():
+            sighting = self.sight(part, image) if name in self._model.names else None
+            if sighting is not None:
+                seen[name] = sighting.to_message(part)
+        return seen
+
+    def gripper(self) -> Position:
+        """Where the tool point is."""
+        x, y, z = (float(each) for each in self._body.tool_pose()[:3, 3])
+        return Position(x=x, y=y, z=z)
+
+    def new_watch(self, part: Part) -> GripWatch:
+        """A grip watch that knows nothing yet."""
+        return GripWatch(part, grasp_of(part), self._model, self._tolerances, self.forearm_period_s)
+
+    def watch_grip(self, part: Part) -> None:
+        """The fingers have closed on a part: follow it from now on."""
+        self.grip = self.new_watch(part)
+
+    def let_go(self) -> None:
+        """The fingers open: there is nothing to follow any more."""
+        self.grip = None
+
+    def read_grip(self) -> GripReading | None:
+        """Take a forearm picture into account; None if nothing is followed."""
+        if self.grip is None:
+            return None
+        image = self._body.cameras[FOREARM].capture()
+        return self.grip.update(image, self._body.tool_pose(), self._body.gripper_opening_m())
+
+    def measure_grip(self, watch: GripWatch) -> GripReading:
+        """Judge a forearm picture by a watch without coming to a verdict."""
+        image = self._body.cameras[FOREARM].capture()
+        return watch.measure(image, self._body.tool_pose(), self._body.gripper_opening_m())
+
+    def holds(self, name: str | None = None) -> bool:
+        """Whether a part (`name`, or any) was confirmed in the gripper and not lost since."""
+        return (
+            self.grip is not None
+            and self.grip.state is GripState.HELD
+            and name in (None, self.grip.part.name)
+        )
+
+    def obstruction(
+        self, image: CameraImage, waypoints: Sequence[ToolPose], arm_is_away: bool
+    ) -> Obstruction | None:
+        """What stands in the way through `waypoints` that is no known part."""
+        return find_obstruction(
+            image,
+            self._segment(image),
+            corridor(waypoints),
+            () if arm_is_away else (self._own_arm(),),
+            self.catalogue.table.height,
+            self._clearance,
+        )
+
+    def _own_arm(self) -> Segment:
+        """From the tool point back through the forearm camera, which is mounted on the arm."""
+        tool = self._body.tool_pose()[:3, 3]
+        along = self._body.cameras[FOREARM].capture().pose[:3, 3] - tool
+        return tool, tool + along / max(float(np.linalg.norm(along)), 1e-6) * _ARM_LENGTH_M
+
+    def _segment(self, image: CameraImage) -> Segmentation:
+        if self._segmented is None or self._segmented[0] is not image:
+            self._segmented = (image, self._model.segment(image.bgr))
+        return self._segmented[1]

@@ -1,0 +1,35 @@
+"""Between pixels and points: the pinhole camera of a `CameraImage`."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robots.body import CameraImage
+
+Points = NDArray[np.float64]
+
+NEAR_M = 0.02
+"""Points nearer to the lens than this are drawn as if they were this far away."""
+
+
+def unproject(image: CameraImage, us: NDArray[np.intp], vs: NDArray[np.intp]) -> Points:
+    """The points (n, 3) in the base frame that pixels of an RGB-D picture show.
+
+    Raises `ValueError` for a picture without depth.
+    """
+    if image.depth_m is None:
+        raise ValueError("expected a picture with depth, got one without")
+    depth = image.depth_m[vs, us].astype(np.float64)
+    cx, cy = image.center_px
+    optical = np.stack(
+        [(us - cx) / image.focal_px * depth, (vs - cy) / image.focal_px * depth, depth], axis=1
+    )
+    points: Points = optical @ image.pose[:3, :3].T + image.pose[:3, 3]
+    return points
+
+
+def project(image: CameraImage, points: Points) -> Points:
+    """The pixels (n, 2) at which points (n, 3) of the base frame appear."""
+    optical = (points - image.pose[:3, 3]) @ image.pose[:3, :3]
+    depth = np.maximum(optical[:, 2], NEAR_M)
+    pixels: Points = optical[:, :2] / depth[:, None] * image.focal_px + np.array(image.center_px)
+    return pixels

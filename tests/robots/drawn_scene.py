@@ -1,0 +1,146 @@
+"""Coloured boxes drawn under a known camera, with depth."""
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robots.body import CameraImage
+from robots.catalogue import Part
+
+TABLE_Z = 0.70
+TABLE = ((0.35, -0.75), (1.05, 0.55))
+COLORS = {
+    "green_leg": (30, 140, 20),
+    "pink_bar": (165, 90, 250),
+    "yellow_bar": (15, 215, 245),
+    "blue_leg": (215, 50, 20),
+    "purple_top": (150, 20, 105),
+}
+PARTS = {
+    "green_leg": Part("green_leg", (0.03, 0.20, 0.08)),
+    "pink_bar": Part("pink_bar", (0.112, 0.03, 0.04)),
+    "yellow_bar": Part("yellow_bar", (0.112, 0.03, 0.04), needs_help=True),
+    "blue_leg": Part("blue_leg", (0.03, 0.20, 0.08)),
+    "purple_top": Part("purple_top", (0.18, 0.22, 0.016), knob=(0.028, 0.04, 0.036)),
+}
+_FACES = ((0, 1, 3, 2), (4, 5, 7, 6), (0, 1, 5, 4), (2, 3, 7, 6), (0, 2, 6, 4), (1, 3, 7, 5))
+
+
+@dataclass
+class Resting:
+    """Where a part's bottom centre is."""
+
+    x: float
+    y: float
+    z: float = TABLE_Z
+    yaw: float = 0.0
+
+    def matrix(self) -> NDArray[np.float64]:
+        cos, sin = math.cos(self.yaw), math.sin(self.yaw)
+        return np.array(
+            [[cos, -sin, 0, self.x], [sin, cos, 0, self.y], [0, 0, 1, self.z], [0, 0, 0, 1.0]]
+        )
+
+
+def look_at(eye: tuple[float, float, float], target: tuple[float, float, float]):
+    """An optical frame at `eye` that looks at `target`, its picture's up being up."""
+    forward = np.array(target) - np.array(eye)
+    forward = forward / np.linalg.norm(forward)
+    right = np.cross(forward, [0.0, 0.0, 1.0])
+    right = right / np.linalg.norm(right)
+    pose = np.eye(4)
+    pose[:3, :3] = np.stack([right, np.cross(forward, right), forward], axis=1)
+    pose[:3, 3] = eye
+    return pose
+
+
+HEAD_POSE = look_at((-0.05, 0.0, 1.35), (0.58, -0.15, 0.70))
+
+
+@dataclass
+class DrawnScene:
+    """A table, coloured parts (poses as 4x4 matrices or `Resting`), grey boxes."""
+
+    parts: dict[str, object] = field(default_factory=dict)
+    grey_boxes: list[tuple[tuple[float, float, float], tuple[float, float, float]]] = field(
+        default_factory=list
+    )
+    noise: float = 0.0
+    light: float = 1.0
+    seed: int = 0
+
+    def picture(
+        self, pose=HEAD_POSE, width=320, height=240, focal_px=263.0, time=0.0, with_depth=True
+    ) -> CameraImage:
+        canvas = _Canvas(pose, width, height, focal_px)
+        (x0, y0), (x1, y1) = TABLE
+        center, size = ((x0 + x1) / 2, (y0 + y1) / 2, TABLE_Z - 0.04), (x1 - x0, y1 - y0, 0.04)
+        canvas.box(Resting(*center).matrix(), size, (190, 200, 205))
+        for middle, extents in self.grey_boxes:
+            canvas.box(Resting(*middle).matrix(), extents, (95, 92, 90))
+        for name, where in self.parts.items():
+            matrix = where.matrix() if isinstance(where, Resting) else where
+            part = PARTS[name]
+            canvas.box(matrix, part.size, COLORS[name])
+            if part.knob is not None:
+                raised = matrix.copy()
+                raised[:3, 3] += matrix[:3, 2] * part.size[2]
+                canvas.box(raised, part.knob, COLORS[name])
+        return CameraImage(
+            bgr=self._expose(canvas.bgr),
+            depth_m=canvas.depth.astype(np.float32) if with_depth else None,
+            pose=pose,
+            focal_px=focal_px,
+            center_px=(width / 2 - 0.5, height / 2 - 0.5),
+            time=time,
+        )
+
+    def _expose(self, bgr: NDArray[np.uint8]) -> NDArray[np.uint8]:
+        noise = np.random.default_rng(self.seed).normal(0, self.noise, bgr.shape)
+        return np.clip(bgr * self.light + noise, 0, 255).astype(np.uint8)
+
+
+class _Canvas:
+    def __init__(self, pose, width, height, focal_px) -> None:
+        self._pose, self._focal = pose, focal_px
+        self._center = np.array([width / 2 - 0.5, height / 2 - 0.5])
+        us, vs = np.meshgrid(np.arange(width), np.arange(height))
+        rays = np.stack(
+            [
+                (us - self._center[0]) / focal_px,
+                (vs - self._center[1]) / focal_px,
+                np.ones_like(us, float),
+            ],
+            axis=2,
+        )
+        self._rays = rays @ pose[:3, :3].T
+        self.bgr = np.full((height, width, 3), 120, np.uint8)
+        self.depth = np.full((height, width), 3.0)
+
+    def box(self, matrix, size, bgr) -> None:
+        signs = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (0, 1)])
+        corners = (signs * np.array(size)) @ matrix[:3, :3].T + matrix[:3, 3]
+        for index, face in enumerate(_FACES):
+            self._face(corners[list(face)], np.array(bgr) * (0.6 + 0.08 * index))
+
+    def _face(self, corners, bgr) -> None:
+        optical = (corners - self._pose[:3, 3]) @ self._pose[:3, :3]
+        if optical[:, 2].min() < 0.01:
+            return
+        pixels = optical[:, :2] / optical[:, 2:] * self._focal + self._center
+        height, width = self.depth.shape
+        low = np.clip(np.floor(pixels.min(axis=0)), 0, (width, height)).astype(int)
+        high = np.clip(np.ceil(pixels.max(axis=0)) + 1, 0, (width, height)).astype(int)
+        vs, us = (each.ravel() for each in np.mgrid[low[1] : high[1], low[0] : high[0]])
+        first, second = corners[1] - corners[0], corners[3] - corners[0]
+        normal = np.cross(first, second)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            depth = ((corners[0] - self._pose[:3, 3]) @ normal) / (self._rays[vs, us] @ normal)
+            hit = self._pose[:3, 3] + self._rays[vs, us] * depth[:, None] - corners[0]
+            along, across = hit @ first / (first @ first), hit @ second / (second @ second)
+            inside = (np.abs(along - 0.5) <= 0.5) & (np.abs(across - 0.5) <= 0.5)
+            front = inside & (depth > 0.01) & (depth < self.depth[vs, us])
+        self.depth[vs[front], us[front]] = depth[front]
+        self.bgr[vs[front], us[front]] = np.clip(bgr, 0, 255)
