@@ -1,0 +1,149 @@
+"""The floating gripper: straight motions of a tool that points down, and two fingers."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from robots.body import ToolPose
+
+SEGMENT_S = 1.0
+"""How long a segment of a path takes at full speed, however long it is."""
+
+GRIPPER_S = 0.5
+"""How long the fingers take from fully open to closed."""
+
+MAX_OPENING_M = 0.09
+
+
+@dataclass(frozen=True, slots=True)
+class StraightPath:
+    """Straight lines through waypoints. `homeward`: nobody stands in the way of this one."""
+
+    waypoints: Sequence[ToolPose]
+    homeward: bool = False
+
+    @property
+    def segments(self) -> int:
+        return len(self.waypoints)
+
+
+class Arm:
+    """Moves the tool along one straight segment at a time."""
+
+    def __init__(self, pose: ToolPose) -> None:
+        self.pose = pose
+        self.speed = 1.0
+        self.homeward = False
+        self._start = pose
+        self._target: ToolPose | None = None
+        self._fraction = 1.0
+
+    @property
+    def moving(self) -> bool:
+        return self._target is not None
+
+    @property
+    def progress(self) -> float:
+        return 1.0 if self._target is None else self._fraction
+
+    @property
+    def target(self) -> ToolPose | None:
+        """Where the segment under way leads."""
+        return self._target
+
+    def follow(self, path: StraightPath, segment: int, speed: float) -> None:
+        """Go straight to a waypoint from wherever the tool is."""
+        self._start = self.pose
+        self._target = path.waypoints[segment]
+        self._fraction = 0.0
+        self.homeward = path.homeward
+        self.speed = speed
+
+    def stop(self) -> None:
+        self._target = None
+
+    def jump(self, pose: ToolPose) -> None:
+        """Be somewhere else at once (a rebuilt world)."""
+        self.stop()
+        self.pose = pose
+
+    def advance(self, duration_s: float) -> None:
+        if self._target is None:
+            return
+        self._fraction += duration_s * self.speed / SEGMENT_S
+        if self._fraction >= 1.0 - 1e-9:
+            self.pose = self._target
+            self._target = None
+        else:
+            self.pose = _between(self._start, self._target, self._fraction)
+
+
+class Gripper:
+    """Two fingers that open and close evenly; something gripped stops them early."""
+
+    def __init__(self) -> None:
+        self.opening_m = 0.0
+        self._start_m = 0.0
+        self._target_m: float | None = None
+
+    @property
+    def moving(self) -> bool:
+        return self._target_m is not None
+
+    @property
+    def opening(self) -> bool:
+        """Whether the fingers are on their way apart."""
+        return self._target_m == MAX_OPENING_M
+
+    @property
+    def closing(self) -> bool:
+        """Whether the fingers are on their way together."""
+        return self._target_m == 0.0
+
+    @property
+    def progress(self) -> float:
+        if self._target_m is None:
+            return 1.0
+        way = self._target_m - self._start_m
+        return (self.opening_m - self._start_m) / way if way else 1.0
+
+    def open(self) -> None:
+        self._move_to(MAX_OPENING_M)
+
+    def close(self) -> None:
+        self._move_to(0.0)
+
+    def grip(self, width_m: float) -> None:
+        """Stop at something between the fingers."""
+        self.opening_m = width_m
+        self._target_m = None
+
+    def snap_shut(self) -> None:
+        """What was between the fingers is gone: they meet."""
+        self.opening_m = 0.0
+        self._target_m = None
+
+    def advance(self, duration_s: float) -> None:
+        if self._target_m is None:
+            return
+        reach = MAX_OPENING_M * duration_s / GRIPPER_S
+        left = self._target_m - self.opening_m
+        if abs(left) <= reach + 1e-9:
+            self.opening_m = self._target_m
+            self._target_m = None
+        else:
+            self.opening_m += math.copysign(reach, left)
+
+    def _move_to(self, opening_m: float) -> None:
+        self._start_m = self.opening_m
+        self._target_m = opening_m
+
+
+def _between(start: ToolPose, end: ToolPose, fraction: float) -> ToolPose:
+    turn = (end.yaw - start.yaw + math.pi) % (2 * math.pi) - math.pi
+    return ToolPose(
+        start.x + (end.x - start.x) * fraction,
+        start.y + (end.y - start.y) * fraction,
+        start.z + (end.z - start.z) * fraction,
+        start.yaw + turn * fraction,
+    )

@@ -1,0 +1,103 @@
+"""The body of the robot in a tabletop world: a floating gripper and two cameras."""
+
+import math
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
+
+import numpy as np
+
+from robots.body import ArmPath, Camera, Matrix4, Reach, ToolPose
+from sim.tabletop.arm import StraightPath
+from sim.tabletop.state import CONTROL_PERIOD_S, PUSH_N, TabletopState
+
+_HIGHEST_M = 1.2
+"""How far above the table the tool can go."""
+
+
+class TabletopBody:
+    """What behaviors, monitors and looks may ask of the robot."""
+
+    def __init__(self, state: TabletopState, cameras: Mapping[str, Camera], reach: Reach) -> None:
+        self._state = state
+        self._cameras = MappingProxyType(dict(cameras))
+        self._reach = reach
+
+    @property
+    def control_period_s(self) -> float:
+        return CONTROL_PERIOD_S
+
+    @property
+    def cameras(self) -> Mapping[str, Camera]:
+        return self._cameras
+
+    @property
+    def reach(self) -> Reach:
+        return self._reach
+
+    def time_s(self) -> float:
+        return self._state.time_s
+
+    def advance_cycle(self) -> None:
+        self._state.advance_cycle()
+
+    def plan_path(self, waypoints: Sequence[ToolPose]) -> StraightPath | None:
+        """Straight lines through the waypoints; None if one is out of reach or in the table."""
+        if all(self._can_reach(each) for each in waypoints):
+            return StraightPath(tuple(waypoints))
+        return None
+
+    def plan_neutral(self) -> StraightPath:
+        return StraightPath((self._state.home.neutral,), homeward=True)
+
+    def plan_hand_over(self) -> StraightPath:
+        return StraightPath((self._state.home.hand_over,))
+
+    def follow(self, path: ArmPath, segment: int, speed: float) -> None:
+        """Raises `TypeError` for a path that this body did not plan."""
+        if not isinstance(path, StraightPath):
+            raise TypeError(f"expected a path planned by this body, got {type(path).__name__}")
+        self._state.arm.follow(path, segment, speed)
+
+    def set_speed(self, speed: float) -> None:
+        self._state.arm.speed = speed
+
+    def stop(self) -> None:
+        self._state.arm.stop()
+
+    def open_gripper(self) -> None:
+        self._state.gripper.open()
+
+    def close_gripper(self) -> None:
+        self._state.gripper.close()
+
+    @property
+    def moving(self) -> bool:
+        return self._state.arm.moving or self._state.gripper.moving
+
+    @property
+    def progress(self) -> float:
+        arm, gripper = self._state.arm, self._state.gripper
+        return arm.progress if arm.moving else gripper.progress
+
+    def tool_pose(self) -> Matrix4:
+        tool = self._state.arm.pose
+        cos, sin = math.cos(tool.yaw), math.sin(tool.yaw)
+        return np.array(
+            [
+                [0.0, cos, sin, tool.x],
+                [0.0, sin, -cos, tool.y],
+                [-1.0, 0.0, 0.0, tool.z],
+                [0.0, 0.0, 0.0, 1.0],
+            ]
+        )
+
+    def gripper_opening_m(self) -> float:
+        return self._state.gripper.opening_m
+
+    def contact_force_n(self) -> float:
+        return PUSH_N if self._state.touching else 0.0
+
+    def _can_reach(self, pose: ToolPose) -> bool:
+        distance = math.dist(self._reach.origin, (pose.x, pose.y))
+        height = pose.z - self._state.scene.table.height
+        return self._reach.min_m <= distance <= self._reach.max_m and 0.0 <= height <= _HIGHEST_M

@@ -1,0 +1,260 @@
+"""What the cameras of a tabletop world see: table, parts, gripper and whoever is in the way."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robots.body import CameraImage, Matrix4, ToolPose
+from sim.raster import Light, Mesh, Rasterizer, RenderedImage, box_triangles
+from sim.tabletop.part import PartPose, TablePart
+from sim.tabletop.state import CONTROL_PERIOD_S, TabletopState
+
+HEAD_SIZE = (320, 240)
+HEAD_FOCAL_PX = 263.0
+HEAD_TILT_RAD = math.radians(30.0)
+FOREARM_SIZE = (160, 120)
+FOREARM_FOCAL_PX = 104.0
+_FOREARM_BEHIND_M = 0.14
+_FOREARM_ABOVE_M = 0.18
+
+_TABLE_THICKNESS_M = 0.04
+_FLOOR_BGR = (96, 96, 96)
+_GREY = (0.45, 0.45, 0.45)
+_TABLE_COLOR = (0.72, 0.70, 0.68)
+_PERSON_COLOR = (0.30, 0.30, 0.32)
+_PERSON_SIZE_M = (0.12, 0.12, 0.45)
+_PERSON_DISTANCE_M = 0.22
+"""How far ahead of the tool somebody stands who is in its way."""
+
+_FINGER = box_triangles((0.012, 0.02, 0.07), (0.0, 0.0, 0.025))
+_PALM = np.concatenate(
+    [
+        box_triangles((0.13, 0.05, 0.04), (0.0, 0.0, 0.09)),
+        box_triangles((0.05, 0.05, 0.30), (0.0, 0.0, 0.26)),
+    ]
+)
+
+
+class Scenery:
+    """Draws the state of a tabletop world."""
+
+    def __init__(self, state: TabletopState) -> None:
+        self._state = state
+        self._parts = list(state.parts.values())
+        table = state.scene.table
+        top = box_triangles(
+            (*table.size, _TABLE_THICKNESS_M),
+            (*table.center, table.height - _TABLE_THICKNESS_M / 2),
+        )
+        self._rasterizer = Rasterizer(
+            [
+                *(Mesh(_triangles_of(part), part.color) for part in self._parts),
+                Mesh(_FINGER, _GREY),
+                Mesh(_FINGER, _GREY),
+                Mesh(_PALM, _GREY),
+                Mesh(box_triangles(_PERSON_SIZE_M), _PERSON_COLOR),
+                Mesh(top, _TABLE_COLOR),
+            ]
+        )
+        count = len(self._parts) + 5
+        self._transforms = np.tile(np.eye(4), (count, 1, 1))
+        self._visible = np.ones(count, dtype=np.bool_)
+        self._drawn: list[PartPose | None] = [None] * len(self._parts)
+        self._person_at: tuple[float, float] | None = None
+
+    def render(
+        self, camera_pose: Matrix4, size: tuple[int, int], focal_px: float, light: Light
+    ) -> RenderedImage:
+        """What a camera at `camera_pose` sees now; ids are the parts' indices in the scene."""
+        self._place_parts()
+        self._place_arm()
+        self._place_person()
+        return self._rasterizer.render(
+            self._transforms,
+            camera_pose,
+            size,
+            focal_px,
+            light=light,
+            visible=self._visible,
+            background=_FLOOR_BGR,
+        )
+
+    def _place_parts(self) -> None:
+        for index, part in enumerate(self._parts):
+            self._visible[index] = part.visible
+            if part.pose is not self._drawn[index]:
+                pose = part.pose
+                _set_upright(self._transforms[index], pose.x, pose.y, pose.z, pose.yaw)
+                self._drawn[index] = pose
+
+    def _place_arm(self) -> None:
+        tool = self._state.arm.pose
+        half = self._state.gripper.opening_m / 2 + 0.006
+        dx, dy = half * math.cos(tool.yaw), half * math.sin(tool.yaw)
+        first = len(self._parts)
+        _set_upright(self._transforms[first], tool.x + dx, tool.y + dy, tool.z, tool.yaw)
+        _set_upright(self._transforms[first + 1], tool.x - dx, tool.y - dy, tool.z, tool.yaw)
+        _set_upright(self._transforms[first + 2], tool.x, tool.y, tool.z, tool.yaw)
+
+    def _place_person(self) -> None:
+        """Somebody who blocks stays where the arm was heading when it was blocked."""
+        index = len(self._parts) + 3
+        self._visible[index] = self._state.blocked
+        if not self._state.blocked:
+            self._person_at = None
+            return
+        if self._person_at is None:
+            self._person_at = self._ahead_of_arm()
+        x, y = self._person_at
+        middle = self._state.scene.table.height + _PERSON_SIZE_M[2] / 2
+        _set_upright(self._transforms[index], x, y, middle, 0.0)
+
+    def _ahead_of_arm(self) -> tuple[float, float]:
+        tool, center = self._state.arm.pose, self._state.scene.table.center
+        target = self._state.arm.target
+        dx, dy = (target.x - tool.x, target.y - tool.y) if target else (0.0, 0.0)
+        if math.hypot(dx, dy) < 0.01:
+            dx, dy = center[0] - tool.x, center[1] - tool.y
+        distance = math.hypot(dx, dy) or 1.0
+        return (
+            tool.x + dx / distance * _PERSON_DISTANCE_M,
+            tool.y + dy / distance * _PERSON_DISTANCE_M,
+        )
+
+
+class TabletopCamera:
+    """A camera in a tabletop world; subclasses say where it is and what it measures."""
+
+    size: tuple[int, int]
+    focal_px: float
+    has_depth: bool
+
+    def __init__(
+        self, state: TabletopState, scenery: Scenery, noise: float, rng: np.random.Generator
+    ) -> None:
+        """`noise` is the standard deviation of each channel in grey levels."""
+        self._state = state
+        self._scenery = scenery
+        self._noise = noise
+        self._rng = rng
+
+    @property
+    def period_s(self) -> float:
+        return CONTROL_PERIOD_S
+
+    def pose(self) -> Matrix4:
+        """The optical frame in the base frame."""
+        raise NotImplementedError
+
+    def capture(self) -> CameraImage:
+        image, _ = self.capture_with_ids()
+        return image
+
+    def capture_with_ids(self, light: Light | None = None) -> tuple[CameraImage, NDArray[np.int32]]:
+        """A picture, and which of the scene's objects each pixel shows (for training only)."""
+        pose = self.pose()
+        rendered = self._scenery.render(pose, self.size, self.focal_px, light or Light())
+        image = CameraImage(
+            bgr=self._with_noise(rendered.bgr),
+            depth_m=rendered.depth_m if self.has_depth else None,
+            pose=pose,
+            focal_px=self.focal_px,
+            center_px=((self.size[0] - 1) / 2, (self.size[1] - 1) / 2),
+            time=self._state.time_s,
+        )
+        return image, rendered.ids
+
+    def _with_noise(self, bgr: NDArray[np.uint8]) -> NDArray[np.uint8]:
+        if self._noise <= 0.0:
+            return bgr
+        noisy = bgr + self._rng.normal(0.0, self._noise, bgr.shape)
+        return np.clip(np.rint(noisy), 0, 255).astype(np.uint8)
+
+
+class HeadCamera(TabletopCamera):
+    """Looks down on the whole table from above its near edge, with depth."""
+
+    size = HEAD_SIZE
+    focal_px = HEAD_FOCAL_PX
+    has_depth = True
+
+    def __init__(
+        self, state: TabletopState, scenery: Scenery, noise: float, rng: np.random.Generator
+    ) -> None:
+        super().__init__(state, scenery, noise, rng)
+        self._pose = _look_at_table(state)
+
+    def pose(self) -> Matrix4:
+        return self._pose
+
+
+class ForearmCamera(TabletopCamera):
+    """Moves with the tool and looks at the tool point from behind and above."""
+
+    size = FOREARM_SIZE
+    focal_px = FOREARM_FOCAL_PX
+    has_depth = False
+
+    def pose(self) -> Matrix4:
+        return _forearm_pose(self._state.arm.pose)
+
+
+def _forearm_pose(tool: ToolPose) -> Matrix4:
+    """Beside the plane in which the fingers move, so that no finger hides what they hold."""
+    cos, sin = math.cos(tool.yaw), math.sin(tool.yaw)
+    aside = np.array([sin, -cos, 0.0])
+    offset = aside * _FOREARM_BEHIND_M + np.array([0.0, 0.0, _FOREARM_ABOVE_M])
+    position = np.array([tool.x, tool.y, tool.z]) + offset
+    return _optical_frame(position, -offset, np.array([cos, sin, 0.0]))
+
+
+def _look_at_table(state: TabletopState) -> Matrix4:
+    """As near as the camera can be and still see the whole table and what stands on it."""
+    table = state.scene.table
+    target = np.array([*table.center, table.height])
+    forward = np.array([math.sin(HEAD_TILT_RAD), 0.0, -math.cos(HEAD_TILT_RAD)])
+    right = np.array([0.0, -1.0, 0.0])
+    frame = _optical_frame(target, forward, right)
+    limits = np.array(HEAD_SIZE) / 2 / HEAD_FOCAL_PX * 0.96
+    distance = 0.0
+    for corner in _corners(table.size, 0.15):
+        seen = frame[:3, :3].T @ corner
+        distance = max(distance, float((np.abs(seen[:2]) / limits - seen[2]).max()))
+    return _optical_frame(target - forward * distance, forward, right)
+
+
+def _corners(size: Sequence[float], height: float) -> list[NDArray[np.float64]]:
+    return [
+        np.array([x * size[0] / 2, y * size[1] / 2, z])
+        for x in (-1, 1)
+        for y in (-1, 1)
+        for z in (0.0, height)
+    ]
+
+
+def _optical_frame(
+    position: NDArray[np.float64], forward: NDArray[np.float64], right: NDArray[np.float64]
+) -> Matrix4:
+    pose = np.eye(4)
+    pose[:3, 2] = forward / np.linalg.norm(forward)
+    pose[:3, 0] = right
+    pose[:3, 1] = np.cross(pose[:3, 2], right)
+    pose[:3, 3] = position
+    return pose
+
+
+def _triangles_of(part: TablePart) -> NDArray[np.float64]:
+    body = box_triangles(part.size, (0.0, 0.0, part.size[2] / 2))
+    if part.knob is None:
+        return body
+    knob = box_triangles(part.knob, (0.0, 0.0, part.size[2] + part.knob[2] / 2))
+    return np.concatenate([body, knob])
+
+
+def _set_upright(transform: Matrix4, x: float, y: float, z: float, yaw: float) -> None:
+    cos, sin = math.cos(yaw), math.sin(yaw)
+    transform[0, 0] = transform[1, 1] = cos
+    transform[0, 1], transform[1, 0] = -sin, sin
+    transform[0, 3], transform[1, 3], transform[2, 3] = x, y, z

@@ -1,0 +1,126 @@
+"""The tabletop world: a table, parts, people and a robot, without physics."""
+
+import math
+from typing import Annotated, Any
+
+import numpy as np
+from pydantic import Field
+
+from robots.body import Reach, ToolPose
+from sim.tabletop.body import TabletopBody
+from sim.tabletop.part import PartPose, TablePart, Whereabouts
+from sim.tabletop.person import Person
+from sim.tabletop.scenery import ForearmCamera, HeadCamera, Scenery
+from sim.tabletop.snapshot import HandOverSnapshot, RestSnapshot, TabletopSnapshot
+from sim.tabletop.state import TabletopState
+from tasks.intervention import Intervention
+from tasks.scene import Scene, StrictModel
+
+REACH_ORIGIN = (0.0, -0.19)
+REACH_MIN_M = 0.25
+REACH_MAX_M = 0.82
+"""The graspable range of the workcell's robot, so that scenes mean the same in both worlds."""
+
+
+class TabletopOptions(StrictModel):
+    """What a run may choose about the world.
+
+    `camera_noise`: standard deviation of each colour channel, in grey levels of 255. `reach_m`:
+    how far from its base the robot can grasp; by default at least to every place of the scene.
+    """
+
+    camera_noise: Annotated[float, Field(ge=0.0, le=30.0, strict=False)] = 0.0
+    reach_m: Annotated[float, Field(ge=REACH_MIN_M, le=10.0, strict=False)] | None = None
+
+
+class TabletopWorld:
+    """A world in which every motion is a straight line and everything let go falls at once."""
+
+    def __init__(self, scene: Scene, seed: int, options: TabletopOptions | None = None) -> None:
+        chosen = options or TabletopOptions()
+        layout_rng, noise_rng = np.random.default_rng(seed).spawn(2)
+        self._state = TabletopState(scene, layout_rng)
+        self._person = Person(self._state)
+        self._state.person_acts = self._person.act
+        scenery = Scenery(self._state)
+        self.head = HeadCamera(self._state, scenery, chosen.camera_noise, noise_rng)
+        self.forearm = ForearmCamera(self._state, scenery, chosen.camera_noise, noise_rng)
+        self._body = TabletopBody(
+            self._state,
+            {"head": self.head, "forearm": self.forearm},
+            _reach(scene, chosen.reach_m),
+        )
+
+    @property
+    def body(self) -> TabletopBody:
+        return self._body
+
+    def intervene(self, intervention: Intervention) -> str:
+        """Do what a person does; an empty string, or one sentence that says why it cannot be."""
+        return self._person.intervene(intervention)
+
+    def snapshot(self) -> dict[str, Any]:
+        """The state from which `restore` can rebuild the world; JSON-compatible."""
+        state, hand_over = self._state, self._person.hand_over
+        return TabletopSnapshot(
+            time_s=state.time_s,
+            parts={name: self._snapshot_of(part) for name, part in state.parts.items()},
+            held=state.held.name if state.held else None,
+            blocked=state.blocked,
+            hand_over=HandOverSnapshot(object=hand_over.part.name, until_s=hand_over.until_s)
+            if hand_over
+            else None,
+        ).model_dump()
+
+    def restore(self, snapshot: dict[str, Any]) -> None:
+        """Rebuild the world: what was in the air lies where it last rested, the arm is at neutral.
+
+        Raises `ValueError` for a snapshot of another version or of another scene.
+        """
+        saved = TabletopSnapshot.model_validate(snapshot)
+        if set(saved.parts) != set(self._state.parts):
+            raise ValueError(
+                f"the snapshot has the parts {sorted(saved.parts)}, "
+                f"the scene {sorted(self._state.parts)}"
+            )
+        self._person.withdraw()
+        self._state.reset(saved.time_s, saved.blocked)
+        for name, rest in saved.parts.items():
+            part = self._state.parts[name]
+            part.rest_at(PartPose(rest.x, rest.y, rest.z, rest.yaw))
+            if rest.gone:
+                part.give_to(Whereabouts.GONE)
+        if saved.hand_over is not None:
+            part = self._state.parts[saved.hand_over.object]
+            self._person.hold_out(part, saved.hand_over.until_s)
+        self._state.settle()
+
+    def close(self) -> None:
+        """Nothing to give back."""
+
+    def pose_of(self, name: str) -> PartPose | None:
+        """Where a part really is, None if it is gone; for tests and benchmarks to judge by."""
+        part = self._state.parts[name]
+        return None if part.whereabouts is Whereabouts.GONE else part.pose
+
+    @property
+    def held(self) -> str | None:
+        """What the fingers really hold; for tests and benchmarks to judge by."""
+        return self._state.held.name if self._state.held else None
+
+    def show_tool_at(self, tool: ToolPose) -> None:
+        """Put the arm somewhere at once, for training pictures and tests."""
+        self._state.arm.jump(tool)
+
+    def _snapshot_of(self, part: TablePart) -> RestSnapshot:
+        rest = part.last_rest
+        gone = part.whereabouts is Whereabouts.GONE or self._person.is_pulling(part)
+        return RestSnapshot(x=rest.x, y=rest.y, z=rest.z, yaw=rest.yaw, gone=gone)
+
+
+def _reach(scene: Scene, reach_m: float | None) -> Reach:
+    farthest = max(
+        (math.dist(REACH_ORIGIN, (each.pose.x, each.pose.y)) for each in scene.places.values()),
+        default=0.0,
+    )
+    return Reach(REACH_ORIGIN, REACH_MIN_M, reach_m or max(REACH_MAX_M, farthest + 0.02))
