@@ -6,8 +6,11 @@ from dataclasses import dataclass
 
 from robots.body import ToolPose
 
-SEGMENT_S = 1.0
+SEGMENT_S = 0.5
 """How long a segment of a path takes at full speed, however long it is."""
+
+GIVE_UP_S = 2.0
+"""An arm that is held up for so long gives its motion up, as real controllers do."""
 
 GRIPPER_S = 0.5
 """How long the fingers take from fully open to closed."""
@@ -37,6 +40,7 @@ class Arm:
         self._start = pose
         self._target: ToolPose | None = None
         self._fraction = 1.0
+        self._held_up_s = 0.0
 
     @property
     def moving(self) -> bool:
@@ -56,6 +60,7 @@ class Arm:
         self._start = self.pose
         self._target = path.waypoints[segment]
         self._fraction = 0.0
+        self._held_up_s = 0.0
         self.homeward = path.homeward
         self.speed = speed
 
@@ -66,6 +71,20 @@ class Arm:
         """Be somewhere else at once (a rebuilt world)."""
         self.stop()
         self.pose = pose
+
+    @property
+    def can_be_blocked(self) -> bool:
+        """Whether somebody can stand in the way of this motion; up and home are always free."""
+        if self._target is None or self.homeward:
+            return False
+        straight_up = (self._target.x, self._target.y) == (self.pose.x, self.pose.y)
+        return not (straight_up and self._target.z >= self.pose.z)
+
+    def push(self, duration_s: float) -> None:
+        """Try in vain to move on."""
+        self._held_up_s += duration_s
+        if self._held_up_s >= GIVE_UP_S:
+            self.stop()
 
     def advance(self, duration_s: float) -> None:
         if self._target is None:

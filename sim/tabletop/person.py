@@ -17,6 +17,9 @@ _PULLED_OUT_M = 0.30
 HAND_OVER_S = 15.0
 """How long somebody holds a part out to the robot."""
 
+BLOCK_DISTANCE_M = 0.22
+"""How far ahead of the tool somebody stands who is in its way."""
+
 
 class _Impossible(Exception):  # noqa: N818 - an answer to the one who asked, not a failure
     """An intervention cannot be carried out; the message says why."""
@@ -132,14 +135,14 @@ class Person:
         self._state.settle()
 
     def _block(self, _: Intervention) -> None:
-        if self._state.blocked:
+        if self._state.blocker_at is not None:
             raise _Impossible("somebody stands in the way already")
-        self._state.blocked = True
+        self._state.blocker_at = self._state.ahead_of_arm(BLOCK_DISTANCE_M)
 
     def _release(self, _: Intervention) -> None:
-        if not self._state.blocked:
+        if self._state.blocker_at is None:
             raise _Impossible("nobody stands in the way")
-        self._state.blocked = False
+        self._state.blocker_at = None
         self._state.touching = False
 
     def _part(self, intervention: Intervention) -> TablePart:

@@ -23,10 +23,8 @@ _TABLE_THICKNESS_M = 0.04
 _FLOOR_BGR = (96, 96, 96)
 _GREY = (0.45, 0.45, 0.45)
 _TABLE_COLOR = (0.72, 0.70, 0.68)
-_PERSON_COLOR = (0.30, 0.30, 0.32)
-_PERSON_SIZE_M = (0.12, 0.12, 0.45)
-_PERSON_DISTANCE_M = 0.22
-"""How far ahead of the tool somebody stands who is in its way."""
+_BLOCKER_COLOR = (0.30, 0.30, 0.32)
+_BLOCKER_SIZE_M = (0.10, 0.10, 0.30)
 
 _FINGER = box_triangles((0.012, 0.02, 0.07), (0.0, 0.0, 0.025))
 _PALM = np.concatenate(
@@ -54,7 +52,7 @@ class Scenery:
                 Mesh(_FINGER, _GREY),
                 Mesh(_FINGER, _GREY),
                 Mesh(_PALM, _GREY),
-                Mesh(box_triangles(_PERSON_SIZE_M), _PERSON_COLOR),
+                Mesh(box_triangles(_BLOCKER_SIZE_M), _BLOCKER_COLOR),
                 Mesh(top, _TABLE_COLOR),
             ]
         )
@@ -62,7 +60,6 @@ class Scenery:
         self._transforms = np.tile(np.eye(4), (count, 1, 1))
         self._visible = np.ones(count, dtype=np.bool_)
         self._drawn: list[PartPose | None] = [None] * len(self._parts)
-        self._person_at: tuple[float, float] | None = None
 
     def render(
         self, camera_pose: Matrix4, size: tuple[int, int], focal_px: float, light: Light
@@ -70,7 +67,7 @@ class Scenery:
         """What a camera at `camera_pose` sees now; ids are the parts' indices in the scene."""
         self._place_parts()
         self._place_arm()
-        self._place_person()
+        self._place_blocker()
         return self._rasterizer.render(
             self._transforms,
             camera_pose,
@@ -98,30 +95,13 @@ class Scenery:
         _set_upright(self._transforms[first + 1], tool.x - dx, tool.y - dy, tool.z, tool.yaw)
         _set_upright(self._transforms[first + 2], tool.x, tool.y, tool.z, tool.yaw)
 
-    def _place_person(self) -> None:
-        """Somebody who blocks stays where the arm was heading when it was blocked."""
+    def _place_blocker(self) -> None:
         index = len(self._parts) + 3
-        self._visible[index] = self._state.blocked
-        if not self._state.blocked:
-            self._person_at = None
-            return
-        if self._person_at is None:
-            self._person_at = self._ahead_of_arm()
-        x, y = self._person_at
-        middle = self._state.scene.table.height + _PERSON_SIZE_M[2] / 2
-        _set_upright(self._transforms[index], x, y, middle, 0.0)
-
-    def _ahead_of_arm(self) -> tuple[float, float]:
-        tool, center = self._state.arm.pose, self._state.scene.table.center
-        target = self._state.arm.target
-        dx, dy = (target.x - tool.x, target.y - tool.y) if target else (0.0, 0.0)
-        if math.hypot(dx, dy) < 0.01:
-            dx, dy = center[0] - tool.x, center[1] - tool.y
-        distance = math.hypot(dx, dy) or 1.0
-        return (
-            tool.x + dx / distance * _PERSON_DISTANCE_M,
-            tool.y + dy / distance * _PERSON_DISTANCE_M,
-        )
+        at = self._state.blocker_at
+        self._visible[index] = at is not None
+        if at is not None:
+            middle = self._state.scene.table.height + _BLOCKER_SIZE_M[2] / 2
+            _set_upright(self._transforms[index], at[0], at[1], middle, 0.0)
 
 
 class TabletopCamera:

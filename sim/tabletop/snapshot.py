@@ -23,12 +23,15 @@ class HandOverSnapshot(StrictModel):
 
 
 class TabletopSnapshot(StrictModel):
-    """The state of a tabletop world between two control cycles."""
+    """The state of a tabletop world between two control cycles.
+
+    `held` is for readers of the journal: a rebuilt robot holds nothing. `blocker_at`: where
+    somebody stands in the way, in the plane.
+    """
 
     version: Literal[1] = 1
     time_s: float
     parts: dict[Name, RestSnapshot]
     held: Name | None
-    """For readers of the journal; a rebuilt robot holds nothing."""
-    blocked: bool
+    blocker_at: tuple[float, float] | None
     hand_over: HandOverSnapshot | None

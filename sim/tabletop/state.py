@@ -77,7 +77,8 @@ class TabletopState:
         }
         self.held: TablePart | None = None
         self.held_at = HeldAt(0.0, 0.0, 0.0, 0.0)
-        self.blocked = False
+        self.blocker_at: tuple[float, float] | None = None
+        """Where somebody stands who lets the arm only go up and home."""
         self.touching = False
         """Whether the arm has run into whoever stands in its way."""
         self.person_acts: Callable[[], None] = lambda: None
@@ -92,14 +93,24 @@ class TabletopState:
         self._carry()
         self.person_acts()
 
-    def reset(self, time_s: float, blocked: bool) -> None:
+    def reset(self, time_s: float, blocker_at: tuple[float, float] | None) -> None:
         """Start again at neutral with open, empty fingers (a rebuilt world)."""
         self.time_s = time_s
-        self.blocked = blocked
+        self.blocker_at = blocker_at
         self.touching = False
         self.held = None
         self.arm.jump(self.home.neutral)
         self.gripper.grip(MAX_OPENING_M)
+
+    def ahead_of_arm(self, distance_m: float) -> tuple[float, float]:
+        """A point in the plane towards which the arm is on its way, or will be from neutral."""
+        tool, target = self.arm.pose, self.arm.target
+        dx, dy = (target.x - tool.x, target.y - tool.y) if target else (0.0, 0.0)
+        if math.hypot(dx, dy) < 0.01:
+            center = self.scene.table.center
+            dx, dy = center[0] - tool.x, center[1] - tool.y
+        scale = distance_m / (math.hypot(dx, dy) or 1.0)
+        return tool.x + dx * scale, tool.y + dy * scale
 
     def take_from_robot(self) -> None:
         """What the fingers hold is taken from between them; nobody has it for a moment."""
@@ -138,8 +149,10 @@ class TabletopState:
     def _advance_arm(self) -> None:
         if not self.arm.moving:
             return
-        self.touching = self.blocked and not self.arm.homeward
-        if not self.touching:
+        self.touching = self.blocker_at is not None and self.arm.can_be_blocked
+        if self.touching:
+            self.arm.push(CONTROL_PERIOD_S)
+        else:
             self.arm.advance(CONTROL_PERIOD_S)
 
     def _advance_gripper(self) -> None:

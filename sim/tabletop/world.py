@@ -1,5 +1,6 @@
 """The tabletop world: a table, parts, people and a robot, without physics."""
 
+import json
 import math
 from typing import Annotated, Any
 
@@ -37,6 +38,7 @@ class TabletopWorld:
     """A world in which every motion is a straight line and everything let go falls at once."""
 
     def __init__(self, scene: Scene, seed: int, options: TabletopOptions | None = None) -> None:
+        self.scene = scene
         chosen = options or TabletopOptions()
         layout_rng, noise_rng = np.random.default_rng(seed).spawn(2)
         self._state = TabletopState(scene, layout_rng)
@@ -66,25 +68,25 @@ class TabletopWorld:
             time_s=state.time_s,
             parts={name: self._snapshot_of(part) for name, part in state.parts.items()},
             held=state.held.name if state.held else None,
-            blocked=state.blocked,
+            blocker_at=state.blocker_at,
             hand_over=HandOverSnapshot(object=hand_over.part.name, until_s=hand_over.until_s)
             if hand_over
             else None,
-        ).model_dump()
+        ).model_dump(mode="json")
 
     def restore(self, snapshot: dict[str, Any]) -> None:
         """Rebuild the world: what was in the air lies where it last rested, the arm is at neutral.
 
         Raises `ValueError` for a snapshot of another version or of another scene.
         """
-        saved = TabletopSnapshot.model_validate(snapshot)
+        saved = TabletopSnapshot.model_validate_json(json.dumps(snapshot))
         if set(saved.parts) != set(self._state.parts):
             raise ValueError(
                 f"the snapshot has the parts {sorted(saved.parts)}, "
                 f"the scene {sorted(self._state.parts)}"
             )
         self._person.withdraw()
-        self._state.reset(saved.time_s, saved.blocked)
+        self._state.reset(saved.time_s, saved.blocker_at)
         for name, rest in saved.parts.items():
             part = self._state.parts[name]
             part.rest_at(PartPose(rest.x, rest.y, rest.z, rest.yaw))

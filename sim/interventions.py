@@ -1,0 +1,77 @@
+"""Which interventions are still to come in a run, and when each is due."""
+
+from collections.abc import Sequence
+
+from robots.robot import TaskProgress
+
+from robots.link.messages import Intervene
+from tasks.intervention import Intervention
+from tasks.scenario import ScriptedIntervention, Trigger
+from tasks.scene import StrictModel
+
+SCENARIO = "scenario"
+"""In whose name scripted interventions happen."""
+
+_EPSILON = 1e-9
+
+
+class Queued(StrictModel):
+    """An intervention that somebody asked for, to happen when the clock reaches `at_s`."""
+
+    do: Intervention
+    by: str
+    at_s: float
+
+
+class PendingSnapshot(StrictModel):
+    """What is kept of pending interventions: which scripted ones have been, what is queued."""
+
+    fired: list[int]
+    queued: list[Queued]
+
+
+class PendingInterventions:
+    """A scenario's interventions and those that were asked for ahead of time."""
+
+    def __init__(self, scripted: Sequence[ScriptedIntervention]) -> None:
+        self._scripted = tuple(scripted)
+        self._fired: set[int] = set()
+        self._queued: list[Queued] = []
+
+    def queue(self, command: Intervene, at_s: float) -> None:
+        """Let somebody do something when the clock reaches `at_s`."""
+        self._queued.append(Queued(do=command.intervention, by=command.by, at_s=at_s))
+
+    def take_due(
+        self, time_s: float, progress: TaskProgress | None
+    ) -> list[tuple[Intervention, str]]:
+        """Those that are due now, each with who does it; they are no longer pending."""
+        due: list[tuple[Intervention, str]] = []
+        for index, scripted in enumerate(self._scripted):
+            if index not in self._fired and _is_due(scripted, time_s, progress):
+                self._fired.add(index)
+                due.append((scripted.do, SCENARIO))
+        ripe = [each for each in self._queued if each.at_s <= time_s + _EPSILON]
+        self._queued = [each for each in self._queued if each.at_s > time_s + _EPSILON]
+        due.extend((each.do, each.by) for each in sorted(ripe, key=lambda each: each.at_s))
+        return due
+
+    def snapshot(self) -> PendingSnapshot:
+        return PendingSnapshot(fired=sorted(self._fired), queued=list(self._queued))
+
+    def restore(self, snapshot: PendingSnapshot) -> None:
+        self._fired = set(snapshot.fired)
+        self._queued = list(snapshot.queued)
+
+
+def _is_due(scripted: ScriptedIntervention, time_s: float, progress: TaskProgress | None) -> bool:
+    if scripted.when is not None:
+        return progress is not None and _has_reached(scripted.when, progress)
+    return time_s + _EPSILON >= (scripted.at_s or 0.0)
+
+
+def _has_reached(trigger: Trigger, progress: TaskProgress) -> bool:
+    """Whether the moment has come, or has gone by within the same attempt."""
+    if (progress.object, progress.attempt) != (trigger.object, trigger.attempt):
+        return False
+    return (progress.step, progress.fraction + _EPSILON) >= (trigger.step, trigger.fraction)

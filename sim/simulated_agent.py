@@ -1,0 +1,224 @@
+"""The agent core of a robot in a simulated world: the robot, and the world around it."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+from robots.robot import Robot, TaskProgress
+
+from robots.agent import Emit, EmitPicture
+from robots.link.messages import (
+    CommandBody,
+    Finished,
+    Held,
+    Hello,
+    Hold,
+    Holding,
+    Intervene,
+    Intervened,
+    IssueDetected,
+    Look,
+    Looked,
+    Rejected,
+    ReportBody,
+    Shutdown,
+    StepStarted,
+    TakePicture,
+)
+from sim.interventions import PendingInterventions, PendingSnapshot
+from sim.world import World
+from tasks.intervention import Intervention
+from tasks.scenario import ScriptedIntervention
+from tasks.scene import StrictModel
+
+_SEEN_AT_ONCE = (IssueDetected, Finished, Looked, Rejected, Held)
+"""Reports that the service must see before more time passes."""
+
+_WITH_WORLD = (StepStarted, Finished, Holding, Intervened)
+"""Reports from which the world can be rebuilt."""
+
+_LET_HOLD_GO_ON = (Intervene, TakePicture)
+
+_LAST_STEP = 2**31
+
+_EPSILON_S = 1e-9
+
+
+class AgentSnapshot(StrictModel):
+    """A simulated world, how often each object was tried, and what people have still to do."""
+
+    world: dict[str, Any]
+    attempts: dict[str, int]
+    pending: PendingSnapshot
+
+
+class SimulatedAgent:
+    """An `AgentCore` over a robot in a world.
+
+    People intervene, the clock runs while the arm holds still, and reports carry the world's
+    state. Everything else is the robot's.
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        world: World,
+        *,
+        speed: float | None,
+        interventions: Sequence[ScriptedIntervention] = (),
+        snapshot: dict[str, Any] | None = None,
+    ) -> None:
+        """`speed`: simulated seconds per second, None as fast as possible.
+
+        Raises `ValueError` for a snapshot that does not fit the world.
+        """
+        self._robot = robot
+        self._world = world
+        self._speed = speed
+        self._pending = PendingInterventions(interventions)
+        self._attempts: dict[str, int] = {}
+        self._earlier_attempts: dict[str, int] = {}
+        self._emit: Emit | None = None
+        self._hold: tuple[str, Hold] | None = None
+        self._look: Look | None = None
+        self._progress: TaskProgress | None = None
+        self._reported = False
+        self._shut_down = False
+        if snapshot is not None:
+            self._restore(AgentSnapshot.model_validate(snapshot))
+
+    # --- What it is ---------------------------------------------------------------------------
+
+    def hello(self, boot: str) -> Hello:
+        """What the robot is, and what it is doing now."""
+        return self._robot.hello(boot).model_copy(update={"simulated": True})
+
+    def attach(self, emit: Emit, emit_picture: EmitPicture) -> None:
+        """Say where reports and pictures go; called once, before anything else."""
+        self._emit = emit
+        self._robot.attach(self._pass_on, emit_picture)
+
+    @property
+    def pace(self) -> float | None:
+        """Simulated seconds per wall second wanted now; None as fast as possible."""
+        if self._hold is not None:
+            return self._hold[1].rate
+        if self._look is not None and self._look.rate is not None:
+            return self._look.rate
+        return self._speed
+
+    def time_s(self) -> float:
+        """The world's clock."""
+        return self._robot.time_s()
+
+    @property
+    def shut_down(self) -> bool:
+        """Whether a `shutdown` command came."""
+        return self._shut_down
+
+    def snapshot(self) -> dict[str, Any]:
+        """The state from which an agent in the same scene can be rebuilt; JSON-compatible."""
+        return AgentSnapshot(
+            world=self._world.snapshot(),
+            attempts=dict(self._attempts),
+            pending=self._pending.snapshot(),
+        ).model_dump(mode="json")
+
+    # --- Commands -----------------------------------------------------------------------------
+
+    def handle(self, command_id: str, body: CommandBody) -> None:
+        """Take a command. One that cannot be carried out is answered by a `Rejected` report."""
+        if not isinstance(body, _LET_HOLD_GO_ON):
+            self._hold = self._look = None
+        match body:
+            case Hold():
+                self._hold = (command_id, body)
+            case Intervene():
+                self._intervene_when_due(body)
+            case Shutdown():
+                self._shut_down = True
+            case _:
+                if isinstance(body, Look):
+                    self._look = body
+                self._robot.handle(command_id, body)
+
+    def _intervene_when_due(self, command: Intervene) -> None:
+        if command.at is None or command.at <= self.time_s():
+            self._intervene(command.intervention, command.by)
+        else:
+            self._pending.queue(command, command.at)
+
+    # --- Time ---------------------------------------------------------------------------------
+
+    def advance(self, duration_s: float) -> bool:
+        """Let up to `duration_s` of the robot's clock pass; False when there is nothing to do."""
+        end_s = self.time_s() + duration_s
+        self._reported = False
+        while not self._reported and not self._shut_down:
+            self._let_people_act(self._robot.task_progress)
+            if self._end_hold():
+                break
+            if not self._busy or self.time_s() >= end_s - _EPSILON_S:
+                break
+            self._let_cycle_pass()
+        return self._busy
+
+    @property
+    def _busy(self) -> bool:
+        return not self._shut_down and (self._robot.busy or self._hold is not None)
+
+    def _let_cycle_pass(self) -> None:
+        """One control cycle at most, so that people act in the very cycle that is theirs."""
+        if self._robot.busy:
+            self._robot.advance(self._world.body.control_period_s)
+        else:
+            self._world.body.advance_cycle()
+
+    def _end_hold(self) -> bool:
+        if self._hold is None or self.time_s() < self._hold[1].until - _EPSILON_S:
+            return False
+        command_id, _ = self._hold
+        self._hold = None
+        self._pass_on(Held(command=command_id), self.time_s(), None)
+        return True
+
+    # --- People -------------------------------------------------------------------------------
+
+    def _let_people_act(self, progress: TaskProgress | None) -> None:
+        """Let people do what is due at this moment."""
+        if progress is not None and progress.object is not None:
+            # The robot's own count begins anew when its process is started again.
+            attempt = progress.attempt + self._earlier_attempts.get(progress.object, 0)
+            self._attempts[progress.object] = attempt
+            progress = replace(progress, attempt=attempt)
+        self._progress = progress
+        self._do_due(progress)
+
+    def _do_due(self, progress: TaskProgress | None) -> None:
+        for intervention, by in self._pending.take_due(self.time_s(), progress):
+            self._intervene(intervention, by)
+
+    def _intervene(self, intervention: Intervention, by: str) -> None:
+        problem = self._world.intervene(intervention)
+        report = Intervened(intervention=intervention, by=by, ok=not problem, detail=problem)
+        self._pass_on(report, self.time_s(), None)
+
+    # --- Reports ------------------------------------------------------------------------------
+
+    def _pass_on(self, body: ReportBody, time_s: float, _: dict[str, Any] | None) -> None:
+        if isinstance(body, _SEEN_AT_ONCE):
+            self._reported = True
+        if isinstance(body, Looked):
+            self._look = None
+        if isinstance(body, Finished) and self._progress is not None:
+            # The last moments of the last step are over before anybody can ask for them.
+            self._do_due(replace(self._progress, step=_LAST_STEP, fraction=1.0))
+        if self._emit is not None:
+            world = self.snapshot() if isinstance(body, _WITH_WORLD) else None
+            self._emit(body, time_s, world)
+
+    def _restore(self, snapshot: AgentSnapshot) -> None:
+        self._world.restore(snapshot.world)
+        self._attempts = dict(snapshot.attempts)
+        self._earlier_attempts = dict(snapshot.attempts)
+        self._pending.restore(snapshot.pending)
