@@ -1,19 +1,16 @@
 """Reading scenario files: YAML or JSON, one sentence with its line per mistake."""
 
-import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import yaml
 from pydantic import ValidationError
 
+from tasks.document import Document, DocumentError, read_document
 from tasks.scenario import Scenario
 from tasks.scene import Scene
 
 SCENARIOS = Path(__file__).parent / "scenarios"
-MAX_BYTES = 256 * 1024
-MAX_DEPTH = 20
 
 
 class ScenarioFileError(Exception):
@@ -23,19 +20,6 @@ class ScenarioFileError(Exception):
         super().__init__("\n".join(f"{source}: {problem}" for problem in problems))
         self.source = source
         self.problems = problems
-
-
-class _Loader(yaml.SafeLoader):
-    """Safe, and with YAML 1.2's booleans: an answer `no` is a word, not False."""
-
-
-_Loader.yaml_implicit_resolvers = {
-    first: [(tag, pattern) for tag, pattern in resolvers if tag != "tag:yaml.org,2002:bool"]
-    for first, resolvers in yaml.SafeLoader.yaml_implicit_resolvers.items()
-}
-_Loader.add_implicit_resolver(
-    "tag:yaml.org,2002:bool", re.compile(r"^(?:true|True|TRUE|false|False|FALSE)$"), list("tTfF")
-)
 
 
 def scenario_names() -> list[str]:
@@ -68,17 +52,14 @@ def parse_scenario(text: str, source: str) -> Scenario:
 
     Raises `ScenarioFileError`.
     """
-    root = _compose(text, source)
-    if repeated := list(_repeated_keys(root)):
-        raise ScenarioFileError(source, repeated)
     try:
-        data = _Loader("").construct_document(root)
-    except (yaml.YAMLError, ValueError) as error:
-        raise ScenarioFileError(source, [_yaml_problem(error)]) from error
+        document = read_document(text)
+    except DocumentError as error:
+        raise ScenarioFileError(source, error.problems) from error
     try:
-        return Scenario.model_validate(data)
+        return Scenario.model_validate(document.data)
     except ValidationError as error:
-        problems = [_problem(root, each["loc"], each["msg"]) for each in error.errors()]
+        problems = [_problem(document, each["loc"], each["msg"]) for each in error.errors()]
         raise ScenarioFileError(source, problems) from error
 
 
@@ -101,65 +82,7 @@ def scene_problems(scenario: Scenario, scene: Scene) -> list[str]:
     return problems
 
 
-def _compose(text: str, source: str) -> yaml.Node:
-    """The checked document as nodes, which know their lines."""
-    if len(text.encode()) > MAX_BYTES:
-        raise ScenarioFileError(source, [f"the file is larger than {MAX_BYTES // 1024} KiB"])
-    try:
-        if problem := _excess(text):
-            raise ScenarioFileError(source, [problem])
-        root = yaml.compose(text, _Loader)
-    except yaml.YAMLError as error:
-        raise ScenarioFileError(source, [_yaml_problem(error)]) from error
-    if root is None:
-        raise ScenarioFileError(source, ["the file is empty"])
-    return root
-
-
-def _excess(text: str) -> str | None:
-    """What makes a document larger than it looks, found before anything is built from it."""
-    depth = 0
-    for event in yaml.parse(text, _Loader):
-        where = f"line {event.start_mark.line + 1}" if event.start_mark else "somewhere"
-        if isinstance(event, yaml.AliasEvent):
-            return f"{where}: aliases (*) are not allowed here; write it out"
-        if isinstance(event, yaml.CollectionStartEvent):
-            depth += 1
-        elif isinstance(event, yaml.CollectionEndEvent):
-            depth -= 1
-        if depth > MAX_DEPTH:
-            return f"{where}: this is nested deeper than {MAX_DEPTH}"
-    return None
-
-
-def _repeated_keys(node: yaml.Node) -> Iterator[str]:
-    match node:
-        case yaml.MappingNode(value=pairs):
-            seen = set[str]()
-            for key, value in pairs:
-                name = str(key.value)
-                if name in seen:
-                    yield f"line {key.start_mark.line + 1}: '{name}' is there twice"
-                seen.add(name)
-                yield from _repeated_keys(value)
-        case yaml.SequenceNode(value=values):
-            for value in values:
-                yield from _repeated_keys(value)
-
-
-def _yaml_problem(error: Exception) -> str:
-    if isinstance(error, yaml.MarkedYAMLError) and error.problem_mark is not None:
-        return f"line {error.problem_mark.line + 1}: {error.problem}"
-    return str(error)
-
-
-def _problem(root: yaml.Node, location: tuple[int | str, ...], message: str) -> str:
-    node = root
-    for part in location:
-        match node, part:
-            case yaml.SequenceNode(value=values), int() if part < len(values):
-                node = values[part]
-            case yaml.MappingNode(value=pairs), str():
-                node = next((value for key, value in pairs if key.value == part), node)
+def _problem(document: Document, location: tuple[int | str, ...], message: str) -> str:
     where = ".".join(str(part) for part in location) or "the file"
-    return f"line {node.start_mark.line + 1}: {where}: {message.removeprefix('Value error, ')}"
+    message = message.removeprefix("Value error, ")
+    return f"line {document.line_of(location)}: {where}: {message}"

@@ -95,15 +95,14 @@ class KnownRobot:
             self._times.absence_s, lambda: self._spawn(self._tell_lost(reason))
         )
 
-    async def declare_lost(self, reason: str) -> None:
-        """It is known to be gone: tell its owner at once, whether it was ever connected or not."""
+    async def end_connection(self, reason: str) -> None:
+        """Its program has ended; whoever ran it tells its owner."""
         if self.session is not None:
             session = self.session
             await session.end(reason)
             self.disconnect(session)
         self._cancel_absence()
-        self._sink_sees_it = self._sink is not None
-        await self._tell_lost(reason)
+        self._sink_sees_it = False
 
     def close(self) -> None:
         self._cancel_absence()

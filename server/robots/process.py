@@ -6,6 +6,7 @@ import random
 import signal
 import sys
 from asyncio.subprocess import DEVNULL, PIPE, Process
+from collections.abc import Callable
 from contextlib import suppress
 from typing import Protocol
 from uuid import uuid4
@@ -25,11 +26,12 @@ log = logging.getLogger(__name__)
 CHECK_S = 0.5
 
 
-class SimulatedRobot(Protocol):
-    """A simulated robot that this service runs.
+Ended = Callable[[str], None]
+"""Told why, once, when a simulated robot has ended without being stopped."""
 
-    Its unexpected end is told to the registry (`declare_lost`), and so to the run that owns it.
-    """
+
+class SimulatedRobot(Protocol):
+    """A simulated robot that this service runs."""
 
     @property
     def pid(self) -> int | None:
@@ -46,7 +48,13 @@ class SimulatedRobot(Protocol):
 
 
 async def launch(
-    world_name: str, setup: WorldSetup, registry: RobotRegistry, url: str, token: str | None
+    world_name: str,
+    setup: WorldSetup,
+    ended: Ended,
+    *,
+    registry: RobotRegistry,
+    url: str,
+    token: str | None,
 ) -> SimulatedRobot:
     """Start a simulated robot in a world of the entry points.
 
@@ -59,9 +67,9 @@ async def launch(
         raise InvalidError(str(error)) from error
     robot: SimulatedRobot
     if adapter.own_process:
-        robot = RobotProcess(world_name, registry, url, token)
+        robot = RobotProcess(world_name, ended, registry, url, token)
     else:
-        robot = InProcessRobot(adapter, registry)
+        robot = InProcessRobot(adapter, ended, registry)
     await robot.start(setup)
     return robot
 
@@ -75,6 +83,7 @@ class RobotProcess:
     def __init__(
         self,
         world_name: str,
+        ended: Ended,
         registry: RobotRegistry,
         url: str,
         token: str | None,
@@ -84,6 +93,7 @@ class RobotProcess:
         stop_s: float = 2.0,
     ) -> None:
         self._world_name = world_name
+        self._ended = ended
         self._registry = registry
         self._url = url
         self._token = token
@@ -143,7 +153,8 @@ class RobotProcess:
             complaints.cancel()
             ended.cancel()
         log.warning("the process of robot %s is gone: %s", robot, reason)
-        await self._registry.declare_lost(robot, reason)
+        await self._registry.end_connection(robot, reason)
+        self._ended(reason)
 
     async def _wait_for_the_end(
         self, process: Process, ended: asyncio.Task[int], robot: str
@@ -166,8 +177,9 @@ class RobotProcess:
 class InProcessRobot:
     """A robot that runs in this event loop; for worlds that neither block nor crash."""
 
-    def __init__(self, adapter: WorldAdapter, registry: RobotRegistry) -> None:
+    def __init__(self, adapter: WorldAdapter, ended: Ended, registry: RobotRegistry) -> None:
         self._adapter = adapter
+        self._ended = ended
         self._registry = registry
         self._task: asyncio.Task[None] | None = None
         self._served: set[asyncio.Task[None]] = set()
@@ -199,7 +211,8 @@ class InProcessRobot:
         finally:
             outbox.close()
         self._task = None
-        await self._registry.declare_lost(setup.robot, reason)
+        await self._registry.end_connection(setup.robot, reason)
+        self._ended(reason)
 
     async def _connect(self) -> Channel:
         robot_end, service_end = memory_channel()

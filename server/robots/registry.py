@@ -85,9 +85,13 @@ class RobotRegistry:
         session = self._robots[robot].session if robot in self._robots else None
         return None if session is None else self._clock() - session.last_heard
 
-    async def declare_lost(self, robot: str, reason: str) -> None:
-        """Whoever runs a robot knows that it is gone: end its connection and tell its owner."""
-        await self._known(robot).declare_lost(reason)
+    async def end_connection(self, robot: str, reason: str) -> None:
+        """The robot's program has ended: wait for nothing more of it.
+
+        Its owner is not told that it is lost: whoever ran the program does that.
+        """
+        if robot in self._robots:
+            await self._robots[robot].end_connection(reason)
 
     def close(self) -> None:
         """End every connection; robots come back when there is a service again."""

@@ -107,7 +107,7 @@ def test_an_act_without_what_it_needs_is_told() -> None:
         ("a: &many [1]\nb: *many", "line 2: aliases (*) are not allowed"),
         ("[" * 30, "nested deeper than 20"),
         ("? [a]\n: 1", "line 1: found unhashable key"),
-        ("a: !!python/object:os.system x", "line 1: could not determine a constructor"),
+        ("a: !!python/object:os.system x", "line 1: tags (!) are not allowed here"),
         ("when: 2020-99-99", "month must be"),
         ("a: \x01", "special characters are not allowed"),
     ],

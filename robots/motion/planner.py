@@ -1,0 +1,165 @@
+"""Planning of an arm's whole path: which of its many postures reaches every waypoint."""
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from robots.body import Matrix4, ToolPose
+from robots.motion.curve import JointCurve
+from robots.motion.kinematics import Joints, KinematicChain
+
+_LINE_STEPS = 8
+"""Postures along a straight line; between them the tool strays less than 0.1 mm."""
+
+_SEEDS = 24
+_SEED_SPREAD_RAD = 0.6
+_ENOUGH_SEEDS = 4
+_GOOD_COST = 3.0
+_WRIST = slice(4, 6)
+_MAX_DIP_M = 0.03
+_SAME_SPOT_M = 1e-3
+_SAME_YAW_RAD = 5e-3
+_SAMPLES_PER_MOVE = 12
+
+
+@dataclass(frozen=True, slots=True)
+class PathSegment:
+    """The way to one waypoint. The parameter of a `straight` one is the tool's way in metres."""
+
+    curve: JointCurve
+    straight: bool
+
+
+@dataclass(frozen=True, slots=True)
+class JointPath:
+    """A planned path (an `ArmPath`)."""
+
+    ways: tuple[PathSegment, ...]
+
+    @property
+    def segments(self) -> int:
+        return len(self.ways)
+
+
+def pose_matrix(pose: ToolPose, yaw_offset: float = 0.0) -> Matrix4:
+    """The tool frame: x points down, y along the opening direction of the fingers."""
+    yaw = pose.yaw + yaw_offset
+    matrix = np.eye(4)
+    matrix[:3, 0] = (0.0, 0.0, -1.0)
+    matrix[:3, 1] = (math.cos(yaw), math.sin(yaw), 0.0)
+    matrix[:3, 2] = np.cross(matrix[:3, 0], matrix[:3, 1])
+    matrix[:3, 3] = (pose.x, pose.y, pose.z)
+    return matrix
+
+
+class PathPlanner:
+    """Plans paths for one arm through waypoints with the gripper pointing down.
+
+    The fingers are alike, so a whole path may be turned by half a turn: a plan has all its
+    waypoints at the yaws asked for, or all of them at yaw + pi. `preferred` is the posture that a
+    plan stays close to; staying on one branch of the inverse kinematics is what makes placing
+    repeatable.
+    """
+
+    def __init__(self, chain: KinematicChain, preferred: Joints) -> None:
+        self._chain = chain
+        self._preferred = preferred
+
+    def plan(
+        self, start: Joints, waypoints: Sequence[ToolPose], rng: np.random.Generator
+    ) -> JointPath | None:
+        """Plan from `start` through all waypoints; None when a part of it cannot be reached.
+
+        Raises `ValueError` without waypoints.
+        """
+        if not waypoints:
+            raise ValueError("a path needs at least one waypoint")
+        best: tuple[float, JointPath] | None = None
+        for tried, (seed, yaw_offset) in enumerate(self._attempts(start, rng)):
+            found = self._try(start, waypoints, seed, yaw_offset)
+            if found is not None and (best is None or found[0] < best[0]):
+                best = found
+            if best is not None and (tried + 1 >= _ENOUGH_SEEDS or best[0] < _GOOD_COST):
+                break
+        return None if best is None else best[1]
+
+    def plan_to_joints(self, start: Joints, end: Joints) -> JointPath:
+        """The straight way in joint space."""
+        return JointPath((PathSegment(JointCurve([start, end]), straight=False),))
+
+    def _attempts(self, start: Joints, rng: np.random.Generator) -> Iterator[tuple[Joints, float]]:
+        """Seeds with the half turn to try them with: the preferred posture first."""
+        for number in range(_SEEDS):
+            seed = self._preferred
+            if number >= 2:
+                seed = seed + rng.normal(0.0, _SEED_SPREAD_RAD, len(start))
+            yield seed, math.pi if number % 2 else 0.0
+
+    def _try(
+        self, start: Joints, waypoints: Sequence[ToolPose], seed: Joints, yaw_offset: float
+    ) -> tuple[float, JointPath] | None:
+        joints = start
+        segments = []
+        cost = 0.0
+        for index, waypoint in enumerate(waypoints):
+            target = pose_matrix(waypoint, yaw_offset)
+            origin = self._chain.pose(joints)
+            straight = _is_above(origin, target)
+            if straight:
+                knots = self._straight(origin, target, joints)
+            else:
+                knots = self._free(target, joints, seed if index == 0 else joints)
+            if knots is None:
+                return None
+            if straight:
+                length = abs(float(origin[2, 3] - target[2, 3]))
+                curve = JointCurve(
+                    [joints, *knots], np.linspace(0.0, length, len(knots) + 1).tolist()
+                )
+            else:
+                cost += self._cost(joints, knots[-1], first=index == 0)
+                curve = JointCurve([joints, *knots])
+            segments.append(PathSegment(curve, straight))
+            joints = knots[-1]
+        return cost, JointPath(tuple(segments))
+
+    def _straight(self, origin: Matrix4, target: Matrix4, joints: Joints) -> list[Joints] | None:
+        knots = []
+        for step in range(1, _LINE_STEPS + 1):
+            between = target.copy()
+            between[2, 3] += (origin[2, 3] - target[2, 3]) * (1 - step / _LINE_STEPS)
+            found = self._chain.solve(between, joints, self._preferred, preference=0.0)
+            if found is None:
+                return None
+            knots.append(found)
+            joints = found
+        return knots
+
+    def _free(self, target: Matrix4, joints: Joints, seed: Joints) -> list[Joints] | None:
+        found = self._chain.solve(target, seed, self._preferred)
+        if found is None or self._dips(joints, found):
+            return None
+        return [found]
+
+    def _dips(self, start: Joints, end: Joints) -> bool:
+        """Whether the tool comes lower on the way than at both ends, where things lie."""
+        heights = [
+            float(self._chain.pose(start + (end - start) * part)[2, 3])
+            for part in np.linspace(0.0, 1.0, _SAMPLES_PER_MOVE)
+        ]
+        return min(heights) < min(heights[0], heights[-1]) - _MAX_DIP_M
+
+    def _cost(self, start: Joints, end: Joints, first: bool) -> float:
+        """Small for short moves and for postures with the wrist near the preferred one."""
+        away = np.abs(end - self._preferred)
+        move = 0.3 * away.max() if first else np.abs(end - start).max()
+        return float(move + 0.7 * away[_WRIST].max())
+
+
+def _is_above(origin: Matrix4, target: Matrix4) -> bool:
+    """Whether a straight vertical line leads from one tool pose to the other."""
+    turn = float(np.arccos(np.clip((np.trace(origin[:3, :3].T @ target[:3, :3]) - 1) / 2, -1, 1)))
+    apart = float(np.linalg.norm(origin[:2, 3] - target[:2, 3]))
+    return apart < _SAME_SPOT_M and turn < _SAME_YAW_RAD

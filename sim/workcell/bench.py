@@ -1,0 +1,97 @@
+"""The table and the parts on it, as a scene says."""
+
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+
+from sim.workcell.parts import Part, PartPose
+from sim.workcell.physics import Client
+from tasks.scene import Scene, Table
+
+_FLOOR_HALF_M = 4.0
+_SLAB_M = 0.04
+_FLOOR_COLOR = (0.60, 0.60, 0.58, 1.0)
+_TABLE_COLOR = (0.80, 0.78, 0.74, 1.0)
+_TABLE_FRICTION = 0.6
+
+_APART_M = 0.004
+_SCATTER_TRIES = 100
+_DROP_M = 0.001
+"""Parts are let go this far above what they are to rest on."""
+
+_OVERLAP_M = 0.001
+"""Bodies that intersect by less than this only touch."""
+
+
+class Bench:
+    """Floor, table and parts."""
+
+    def __init__(self, client: Client, scene: Scene) -> None:
+        self._client = client
+        self.scene = scene
+        _create_floor(client)
+        self.table_id = _create_table(client, scene.table)
+        self.parts: Mapping[str, Part] = {
+            name: Part(client, name, definition, number)
+            for number, (name, definition) in enumerate(scene.objects.items())
+        }
+
+    def lay_out(self, rng: np.random.Generator) -> None:
+        """Put every part to its start pose, scattered so that no two parts overlap."""
+        for part in self.parts.values():
+            part.take_away()
+        for part in self.parts.values():
+            for attempt in range(_SCATTER_TRIES + 1):
+                scattered = attempt < _SCATTER_TRIES
+                part.put(self._start_pose(part, rng if scattered else None))
+                if next(self.intersecting(part, apart_m=_APART_M), None) is None:
+                    break
+
+    def remember_starts(self) -> None:
+        """Where the parts are now is where they start."""
+        for part in self.parts.values():
+            part.start = part.last_rest = part.pose()
+
+    def intersecting(self, part: Part, apart_m: float = -_OVERLAP_M) -> Iterator[Part]:
+        """The other parts that are nearer than `apart_m` to a part; below 0 they intersect."""
+        for other in self.parts.values():
+            if other is part or other.stolen:
+                continue
+            points = self._client.getClosestPoints(part.body_id, other.body_id, max(0.0, apart_m))
+            if any(point[8] < apart_m for point in points):
+                yield other
+
+    def _start_pose(self, part: Part, rng: np.random.Generator | None) -> PartPose:
+        pose, scatter = part.definition.pose, self.scene.scatter
+        z = (self.scene.table.height if pose.z is None else pose.z) + _DROP_M
+        if rng is None:
+            return PartPose.upright(pose.x, pose.y, z, pose.yaw)
+        dx, dy = rng.uniform(-scatter.xy, scatter.xy, 2)
+        return PartPose.upright(
+            pose.x + dx, pose.y + dy, z, pose.yaw + rng.uniform(-scatter.yaw, scatter.yaw)
+        )
+
+
+def _create_floor(client: Client) -> None:
+    half = [_FLOOR_HALF_M, _FLOOR_HALF_M, _SLAB_M / 2]
+    _create_slab(client, half, [0.0, 0.0, -_SLAB_M / 2], _FLOOR_COLOR)
+
+
+def _create_table(client: Client, table: Table) -> int:
+    half = [table.size[0] / 2, table.size[1] / 2, _SLAB_M / 2]
+    center = [*table.center, table.height - _SLAB_M / 2]
+    table_id = _create_slab(client, half, center, _TABLE_COLOR)
+    client.changeDynamics(table_id, -1, lateralFriction=_TABLE_FRICTION)
+    return table_id
+
+
+def _create_slab(
+    client: Client, half: list[float], center: list[float], color: tuple[float, ...]
+) -> int:
+    body_id: int = client.createMultiBody(
+        0.0,
+        client.createCollisionShape(client.GEOM_BOX, halfExtents=half),
+        client.createVisualShape(client.GEOM_BOX, halfExtents=half, rgbaColor=color),
+        center,
+    )
+    return body_id

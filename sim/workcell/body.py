@@ -1,0 +1,202 @@
+"""The PR2 as a `robots.body.Body`: motions of the arm and the gripper, cameras, senses."""
+
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+
+from robots.body import ArmPath, Camera, Matrix4, Reach, ToolPose
+from robots.motion.curve import JointCurve
+from robots.motion.kinematics import Joints
+from robots.motion.limits import MotionLimits
+from robots.motion.planner import JointPath, PathPlanner, PathSegment
+from robots.motion.timing import TimedMotion
+from sim.workcell.physics import CONTROL_HZ
+from sim.workcell.pr2 import Pr2
+from sim.workcell.robot_model import FINGERS_OPEN_RAD, NEUTRAL_RAD, PREFERRED_RAD
+
+PERIOD_S = 1.0 / CONTROL_HZ
+
+LIMITS = MotionLimits(
+    velocity_rad_s=1.6,
+    acceleration_rad_s2=5.0,
+    jerk_rad_s3=40.0,
+    tool_velocity_m_s=0.35,
+)
+
+_SETTLE_CYCLES = 24
+"""The arm lags behind its target by some cycles; this long after it, it is at rest."""
+
+_GRIPPER_CYCLES = 120
+_GRIPPER_RAMP_CYCLES = 60
+"""The fingers' target moves during the ramp; the rest of the time lets the grasp settle."""
+
+HAND_OVER_POSE = ToolPose(0.50, -0.30, 0.98, 0.0)
+REACH_MIN_M = 0.40
+REACH_MAX_M = 0.72
+
+
+class WorkcellBody:
+    """The right arm, gripper and cameras of a simulated PR2.
+
+    It knows its own joint angles and what its joints feel, and nothing else of the world.
+    """
+
+    def __init__(
+        self,
+        pr2: Pr2,
+        cameras: Mapping[str, Camera],
+        rng: np.random.Generator,
+        step: Callable[[], None],
+    ) -> None:
+        """`step` lets the physics engine make one step."""
+        self._pr2 = pr2
+        self._cameras = cameras
+        self._rng = rng
+        self._step = step
+        self._planner = PathPlanner(pr2.tool, np.array(PREFERRED_RAD))
+        self.cycle = 0
+        self._target: Joints = np.array(NEUTRAL_RAD)
+        self._motion: TimedMotion | None = None
+        self._way_ahead: Sequence[PathSegment] = ()
+        self._settling_cycles = 0
+        self._gripper = FingerMotion()
+
+    @property
+    def control_period_s(self) -> float:
+        return PERIOD_S
+
+    @property
+    def cameras(self) -> Mapping[str, Camera]:
+        return self._cameras
+
+    @property
+    def reach(self) -> Reach:
+        return Reach(self._pr2.shoulder, REACH_MIN_M, REACH_MAX_M)
+
+    def time_s(self) -> float:
+        return self.cycle * PERIOD_S
+
+    def advance_cycle(self) -> None:
+        velocities = self._advance_arm()
+        self._gripper.advance()
+        self._pr2.drive(self._target, velocities, self._gripper.target_rad)
+        self._step()
+        self.cycle += 1
+
+    def plan_path(self, waypoints: Sequence[ToolPose]) -> ArmPath | None:
+        """Plan through all waypoints; each at its yaw, or each at its yaw + pi."""
+        return self._planner.plan(self._target, waypoints, self._rng)
+
+    def plan_neutral(self) -> ArmPath:
+        return self._planner.plan_to_joints(self._target, np.array(NEUTRAL_RAD))
+
+    def plan_hand_over(self) -> ArmPath:
+        path = self._planner.plan(self._target, [HAND_OVER_POSE], self._rng)
+        return path if path is not None else self.plan_neutral()
+
+    def follow(self, path: ArmPath, segment: int, speed: float) -> None:
+        """Start one segment from wherever the arm is.
+
+        Raises `TypeError` for a path of another body, `ValueError` for a speed outside (0, 1].
+        """
+        if not isinstance(path, JointPath):
+            raise TypeError(f"this arm follows paths that it planned itself, not {type(path)}")
+        way = path.ways[segment]
+        curve = way.curve.joined_from(self._target)
+        self._motion = TimedMotion(curve, LIMITS, PERIOD_S, speed, way.straight)
+        self._settling_cycles = _SETTLE_CYCLES
+        self._way_ahead = path.ways[segment + 1 :]
+
+    def set_speed(self, speed: float) -> None:
+        """Raises `ValueError` for a speed outside (0, 1]."""
+        if self._motion is not None:
+            self._motion.set_speed(speed)
+
+    def stop(self) -> None:
+        self._motion = None
+        self._target = self._pr2.arm_joints()
+        self._gripper.stop()
+
+    def open_gripper(self) -> None:
+        self._gripper.move_to(FINGERS_OPEN_RAD)
+
+    def close_gripper(self) -> None:
+        self._gripper.move_to(0.0)
+
+    @property
+    def moving(self) -> bool:
+        return self._motion is not None or self._gripper.moving
+
+    @property
+    def progress(self) -> float:
+        if self._motion is not None:
+            return self._motion.progress
+        return self._gripper.progress
+
+    def tool_pose(self) -> Matrix4:
+        return self._pr2.tool.pose(self._pr2.arm_joints())
+
+    def gripper_opening_m(self) -> float:
+        return self._pr2.gripper_opening_m()
+
+    def contact_force_n(self) -> float:
+        return self._pr2.contact_force_n()
+
+    @property
+    def gripper_closing(self) -> bool:
+        """Whether the fingers are closed or on their way together."""
+        return self._gripper.closing
+
+    def ways_ahead(self) -> list[JointCurve]:
+        """What is left of the segment under way and the path's segments after it."""
+        if self._motion is None:
+            return []
+        return [self._motion.rest(), *(way.curve for way in self._way_ahead)]
+
+    def _advance_arm(self) -> Joints:
+        """The joint velocities to command in this cycle, with the target moved on."""
+        if self._motion is None:
+            return np.zeros(len(self._target))
+        self._target, velocities = self._motion.advance()
+        if self._motion.finished:
+            self._settling_cycles -= 1
+            if self._settling_cycles <= 0:
+                self._motion = None
+        return velocities
+
+
+class FingerMotion:
+    """Where the fingers are commanded to: a ramp, then a while to let the grasp settle."""
+
+    def __init__(self) -> None:
+        self.target_rad = FINGERS_OPEN_RAD
+        self._from_rad = FINGERS_OPEN_RAD
+        self._to_rad = FINGERS_OPEN_RAD
+        self._cycle = _GRIPPER_CYCLES
+
+    @property
+    def moving(self) -> bool:
+        return self._cycle < _GRIPPER_CYCLES
+
+    @property
+    def progress(self) -> float:
+        return self._cycle / _GRIPPER_CYCLES
+
+    @property
+    def closing(self) -> bool:
+        return self._to_rad < FINGERS_OPEN_RAD
+
+    def move_to(self, angle_rad: float) -> None:
+        self._from_rad, self._to_rad = self.target_rad, angle_rad
+        self._cycle = 0
+
+    def stop(self) -> None:
+        """Hold the fingers where they are commanded to now; a grasp keeps its force."""
+        self._to_rad = self.target_rad
+        self._cycle = _GRIPPER_CYCLES
+
+    def advance(self) -> None:
+        if self.moving:
+            self._cycle += 1
+            done = min(1.0, self._cycle / _GRIPPER_RAMP_CYCLES)
+            self.target_rad = self._from_rad + (self._to_rad - self._from_rad) * done

@@ -1,0 +1,131 @@
+"""The parts of a scene in the physics engine: boxes, and plates with a knob."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from sim.workcell.physics import Client, Point, Quaternion, to_matrix, yaw_quaternion
+from tasks.scene import Pose, SceneObject
+
+_FRICTION = 0.8
+_SPIN_FRICTION = 0.01
+_ROLL_FRICTION = 0.0002
+
+_AWAY_X_M = -3.0
+_AWAY_SPACING_M = 0.5
+"""What is taken away waits behind the robot, where no camera looks."""
+
+_AT_REST = 0.01
+"""Slower than this (m/s and rad/s) a part is at rest."""
+
+
+@dataclass(frozen=True, slots=True)
+class PartPose:
+    """Where the bottom centre of a part is, and how it is turned, in the base frame."""
+
+    position: Point
+    quaternion: Quaternion
+
+    @property
+    def yaw(self) -> float:
+        """The turn about the vertical of the part's x axis."""
+        x_axis = to_matrix(self.position, self.quaternion)[:3, 0]
+        return math.atan2(x_axis[1], x_axis[0])
+
+    @property
+    def tilt_rad(self) -> float:
+        """How far the part's z axis leans away from the vertical."""
+        z_axis = to_matrix(self.position, self.quaternion)[:3, 2]
+        return math.acos(min(1.0, float(z_axis[2])))
+
+    @classmethod
+    def upright(cls, x: float, y: float, z: float, yaw: float) -> "PartPose":
+        return cls((x, y, z), yaw_quaternion(yaw))
+
+    @classmethod
+    def at(cls, pose: Pose, table_height_m: float) -> "PartPose":
+        """Where a scene says; without a height, on the table."""
+        z = table_height_m if pose.z is None else pose.z
+        return cls.upright(pose.x, pose.y, z, pose.yaw)
+
+
+class Part:
+    """One part: a rigid body that can be put somewhere or taken away."""
+
+    def __init__(self, client: Client, name: str, definition: SceneObject, number: int) -> None:
+        self._client = client
+        self.name = name
+        self.definition = definition
+        self.body_id = _create_body(client, definition)
+        self._away = PartPose.upright(_AWAY_X_M, number * _AWAY_SPACING_M, 0.0, 0.0)
+        self.stolen = False
+        self.start = self._away
+        self.last_rest = self._away
+        """Where it rested last, for a world that is rebuilt while it is in the air."""
+
+    @property
+    def _middle_m(self) -> float:
+        """How far the body's frame is above the bottom."""
+        return self.definition.size[2] / 2
+
+    def pose(self) -> PartPose:
+        position, quaternion = self._client.getBasePositionAndOrientation(self.body_id)
+        up = to_matrix(position, quaternion)[:3, 2] * self._middle_m
+        x, y, z = (float(value) for value in np.array(position) - up)
+        return PartPose((x, y, z), quaternion)
+
+    def put(self, pose: PartPose) -> None:
+        """Be at a pose at once, at rest."""
+        self.stolen = False
+        self._reset(pose)
+
+    def take_away(self) -> None:
+        """Be out of the world's sight and reach."""
+        self.stolen = True
+        self._reset(self._away)
+
+    def at_rest(self) -> bool:
+        linear, angular = self._client.getBaseVelocity(self.body_id)
+        return all(abs(each) < _AT_REST for each in (*linear, *angular))
+
+    def body_pose(self, pose: PartPose) -> tuple[Point, Quaternion]:
+        """The engine's frame of the body when its bottom centre is at `pose`."""
+        up = to_matrix(pose.position, pose.quaternion)[:3, 2] * self._middle_m
+        x, y, z = (float(value) for value in np.array(pose.position) + up)
+        return (x, y, z), pose.quaternion
+
+    def _reset(self, pose: PartPose) -> None:
+        self._client.resetBasePositionAndOrientation(self.body_id, *self.body_pose(pose))
+        self._client.resetBaseVelocity(self.body_id, [0.0] * 3, [0.0] * 3)
+
+
+def _create_body(client: Client, definition: SceneObject) -> int:
+    halves = [_half(definition.size)]
+    centers = [(0.0, 0.0, 0.0)]
+    if definition.knob is not None:
+        halves.append(_half(definition.knob))
+        centers.append((0.0, 0.0, (definition.size[2] + definition.knob[2]) / 2))
+    boxes = [client.GEOM_BOX] * len(halves)
+    collision = client.createCollisionShapeArray(
+        boxes, halfExtents=halves, collisionFramePositions=centers
+    )
+    visual = client.createVisualShapeArray(
+        boxes,
+        halfExtents=halves,
+        visualFramePositions=centers,
+        rgbaColors=[(*definition.color, 1.0)] * len(halves),
+    )
+    body_id: int = client.createMultiBody(definition.mass_kg, collision, visual)
+    client.changeDynamics(
+        body_id,
+        -1,
+        lateralFriction=_FRICTION,
+        spinningFriction=_SPIN_FRICTION,
+        rollingFriction=_ROLL_FRICTION,
+    )
+    return body_id
+
+
+def _half(size: tuple[float, float, float]) -> Point:
+    return size[0] / 2, size[1] / 2, size[2] / 2

@@ -1,0 +1,56 @@
+"""The physics engine's connection, and conversions between its poses and matrices."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+
+from robots.body import Matrix4
+from sim.workcell.quiet import quiet_stdout
+
+Client = Any
+"""A `pybullet_utils.bullet_client.BulletClient`; PyBullet has no types."""
+
+Quaternion = tuple[float, float, float, float]
+Point = tuple[float, float, float]
+
+CONTROL_HZ = 240
+"""Control cycles, and physics steps, per simulated second."""
+
+
+def connect() -> Client:
+    """A new, empty engine in this process."""
+    with quiet_stdout():
+        import pybullet
+        from pybullet_utils.bullet_client import BulletClient
+
+        return BulletClient(pybullet.DIRECT)
+
+
+def to_matrix(position: Point, quaternion: Quaternion) -> Matrix4:
+    """A pose of the engine as a homogeneous transform."""
+    x, y, z, w = quaternion
+    matrix = np.eye(4)
+    matrix[0, 0] = 1 - 2 * (y * y + z * z)
+    matrix[0, 1] = 2 * (x * y - z * w)
+    matrix[0, 2] = 2 * (x * z + y * w)
+    matrix[1, 0] = 2 * (x * y + z * w)
+    matrix[1, 1] = 1 - 2 * (x * x + z * z)
+    matrix[1, 2] = 2 * (y * z - x * w)
+    matrix[2, 0] = 2 * (x * z - y * w)
+    matrix[2, 1] = 2 * (y * z + x * w)
+    matrix[2, 2] = 1 - 2 * (x * x + y * y)
+    matrix[:3, 3] = position
+    return matrix
+
+
+def to_quaternion(rotation: NDArray[np.float64]) -> Quaternion:
+    """A rotation matrix as a quaternion (x, y, z, w)."""
+    x, y, z, w = Rotation.from_matrix(rotation).as_quat()
+    return float(x), float(y), float(z), float(w)
+
+
+def yaw_quaternion(yaw: float) -> Quaternion:
+    """A turn about the vertical."""
+    return 0.0, 0.0, float(np.sin(yaw / 2)), float(np.cos(yaw / 2))

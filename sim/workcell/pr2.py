@@ -1,0 +1,181 @@
+"""The PR2 in the physics engine: joints, motors, finger coupling and what its sensors feel."""
+
+import math
+
+import numpy as np
+
+from robots.body import Matrix4
+from robots.motion.kinematics import Joints, KinematicChain
+from sim.workcell.physics import Client
+from sim.workcell.quiet import quiet_stdout
+from sim.workcell.robot_model import (
+    ARM_JOINTS,
+    FINGER_JOINTS,
+    FINGERS_OPEN_RAD,
+    FOREARM_CAMERA_FRAME,
+    HEAD_CAMERA_FRAME,
+    NEUTRAL_RAD,
+    SHOULDER_FRAME,
+    TOOL_FRAME,
+    robot_urdf,
+)
+
+_FOREARM_JOINTS = ARM_JOINTS[:5]
+
+_ARM_TORQUE_NM = 150.0
+_ARM_POSITION_GAIN = 0.3
+_ARM_VELOCITY_GAIN = 1.0
+_JOINT_DAMPING = 0.1
+
+# The engine ignores the mimic joints that make real fingers move alike. A stiffness between the
+# two finger angles does it instead; stiffer or stronger than this, a part slides away sideways.
+_GRIP_TORQUE_NM = 3.0
+_FINGER_COUPLING_NM_RAD = 60.0
+_LEAST_GRIP_TORQUE_NM = 0.3
+_TIP_TORQUE_NM = 100.0
+_FINGER_GAINS = (0.1, 0.1, 0.5, 0.5)
+_FINGER_FRICTION = 1.2
+_FINGER_SPIN_FRICTION = 0.02
+_FINGER_ROLL_FRICTION = 0.0005
+
+_FINGER_LENGTH_M = 0.09137
+_FINGER_OFFSET_M = 0.00495
+"""From a finger's joint to its tip's joint, along and across the closed finger."""
+
+_ARM_COLOR = (0.80, 0.80, 0.82, 1.0)
+_GRIPPER_COLOR = (0.35, 0.36, 0.38, 1.0)
+
+
+class Pr2:
+    """A PR2 whose right arm and gripper move; everything else of it is fixed."""
+
+    def __init__(self, client: Client) -> None:
+        self._client = client
+        urdf = robot_urdf()
+        with quiet_stdout():
+            self.body_id: int = client.loadURDF(
+                str(urdf), useFixedBase=True, flags=client.URDF_MERGE_FIXED_LINKS
+            )
+        link_of = self._links_by_joint()
+        self._arm = [link_of[name] for name in ARM_JOINTS]
+        self._fingers = [link_of[name] for name in FINGER_JOINTS]
+        self._sides = (
+            {self._fingers[0], self._fingers[2]},
+            {self._fingers[1], self._fingers[3]},
+        )
+        self.tool = KinematicChain(urdf, TOOL_FRAME, ARM_JOINTS)
+        self._forearm_camera = KinematicChain(urdf, FOREARM_CAMERA_FRAME, _FOREARM_JOINTS)
+        self.head_camera_pose = KinematicChain(urdf, HEAD_CAMERA_FRAME, ()).pose(np.zeros(0))
+        shoulder = KinematicChain(urdf, SHOULDER_FRAME, ARM_JOINTS[:1]).pose(np.zeros(1))
+        self.shoulder = (float(shoulder[0, 3]), float(shoulder[1, 3]))
+        self._set_up_dynamics(link_of)
+        self._paint(link_of)
+        self.place_arm(np.array(NEUTRAL_RAD))
+
+    def place_arm(self, joints: Joints) -> None:
+        """Put the arm somewhere at once, at rest and with the gripper open."""
+        for link, angle in zip(self._arm, joints, strict=True):
+            self._client.resetJointState(self.body_id, link, angle)
+        for link in self._fingers:
+            self._client.resetJointState(self.body_id, link, FINGERS_OPEN_RAD)
+
+    def drive(self, joints: Joints, velocities: Joints, fingers_rad: float) -> None:
+        """Set every motor's target for the next physics step."""
+        client = self._client
+        client.setJointMotorControlArray(
+            self.body_id,
+            self._arm,
+            client.POSITION_CONTROL,
+            joints.tolist(),
+            velocities.tolist(),
+            [_ARM_TORQUE_NM] * len(self._arm),
+            [_ARM_POSITION_GAIN] * len(self._arm),
+            [_ARM_VELOCITY_GAIN] * len(self._arm),
+        )
+        left, right = self.finger_angles()
+        pull = _FINGER_COUPLING_NM_RAD * (left - right)
+        client.setJointMotorControlArray(
+            self.body_id,
+            self._fingers,
+            client.POSITION_CONTROL,
+            [fingers_rad, fingers_rad, left, right],
+            forces=[
+                max(_LEAST_GRIP_TORQUE_NM, _GRIP_TORQUE_NM + pull),
+                max(_LEAST_GRIP_TORQUE_NM, _GRIP_TORQUE_NM - pull),
+                _TIP_TORQUE_NM,
+                _TIP_TORQUE_NM,
+            ],
+            positionGains=_FINGER_GAINS,
+        )
+
+    def arm_joints(self) -> Joints:
+        """The measured joint angles of the arm."""
+        states = self._client.getJointStates(self.body_id, self._arm)
+        return np.array([state[0] for state in states])
+
+    def forearm_camera_pose(self) -> Matrix4:
+        """The forearm camera's optical frame, from the measured joint angles."""
+        return self._forearm_camera.pose(self.arm_joints()[: len(_FOREARM_JOINTS)])
+
+    def arm_velocities(self) -> Joints:
+        """The measured joint velocities of the arm in rad/s."""
+        states = self._client.getJointStates(self.body_id, self._arm)
+        return np.array([state[1] for state in states])
+
+    def finger_angles(self) -> tuple[float, float]:
+        """The measured angles of the left and the right finger."""
+        left, right = self._client.getJointStates(self.body_id, self._fingers[:2])
+        return left[0], right[0]
+
+    def gripper_opening_m(self) -> float:
+        """The distance between the finger tips, which stay parallel."""
+        return sum(
+            _FINGER_LENGTH_M * math.sin(angle) + _FINGER_OFFSET_M * (math.cos(angle) - 1.0)
+            for angle in self.finger_angles()
+        )
+
+    def touched_by(self, body_id: int) -> tuple[bool, bool]:
+        """Whether the left and the right finger touch a body."""
+        touching = {contact[3] for contact in self._client.getContactPoints(self.body_id, body_id)}
+        left, right = self._sides
+        return bool(touching & left), bool(touching & right)
+
+    def contact_force_n(self) -> float:
+        """The net force of all contacts but those of the fingers."""
+        fingers = self._sides[0] | self._sides[1]
+        total = np.zeros(3)
+        for contact in self._client.getContactPoints(self.body_id):
+            if contact[1] == contact[2] or contact[3] in fingers:
+                continue
+            total += contact[9] * np.array(contact[7])
+            total += contact[10] * np.array(contact[11]) + contact[12] * np.array(contact[13])
+        return float(np.linalg.norm(total))
+
+    def _links_by_joint(self) -> dict[str, int]:
+        count = self._client.getNumJoints(self.body_id)
+        infos = (self._client.getJointInfo(self.body_id, index) for index in range(count))
+        return {info[1].decode(): info[0] for info in infos}
+
+    def _set_up_dynamics(self, link_of: dict[str, int]) -> None:
+        for name, link in link_of.items():
+            self._client.changeDynamics(
+                self.body_id,
+                link,
+                linearDamping=0,
+                angularDamping=0,
+                jointDamping=_JOINT_DAMPING,
+            )
+            if name in FINGER_JOINTS:
+                self._client.changeDynamics(
+                    self.body_id,
+                    link,
+                    lateralFriction=_FINGER_FRICTION,
+                    spinningFriction=_FINGER_SPIN_FRICTION,
+                    rollingFriction=_FINGER_ROLL_FRICTION,
+                )
+
+    def _paint(self, link_of: dict[str, int]) -> None:
+        """Grey all over: the description's debug colours are those of parts."""
+        for name, link in (("base", -1), *link_of.items()):
+            color = _GRIPPER_COLOR if "gripper" in name else _ARM_COLOR
+            self._client.changeVisualShape(self.body_id, link, rgbaColor=color)
