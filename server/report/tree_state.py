@@ -5,7 +5,7 @@ from collections import Counter
 from server.journal import events as ev
 from server.report.record import RunRecord
 from server.report.tree_drawing import NodeFate, NodeState
-from tasks.definition import TreeDefinition
+from tasks.definition import NodeKind, TaskTreeDefinition
 from tasks.task_tree import TaskTree
 
 DOERS = {"robot": "by the robot", "human": "by the human", "both": "by robot and human"}
@@ -19,7 +19,8 @@ def node_states(record: RunRecord) -> list[NodeState]:
 
 
 def _folded(record: RunRecord) -> TaskTree:
-    tree = TaskTree(TreeDefinition.model_validate(record.started.tree))
+    tree = TaskTree(TaskTreeDefinition.model_validate(record.started.tree))
+    tree.running = True
     for event in record.events:
         match event:
             case ev.NodeStarted():
@@ -34,12 +35,12 @@ def _folded(record: RunRecord) -> TaskTree:
 
 
 def _node_state(tree: TaskTree, node: int, record: RunRecord, starts: Counter[str]) -> NodeState:
-    path, leaf = tree.path_of(node), tree.is_leaf(node)
+    path, leaf = tree.path_of(node), tree.kind_of(node) is NodeKind.BEHAVIOR
     return NodeState(
         path=path,
         kind=tree.kind_of(node).value,
         name=tree.name_of(node),
-        object=tree.object_of(node) if leaf else None,
+        object=tree.leaf_definition(node).object if leaf else None,
         fate=_fate(tree, node, starts[path]),
         detail=_detail(tree, node, record, starts[path]) if leaf else "",
     )
