@@ -2,9 +2,8 @@
 
 from collections.abc import Sequence
 
-from robots.robot import TaskProgress
-
 from robots.link.messages import Intervene
+from robots.robot import TaskProgress
 from tasks.intervention import Intervention
 from tasks.scenario import ScriptedIntervention, Trigger
 from tasks.scene import StrictModel

@@ -4,8 +4,6 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
-from robots.robot import Robot, TaskProgress
-
 from robots.agent import Emit, EmitPicture
 from robots.link.messages import (
     CommandBody,
@@ -25,6 +23,7 @@ from robots.link.messages import (
     StepStarted,
     TakePicture,
 )
+from robots.robot import Robot, TaskProgress
 from sim.interventions import PendingInterventions, PendingSnapshot
 from sim.world import World
 from tasks.intervention import Intervention

@@ -4,9 +4,10 @@ from collections.abc import Iterable
 from typing import Any
 
 from pydantic import ValidationError
+
 from robots.catalogue import Catalogue
 from robots.robot import Robot
-
+from robots.vision.color_model import ColorModel
 from sim.simulated_agent import SimulatedAgent
 from sim.tabletop.colors import learn_colors
 from sim.tabletop.layout import lay_out
@@ -54,6 +55,10 @@ class TabletopAdapter:
             interventions=setup.interventions,
             snapshot=setup.snapshot,
         )
+
+    def train_colors(self, scene: Scene) -> ColorModel:
+        """Learn the colours of a scene's objects from rendered pictures of them."""
+        return learn_colors(scene, TabletopOptions())
 
 
 def _read_options(options: dict[str, Any]) -> TabletopOptions:

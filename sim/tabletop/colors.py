@@ -2,9 +2,8 @@
 
 from functools import lru_cache
 
-from robots.vision.color_model import ColorModel, Sample
-
 from robots.body import ToolPose
+from robots.vision.color_model import ColorModel, Sample
 from sim.raster import Light
 from sim.tabletop.world import TabletopOptions, TabletopWorld
 from tasks.scene import Pose, Scene, SceneObject

@@ -1,0 +1,4 @@
+"""stopgap"""
+
+
+def check(file: str) -> None: ...

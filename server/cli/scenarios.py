@@ -1,0 +1,16 @@
+"""`mend scenarios`: the scenarios that come with Mend."""
+
+from server.cli.failures import told_plainly
+from server.cli.output import print_rows
+
+
+def scenarios() -> None:
+    """List the scenarios that come with Mend, and the task tree that each is for."""
+    from tasks.scenario_file import load_scenario, scenario_names
+
+    with told_plainly():
+        loaded = [load_scenario(name) for name in scenario_names()]
+    print_rows(
+        [(each.name, each.tree, " ".join(each.description.split())) for each in loaded],
+        ("scenario", "tree", "what happens"),
+    )

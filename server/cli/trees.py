@@ -1,0 +1,4 @@
+"""stopgap"""
+
+
+def trees() -> None: ...
