@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field, SecretStr, ValidationError, model_validator
+from pydantic import Field, SecretStr, ValidationError, model_validator
 from pydantic_settings import (
     BaseSettings,
     PydanticBaseSettingsSource,
@@ -14,6 +14,8 @@ from pydantic_settings import (
     SettingsError,
     TomlConfigSettingsSource,
 )
+
+from server.dialogues.mail import MailSettings
 
 Seconds = Annotated[float, Field(gt=0, le=86_400, allow_inf_nan=False)]
 HostName = Annotated[str, Field(min_length=1, max_length=253)]
@@ -29,24 +31,10 @@ class WrongSettingsError(Exception):
         self.problems = problems
 
 
-class SmtpSettings(BaseModel):
-    """The mail server over which operators are written to."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-    host: HostName = "localhost"
-    port: Annotated[int, Field(ge=1, le=65_535)] = 25
-    user: str | None = None
-    password: SecretStr | None = None
-    encryption: Literal["none", "starttls", "tls"] = "none"
-    sender: str = "mend@localhost"
-    timeout_s: Seconds = 20.0
-
-
 class Settings(BaseSettings):
     """Everything that can be configured. Variables are `MEND_` and the upper-case name.
 
-    Nested ones are joined by two underscores: `MEND_SMTP__HOST`. Lists are JSON:
+    Nested ones are joined by two underscores: `MEND_MAIL__HOST`. Lists are JSON:
     `MEND_HELPERS='["anna", "ben"]'`.
     """
 
@@ -63,7 +51,7 @@ class Settings(BaseSettings):
     port: Annotated[int, Field(ge=0, le=65_535)] = 8080
     """The port to listen on; 0 takes a free one."""
     token: SecretStr | None = None
-    """What clients and robots have to show; at least 16 characters."""
+    """What clients and robots have to show; make it long and random."""
     allowed_hosts: list[HostName] = []
     """Names under which clients may reach the service, besides localhost and IP addresses."""
     allowed_origins: list[str] = []
@@ -73,10 +61,11 @@ class Settings(BaseSettings):
     """The journal's file; `journal.db` in `data_dir` unless set."""
     helpers: list[Annotated[str, Field(min_length=1, max_length=64)]] = []
     """Whom to ask, in this order; empty: everybody at once."""
-    operators: list[Annotated[str, Field(pattern=r"^[^@\s]+@[^@\s]+$")]] = []
-    """Mail addresses to write to when no helper answers."""
-    smtp: SmtpSettings = SmtpSettings()
+    mail: MailSettings | None = None
+    """The mail server and the operators to write to when no helper answers; None: nobody."""
     ask_deadline_s: Seconds = 30.0
+    mail_deadline_s: Seconds = 600.0
+    """How long to wait for an answer after the operators were written to."""
     ask_repeats: Annotated[int, Field(ge=0, le=100)] = 1
     help_window_s: Seconds = 30.0
     claim_lease_s: Seconds = 30.0
@@ -93,8 +82,8 @@ class Settings(BaseSettings):
 
     @model_validator(mode="after")
     def _require_a_token(self) -> Self:
-        if self.token is not None and len(self.token.get_secret_value()) < 16:
-            raise ValueError("'token' must have at least 16 characters")
+        if self.token is not None and not self.token.get_secret_value().strip():
+            raise ValueError("'token' must not be empty")
         if self.token is None and not is_loopback(self.host):
             raise ValueError(
                 f"listening on {self.host} needs a token: set MEND_TOKEN, or listen on 127.0.0.1"

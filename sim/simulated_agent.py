@@ -117,11 +117,11 @@ class SimulatedAgent:
 
     def snapshot(self) -> dict[str, Any]:
         """The state from which an agent in the same scene can be rebuilt; JSON-compatible."""
-        return AgentSnapshot(
-            world=self._world.snapshot(),
-            attempts=dict(self._attempts),
-            pending=self._pending.snapshot(),
-        ).model_dump(mode="json")
+        return {
+            "world": self._world.snapshot(),
+            "attempts": dict(self._attempts),
+            "pending": self._pending.snapshot().model_dump(mode="json"),
+        }
 
     # --- Commands -----------------------------------------------------------------------------
 

@@ -1,5 +1,6 @@
 """A world: stands in for hardware and the people around it; workcell and tabletop are two."""
 
+from collections.abc import Iterable
 from typing import Any, Protocol, runtime_checkable
 
 from robots.agent import AgentCore
@@ -76,6 +77,13 @@ class WorldAdapter(Protocol):
 
     def check_available(self) -> None:
         """Raise `WorldUnavailableError` if it cannot run here."""
+        ...
+
+    def lay_out(self, names: Iterable[tuple[str, str | None]], seed: int) -> Scene:
+        """A scene for the (object, place) names of a tree, where `lays_out_anything`.
+
+        Raises `ValueError` when there is no room for all of them.
+        """
         ...
 
     def create_agent(self, setup: WorldSetup) -> AgentCore:

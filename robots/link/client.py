@@ -208,3 +208,4 @@ class _RobotEnd:
                 return
             self._wake.clear()
             await self._clock.wait(self._wake, left_s)
+        await self._let_commands_in()

@@ -8,15 +8,25 @@ and the service sends it again after a reconnect until it is `taken`.
 All lengths are metres, angles radians, times seconds of the robot's clock, poses in its base frame.
 """
 
+import json
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, TypeAdapter
 
 from tasks.intervention import Intervention
 
 PROTOCOL_VERSION = 1
 
 Identifier = Annotated[str, Field(min_length=1, max_length=128)]
+
+
+def _require_json(value: dict[str, Any]) -> dict[str, Any]:
+    """Refuse NaN and infinities, which `Any` lets through and JSON does not have."""
+    json.dumps(value, allow_nan=False)
+    return value
+
+
+JsonObject = Annotated[dict[str, Any], AfterValidator(_require_json)]
 
 
 class Message(BaseModel):
@@ -196,7 +206,7 @@ class Start(Message):
     execution: str
     node: str
     behavior: str
-    parameters: dict[str, Any]
+    parameters: JsonObject
     size: tuple[float, float, float] | None = None
     target: Location | None = None
 
@@ -317,7 +327,7 @@ class Report(Message):
     seq: Annotated[int, Field(ge=1)]
     time: float
     body: ReportBody
-    world: dict[str, Any] | None = None
+    world: JsonObject | None = None
 
 
 class Heartbeat(Message):

@@ -16,6 +16,8 @@ Histogram = NDArray[np.float32]
 FILE_VERSION = 1
 MAX_OBJECTS = 255
 _RANGES = [0, 180, 0, 256]
+_KERNEL = np.ones((3, 3), np.uint8)
+_NOISE_SEED = 1
 
 
 class ColorModelError(Exception):
@@ -28,7 +30,9 @@ class ColorSettings:
 
     Saturations and values are OpenCV's (0 to 255). The training limits are the stricter ones, so
     that a histogram is learned from pixels that surely have the object's colour. A bin belongs to
-    an object only where its histogram has at least `min_share` of its peak.
+    an object only where its histogram has at least `min_share` of its peak. Samples are also
+    learned from with other light (`gains`) and with noise of `noise` grey levels, because
+    pictures at work have both.
     """
 
     hue_bins: int = 30
@@ -37,7 +41,9 @@ class ColorSettings:
     min_value: int = 30
     min_training_saturation: int = 70
     min_training_value: int = 35
-    min_share: float = 0.03
+    min_share: float = 0.02
+    gains: tuple[float, ...] = (0.65, 1.0, 1.35)
+    noise: float = 8.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -108,7 +114,7 @@ class ColorModel:
 
     def segment(self, bgr: NDArray[np.uint8]) -> Segmentation:
         """Label every pixel of a picture with the object that owns its colour."""
-        hsv = cv2.cvtColor(bgr, cv2.COLOR_BGR2HSV)
+        hsv = _hue_saturation_value(bgr)
         labels = cv2.calcBackProject([hsv], [0, 1], self._owners, _RANGES, 1)
         coloured = cv2.inRange(
             hsv, (0, self._settings.min_saturation, self._settings.min_value), (180, 255, 255)
@@ -182,21 +188,31 @@ def _learn(name: str, samples: Sequence[Sample], settings: ColorSettings) -> His
     bins = [settings.hue_bins, settings.saturation_bins]
     lowest = (0, settings.min_training_saturation, settings.min_training_value)
     total = np.zeros(bins, np.float32)
+    rng = np.random.default_rng(_NOISE_SEED)
     for sample in samples:
         if sample.bgr.shape[:2] != sample.mask.shape:
             raise ColorModelError(
                 f"a mask of '{name}' is {sample.mask.shape}, its picture {sample.bgr.shape[:2]}"
             )
-        hsv = cv2.cvtColor(sample.bgr, cv2.COLOR_BGR2HSV)
-        coloured = cv2.inRange(hsv, lowest, (180, 255, 255))
-        usable = np.where(sample.mask > 0, coloured, 0).astype(np.uint8)
-        total += cv2.calcHist([hsv], [0, 1], usable, bins, _RANGES)
+        # A blurred picture mixes an object's rim with what is behind it.
+        inside = cv2.erode(np.where(sample.mask > 0, 255, 0).astype(np.uint8), _KERNEL)
+        for gain in settings.gains:
+            noise = rng.normal(0.0, settings.noise, sample.bgr.shape)
+            bgr = np.clip(sample.bgr * gain + noise, 0, 255).astype(np.uint8)
+            hsv = _hue_saturation_value(bgr)
+            usable = cv2.bitwise_and(cv2.inRange(hsv, lowest, (180, 255, 255)), inside)
+            total += cv2.calcHist([hsv], [0, 1], usable, bins, _RANGES)
     if total.max() <= 0:
         raise ColorModelError(
             f"no pixel of '{name}' is coloured enough to learn from; give brighter samples of it"
         )
     smooth = _blur(total)
     return np.asarray(smooth / smooth.max(), np.float32)
+
+
+def _hue_saturation_value(bgr: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """OpenCV's HSV of a slightly blurred picture: noise turns the hue of dark colours."""
+    return np.asarray(cv2.cvtColor(cv2.GaussianBlur(bgr, (3, 3), 0), cv2.COLOR_BGR2HSV), np.uint8)
 
 
 def _blur(histogram: Histogram) -> Histogram:

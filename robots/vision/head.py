@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 from robots.body import CameraImage
 from robots.catalogue import Part
@@ -14,14 +13,15 @@ from robots.link.messages import Sighting
 from robots.vision.blob import Blob, find_blob
 from robots.vision.color_model import Segmentation
 from robots.vision.projection import Points, unproject
+from robots.vision.rectangle import TOP_TOLERANCE_M, measure_rectangle
 
 _LAYER_M = 0.004
 """Thickness of the layers in which the top surface is looked for."""
 _TOP_SHARE = 0.35
 """The top surface is the highest layer with this share of the fullest layer's points."""
-_TOP_TOLERANCE_M = 0.005
 _FEWEST_POINTS = 12
 _TOPPLED_M = 0.012
+_RIM = np.ones((5, 5), np.uint8)
 _COMPLETE_SHARE = 0.8
 """A part is seen whole if each extent of its top is at least this share of what it should be."""
 
@@ -64,23 +64,24 @@ def locate(image: CameraImage, segmentation: Segmentation, part: Part) -> HeadSi
     blob = find_blob(mask)
     if blob is None or image.depth_m is None:
         return None
-    # Closing fills gaps with pixels of other things; only those of the right colour are measured.
-    vs, us = np.nonzero(cv2.bitwise_and(blob.mask, mask))
+    # At the rim colours mix, so depth tells where the part ends; other parts stay out of it.
+    grown = np.asarray(cv2.dilate(blob.mask, _RIM))
+    vs, us = np.nonzero((grown > 0) & ((mask > 0) | (segmentation.of_any() == 0)))
     points = unproject(image, us, vs)
-    top = _top_surface(points, image.pose[:3, 3])
-    if top is None:
+    top_z = _top_of(points)
+    if top_z is None:
         return None
-    top_z, surface = top
-    center, yaw, extents = _measure_rectangle(surface, top_z, part, image)
-    complete = bool(
-        extents[0] >= _COMPLETE_SHARE * part.size[0]
-        and extents[1] >= _COMPLETE_SHARE * part.size[1]
+    on_top = np.abs(points[:, 2] - top_z) <= TOP_TOLERANCE_M
+    seen = measure_rectangle(image, us[on_top], vs[on_top], top_z, part.size)
+    complete = all(
+        extent >= _COMPLETE_SHARE * size
+        for extent, size in zip(seen.extents, part.size[:2], strict=True)
     )
     return HeadSighting(
-        x=center[0],
-        y=center[1],
+        x=seen.center[0],
+        y=seen.center[1],
         z=top_z - part.size[2],
-        yaw=yaw,
+        yaw=seen.yaw,
         top_z=top_z,
         complete=complete,
         blob=blob,
@@ -88,10 +89,8 @@ def locate(image: CameraImage, segmentation: Segmentation, part: Part) -> HeadSi
     )
 
 
-def _top_surface(
-    points: Points, eye: NDArray[np.float64]
-) -> tuple[float, NDArray[np.float64]] | None:
-    """The height of the top surface and the (n, 2) points at which `eye` sees it.
+def _top_of(points: Points) -> float | None:
+    """The height of the top surface.
 
     A horizontal surface gathers its points in one layer, a side spreads them over many; a knob
     on a plate is too small to be taken for the top.
@@ -108,54 +107,4 @@ def _top_surface(
     near = np.abs(heights - middle) <= _LAYER_M * 1.5
     if np.count_nonzero(near) < _FEWEST_POINTS:
         return None
-    top_z = float(np.median(heights[near]))
-    chosen = points[np.abs(heights - top_z) <= _TOP_TOLERANCE_M]
-    share = (top_z - eye[2]) / (chosen[:, 2] - eye[2])
-    return top_z, eye[:2] + (chosen[:, :2] - eye[:2]) * share[:, None]
-
-
-def _measure_rectangle(
-    surface: NDArray[np.float64], top_z: float, part: Part, image: CameraImage
-) -> tuple[tuple[float, float], float, tuple[float, float]]:
-    """Centre, yaw of the part's x axis and extents along its x and y of a seen rectangle."""
-    origin = surface.mean(axis=0)
-    # Millimetres keep the single precision of OpenCV's rectangle harmless.
-    _, (first, second), angle_deg = cv2.minAreaRect(((surface - origin) * 1e3).astype(np.float32))
-    x_is_longer = part.size[0] >= part.size[1]
-    turn = 0.0 if (first >= second) == x_is_longer else math.pi / 2
-    yaw = half_turn(math.radians(angle_deg) + turn)
-    if math.isclose(part.size[0], part.size[1], rel_tol=0.1):
-        yaw = (yaw + math.pi / 4) % (math.pi / 2) - math.pi / 4
-    axes = np.array([[math.cos(yaw), math.sin(yaw)], [-math.sin(yaw), math.cos(yaw)]])
-    local = (surface - origin) @ axes.T
-    to_eye = image.pose[:3, 3] - np.append(origin, top_z)
-    pixel_m = float(np.linalg.norm(to_eye)) / image.focal_px
-    low_x, high_x = _edges(local[:, 0], local[:, 1], pixel_m)
-    low_y, high_y = _edges(local[:, 1], local[:, 0], pixel_m)
-    # The upper rim of the sides that face the camera is within the tolerance, and so is taken for
-    # top: it makes the rectangle longer by this much towards the camera.
-    rim = to_eye[:2] * (_TOP_TOLERANCE_M / to_eye[2])
-    middle = np.array([low_x + high_x, low_y + high_y]) / 2 @ axes + origin - rim / 2
-    extents = np.array([high_x - low_x, high_y - low_y]) + pixel_m - np.abs(axes @ rim)
-    return (float(middle[0]), float(middle[1])), yaw, (float(extents[0]), float(extents[1]))
-
-
-def _edges(
-    along: NDArray[np.float64], across: NDArray[np.float64], row_m: float
-) -> tuple[float, float]:
-    """Where a surface begins and ends: the medians over its rows, finer than one pixel."""
-    rows = np.floor((across - across.min()) / row_m).astype(np.intp)
-    count = int(rows.max()) + 1
-    low, high = np.full(count, np.inf), np.full(count, -np.inf)
-    np.minimum.at(low, rows, along)
-    np.maximum.at(high, rows, along)
-    full = np.bincount(rows, minlength=count) >= max(2, np.median(np.bincount(rows)) / 2)
-    return float(_trimmed_mean(low[full])), float(_trimmed_mean(high[full]))
-
-
-def _trimmed_mean(values: NDArray[np.float64]) -> np.float64:
-    """The mean without the outer eighths: averages the pixel grid out, ignores stray pixels."""
-    ordered = np.sort(values)
-    cut = len(ordered) // 8
-    mean: np.float64 = ordered[cut : len(ordered) - cut].mean()
-    return mean
+    return float(np.median(heights[near]))

@@ -21,7 +21,7 @@ from server.runtime.run import Run
 from server.runtime.run_state import DialogueState, RunState
 from server.runtime.runtime import LoadedTree, Runtime
 from server.runtime.views import RunView
-from tasks.definition import TreeDefinition
+from tasks.definition import TaskTreeDefinition
 from tasks.scenario import Scenario
 from tasks.scene import Scene
 
@@ -53,7 +53,7 @@ class PretendWorlds:
 
 @dataclass
 class PretendTrees:
-    definition: TreeDefinition
+    definition: TaskTreeDefinition
 
     async def load(self, name: str) -> LoadedTree:
         return LoadedTree(name, self.definition, None)
@@ -87,7 +87,7 @@ class PretendService:
 
 @asynccontextmanager
 async def pretend_service(
-    definition: TreeDefinition,
+    definition: TaskTreeDefinition,
     faults: Mapping[str, list[tuple[str, int]]] | None = None,
     *,
     journal: Path | None = None,

@@ -94,7 +94,8 @@ async def test_silence_fails_the_run_after_three_attempts_and_says_why() -> None
 
 
 async def test_a_hopeless_alternative_is_abandoned_for_the_other() -> None:
-    async with pretend_service(EITHER_PART, {"part_1": [("missed", 4)] * 3}) as service:
+    faults = {"part_1": [("missed", 4)] * 3, "part_2": [("missed", 4)] * 2}
+    async with pretend_service(EITHER_PART, faults) as service:
         view, events = await service.run_to_end(answers="none")
     assert view.status is RunStatus.FINISHED
     assert [each.node for each in of_type(events, ev.NodeAbandoned)] == ["/0"]
@@ -152,11 +153,14 @@ async def test_the_record_of_a_choice_has_every_candidate_best_first() -> None:
 async def open_question(service: PretendService, **fields: Any) -> DialogueView:
     request = {"tree": "tree", "world": "tabletop", "speed": "max", **fields}
     await service.runtime.start_run(RunRequest.model_validate(request))
-    while True:
-        for dialogue in service.runtime.dialogues("open"):
-            if dialogue.awaiting == "answer":
-                return dialogue
-        await asyncio.sleep(0)
+    return await first_open_dialogue(service)
+
+
+async def first_open_dialogue(service: PretendService) -> DialogueView:
+    async with asyncio.timeout(10):
+        while not (waiting := service.runtime.dialogues("open")):
+            await asyncio.sleep(0)  # noqa: ASYNC110 - nothing announces a state
+    return waiting[0]
 
 
 def prompt_of(dialogue: DialogueView) -> Any:
@@ -254,9 +258,8 @@ async def test_after_a_restart_the_same_dialogue_is_still_open(tmp_path: Path) -
     path = tmp_path / "journal.sqlite"
     async with pretend_service(TWO_PARTS, HELD, journal=path) as service:
         before = await open_question(service)
-    async with pretend_service(TWO_PARTS, journal=path) as service:
-        while not service.runtime.dialogues("open"):
-            await asyncio.sleep(0)
+    async with pretend_service(TWO_PARTS, journal=path, boot=2) as service:
+        await first_open_dialogue(service)
         after = service.runtime.dialogue(before.dialogue)
         assert after.prompt == before.prompt
         assert after.status == "open"
