@@ -2,6 +2,7 @@
 
 import os
 import sys
+from collections.abc import Callable
 from importlib.metadata import version
 from typing import Annotated
 
@@ -46,9 +47,19 @@ def common_options(
     """Run robots through task trees, and ask a person for help when they fail."""
 
 
-for command in (run, serve, check, trees, scenarios, schema, replay):
-    app.command()(command)
-app.command("train-colors")(train_colors)
+COMMANDS: dict[str, tuple[Callable[..., None], str]] = {
+    "run": (run, "Run a task tree and print what happens."),
+    "serve": (serve, "Serve the API, the helpers' page, the robots."),
+    "check": (check, "Find the mistakes of a file."),
+    "trees": (trees, "List the task trees that there are."),
+    "scenarios": (scenarios, "List the scenarios that there are."),
+    "schema": (schema, "Print a schema as JSON."),
+    "replay": (replay, "Tell a run again from its journal."),
+    "train-colors": (train_colors, "Learn the colours of objects."),
+}
+
+for name, (command, summary) in COMMANDS.items():
+    app.command(name, short_help=summary)(command)
 
 
 def main() -> None:

@@ -11,6 +11,7 @@ from server.journal.upgrades import UnknownEventVersionError
 from server.settings import WrongSettingsError
 from sim.world import WorldUnavailableError
 from tasks.plugins import PluginError
+from tasks.problem import InvalidFileError
 from tasks.scenario_file import ScenarioFileError
 
 NOT_FINISHED = 1
@@ -22,6 +23,7 @@ INTERRUPTED = 130
 
 KNOWN_ERRORS = (
     ColorModelError,
+    InvalidFileError,
     JournalLockedError,
     JournalSchemaError,
     PluginError,

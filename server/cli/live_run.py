@@ -59,10 +59,12 @@ class LiveRun:
         self._interrupted = False
 
     async def carry_out(self) -> int:
-        """Run it to its end and return the exit code. Raises `CommandLineError` and service errors."""
+        """Run it to its end and return the exit code.
+
+        Raises `CommandLineError` and the errors of `server.errors`.
+        """
         async with self._open_service(self._settings, recover=False) as service:
-            if self._tree.text is not None:
-                await service.journal.save_tree(self._tree.name, self._tree.text)
+            await self._keep_tree(service)
             before = service.journal.head
             run = (await service.runtime.start_run(self._request)).id
             status = await self._watch(service, run, before)
@@ -71,6 +73,11 @@ class LiveRun:
         if self._interrupted:
             return INTERRUPTED
         return 0 if status is RunStatus.FINISHED else NOT_FINISHED
+
+    async def _keep_tree(self, service: "Service") -> None:
+        """A tree from a file has to be in the journal before a run can name it."""
+        if self._tree.text is not None:
+            await service.trees.save(self._tree.name, self._tree.text)
 
     async def _watch(self, service: "Service", run: UUID, before: int) -> RunStatus:
         """Tell the run's events until its end; Ctrl-C aborts it."""

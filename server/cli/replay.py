@@ -19,7 +19,9 @@ MAX_LISTED = 5
 
 
 def replay(
-    run: Annotated[str, typer.Argument(help="The run's id, or enough of its beginning.")],
+    run: Annotated[
+        str, typer.Argument(metavar="RUN", help="The run's id, or enough of its beginning.")
+    ],
     journal: Annotated[
         Path | None,
         typer.Option(help="The journal that has the run; without it, all known ones are searched."),
@@ -50,7 +52,7 @@ class _Found:
 
 
 def _find(journals: Sequence[Path], prefix: str, *, exact: bool) -> _Found:
-    """The one run whose id begins with the prefix. Raises `CommandLineError` for none or several."""
+    """The one run whose id begins with the prefix. Raises `CommandLineError` otherwise."""
     wanted = prefix.lower().replace("-", "")
     found = [
         _Found(journal, run)

@@ -22,7 +22,9 @@ from tasks.scenario_file import load_scenario
 
 
 def run(
-    tree: Annotated[str, typer.Argument(help="A task tree: its name (`mend trees`) or a file.")],
+    tree: Annotated[
+        str, typer.Argument(metavar="TREE", help="A task tree: its name (`mend trees`) or a file.")
+    ],
     world: Annotated[str, typer.Option(help="Where: workcell, tabletop or a world of yours.")] = (
         "workcell"
     ),

@@ -2,12 +2,11 @@
 
 from server.cli.failures import told_plainly
 from server.cli.output import print_rows
+from tasks.scenario_file import load_scenario, scenario_names
 
 
 def scenarios() -> None:
     """List the scenarios that come with Mend, and the task tree that each is for."""
-    from tasks.scenario_file import load_scenario, scenario_names
-
     with told_plainly():
         loaded = [load_scenario(name) for name in scenario_names()]
     print_rows(

@@ -8,12 +8,15 @@ import typer
 from robots.vision.color_model import ColorModel
 from robots.vision.training import load_samples
 from server.cli.failures import CommandLineError, told_plainly
+from server.cli.task_files import read_scene
 from sim.world import ColorTeacher, WorldAdapter
 from tasks.plugins import load_plugins
 
 
 def train_colors(
-    output: Annotated[Path, typer.Argument(help="The colour model's file, as .npz.")],
+    output: Annotated[
+        Path, typer.Argument(metavar="OUTPUT", help="The colour model's file, as .npz.")
+    ],
     images: Annotated[
         Path | None,
         typer.Option(

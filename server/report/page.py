@@ -148,14 +148,10 @@ def _fault_card(fault: Fault, transcript: Transcript, pictures: Mapping[UUID, by
         picture=None
         if jpeg is None
         else "data:image/jpeg;base64," + base64.b64encode(jpeg).decode("ascii"),
-        explanation=_sentence(detection.explanation) if detection else "",
+        explanation=detection.explanation if detection else "",
         camera=detection.camera if detection else None,
         lines=[line for event in fault.story for line in transcript.lines(event)],
     )
-
-
-def _sentence(text: str) -> str:
-    return f"{text[0].upper()}{text[1:].rstrip('.')}." if text else ""
 
 
 @dataclass(frozen=True, slots=True)
