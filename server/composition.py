@@ -30,6 +30,7 @@ from server.trees import JournaledTrees
 from tasks.library import tree_texts
 from tasks.plugins import load_plugins
 
+
 @dataclass(frozen=True, slots=True)
 class Service:
     """A service that runs; `url` is where it listens."""
@@ -43,9 +44,7 @@ class Service:
 
 
 @asynccontextmanager
-async def open_service(
-    settings: Settings, *, recover: bool = True
-) -> AsyncIterator[Service]:
+async def open_service(settings: Settings, *, recover: bool = True) -> AsyncIterator[Service]:
     """Start a service, take up the runs that had not ended, and stop it at the end.
 
     Raises `JournalLockedError` when another process has the journal, `OSError` when it cannot
@@ -104,9 +103,7 @@ async def _open(
         monotonic=time.monotonic,
         utc_now=lambda: datetime.now(UTC),
     )
-    app = create_app(
-        runtime, journal, settings, trees_library=trees, scenarios=scenarios
-    )
+    app = create_app(runtime, journal, settings, trees_library=trees, scenarios=scenarios)
     add_robot_route(app, registry, token)
     server = _Server(serve_config(app, settings))
     serving = asyncio.create_task(server.serve(sockets=[config_socket]), name="server")

@@ -33,6 +33,13 @@ class TabletopAdapter:
         """
         return lay_out(names, seed)
 
+    def train_colors(self, scene: Scene) -> ColorModel:
+        """Learn the colours of a scene's objects from rendered pictures of them.
+
+        Raises `ColorModelError` for an object without a colour of its own.
+        """
+        return learn_colors(scene, TabletopOptions())
+
     def create_agent(self, setup: WorldSetup) -> SimulatedAgent:
         """Build the world and the robot in it.
 

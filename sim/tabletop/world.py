@@ -18,8 +18,8 @@ from tasks.intervention import Intervention
 from tasks.scene import Scene, StrictModel
 
 REACH_ORIGIN = (0.0, -0.19)
-REACH_MIN_M = 0.25
-REACH_MAX_M = 0.82
+REACH_MIN_M = 0.40
+REACH_MAX_M = 0.79
 """The graspable range of the workcell's robot, so that scenes mean the same in both worlds."""
 
 

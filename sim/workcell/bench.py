@@ -6,6 +6,7 @@ import numpy as np
 
 from sim.workcell.parts import Part, PartPose
 from sim.workcell.physics import Client
+from sim.workcell.pr2 import Pr2
 from tasks.scene import Scene, Table
 
 _FLOOR_HALF_M = 4.0
@@ -60,6 +61,26 @@ class Bench:
             points = self._client.getClosestPoints(part.body_id, other.body_id, max(0.0, apart_m))
             if any(point[8] < apart_m for point in points):
                 yield other
+
+    def held(self, pr2: Pr2) -> Part | None:
+        """The part that both fingers touch."""
+        for part in self.parts.values():
+            if all(pr2.touched_by(part.body_id)):
+                return part
+        return None
+
+    def remember_rests(self, pr2: Pr2) -> None:
+        """Where parts lie still, untouched by the gripper, is where they last rested."""
+        for part in self.parts.values():
+            if not part.stolen and part.at_rest() and not any(pr2.touched_by(part.body_id)):
+                part.last_rest = part.pose()
+
+    def is_on_table(self, x: float, y: float) -> bool:
+        table = self.scene.table
+        return (
+            abs(x - table.center[0]) <= table.size[0] / 2
+            and abs(y - table.center[1]) <= table.size[1] / 2
+        )
 
     def _start_pose(self, part: Part, rng: np.random.Generator | None) -> PartPose:
         pose, scatter = part.definition.pose, self.scene.scatter

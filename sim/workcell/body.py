@@ -31,8 +31,10 @@ _GRIPPER_RAMP_CYCLES = 60
 """The fingers' target moves during the ramp; the rest of the time lets the grasp settle."""
 
 HAND_OVER_POSE = ToolPose(0.50, -0.30, 0.98, 0.0)
+
 REACH_MIN_M = 0.40
-REACH_MAX_M = 0.72
+REACH_MAX_M = 0.79
+"""Measured in front of the shoulder: the gripper pointing down, lifting from the table."""
 
 
 class WorkcellBody:
@@ -41,16 +43,11 @@ class WorkcellBody:
     It knows its own joint angles and what its joints feel, and nothing else of the world.
     """
 
-    def __init__(
-        self,
-        pr2: Pr2,
-        cameras: Mapping[str, Camera],
-        rng: np.random.Generator,
-        step: Callable[[], None],
-    ) -> None:
-        """`step` lets the physics engine make one step."""
+    cameras: Mapping[str, Camera]
+
+    def __init__(self, pr2: Pr2, rng: np.random.Generator, step: Callable[[], None]) -> None:
+        """`step` lets the rest of the world make one physics step."""
         self._pr2 = pr2
-        self._cameras = cameras
         self._rng = rng
         self._step = step
         self._planner = PathPlanner(pr2.tool, np.array(PREFERRED_RAD))
@@ -66,10 +63,6 @@ class WorkcellBody:
         return PERIOD_S
 
     @property
-    def cameras(self) -> Mapping[str, Camera]:
-        return self._cameras
-
-    @property
     def reach(self) -> Reach:
         return Reach(self._pr2.shoulder, REACH_MIN_M, REACH_MAX_M)
 
@@ -82,6 +75,13 @@ class WorkcellBody:
         self._pr2.drive(self._target, velocities, self._gripper.target_rad)
         self._step()
         self.cycle += 1
+
+    def go_neutral_at_once(self) -> None:
+        """Be at neutral, at rest and with the gripper open (a rebuilt world)."""
+        self._motion = None
+        self._target = np.array(NEUTRAL_RAD)
+        self._gripper = FingerMotion()
+        self._pr2.place_arm(self._target)
 
     def plan_path(self, waypoints: Sequence[ToolPose]) -> ArmPath | None:
         """Plan through all waypoints; each at its yaw, or each at its yaw + pi."""
@@ -146,6 +146,11 @@ class WorkcellBody:
     def gripper_closing(self) -> bool:
         """Whether the fingers are closed or on their way together."""
         return self._gripper.closing
+
+    @property
+    def ready_to_take(self) -> bool:
+        """Whether the arm rests with the gripper open."""
+        return not self.moving and not self._gripper.closing
 
     def ways_ahead(self) -> list[JointCurve]:
         """What is left of the segment under way and the path's segments after it."""

@@ -81,8 +81,12 @@ class Part:
         self._reset(pose)
 
     def take_away(self) -> None:
-        """Be out of the world's sight and reach."""
+        """Be gone until somebody brings it back."""
         self.stolen = True
+        self._reset(self._away)
+
+    def hide(self) -> None:
+        """Be in somebody's hand, out of the cameras' sight and the arm's reach."""
         self._reset(self._away)
 
     def at_rest(self) -> bool:

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from robots.body import Matrix4
-from sim.workcell.quiet import quiet_stdout
+from sim.workcell.quiet import silenced
 
 Client = Any
 """A `pybullet_utils.bullet_client.BulletClient`; PyBullet has no types."""
@@ -21,7 +21,7 @@ CONTROL_HZ = 240
 
 def connect() -> Client:
     """A new, empty engine in this process."""
-    with quiet_stdout():
+    with silenced():
         import pybullet
         from pybullet_utils.bullet_client import BulletClient
 

@@ -1,13 +1,14 @@
 """The PR2 in the physics engine: joints, motors, finger coupling and what its sensors feel."""
 
 import math
+from typing import Any
 
 import numpy as np
 
 from robots.body import Matrix4
 from robots.motion.kinematics import Joints, KinematicChain
 from sim.workcell.physics import Client
-from sim.workcell.quiet import quiet_stdout
+from sim.workcell.quiet import silenced
 from sim.workcell.robot_model import (
     ARM_JOINTS,
     FINGER_JOINTS,
@@ -42,6 +43,9 @@ _FINGER_LENGTH_M = 0.09137
 _FINGER_OFFSET_M = 0.00495
 """From a finger's joint to its tip's joint, along and across the closed finger."""
 
+_PRESSES_OUTWARDS = 0.5
+"""The least cosine to the opening direction of a force from between the fingers."""
+
 _ARM_COLOR = (0.80, 0.80, 0.82, 1.0)
 _GRIPPER_COLOR = (0.35, 0.36, 0.38, 1.0)
 
@@ -52,7 +56,7 @@ class Pr2:
     def __init__(self, client: Client) -> None:
         self._client = client
         urdf = robot_urdf()
-        with quiet_stdout():
+        with silenced():
             self.body_id: int = client.loadURDF(
                 str(urdf), useFixedBase=True, flags=client.URDF_MERGE_FIXED_LINKS
             )
@@ -141,15 +145,22 @@ class Pr2:
         return bool(touching & left), bool(touching & right)
 
     def contact_force_n(self) -> float:
-        """The net force of all contacts but those of the fingers."""
-        fingers = self._sides[0] | self._sides[1]
+        """The net force of all contacts but of what the fingers close on."""
         total = np.zeros(3)
         for contact in self._client.getContactPoints(self.body_id):
-            if contact[1] == contact[2] or contact[3] in fingers:
+            if contact[1] == contact[2] or self._is_between_fingers(contact):
                 continue
             total += contact[9] * np.array(contact[7])
             total += contact[10] * np.array(contact[11]) + contact[12] * np.array(contact[13])
         return float(np.linalg.norm(total))
+
+    def _is_between_fingers(self, contact: tuple[Any, ...]) -> bool:
+        """Whether a contact presses a finger outwards, as only what is between them can."""
+        outwards = 1.0 if contact[3] in self._sides[0] else -1.0
+        if outwards < 0.0 and contact[3] not in self._sides[1]:
+            return False
+        opening = self.tool.pose(self.arm_joints())[:3, 1]
+        return bool(outwards * np.dot(contact[7], opening) > _PRESSES_OUTWARDS)
 
     def _links_by_joint(self) -> dict[str, int]:
         count = self._client.getNumJoints(self.body_id)

@@ -1,37 +1,160 @@
 """The workcell: a PR2 at a table with parts, in PyBullet, with a person who intervenes."""
 
+import json
+from collections.abc import Mapping
+from typing import Any
+
 import numpy as np
 
 from sim.workcell.bench import Bench
 from sim.workcell.body import PERIOD_S, WorkcellBody
+from sim.workcell.cameras import WorkcellCamera, forearm_optics, head_optics
+from sim.workcell.lighting import Lighting
+from sim.workcell.options import WorkcellOptions
+from sim.workcell.parts import Part
+from sim.workcell.person import Person
 from sim.workcell.physics import connect
 from sim.workcell.pr2 import Pr2
+from sim.workcell.rendering import BulletRenderer, FastRenderer, Renderer
+from sim.workcell.snapshot import (
+    HandOverSnapshot,
+    PartSnapshot,
+    PoseSnapshot,
+    WorkcellSnapshot,
+)
+from tasks.intervention import Intervention
 from tasks.scene import Scene
 
 _GRAVITY_M_S2 = -9.81
 _SOLVER_ITERATIONS = 50
-_SETTLE_STEPS = 120
+_SETTLE_CYCLES = 120
+_REMEMBER_RESTS_CYCLES = 24
+_FOREARM_HZ = {"bullet": 10, "fast": 30}
 
 
 class WorkcellWorld:
     """A simulated world; the same seed and the same calls give the same world."""
 
-    def __init__(self, scene: Scene, seed: int) -> None:
-        self._rng = np.random.default_rng(seed)
+    def __init__(self, scene: Scene, seed: int, options: WorkcellOptions | None = None) -> None:
+        """Raises `WorldUnavailableError` where the physics engine or the robot is missing."""
+        chosen = options or WorkcellOptions()
+        self._scene = scene
+        layout_rng, light_rng, self._rng = np.random.default_rng(seed).spawn(3)
+        self._build(chosen, Lighting(chosen.light, chosen.camera_noise, light_rng))
+        self._bench.lay_out(layout_rng)
+        self._settle()
+        self._bench.remember_starts()
+
+    def _build(self, options: WorkcellOptions, lighting: Lighting) -> None:
         client = connect()
-        self._client = client
         client.setPhysicsEngineParameter(
             fixedTimeStep=PERIOD_S, numSolverIterations=_SOLVER_ITERATIONS, enableFileCaching=0
         )
         client.setGravity(0.0, 0.0, _GRAVITY_M_S2)
-        self.bench = Bench(client, scene)
-        self.pr2 = Pr2(client)
-        self.bench.lay_out(self._rng)
-        self.body = WorkcellBody(self.pr2, {}, self._rng, self._step)
-        for _ in range(_SETTLE_STEPS):
-            self.body.advance_cycle()
-        self.bench.remember_starts()
-        self.body.cycle = 0
+        self._client = client
+        self._bench = Bench(client, self._scene)
+        self._pr2 = Pr2(client)
+        self._body = WorkcellBody(self._pr2, self._rng, self._step)
+        self._person = Person(client, self._bench, self._pr2, self._body, self._rng)
+        renderer: Renderer = (
+            BulletRenderer(client) if options.renderer == "bullet" else FastRenderer(client)
+        )
+        self.head = WorkcellCamera(
+            head_optics(), renderer, lighting, lambda: self._pr2.head_camera_pose, self._body.time_s
+        )
+        self.forearm = WorkcellCamera(
+            forearm_optics(1.0 / _FOREARM_HZ[options.renderer]),
+            renderer,
+            lighting,
+            self._pr2.forearm_camera_pose,
+            self._body.time_s,
+        )
+        self._body.cameras = {"head": self.head, "forearm": self.forearm}
+
+    @property
+    def body(self) -> WorkcellBody:
+        return self._body
+
+    def intervene(self, intervention: Intervention) -> str:
+        """Do what a person does; an empty string, or one sentence that says why it cannot be."""
+        return self._person.intervene(intervention)
+
+    def snapshot(self) -> dict[str, Any]:
+        """The state from which `restore` can rebuild the world; JSON-compatible."""
+        held, hand_over = self._bench.held(self._pr2), self._person.hand_over
+        return WorkcellSnapshot(
+            cycle=self._body.cycle,
+            parts={name: self._snapshot_of(part, held) for name, part in self.parts.items()},
+            held=held.name if held else None,
+            obstacle=self._person.obstacle.center,
+            hand_over=HandOverSnapshot(object=hand_over.part.name, until_s=hand_over.until_s)
+            if hand_over
+            else None,
+            generator=json.dumps(self._rng.bit_generator.state),
+        ).model_dump(mode="json")
+
+    def restore(self, snapshot: dict[str, Any]) -> None:
+        """Rebuild the world: what was held lies where it last rested, the arm is at neutral.
+
+        Raises `ValueError` for a snapshot of another version or of another scene.
+        """
+        saved = WorkcellSnapshot.model_validate_json(json.dumps(snapshot))
+        if set(saved.parts) != set(self.parts):
+            raise ValueError(
+                f"the snapshot has the parts {sorted(saved.parts)}, the scene {sorted(self.parts)}"
+            )
+        self._person.withdraw()
+        self._body.go_neutral_at_once()
+        for name, each in saved.parts.items():
+            self._restore_part(self.parts[name], each)
+        self._settle()
+        if saved.obstacle is not None:
+            self._person.obstacle.stand_at(saved.obstacle)
+        if saved.hand_over is not None:
+            self._person.hold_out(self.parts[saved.hand_over.object], saved.hand_over.until_s)
+        self._body.cycle = saved.cycle
+        self._rng.bit_generator.state = json.loads(saved.generator)
+
+    def close(self) -> None:
+        """Give the physics engine's memory back."""
+        self._client.disconnect()
+
+    @property
+    def parts(self) -> Mapping[str, Part]:
+        """The parts as they really are; for tests and benchmarks to judge by."""
+        return self._bench.parts
+
+    @property
+    def held(self) -> str | None:
+        """What the fingers really hold; for tests and benchmarks to judge by."""
+        part = self._bench.held(self._pr2)
+        return part.name if part else None
 
     def _step(self) -> None:
+        self._person.act()
         self._client.stepSimulation()
+        if self._body.cycle % _REMEMBER_RESTS_CYCLES == 0:
+            self._bench.remember_rests(self._pr2)
+
+    def _settle(self) -> None:
+        """Let everything come to rest before the clock runs."""
+        for _ in range(_SETTLE_CYCLES):
+            self._body.advance_cycle()
+        self._body.cycle = 0
+
+    def _snapshot_of(self, part: Part, held: Part | None) -> PartSnapshot:
+        in_the_air = part is held or self._person.has_in_hand(part)
+        rest = part.last_rest if in_the_air or part.stolen else part.pose()
+        return PartSnapshot(
+            rest=PoseSnapshot.of(rest),
+            start=PoseSnapshot.of(part.start),
+            stolen=part.stolen or self._person.is_pulling(part),
+        )
+
+    def _restore_part(self, part: Part, saved: PartSnapshot) -> None:
+        part.start = saved.start.to_pose()
+        part.last_rest = saved.rest.to_pose()
+        if saved.stolen:
+            part.take_away()
+        else:
+            part.put(part.last_rest)

@@ -1,0 +1,51 @@
+"""The workcell as a kind of world that runs can name (entry point `mend.worlds`)."""
+
+from robots.catalogue import Catalogue
+from robots.robot import Robot
+from sim.simulated_agent import SimulatedAgent
+from sim.workcell.options import read_options
+from sim.workcell.robot_model import check_installed
+from sim.world import WorldSetup
+from tasks.plugins import load_plugins
+
+
+class WorkcellAdapter:
+    """Makes workcells; PyBullet blocks its whole process and may crash it."""
+
+    own_process = True
+    lays_out_anything = False
+
+    def check_available(self) -> None:
+        """Raise `WorldUnavailableError` where PyBullet or the robot's description is missing."""
+        check_installed()
+
+    def create_agent(self, setup: WorldSetup) -> SimulatedAgent:
+        """Build the world and the robot in it.
+
+        Raises `WorldUnavailableError`, and `ValueError` for options or a snapshot that do not fit.
+        """
+        check_installed()
+        # Only here, so that the world can be listed where the physics engine is not installed.
+        from sim.workcell.colors import learn_colors
+        from sim.workcell.world import WorkcellWorld
+
+        options = read_options(setup.options)
+        world = WorkcellWorld(setup.scene, setup.seed, options)
+        robot = Robot(
+            setup.robot,
+            world.body,
+            learn_colors(setup.scene, options.camera_noise),
+            Catalogue.from_scene(setup.scene),
+            load_plugins("mend.behaviors"),
+            load_plugins("mend.monitors"),
+        )
+        return SimulatedAgent(
+            robot,
+            world,
+            speed=setup.speed,
+            interventions=setup.interventions,
+            snapshot=setup.snapshot,
+        )
+
+
+adapter = WorkcellAdapter()

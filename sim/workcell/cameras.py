@@ -1,0 +1,78 @@
+"""The PR2's head camera (RGB-D) and forearm camera (RGB)."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from robots.body import CameraImage, Matrix4
+from sim.workcell.lighting import Lighting
+from sim.workcell.rendering import Renderer, Rendering, View
+from sim.workcell.robot_model import FOREARM_FOV_RAD, HEAD_FOV_RAD
+
+HEAD_SIZE = (320, 240)
+FOREARM_SIZE = (160, 120)
+
+
+@dataclass(frozen=True, slots=True)
+class Optics:
+    """What does not change about a camera."""
+
+    size: tuple[int, int]
+    focal_px: float
+    near_m: float
+    period_s: float
+    has_depth: bool
+
+
+def head_optics() -> Optics:
+    """The head's wide stereo camera; it takes pictures when asked."""
+    focal_px = HEAD_SIZE[1] / 2 / math.tan(HEAD_FOV_RAD / 2)
+    return Optics(HEAD_SIZE, focal_px, near_m=0.1, period_s=0.1, has_depth=True)
+
+
+def forearm_optics(period_s: float) -> Optics:
+    """The camera on the forearm that looks at the gripper."""
+    focal_px = FOREARM_SIZE[0] / 2 / math.tan(FOREARM_FOV_RAD / 2)
+    return Optics(FOREARM_SIZE, focal_px, near_m=0.02, period_s=period_s, has_depth=False)
+
+
+class WorkcellCamera:
+    """One camera: renders from where it is now, in the world's light."""
+
+    def __init__(
+        self,
+        optics: Optics,
+        renderer: Renderer,
+        lighting: Lighting,
+        pose: Callable[[], Matrix4],
+        time_s: Callable[[], float],
+    ) -> None:
+        self._optics = optics
+        self._renderer = renderer
+        self._lighting = lighting
+        self._pose = pose
+        self._time_s = time_s
+
+    @property
+    def period_s(self) -> float:
+        return self._optics.period_s
+
+    def capture(self) -> CameraImage:
+        """Take a picture now."""
+        image, _ = self.capture_with_bodies()
+        return image
+
+    def capture_with_bodies(self) -> tuple[CameraImage, Rendering]:
+        """A picture and what it was rendered to, for training and for tests to judge by."""
+        optics = self._optics
+        view = View(self._pose(), optics.size, optics.focal_px, optics.near_m)
+        rendering = self._renderer.render(view, self._lighting.light)
+        image = CameraImage(
+            bgr=self._lighting.expose(rendering.bgr),
+            depth_m=rendering.depth_m if optics.has_depth else None,
+            pose=view.pose,
+            focal_px=optics.focal_px,
+            center_px=view.center_px,
+            time=self._time_s(),
+        )
+        return image, rendering

@@ -1,0 +1,63 @@
+"""What a person holds in the arm's way, and where it meets the arm but no part."""
+
+from collections.abc import Iterable, Iterator
+
+import numpy as np
+
+from robots.motion.curve import JointCurve
+from robots.motion.kinematics import KinematicChain
+from sim.workcell.physics import Client, Point
+
+_HALF_M = (0.05, 0.05, 0.20)
+_COLOR = (0.25, 0.27, 0.30, 1.0)
+_AWAY: Point = (-3.0, -2.0, 1.0)
+_UPRIGHT = (0.0, 0.0, 0.0, 1.0)
+
+_ABOVE_TOOL_M = 0.045
+"""Higher than what hangs between the fingers reaches, low enough to meet the fingers."""
+
+_CLEAR_M = 0.02
+_SAMPLES = 40
+
+
+class Obstacle:
+    """A box that a person holds still in the air, or has taken away."""
+
+    def __init__(self, client: Client) -> None:
+        self._client = client
+        self.center: Point | None = None
+        self._body_id: int = client.createMultiBody(
+            0.0,
+            client.createCollisionShape(client.GEOM_BOX, halfExtents=_HALF_M),
+            client.createVisualShape(client.GEOM_BOX, halfExtents=_HALF_M, rgbaColor=_COLOR),
+            _AWAY,
+        )
+
+    def stand_at(self, center: Point) -> None:
+        """Be in the air around a point."""
+        self.center = center
+        self._client.resetBasePositionAndOrientation(self._body_id, center, _UPRIGHT)
+
+    def withdraw(self) -> None:
+        """Be out of the way."""
+        self.center = None
+        self._client.resetBasePositionAndOrientation(self._body_id, _AWAY, _UPRIGHT)
+
+    def is_clear_of(self, bodies: Iterable[int]) -> bool:
+        """Whether there is room between it and every one of some bodies."""
+        return not any(
+            self._client.getClosestPoints(self._body_id, body, _CLEAR_M) for body in bodies
+        )
+
+
+def center_above(x: float, y: float, tool_z: float) -> Point:
+    """The middle of an obstacle that a tool at this point of its way would run into."""
+    return x, y, tool_z + _ABOVE_TOOL_M + _HALF_M[2]
+
+
+def centers_ahead(tool: KinematicChain, ways: Iterable[JointCurve]) -> Iterator[Point]:
+    """Where an obstacle would be met on the way, the nearest first."""
+    for way in ways:
+        for parameter in np.linspace(0.0, way.length, _SAMPLES):
+            x, y, z = tool.pose(way.at(float(parameter)))[:3, 3]
+            yield center_above(float(x), float(y), float(z))
