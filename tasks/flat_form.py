@@ -20,8 +20,9 @@ _GOALS = {0: "then", 1: "or", 2: "and"}
 _ROOT = 4
 _LEAVES = (3, 5, 6, 7)
 _NODE_KEYS = ("mask", "parent", "children", "peers")
-_LEAF_KEYS = ("object", "place", "needs_help", "loc_obj", "off_x", "off_y", "off_z")
-"""The last four say where the published systems place an object; a scene's places do that here."""
+IGNORED_KEYS = ("loc_obj", "off_x", "off_y", "off_z")
+"""Where the published systems put an object; here the scene's places say so."""
+_LEAF_KEYS = ("object", "place", "needs_help", *IGNORED_KEYS)
 
 
 @dataclass(frozen=True, slots=True)
@@ -197,14 +198,18 @@ def _check_child_count(
 
 def _check_agreement(nodes: dict[str, _FlatNode], problems: list[Problem]) -> None:
     """Each child must name the parent that names it, and the other way round."""
-    children = {name: frozenset(node.children) for name, node in nodes.items()}
+    named = {child for node in nodes.values() for child in node.children}
     for node in nodes.values():
         for child in node.children:
-            if child in nodes and nodes[child].parent not in (node.name, ""):
-                came = nodes[child].parent or _NONE
-                message = f"node '{node.name}' has child '{child}', whose parent is '{came}'"
-                problems.append(Problem(node.source.line_of("children"), None, message))
-        if node.parent in nodes and node.name not in children[node.parent]:
+            # A parent that does not exist is a mistake of its own, told already.
+            parent = nodes[child].parent if child in nodes else node.name
+            if parent != node.name and (parent is None or parent in nodes):
+                message = f"node '{node.name}' has child '{child}', whose parent is "
+                came = Problem(
+                    node.source.line_of("children"), None, f"{message}'{parent or _NONE}'"
+                )
+                problems.append(came)
+        if node.parent in nodes and node.name not in named:
             message = (
                 f"node '{node.name}' has parent '{node.parent}', which does not name it a child"
             )
