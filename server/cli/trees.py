@@ -3,7 +3,7 @@
 from server.cli.failures import told_plainly
 from server.cli.output import print_rows
 from server.library import behavior_parameters
-from tasks.definition import NodeKind, TaskTreeDefinition
+from tasks.definition import BehaviorNode, TaskTreeDefinition
 from tasks.library import TREES
 from tasks.task_file import check_built_in_task
 
@@ -17,5 +17,5 @@ def trees() -> None:
 
 
 def _row(task: TaskTreeDefinition) -> tuple[str, ...]:
-    leaves = sum(node.kind == NodeKind.BEHAVIOR for node in task.nodes)
+    leaves = sum(isinstance(node, BehaviorNode) for node in task.nodes)
     return task.name, str(leaves), task.scene or "any", " ".join(task.description.split())
