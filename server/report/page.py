@@ -75,7 +75,7 @@ def _verdict(record: RunRecord) -> str:
         case ev.RunFinished(missing=missing):
             parts = [f"{each.object} at {each.place}" for each in missing[:MAX_MISSING]]
             if (more := len(missing) - len(parts)) > 0:
-                parts.append(f"{more} more")
+                parts.append(f"and {more} more")
             return f"The task is done, but the last look did not find {', '.join(parts)}."
         case ev.RunFailed(reason=reason):
             return f"The run failed: {reason}."
