@@ -18,7 +18,7 @@ from server.cli.tree_argument import TreeArgument, read_tree_argument
 from server.runtime.requests import RunRequest
 from server.settings import Settings, load_settings
 from tasks.scenario import Person
-from tasks.scenario_file import load_scenario
+from tasks.scenario_file import built_in_scenario
 
 
 def run(
@@ -119,7 +119,7 @@ def _answers(text: str | None, scenario: str | None) -> Answers | None:
     """The scripted answers of the command line, else of the scenario, else None."""
     if text is not None:
         return read_answers(text)
-    return list(load_scenario(scenario).answers) or None if scenario is not None else None
+    return list(built_in_scenario(scenario).answers) or None if scenario is not None else None
 
 
 def _read_speed(text: str) -> Any:

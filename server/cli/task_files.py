@@ -1,6 +1,5 @@
 """The files that commands take: read, or every mistake as `file:line: sentence`."""
 
-from collections.abc import Sequence
 from pathlib import Path
 
 from server.cli.failures import CommandLineError
@@ -8,7 +7,7 @@ from server.library import behavior_parameters
 from tasks.library import NotInLibraryError
 from tasks.problem import InvalidFileError
 from tasks.scenario import Scenario
-from tasks.scenario_file import ScenarioFileError, read_scenario, scene_problems
+from tasks.scenario_file import check_scenario_file, scene_problems
 from tasks.scene import Scene
 from tasks.scene_file import check_scene_file
 from tasks.task_file import CheckedTask, check_built_in_task, check_task_file
@@ -53,10 +52,10 @@ def scene_mistakes(path: Path) -> list[str]:
 def scenario_mistakes(path: Path) -> list[str]:
     """Every mistake of a scenario file, also what the scene of its tree does not have."""
     try:
-        scenario = read_scenario(path)
-    except ScenarioFileError as error:
-        return _located(path, error.problems)
-    return _located(path, _tree_problems(scenario))
+        scenario = check_scenario_file(path)
+    except InvalidFileError as error:
+        return str(error).splitlines()
+    return [f"{path}: {each}" for each in _tree_problems(scenario)]
 
 
 def _tree_problems(scenario: Scenario) -> list[str]:
@@ -66,14 +65,3 @@ def _tree_problems(scenario: Scenario) -> list[str]:
     except NotInLibraryError as error:
         return [f"tree: {error}"]
     return scene_problems(scenario, task.scene) if task.scene else []
-
-
-def _located(path: Path, problems: Sequence[str]) -> list[str]:
-    """Problems that begin with `line N: ` as compilers put them: `file:N: sentence`."""
-    return [f"{path}:{_without_word(each)}" for each in problems]
-
-
-def _without_word(problem: str) -> str:
-    line, colon, sentence = problem.partition(": ")
-    numbered = bool(colon) and line.startswith("line ") and line[5:].isdigit()
-    return f"{line[5:]}: {sentence}" if numbered else f" {problem}"

@@ -63,10 +63,6 @@ class TabletopAdapter:
             snapshot=setup.snapshot,
         )
 
-    def train_colors(self, scene: Scene) -> ColorModel:
-        """Learn the colours of a scene's objects from rendered pictures of them."""
-        return learn_colors(scene, TabletopOptions())
-
 
 def _read_options(options: dict[str, Any]) -> TabletopOptions:
     try:

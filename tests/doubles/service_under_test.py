@@ -1,6 +1,5 @@
 """The whole service around a fake runtime, in this process or behind real sockets."""
 
-import asyncio
 import contextlib
 from collections.abc import AsyncIterator
 from dataclasses import dataclass
@@ -11,7 +10,7 @@ import uvicorn
 from fake_runs import TREES, FakeRuns, FakeScenarios, check_tree
 from fastapi import FastAPI
 
-from server.app import create_app, serve_config
+from server.app import bind, create_app, serve_config
 from server.journal.sqlite import SqliteJournal
 from server.settings import Settings
 from server.trees import JournaledTrees
@@ -55,16 +54,13 @@ async def serving(**settings: Any) -> AsyncIterator[ServiceUnderTest]:
     service = build(**settings)
     server = uvicorn.Server(serve_config(service.app, service.settings))
     server.config.log_level = None
-    socket = server.config.bind_socket()
+    socket = bind(server.config)
     service.url = f"http://127.0.0.1:{socket.getsockname()[1]}"
     server.config.load()
     server.lifespan = server.config.lifespan_class(server.config)
     await server.startup(sockets=[socket])
-    main = asyncio.create_task(server.main_loop())
     try:
         yield service
     finally:
-        server.should_exit = True
-        await main
         await server.shutdown(sockets=[socket])
         service.journal.close()
