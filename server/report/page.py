@@ -20,6 +20,9 @@ from server.transcript import SPOKEN, Line, Transcript, grouped
 MAX_CANDIDATES = 8
 """Of each choice, so many candidates are shown."""
 
+MAX_MISSING = 5
+"""Of the parts that the last look did not find, the verdict names so many."""
+
 
 def write_report(path: Path, events: Sequence[ev.Event], pictures: Mapping[UUID, bytes]) -> None:
     """Write the report of one run, all of whose events are given, to a file.
@@ -70,8 +73,10 @@ def _verdict(record: RunRecord) -> str:
         case ev.RunFinished(missing=[]):
             return "The task is done, and the last look found every part at its place."
         case ev.RunFinished(missing=missing):
-            parts = ", ".join(f"{each.object} at {each.place}" for each in missing)
-            return f"The task is done, but the last look did not find {parts}."
+            parts = [f"{each.object} at {each.place}" for each in missing[:MAX_MISSING]]
+            if (more := len(missing) - len(parts)) > 0:
+                parts.append(f"and {more} more")
+            return f"The task is done, but the last look did not find {', '.join(parts)}."
         case ev.RunFailed(reason=reason):
             return f"The run failed: {reason}."
         case ev.RunAborted(reason=reason):

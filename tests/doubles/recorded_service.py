@@ -89,6 +89,11 @@ class RecordedService:
     requests: list[RunRequest] = field(default_factory=list)
     trees: dict[str, str] = field(default_factory=dict)
 
+    async def save(self, name: str | None, text: str) -> None:
+        """Keep a task file, as the service's library of trees does."""
+        assert name is not None
+        self.trees[name] = text
+
     @asynccontextmanager
     async def open(self, settings: Settings, *, recover: bool = True) -> AsyncIterator[Any]:
         assert not recover, "a run of its own takes up no other run"
@@ -96,9 +101,6 @@ class RecordedService:
         journal = SqliteJournal(settings.journal_path)
         runs = RecordedRuns(journal, self.events, self.stops, self.started, self.requests)
         try:
-            yield SimpleNamespace(
-                runtime=runs, journal=journal, url="http://127.0.0.1:1", settings=settings
-            )
-            self.trees = await journal.trees()
+            yield SimpleNamespace(runtime=runs, journal=journal, trees=self, settings=settings)
         finally:
             journal.close()
