@@ -16,7 +16,7 @@ from server.app import create_app, drop_stuck_clients, serve_config
 from server.dialogues.escalation import EscalationPolicy
 from server.dialogues.mail import Mailer
 from server.journal.sqlite import SqliteJournal
-from server.library import BuiltInScenarios, TaskLibrary, check_task_text
+from server.library import BuiltInScenarios, TaskLibrary, built_in_trees, check_uploaded_tree
 from server.robots.endpoint import ROBOT_PATH, add_robot_route
 from server.robots.process import launch
 from server.robots.registry import RobotRegistry
@@ -27,7 +27,6 @@ from server.runtime.runtime import Runtime
 from server.runtime.worlds import SimulatedWorlds
 from server.settings import Settings
 from server.trees import JournaledTrees
-from tasks.library import tree_texts
 from tasks.plugins import load_plugins
 
 
@@ -70,7 +69,7 @@ async def _open(
     )
     config_socket = _bind(settings)
     url = f"http://{_reachable(settings.host)}:{config_socket.getsockname()[1]}"
-    trees = JournaledTrees(journal, tree_texts(), check_task_text)
+    trees = JournaledTrees(journal, built_in_trees(), check_uploaded_tree)
     scenarios = BuiltInScenarios()
     worlds = SimulatedWorlds(
         load_plugins("mend.worlds"),

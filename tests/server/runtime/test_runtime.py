@@ -158,7 +158,7 @@ async def open_question(service: PretendService, **fields: Any) -> DialogueView:
 
 async def first_open_dialogue(service: PretendService) -> DialogueView:
     async with asyncio.timeout(10):
-        while not (waiting := service.runtime.dialogues("open")):
+        while not (waiting := service.runtime.dialogues("open")):  # noqa: ASYNC110
             await asyncio.sleep(0)
     return waiting[0]
 
