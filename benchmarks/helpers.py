@@ -29,7 +29,7 @@ from websockets.asyncio.client import connect
 from server.api import helper_socket
 from server.api.access import Access
 from server.api.parts import Parts
-from server.app import bind, serve_config
+from server.app import drop_stuck_clients, serve_config
 from server.journal.events import RunFailed
 from server.journal.journal import Entry
 from server.journal.sqlite import SqliteJournal
@@ -103,7 +103,8 @@ async def serving(app: FastAPI) -> AsyncIterator[int]:
     """Serve an application on a free port."""
     config = serve_config(app, Settings(port=0, log_level="error"))
     server = uvicorn.Server(config)
-    socket = bind(config)
+    socket = config.bind_socket()
+    drop_stuck_clients(socket)
     socket.setsockopt(sockets.SOL_SOCKET, sockets.SO_SNDBUF, SEND_BUFFER_BYTES)
     config.load()
     server.lifespan = config.lifespan_class(config)

@@ -114,17 +114,15 @@ def serve_config(app: FastAPI, settings: Settings) -> uvicorn.Config:
     )
 
 
-def bind(config: uvicorn.Config) -> socket.socket:
-    """The socket to serve on: `uvicorn.Server(config).run([bind(config)])`.
+def drop_stuck_clients(listening: socket.socket) -> None:
+    """Let the kernel end connections whose client reads nothing for `STUCK_CLIENT_S`.
 
-    A client that is stopped, or hostile, keeps its connection but reads nothing. Closing such a
-    connection waits until it is read, which is never, so the kernel has to end it.
+    A client that is stopped, or hostile, keeps its connection open. Closing such a connection
+    waits until everything was read, which is never.
     """
-    listening = config.bind_socket()
     if hasattr(socket, "TCP_USER_TIMEOUT"):
         timeout_ms = STUCK_CLIENT_S * 1000
         listening.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, timeout_ms)
-    return listening
 
 
 def _entered(

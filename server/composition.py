@@ -12,7 +12,7 @@ from functools import partial
 import uvicorn
 
 from dialogue.registry import load_scripts
-from server.app import create_app, serve_config
+from server.app import create_app, drop_stuck_clients, serve_config
 from server.dialogues.escalation import EscalationPolicy
 from server.dialogues.mail import Mailer
 from server.journal.sqlite import SqliteJournal
@@ -143,6 +143,7 @@ def _bind(settings: Settings) -> socket.socket:
     family = socket.AF_INET6 if ":" in settings.host else socket.AF_INET
     listening = socket.socket(family)
     listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    drop_stuck_clients(listening)
     try:
         listening.bind((settings.host, settings.port))
     except OSError as error:

@@ -10,7 +10,7 @@ import uvicorn
 from fake_runs import TREES, FakeRuns, FakeScenarios, check_tree
 from fastapi import FastAPI
 
-from server.app import bind, create_app, serve_config
+from server.app import create_app, serve_config
 from server.journal.sqlite import SqliteJournal
 from server.settings import Settings
 from server.trees import JournaledTrees
@@ -54,7 +54,7 @@ async def serving(**settings: Any) -> AsyncIterator[ServiceUnderTest]:
     service = build(**settings)
     server = uvicorn.Server(serve_config(service.app, service.settings))
     server.config.log_level = None
-    socket = bind(server.config)
+    socket = server.config.bind_socket()
     service.url = f"http://127.0.0.1:{socket.getsockname()[1]}"
     server.config.load()
     server.lifespan = server.config.lifespan_class(server.config)
