@@ -1,5 +1,6 @@
 """The application: every route, the gate before them, and how it is served."""
 
+import socket
 import time
 from collections.abc import AsyncIterator, Callable
 from contextlib import AbstractAsyncContextManager, asynccontextmanager
@@ -32,6 +33,22 @@ from server.trees import ScenarioLibrary, TreeLibrary
 MAX_SOCKET_MESSAGE_BYTES = 4 * 1024 * 1024
 """Robots send pictures; helpers get an `error` message for anything above 64 KiB."""
 
+ROUTES = (
+    session,
+    trees,
+    runs,
+    dialogues,
+    robots,
+    pictures,
+    health,
+    metrics,
+    helper_socket,
+    page,
+)
+
+STUCK_CLIENT_S = 30
+"""How long a connection may take nothing of what was sent to it before the kernel drops it."""
+
 Lifespan = Callable[[], AbstractAsyncContextManager[None]]
 
 DESCRIPTION = "Runs robots through task trees, and asks a person for help when they fail."
@@ -58,6 +75,14 @@ def create_app(
         allowed_origins=settings.allowed_origins,
         wall_time_s=wall_time_s,
     )
+    app = described_app(lifespan)
+    app.state.parts = Parts(service, journal, trees_library, scenarios, settings, access)
+    app.add_middleware(Gate, access=access)
+    return app
+
+
+def described_app(lifespan: Lifespan | None = None) -> FastAPI:
+    """The application with its routes, but nothing behind them; enough to describe it."""
     app = FastAPI(
         title="Mend",
         version=version("mend"),
@@ -66,13 +91,9 @@ def create_app(
         docs_url="/docs",
         redoc_url=None,
     )
-    app.state.parts = Parts(service, journal, trees_library, scenarios, settings, access)
-    for module in (
-        session, trees, runs, dialogues, robots, pictures, health, metrics, helper_socket, page,
-    ):  # fmt: skip
+    for module in ROUTES:
         app.include_router(module.router)
     answer_errors_with_problems(app)
-    app.add_middleware(Gate, access=access)
     _describe(app)
     return app
 
@@ -91,6 +112,17 @@ def serve_config(app: FastAPI, settings: Settings) -> uvicorn.Config:
         timeout_graceful_shutdown=5,
         server_header=False,
     )
+
+
+def drop_stuck_clients(listening: socket.socket) -> None:
+    """Let the kernel end connections whose client reads nothing for `STUCK_CLIENT_S`.
+
+    A client that is stopped, or hostile, keeps its connection open. Closing such a connection
+    waits until everything was read, which is never.
+    """
+    if hasattr(socket, "TCP_USER_TIMEOUT"):
+        timeout_ms = STUCK_CLIENT_S * 1000
+        listening.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, timeout_ms)
 
 
 def _entered(

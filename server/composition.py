@@ -12,11 +12,11 @@ from functools import partial
 import uvicorn
 
 from dialogue.registry import load_scripts
-from server.app import create_app, serve_config
+from server.app import create_app, drop_stuck_clients, serve_config
 from server.dialogues.escalation import EscalationPolicy
 from server.dialogues.mail import Mailer
 from server.journal.sqlite import SqliteJournal
-from server.library import BuiltInScenarios, TaskLibrary, check_task_text
+from server.library import BuiltInScenarios, TaskLibrary, built_in_trees, check_uploaded_tree
 from server.robots.endpoint import ROBOT_PATH, add_robot_route
 from server.robots.process import launch
 from server.robots.registry import RobotRegistry
@@ -27,8 +27,8 @@ from server.runtime.runtime import Runtime
 from server.runtime.worlds import SimulatedWorlds
 from server.settings import Settings
 from server.trees import JournaledTrees
-from tasks.library import tree_texts
 from tasks.plugins import load_plugins
+
 
 @dataclass(frozen=True, slots=True)
 class Service:
@@ -43,9 +43,7 @@ class Service:
 
 
 @asynccontextmanager
-async def open_service(
-    settings: Settings, *, recover: bool = True
-) -> AsyncIterator[Service]:
+async def open_service(settings: Settings, *, recover: bool = True) -> AsyncIterator[Service]:
     """Start a service, take up the runs that had not ended, and stop it at the end.
 
     Raises `JournalLockedError` when another process has the journal, `OSError` when it cannot
@@ -71,7 +69,7 @@ async def _open(
     )
     config_socket = _bind(settings)
     url = f"http://{_reachable(settings.host)}:{config_socket.getsockname()[1]}"
-    trees = JournaledTrees(journal, tree_texts(), check_task_text)
+    trees = JournaledTrees(journal, built_in_trees(), check_uploaded_tree)
     scenarios = BuiltInScenarios()
     worlds = SimulatedWorlds(
         load_plugins("mend.worlds"),
@@ -104,9 +102,7 @@ async def _open(
         monotonic=time.monotonic,
         utc_now=lambda: datetime.now(UTC),
     )
-    app = create_app(
-        runtime, journal, settings, trees_library=trees, scenarios=scenarios
-    )
+    app = create_app(runtime, journal, settings, trees_library=trees, scenarios=scenarios)
     add_robot_route(app, registry, token)
     server = _Server(serve_config(app, settings))
     serving = asyncio.create_task(server.serve(sockets=[config_socket]), name="server")
@@ -147,6 +143,7 @@ def _bind(settings: Settings) -> socket.socket:
     family = socket.AF_INET6 if ":" in settings.host else socket.AF_INET
     listening = socket.socket(family)
     listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    drop_stuck_clients(listening)
     try:
         listening.bind((settings.host, settings.port))
     except OSError as error:
@@ -159,7 +156,7 @@ def _bind(settings: Settings) -> socket.socket:
 
 def _reachable(host: str) -> str:
     """The host under which this machine reaches its own service."""
-    if host in ("0.0.0.0", ""):  # noqa: S104 - compared, not bound
+    if host in ("0.0.0.0", ""):
         return "127.0.0.1"
     if host == "::":
         return "[::1]"

@@ -1,14 +1,22 @@
 """Task trees and scenarios as the runtime takes them: checked, with their scenes."""
 
+from pydantic import BaseModel
+
 from server.errors import InvalidError, NotFoundError
 from server.runtime.runtime import LoadedTree
 from server.trees import CheckedTree, TreeLibrary
 from tasks.definition import TaskTreeDefinition
-from tasks.library import load_scene
+from tasks.library import SCENARIOS, TREES, NotInLibraryError
 from tasks.plugins import load_plugins
 from tasks.scenario import Scenario
-from tasks.scenario_file import ScenarioFileError, load_scenario, scenario_names
-from tasks.task_file import TaskFileError, read_task_text
+from tasks.scenario_file import built_in_scenario
+from tasks.scene_file import built_in_scene
+from tasks.task_file import TaskFileError, check_task_text
+
+
+def built_in_trees() -> dict[str, str]:
+    """The text of every task file of the library, by name."""
+    return {name: TREES.read(name) for name in TREES.names()}
 
 
 class TaskLibrary:
@@ -21,7 +29,7 @@ class TaskLibrary:
         """A tree and the scene that it names. Raises `NotFoundError` or `InvalidError`."""
         view = await self._trees.tree(name)
         definition = TaskTreeDefinition.model_validate(view.definition)
-        scene = load_scene(definition.scene) if definition.scene else None
+        scene = built_in_scene(definition.scene) if definition.scene else None
         return LoadedTree(name, definition, scene)
 
 
@@ -29,26 +37,27 @@ class BuiltInScenarios:
     """The scenarios that come with Mend."""
 
     def scenarios(self) -> list[Scenario]:
-        return [load_scenario(name) for name in scenario_names()]
+        return [built_in_scenario(name) for name in SCENARIOS.names()]
 
     def load(self, name: str) -> Scenario:
         """One scenario. Raises `NotFoundError`."""
         try:
-            return load_scenario(name)
-        except ScenarioFileError as error:
-            raise NotFoundError(error.problems[0]) from error
+            return built_in_scenario(name)
+        except NotInLibraryError as error:
+            raise NotFoundError(str(error)) from error
 
 
-def behavior_parameters() -> dict[str, type]:
+def behavior_parameters() -> dict[str, type[BaseModel]]:
     """The parameter model of every behavior, by name."""
     return {name: each.parameters for name, each in load_plugins("mend.behaviors").items()}
 
 
-def check_task_text(text: str) -> CheckedTree:
+def check_uploaded_tree(text: str) -> CheckedTree:
     """Read a task file. Raises `InvalidError` with one sentence per mistake."""
     try:
-        definition = read_task_text(text, behavior_parameters())
+        definition = check_task_text(text, behavior_parameters()).definition
     except TaskFileError as error:
-        problems = [str(each) for each in error.problems]
-        raise InvalidError(f"the task file has {len(problems)} mistakes", problems) from error
+        problems = [each.describe("line") for each in error.problems]
+        count = "a mistake" if len(problems) == 1 else f"{len(problems)} mistakes"
+        raise InvalidError(f"the task file has {count}", problems) from error
     return CheckedTree(name=definition.name, definition=definition.to_json())

@@ -1,10 +1,11 @@
 """A world: stands in for hardware and the people around it; workcell and tabletop are two."""
 
 from collections.abc import Iterable
-from typing import Any, Protocol
+from typing import Any, Protocol, runtime_checkable
 
 from robots.agent import AgentCore
 from robots.body import Body
+from robots.vision.color_model import ColorModel
 from tasks.intervention import Intervention
 from tasks.scenario import ScriptedIntervention
 from tasks.scene import Scene, StrictModel
@@ -87,4 +88,16 @@ class WorldAdapter(Protocol):
 
     def create_agent(self, setup: WorldSetup) -> AgentCore:
         """Build the world and the robot in it."""
+        ...
+
+
+@runtime_checkable
+class ColorTeacher(WorldAdapter, Protocol):
+    """A kind of world whose pictures a colour model can be trained from."""
+
+    def train_colors(self, scene: Scene) -> ColorModel:
+        """Learn the colours of a scene's objects from rendered pictures of them.
+
+        Raises `ColorModelError` for an object without a colour of its own.
+        """
         ...

@@ -77,14 +77,13 @@ class HelperSocket:
         seq = await self._send_snapshot()
         sending = asyncio.create_task(self._send_events(seq))
         receiving = asyncio.create_task(self._receive_messages())
-        done, pending = await asyncio.wait(
-            (sending, receiving), return_when=asyncio.FIRST_COMPLETED
-        )
-        for task in pending:
-            task.cancel()
-        await asyncio.gather(*pending, return_exceptions=True)
-        for task in done:
-            task.result()
+        await asyncio.wait((sending, receiving), return_when=asyncio.FIRST_COMPLETED)
+        sending.cancel()
+        receiving.cancel()
+        ended = await asyncio.gather(sending, receiving, return_exceptions=True)
+        for outcome in ended:
+            if isinstance(outcome, Exception):
+                raise outcome
 
     # --- to the helper ------------------------------------------------------------------------
 

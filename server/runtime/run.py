@@ -24,6 +24,7 @@ from robots.link.messages import (
     Rejected,
     Report,
     Resumed,
+    StepStarted,
 )
 from server.errors import ConflictError
 from server.journal import events as ev
@@ -271,8 +272,9 @@ class Run:
 
     async def _reported(self, side: RobotSide, report: Report, receipt: Receipt) -> None:
         self._context.clock.observe(report.time)
-        side.restarts = 0
         body = report.body
+        if isinstance(body, StepStarted):
+            side.restarts = 0
         events, pictures = self._reports.read(side, body)
         await self._context.commit(events, receipt=receipt, world=report.world, pictures=pictures)
         await self._after_report(side, body)

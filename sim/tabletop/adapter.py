@@ -7,10 +7,7 @@ from pydantic import ValidationError
 
 from robots.catalogue import Catalogue
 from robots.robot import Robot
-<<<<<<< HEAD
-=======
 from robots.vision.color_model import ColorModel
->>>>>>> tabletop
 from sim.simulated_agent import SimulatedAgent
 from sim.tabletop.colors import learn_colors
 from sim.tabletop.layout import lay_out

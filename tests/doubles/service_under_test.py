@@ -1,6 +1,5 @@
 """The whole service around a fake runtime, in this process or behind real sockets."""
 
-import asyncio
 import contextlib
 from collections.abc import AsyncIterator
 from dataclasses import dataclass
@@ -60,11 +59,8 @@ async def serving(**settings: Any) -> AsyncIterator[ServiceUnderTest]:
     server.config.load()
     server.lifespan = server.config.lifespan_class(server.config)
     await server.startup(sockets=[socket])
-    main = asyncio.create_task(server.main_loop())
     try:
         yield service
     finally:
-        server.should_exit = True
-        await main
         await server.shutdown(sockets=[socket])
         service.journal.close()

@@ -7,6 +7,8 @@ time, levels are exact fractions.
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from fractions import Fraction
+from itertools import pairwise
+from random import Random
 
 from hypothesis import strategies as st
 
@@ -112,12 +114,18 @@ def define(root: Node) -> TaskTreeDefinition:
     return TaskTreeDefinition(name="random", nodes=nodes)
 
 
-def nodes(max_leaves: int = 14) -> st.SearchStrategy[Node]:
-    """Random nested trees."""
-    return st.recursive(
-        st.builds(Node, st.just("leaf")),
-        lambda children: st.builds(
-            Node, st.sampled_from(["then", "and", "or"]), st.lists(children, min_size=1, max_size=4)
-        ),
-        max_leaves=max_leaves,
-    )
+def trees(max_leaves: int = 12) -> st.SearchStrategy[Node]:
+    """Random nested trees, evenly spread over sizes and nestings."""
+    sizes = st.integers(2, max_leaves)
+    return st.builds(random_tree, sizes, st.integers(0, 2**32 - 1).map(Random))
+
+
+def random_tree(leaves: int, random: Random) -> Node:
+    """A tree with so many leaves; now and then a goal node has a single child."""
+    if leaves == 1 and random.random() < 0.8:
+        return Node("leaf")
+    parts = 1 if random.random() < 0.1 else random.randint(1, min(leaves, 4))
+    cuts = sorted(random.sample(range(1, leaves), parts - 1))
+    sizes = [end - start for start, end in pairwise([0, *cuts, leaves])]
+    kind = random.choice(["then", "and", "or"])
+    return Node(kind, [random_tree(size, random) for size in sizes])

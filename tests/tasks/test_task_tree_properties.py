@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from full_evaluation import Node, define, nodes
+from full_evaluation import Node, define, trees
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, precondition, rule
@@ -17,7 +17,7 @@ from tasks.task_tree import IllegalTransitionError, TaskTree
 class TreeAgainstFullEvaluation(RuleBasedStateMachine):
     """Drives a task tree and a plain nested tree by the same steps."""
 
-    @initialize(root=nodes())
+    @initialize(root=trees())
     def begin(self, root: Node) -> None:
         self.root = root
         self.plain = list(root.walk())
@@ -202,13 +202,13 @@ class TreeAgainstFullEvaluation(RuleBasedStateMachine):
 
 TestTreeAgainstFullEvaluation = TreeAgainstFullEvaluation.TestCase
 TestTreeAgainstFullEvaluation.settings = settings(
-    max_examples=60, stateful_step_count=40, deadline=None
+    max_examples=150, stateful_step_count=50, deadline=None
 )
 
 
 @pytest.mark.slow
 @settings(max_examples=40, deadline=None)
-@given(root=nodes(max_leaves=60), random=st.randoms(use_true_random=False))
+@given(root=trees(max_leaves=60), random=st.randoms(use_true_random=False))
 def test_every_run_ends_done_or_with_nothing_left_to_give_up(root: Node, random: Any) -> None:
     tree = TaskTree(define(root))
     tree.running = True

@@ -15,6 +15,7 @@ TYPES = {
     "index.html": "text/html",
     "page.css": "text/css",
     "page.js": "text/javascript",
+    "transcript.js": "text/javascript",
     "icon.svg": "image/svg+xml",
 }
 

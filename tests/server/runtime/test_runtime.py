@@ -158,8 +158,8 @@ async def open_question(service: PretendService, **fields: Any) -> DialogueView:
 
 async def first_open_dialogue(service: PretendService) -> DialogueView:
     async with asyncio.timeout(10):
-        while not (waiting := service.runtime.dialogues("open")):
-            await asyncio.sleep(0)  # noqa: ASYNC110 - nothing announces a state
+        while not (waiting := service.runtime.dialogues("open")):  # noqa: ASYNC110
+            await asyncio.sleep(0)
     return waiting[0]
 
 
