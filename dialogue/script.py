@@ -4,8 +4,12 @@ A script is a table of states; `dialogue.conversation` walks it. Nothing here kn
 deadlines or a clock.
 """
 
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from enum import StrEnum
+from typing import Generic, TypeVar
+
+from pydantic import BaseModel
 
 from tasks.resolution import Resolution
 
@@ -68,3 +72,82 @@ class Close:
 
 
 Turn = Ask | Say | AwaitHelp | Close
+
+
+class Expectation(StrEnum):
+    """What a robot can see by itself that puts an issue right, with nobody having answered."""
+
+    AT_PLACE = "at_place"
+    """The object rests at its final place."""
+    IN_REACH = "in_reach"
+    """The object rests within the robot's reach."""
+    WAY_CLEAR = "way_clear"
+    """Nothing is in the arm's way."""
+
+
+@dataclass(frozen=True, slots=True)
+class AskState:
+    """Asks; `yes` and `no` name the states that follow.
+
+    Every text of a table may hold `{object}`, `{place}`, `{name}` (of the leaf) and `{robot}`.
+    """
+
+    text: str
+    yes: str
+    yes_effect: str
+    no: str
+    no_effect: str
+
+
+@dataclass(frozen=True, slots=True)
+class HelpState:
+    """Says what to do, watches for that help, and closes with `resolution` once it is seen.
+
+    While it is not seen, `not_seen` asks whether it still comes; `otherwise` names the state that
+    follows a no, and `otherwise_effect` says what that will do.
+    """
+
+    text: str
+    help: Help
+    resolution: Resolution
+    thanks: str
+    not_seen: str
+    otherwise: str
+    otherwise_effect: str
+
+
+@dataclass(frozen=True, slots=True)
+class CloseState:
+    """Says a last word and closes. A `robot_retry` reached this way is a failed attempt."""
+
+    text: str
+    resolution: Resolution
+
+
+State = AskState | HelpState | CloseState
+
+
+@dataclass(frozen=True, slots=True)
+class Script:
+    """The table of one kind of issue.
+
+    `put_right` says what the robot may see happen before anyone answers, the most telling first,
+    and how the issue is then resolved. `reasks` is how often promised help that is not seen is
+    asked about again.
+    """
+
+    opening: str
+    states: Mapping[str, State]
+    put_right: Mapping[Expectation, Resolution] = field(default_factory=dict)
+    reasks: int = 2
+
+
+Parameters = TypeVar("Parameters", bound=BaseModel)
+
+
+@dataclass(frozen=True, slots=True)
+class ScriptWithParameters(Generic[Parameters]):
+    """A script that can be adjusted: the model of its parameters, and what makes the table."""
+
+    parameters: type[Parameters]
+    make: Callable[[Parameters], Script]

@@ -105,6 +105,7 @@ class Robot:
         self._emit: Emit | None = None
         self._emit_picture: EmitPicture | None = None
         self._activity: Routine[None] | None = None
+        self._decided: Routine[None] | None = None
         self._looking = False
         self._execution: Execution | None = None
         self._attempts: dict[str, int] = {}
@@ -170,26 +171,24 @@ class Robot:
         end_s = self.time_s() + duration_s
         self._reported = False
         while self._activity is not None and not self._reported:
-            if not self._go_on():
-                continue
-            if self.time_s() >= end_s - 1e-9:
+            if self._decided is not self._activity:
+                self._decide(self._activity)
+            elif self.time_s() < end_s - 1e-9:
+                self._body.advance_cycle()
+                self._decided = None
+            else:
                 break
-            self._body.advance_cycle()
         return self._activity is not None
 
-    def _go_on(self) -> bool:
-        """Let the activity decide on the next cycle; False if it needs none."""
-        activity = self._activity
-        if activity is None:
-            return False
+    def _decide(self, activity: Routine[None]) -> None:
+        """Let the activity decide, once, on what the next cycle is to do."""
         try:
             next(activity)
+            self._decided = activity
         except StopIteration:
             if self._activity is activity:
                 self._activity, self._looking = None, False
             self._take_waiting()
-            return False
-        return True
 
     def _take_waiting(self) -> None:
         waiting, self._waiting = self._waiting, []

@@ -37,6 +37,11 @@ class PendingInterventions:
         self._fired: set[int] = set()
         self._queued: list[Queued] = []
 
+    @property
+    def any_left(self) -> bool:
+        """Whether anything is still to come."""
+        return bool(self._queued) or len(self._fired) < len(self._scripted)
+
     def queue(self, command: Intervene, at_s: float) -> None:
         """Let somebody do something when the clock reaches `at_s`."""
         self._queued.append(Queued(do=command.intervention, by=command.by, at_s=at_s))

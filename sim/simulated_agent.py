@@ -117,11 +117,11 @@ class SimulatedAgent:
 
     def snapshot(self) -> dict[str, Any]:
         """The state from which an agent in the same scene can be rebuilt; JSON-compatible."""
-        return AgentSnapshot(
-            world=self._world.snapshot(),
-            attempts=dict(self._attempts),
-            pending=self._pending.snapshot(),
-        ).model_dump(mode="json")
+        return {
+            "world": self._world.snapshot(),
+            "attempts": dict(self._attempts),
+            "pending": self._pending.snapshot().model_dump(mode="json"),
+        }
 
     # --- Commands -----------------------------------------------------------------------------
 
@@ -140,6 +140,7 @@ class SimulatedAgent:
                 if isinstance(body, Look):
                     self._look = body
                 self._robot.handle(command_id, body)
+                self._note_progress()
 
     def _intervene_when_due(self, command: Intervene) -> None:
         if command.at is None or command.at <= self.time_s():
@@ -154,7 +155,7 @@ class SimulatedAgent:
         end_s = self.time_s() + duration_s
         self._reported = False
         while not self._reported and not self._shut_down:
-            self._let_people_act(self._robot.task_progress)
+            self._let_people_act()
             if self._end_hold():
                 break
             if not self._busy or self.time_s() >= end_s - _EPSILON_S:
@@ -183,15 +184,23 @@ class SimulatedAgent:
 
     # --- People -------------------------------------------------------------------------------
 
-    def _let_people_act(self, progress: TaskProgress | None) -> None:
+    def _let_people_act(self) -> None:
         """Let people do what is due at this moment."""
-        if progress is not None and progress.object is not None:
+        if self._pending.any_left:
+            self._do_due(self._note_progress())
+
+    def _note_progress(self) -> TaskProgress | None:
+        """How far the task is, with all attempts counted; None if no behavior is under way."""
+        progress = self._robot.task_progress
+        if progress is None:
+            return None
+        if progress.object is not None:
             # The robot's own count begins anew when its process is started again.
             attempt = progress.attempt + self._earlier_attempts.get(progress.object, 0)
             self._attempts[progress.object] = attempt
             progress = replace(progress, attempt=attempt)
         self._progress = progress
-        self._do_due(progress)
+        return progress
 
     def _do_due(self, progress: TaskProgress | None) -> None:
         for intervention, by in self._pending.take_due(self.time_s(), progress):
@@ -205,11 +214,12 @@ class SimulatedAgent:
     # --- Reports ------------------------------------------------------------------------------
 
     def _pass_on(self, body: ReportBody, time_s: float, _: dict[str, Any] | None) -> None:
+        self._note_progress()
         if isinstance(body, _SEEN_AT_ONCE):
             self._reported = True
         if isinstance(body, Looked):
             self._look = None
-        if isinstance(body, Finished) and self._progress is not None:
+        if isinstance(body, Finished) and not body.found_in_place and self._progress is not None:
             # The last moments of the last step are over before anybody can ask for them.
             self._do_due(replace(self._progress, step=_LAST_STEP, fraction=1.0))
         if self._emit is not None:

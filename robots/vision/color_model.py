@@ -145,8 +145,8 @@ class ColorModel:
     def load(cls, path: Path) -> "ColorModel":
         """Read a model that `save` wrote. Raises `ColorModelError` saying what is wrong."""
         try:
-            with np.load(path, allow_pickle=False) as file:
-                return cls._from_arrays(path, dict(file))
+            with path.open("rb") as file, np.load(file, allow_pickle=False) as arrays:
+                return cls._from_arrays(path, dict(arrays))
         except FileNotFoundError as error:
             raise ColorModelError(f"there is no colour model at '{path}'") from error
         except (
@@ -194,7 +194,7 @@ def _learn(name: str, samples: Sequence[Sample], settings: ColorSettings) -> His
             raise ColorModelError(
                 f"a mask of '{name}' is {sample.mask.shape}, its picture {sample.bgr.shape[:2]}"
             )
-        # A blurred picture mixes an object's rim with what is behind it.
+        # Masks and rims are a pixel off now and then.
         inside = cv2.erode(np.where(sample.mask > 0, 255, 0).astype(np.uint8), _KERNEL)
         for gain in settings.gains:
             noise = rng.normal(0.0, settings.noise, sample.bgr.shape)
@@ -211,8 +211,11 @@ def _learn(name: str, samples: Sequence[Sample], settings: ColorSettings) -> His
 
 
 def _hue_saturation_value(bgr: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    """OpenCV's HSV of a slightly blurred picture: noise turns the hue of dark colours."""
-    return np.asarray(cv2.cvtColor(cv2.GaussianBlur(bgr, (3, 3), 0), cv2.COLOR_BGR2HSV), np.uint8)
+    """OpenCV's HSV without single stray pixels: noise turns the hue of dark colours.
+
+    A median keeps rims sharp; a blur would mix them into the colours of other objects.
+    """
+    return np.asarray(cv2.cvtColor(cv2.medianBlur(bgr, 3), cv2.COLOR_BGR2HSV), np.uint8)
 
 
 def _blur(histogram: Histogram) -> Histogram:

@@ -61,8 +61,10 @@ def find_obstruction(
     known = cv2.dilate(segmentation.of_any(), np.ones((5, 5), np.uint8))
     vs, us = np.nonzero(np.asarray(known) == 0)
     points = unproject(image, us, vs)
+    # Most of a picture is table and floor: only what stands out is compared with the way.
     high = points[:, 2] > table_z + clearance.above_table_m
-    inside = high & _near(points, way, clearance.radius_m)
+    us, vs, points = us[high], vs[high], points[high]
+    inside = _near(points, way, clearance.radius_m)
     if arm:
         inside &= ~_near(points, arm, clearance.arm_radius_m)
     canvas = np.zeros(image.bgr.shape[:2], np.uint8)

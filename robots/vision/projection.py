@@ -20,10 +20,13 @@ def unproject(image: CameraImage, us: NDArray[np.intp], vs: NDArray[np.intp]) ->
         raise ValueError("expected a picture with depth, got one without")
     depth = image.depth_m[vs, us].astype(np.float64)
     cx, cy = image.center_px
-    optical = np.stack(
-        [(us - cx) / image.focal_px * depth, (vs - cy) / image.focal_px * depth, depth], axis=1
-    )
-    points: Points = optical @ image.pose[:3, :3].T + image.pose[:3, 3]
+    right = (us - cx) * (depth / image.focal_px)
+    down = (vs - cy) * (depth / image.focal_px)
+    points = np.empty((len(depth), 3))
+    # Not a matrix product: for so thin a matrix BLAS would wake all its threads for nothing.
+    for axis in range(3):
+        x, y, z, origin = image.pose[axis]
+        points[:, axis] = x * right + y * down + z * depth + origin
     return points
 
 

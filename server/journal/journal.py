@@ -6,6 +6,7 @@ from typing import Any, Protocol
 from uuid import UUID
 
 from server.journal.events import Event
+from server.journal.subscriptions import DEFAULT_CAPACITY, Record, Subscription
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,12 +45,21 @@ class Journal(Protocol):
 
         Published to subscribers in the order of `seq`, after the commit. Raises
         `JournalClosedError` after `close`, `DuplicateReceiptError` if the receipt is there already
-        (nothing of the entry is then committed).
+        (nothing of the entry is then committed), `JournalWriteError` if it could not be written.
+        A cancelled caller does not take its entry back.
         """
         ...
 
     async def read(self, after: int, limit: int, run: UUID | None = None) -> list[Event]:
         """Up to `limit` events with `seq` > `after`, in order; of one run if given."""
+        ...
+
+    async def read_records(self, after: int, limit: int, run: UUID | None = None) -> list[Record]:
+        """What `read` returns, as the JSON text of each event."""
+        ...
+
+    def subscribe(self, after: int, capacity: int = DEFAULT_CAPACITY) -> Subscription:
+        """Follow every event with `seq` > `after`; `capacity` may wait before it is cut off."""
         ...
 
     async def received(self, robot: str, boot: str) -> int:
@@ -79,6 +89,10 @@ class Journal(Protocol):
 
 class JournalClosedError(Exception):
     """The journal no longer takes entries."""
+
+
+class JournalWriteError(Exception):
+    """An entry could not be made durable; nothing of it was committed or published."""
 
 
 class DuplicateReceiptError(Exception):

@@ -7,6 +7,7 @@ from pydantic import ValidationError
 
 from robots.catalogue import Catalogue
 from robots.robot import Robot
+from robots.vision.color_model import ColorModel
 from sim.simulated_agent import SimulatedAgent
 from sim.tabletop.colors import learn_colors
 from sim.tabletop.layout import lay_out
@@ -31,6 +32,13 @@ class TabletopAdapter:
         Raises `LayoutError` for more than there is room and colours for.
         """
         return lay_out(names, seed)
+
+    def train_colors(self, scene: Scene) -> ColorModel:
+        """Learn the colours of a scene's objects from rendered pictures of them.
+
+        Raises `ColorModelError` for an object without a colour of its own.
+        """
+        return learn_colors(scene, TabletopOptions())
 
     def create_agent(self, setup: WorldSetup) -> SimulatedAgent:
         """Build the world and the robot in it.

@@ -2,17 +2,14 @@
 
 from typing import Literal
 
+from sim.tabletop.part import PartPose
 from tasks.scene import Metres, Name, StrictModel
 
+_DECIMALS = 6
+"""A micrometre is enough, and a snapshot is written at every step."""
 
-class RestSnapshot(StrictModel):
-    """Where a part last rested: its bottom centre in the base frame; or that it is gone."""
-
-    x: Metres
-    y: Metres
-    z: Metres
-    yaw: float
-    gone: bool
+RestPose = tuple[Metres, Metres, Metres, float]
+"""Where the bottom centre of a part rests (x, y, z in the base frame), and its yaw."""
 
 
 class HandOverSnapshot(StrictModel):
@@ -25,13 +22,25 @@ class HandOverSnapshot(StrictModel):
 class TabletopSnapshot(StrictModel):
     """The state of a tabletop world between two control cycles.
 
-    `held` is for readers of the journal: a rebuilt robot holds nothing. `blocker_at`: where
-    somebody stands in the way, in the plane.
+    `moved`: where those parts last rested that are not where they started. `gone`: those that
+    somebody took away. `held` is for readers of the journal: a rebuilt robot holds nothing.
+    `blocker_at`: where somebody stands in the way, in the plane.
     """
 
     version: Literal[1] = 1
     time_s: float
-    parts: dict[Name, RestSnapshot]
+    moved: dict[Name, RestPose]
+    gone: list[Name]
     held: Name | None
     blocker_at: tuple[float, float] | None
     hand_over: HandOverSnapshot | None
+
+
+def to_rest_pose(pose: PartPose) -> RestPose:
+    """As it is kept."""
+    return (
+        round(pose.x, _DECIMALS),
+        round(pose.y, _DECIMALS),
+        round(pose.z, _DECIMALS),
+        round(pose.yaw, _DECIMALS),
+    )

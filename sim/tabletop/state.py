@@ -53,7 +53,7 @@ class Home:
                 0.0,
             ),
             hand_over=ToolPose(
-                table.center[0] - table.size[0] / 2 + 0.05,
+                table.center[0] - table.size[0] / 2 + 0.15,
                 table.center[1],
                 table.height + 0.25,
                 0.0,

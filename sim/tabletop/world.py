@@ -12,14 +12,14 @@ from sim.tabletop.body import TabletopBody
 from sim.tabletop.part import PartPose, TablePart, Whereabouts
 from sim.tabletop.person import Person
 from sim.tabletop.scenery import ForearmCamera, HeadCamera, Scenery
-from sim.tabletop.snapshot import HandOverSnapshot, RestSnapshot, TabletopSnapshot
+from sim.tabletop.snapshot import TabletopSnapshot, to_rest_pose
 from sim.tabletop.state import TabletopState
 from tasks.intervention import Intervention
 from tasks.scene import Scene, StrictModel
 
 REACH_ORIGIN = (0.0, -0.19)
-REACH_MIN_M = 0.25
-REACH_MAX_M = 0.82
+REACH_MIN_M = 0.40
+REACH_MAX_M = 0.79
 """The graspable range of the workcell's robot, so that scenes mean the same in both worlds."""
 
 
@@ -64,15 +64,21 @@ class TabletopWorld:
     def snapshot(self) -> dict[str, Any]:
         """The state from which `restore` can rebuild the world; JSON-compatible."""
         state, hand_over = self._state, self._person.hand_over
-        return TabletopSnapshot(
-            time_s=state.time_s,
-            parts={name: self._snapshot_of(part) for name, part in state.parts.items()},
-            held=state.held.name if state.held else None,
-            blocker_at=state.blocker_at,
-            hand_over=HandOverSnapshot(object=hand_over.part.name, until_s=hand_over.until_s)
+        return {
+            "version": 1,
+            "time_s": state.time_s,
+            "moved": {
+                name: list(to_rest_pose(part.last_rest))
+                for name, part in state.parts.items()
+                if part.last_rest is not part.start
+            },
+            "gone": [name for name, part in state.parts.items() if self._is_lost(part)],
+            "held": state.held.name if state.held else None,
+            "blocker_at": list(state.blocker_at) if state.blocker_at else None,
+            "hand_over": {"object": hand_over.part.name, "until_s": hand_over.until_s}
             if hand_over
             else None,
-        ).model_dump(mode="json")
+        }
 
     def restore(self, snapshot: dict[str, Any]) -> None:
         """Rebuild the world: what was in the air lies where it last rested, the arm is at neutral.
@@ -80,17 +86,15 @@ class TabletopWorld:
         Raises `ValueError` for a snapshot of another version or of another scene.
         """
         saved = TabletopSnapshot.model_validate_json(json.dumps(snapshot))
-        if set(saved.parts) != set(self._state.parts):
-            raise ValueError(
-                f"the snapshot has the parts {sorted(saved.parts)}, "
-                f"the scene {sorted(self._state.parts)}"
-            )
+        unknown = sorted({*saved.moved, *saved.gone} - set(self._state.parts))
+        if unknown:
+            raise ValueError(f"the snapshot has parts that the scene has not: {unknown}")
         self._person.withdraw()
         self._state.reset(saved.time_s, saved.blocker_at)
-        for name, rest in saved.parts.items():
-            part = self._state.parts[name]
-            part.rest_at(PartPose(rest.x, rest.y, rest.z, rest.yaw))
-            if rest.gone:
+        for name, part in self._state.parts.items():
+            rest = saved.moved.get(name)
+            part.rest_at(part.start if rest is None else PartPose(*rest))
+            if name in saved.gone:
                 part.give_to(Whereabouts.GONE)
         if saved.hand_over is not None:
             part = self._state.parts[saved.hand_over.object]
@@ -114,10 +118,8 @@ class TabletopWorld:
         """Put the arm somewhere at once, for training pictures and tests."""
         self._state.arm.jump(tool)
 
-    def _snapshot_of(self, part: TablePart) -> RestSnapshot:
-        rest = part.last_rest
-        gone = part.whereabouts is Whereabouts.GONE or self._person.is_pulling(part)
-        return RestSnapshot(x=rest.x, y=rest.y, z=rest.z, yaw=rest.yaw, gone=gone)
+    def _is_lost(self, part: TablePart) -> bool:
+        return part.whereabouts is Whereabouts.GONE or self._person.is_pulling(part)
 
 
 def _reach(scene: Scene, reach_m: float | None) -> Reach:

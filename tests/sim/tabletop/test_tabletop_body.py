@@ -197,7 +197,7 @@ def test_neutral_hides_nothing_from_the_head_camera(world: TabletopWorld) -> Non
         assert columns.max() < 319
 
 
-@given(x=st.floats(0.45, 0.75), y=st.floats(-0.6, 0.2), yaw=st.floats(-1.5, 1.5))
+@given(x=st.floats(0.45, 0.65), y=st.floats(-0.5, 0.1), yaw=st.floats(-1.5, 1.5))
 @settings(max_examples=25, deadline=None)
 def test_the_tool_frame_points_down_and_opens_along_its_yaw(x: float, y: float, yaw: float) -> None:
     scene = Scene(name="empty", objects={}, places={})

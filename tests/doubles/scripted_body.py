@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from drawn_scene import PARTS, TABLE_Z, DrawnScene, Resting
@@ -81,7 +81,7 @@ class ScriptedBody:
     """
 
     def __init__(self, parts: dict[str, Resting], period_s: float = 1 / 30) -> None:
-        self.parts: dict[str, Resting] = dict(parts)
+        self.parts: dict[str, Resting] = {name: replace(each) for name, each in parts.items()}
         self.grey_boxes: list = []
         self.in_hand: tuple[str, np.ndarray] | None = None
         self.held_out: tuple[str, np.ndarray] | None = None
@@ -112,7 +112,7 @@ class ScriptedBody:
     def hold_out(self, name: str) -> None:
         """A person holds a part between the fingers, wherever they are."""
         self.parts.pop(name, None)
-        self.held_out = (name, _part_in_tool(name))
+        self.held_out = (name, part_in_tool(name))
 
     def placed(self) -> dict[str, object]:
         shown: dict[str, object] = dict(self.parts)
@@ -184,6 +184,10 @@ class ScriptedBody:
         self._gripper_left, self._gripper_closed = GRIPPER_CYCLES, True
 
     @property
+    def arm_moving(self) -> bool:
+        return self._arm_moving
+
+    @property
     def moving(self) -> bool:
         return self._arm_moving or self._gripper_left > 0
 
@@ -222,13 +226,13 @@ class ScriptedBody:
             return
         for name, resting in self.parts.items():
             relative = np.linalg.inv(self.tool_pose()) @ resting.matrix()
-            if np.linalg.norm(relative[:3, 3] - _part_in_tool(name)[:3, 3]) < 0.015:
+            if np.linalg.norm(relative[:3, 3] - part_in_tool(name)[:3, 3]) < 0.015:
                 del self.parts[name]
                 self.in_hand = (name, relative)
                 return
 
 
-def _part_in_tool(name: str) -> np.ndarray:
+def part_in_tool(name: str) -> np.ndarray:
     grasp = grasp_of(PARTS[name])
     pose = grasp.tool_pose(0.0, 0.0, 0.0, 0.0)
     return np.linalg.inv(tool_matrix(pose))

@@ -1,0 +1,41 @@
+# Mend: `make demo` shows the main job, `make test` runs every test; both set everything up first.
+SHELL := /bin/bash
+.SHELLFLAGS := -eu -o pipefail -c
+VENV := .venv
+BIN := $(VENV)/bin
+READY := $(VENV)/.ready
+
+.PHONY: help setup demo serve test lint bench lock clean
+
+help:  ## Say what there is
+	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 10
+
+setup: $(READY)  ## Make .venv with everything (the other targets do this first)
+
+$(READY): requirements.lock pyproject.toml scripts/setup
+	scripts/setup
+
+demo: $(READY)  ## A PR2 builds a table base, is robbed, asks for help, and finishes
+	$(BIN)/mend run eket --world workcell --scenario eket_paper --speed max --seed 7 --report out/eket_paper.html
+
+serve: $(READY)  ## The service with the helper's page on http://127.0.0.1:8000
+	$(BIN)/mend serve
+
+test: $(READY)  ## Every test, in random order
+	$(BIN)/pytest -n 2 --dist worksteal
+
+lint: $(READY)  ## Formatting, lint, types and the floors
+	$(BIN)/ruff format --check .
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+bench: $(READY)  ## Every benchmark, one after the other (takes long)
+	@for each in benchmarks/*.py; do echo "== $$each"; $(BIN)/python "$$each"; done
+
+lock: $(READY)  ## Pin the newest versions that pyproject.toml allows
+	$(BIN)/uv pip compile --quiet --universal --all-extras --no-emit-index-url --no-annotate \
+	    --custom-compile-command 'make lock' --upgrade pyproject.toml requirements-build.in -o requirements.lock
+
+clean:  ## Remove everything that was made
+	rm -rf $(VENV) out build dist .mypy_cache .ruff_cache .pytest_cache .hypothesis

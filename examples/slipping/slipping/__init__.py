@@ -1,0 +1,1 @@
+"""One more fault for Mend: an object that slips in the gripper. Built by addition only."""

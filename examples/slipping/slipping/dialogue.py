@@ -1,0 +1,14 @@
+"""The script for `slipping`: one sentence, and both place the object together."""
+
+from dialogue.script import CloseState, Script
+from tasks.resolution import Resolution
+
+script = Script(
+    opening="steady",
+    states={
+        "steady": CloseState(
+            text="The {object} is slipping. Please steady it while I place it slowly. Thank you.",
+            resolution=Resolution.COLLAB_FINISH,
+        )
+    },
+)

@@ -1,0 +1,163 @@
+"""Mail to the operators when no helper answers: the last rung of the ladder."""
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from email.message import EmailMessage
+from email.utils import format_datetime
+from ipaddress import ip_address
+from pathlib import Path
+from typing import Annotated, Literal, Self
+from uuid import UUID
+
+import aiosmtplib
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Field,
+    SecretStr,
+    StringConstraints,
+    model_validator,
+)
+
+
+def _require_address(text: str) -> str:
+    if len(text) > 254 or not re.fullmatch(r"[^\s@<>,;:\"\\]+@[^\s@<>,;:\"\\]+", text):
+        raise ValueError(f"{text!r} is not a mail address; one looks like name@example.org")
+    return text
+
+
+Address = Annotated[str, AfterValidator(_require_address)]
+
+
+class MailSettings(BaseModel):
+    """The SMTP server to send through.
+
+    `tls`: encrypted from the first byte (`tls`), after STARTTLS, or not at all (`none`).
+    `ca_file` names the certificates to trust in place of the system's.
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    host: Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9.:\-]+$", max_length=253)]
+    port: Annotated[int, Field(ge=1, le=65535)] = 587
+    tls: Literal["tls", "starttls", "none"] = "starttls"
+    ca_file: Path | None = None
+    user: str | None = None
+    password: SecretStr | None = None
+    sender: Address
+    operators: Annotated[tuple[Address, ...], Field(min_length=1, max_length=64)]
+    timeout_s: Annotated[float, Field(gt=0.0, le=300.0, allow_inf_nan=False)] = 15.0
+
+    @model_validator(mode="after")
+    def _require_safe_credentials(self) -> Self:
+        if (self.user is None) != (self.password is None):
+            raise ValueError("'user' and 'password' go together: set both or neither")
+        if self.user is not None and self.tls == "none" and not _is_loopback(self.host):
+            raise ValueError(
+                "the password would cross the network in clear; set 'tls' to 'starttls' or 'tls'"
+            )
+        return self
+
+
+@dataclass(frozen=True, slots=True)
+class MailRequest:
+    """What an operator is told about an ask that nobody answered."""
+
+    run: UUID
+    dialogue: UUID
+    prompt: UUID
+    tree: str
+    robot: str
+    issue: str
+    object: str | None
+    node: str
+    name: str
+    question: str
+    yes_effect: str
+    no_effect: str
+    answer_within_s: float | None = None
+    console_url: str | None = None
+
+
+class MailError(Exception):
+    """A mail could not be sent; the message says through which server, and why."""
+
+
+class Mailer:
+    """Writes to operators through one SMTP server."""
+
+    def __init__(self, settings: MailSettings) -> None:
+        self._settings = settings
+        environment = Environment(
+            loader=PackageLoader("server.dialogues", "."),
+            undefined=StrictUndefined,
+            trim_blocks=True,
+            autoescape=False,
+        )
+        self._template = environment.get_template("mail_request.txt.j2")
+
+    async def send(
+        self, request: MailRequest, to: Sequence[str], written: datetime
+    ) -> tuple[str, ...]:
+        """Send a request for help and return the addresses that the server refused.
+
+        Raises `MailError` when nobody could be written to. A mail that is sent again for the same
+        prompt has the same Message-ID.
+        """
+        settings = self._settings
+        message = self.compose(request, to, written)
+        try:
+            refused, _ = await aiosmtplib.send(
+                message,
+                hostname=settings.host,
+                port=settings.port,
+                username=settings.user,
+                password=settings.password.get_secret_value() if settings.password else None,
+                use_tls=settings.tls == "tls",
+                start_tls=settings.tls == "starttls",
+                cert_bundle=str(settings.ca_file) if settings.ca_file else None,
+                timeout=settings.timeout_s,
+            )
+        except (aiosmtplib.SMTPException, OSError) as error:
+            raise MailError(
+                f"the mail to {', '.join(to)} could not be sent through "
+                f"{settings.host}:{settings.port}: {_reason(error)}"
+            ) from error
+        return tuple(refused)
+
+    def compose(self, request: MailRequest, to: Sequence[str], written: datetime) -> EmailMessage:
+        """The filled-in mail."""
+        message = EmailMessage()
+        message["From"] = self._settings.sender
+        message["To"] = ", ".join(to)
+        message["Date"] = format_datetime(written)
+        message["Message-ID"] = f"<{request.prompt}@{self._settings.sender.rpartition('@')[2]}>"
+        about = f"{request.issue}, {request.object}" if request.object else request.issue
+        message["Subject"] = _one_line(f"{request.robot} asks for help ({about})")
+        # Mail programs do not answer such mails with "I am on holiday".
+        message["Auto-Submitted"] = "auto-generated"
+        message.set_content(self._template.render(request=request))
+        return message
+
+
+def _one_line(text: str) -> str:
+    """Without line breaks, which would begin another header."""
+    return " ".join(text.split())
+
+
+def _reason(error: Exception) -> str:
+    if isinstance(error, aiosmtplib.SMTPRecipientsRefused):
+        refusals = [f"{each.recipient} is refused ({each.message})" for each in error.recipients]
+        return "; ".join(refusals)
+    return _one_line(str(error)) or type(error).__name__
+
+
+def _is_loopback(host: str) -> bool:
+    try:
+        return ip_address(host).is_loopback
+    except ValueError:
+        return host == "localhost"

@@ -1,0 +1,140 @@
+"""The audit: reads a run's events and says which constraint they broke, if any.
+
+It knows nothing of the task tree's code: it works from the kinds of the nodes and the paths alone,
+so that it can find fault with both the tree and the runtime.
+"""
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from uuid import UUID
+
+from server.journal import events as ev
+
+
+def audit(events: Sequence[ev.Event], kinds: Mapping[str, str]) -> list[str]:
+    """One sentence per broken constraint of one run; `kinds` has every node's kind by its path."""
+    return _Audit(kinds).read(events)
+
+
+class _Audit:
+    def __init__(self, kinds: Mapping[str, str]) -> None:
+        self._kinds = kinds
+        self._children: dict[str, list[str]] = {path: [] for path in kinds}
+        for path in kinds:
+            if path != "/":
+                self._children[_parent(path)].append(path)
+        for siblings in self._children.values():
+            siblings.sort(key=lambda path: int(path.rsplit("/", 1)[1]))
+        self._done: set[str] = set()
+        self._active: dict[str, str | None] = {}
+        self._abandoned: set[str] = set()
+        self._open: dict[UUID, str] = {}
+        self._answered: Counter[UUID] = Counter()
+        self._broken: list[str] = []
+        self._ended: str | None = None
+
+    def read(self, events: Sequence[ev.Event]) -> list[str]:
+        last_seq, last_time = 0, 0.0
+        for event in events:
+            if event.seq <= last_seq:
+                self._breach(event, f"comes after event {last_seq}")
+            if event.time < last_time:
+                self._breach(event, f"goes back in time, from {last_time}")
+            if self._ended:
+                self._breach(event, f"comes after the run has ended with {self._ended}")
+            last_seq, last_time = event.seq, max(last_time, event.time)
+            self._take(event)
+        return self._broken
+
+    def _breach(self, event: ev.Event, sentence: str) -> None:
+        self._broken.append(f"event {event.seq} ({getattr(event, 'type', '?')}) {sentence}")
+
+    def _take(self, event: ev.Event) -> None:
+        match event:
+            case ev.NodeStarted():
+                self._started(event)
+            case ev.NodeDone():
+                if event.node not in self._active:
+                    self._breach(event, f"finishes {event.node}, which is not active")
+                self._active.pop(event.node, None)
+                self._done.add(event.node)
+            case ev.NodeReset():
+                if event.node not in self._active:
+                    self._breach(event, f"puts back {event.node}, which is not active")
+                self._active.pop(event.node, None)
+            case ev.NodeAbandoned():
+                self._abandon(event)
+            case ev.DialogueOpened():
+                self._open[event.dialogue] = event.node
+            case ev.DialogueClosed():
+                if self._open.pop(event.dialogue, None) is None:
+                    self._breach(event, "closes a dialogue that is not open")
+            case ev.Answered():
+                self._answered[event.prompt] += 1
+                if self._answered[event.prompt] > 1:
+                    self._breach(event, f"answers prompt {event.prompt} a second time")
+            case ev.RunFinished():
+                if not self._is_done("/"):
+                    self._breach(event, "finishes a task that is not done")
+                self._end(event, "run_finished")
+            case ev.RunFailed():
+                self._end(event, "run_failed")
+            case ev.RunAborted():
+                self._end(event, "run_aborted")
+
+    def _end(self, event: ev.Event, kind: str) -> None:
+        self._ended = kind
+        if self._open:
+            self._breach(event, f"leaves {len(self._open)} dialogues open")
+
+    def _started(self, event: ev.NodeStarted) -> None:
+        node = event.node
+        if node in self._done or node in self._active:
+            self._breach(event, f"starts {node}, which is active or done")
+        if event.robot in self._active.values():
+            self._breach(event, f"gives {event.robot} a second leaf")
+        if node in self._open.values():
+            self._breach(event, f"starts {node} while there is a dialogue about it")
+        child = node
+        while child != "/":
+            parent = _parent(child)
+            if self._is_done(parent):
+                self._breach(event, f"starts {node}, though {parent} is done")
+            if child in self._abandoned:
+                self._breach(event, f"starts {node} under the abandoned {child}")
+            self._check_siblings(event, parent, child)
+            child = parent
+        self._active[node] = event.robot
+
+    def _check_siblings(self, event: ev.NodeStarted, parent: str, child: str) -> None:
+        siblings = self._children[parent]
+        if self._kinds[parent] == "then":
+            for earlier in siblings[: siblings.index(child)]:
+                if not self._is_done(earlier):
+                    self._breach(event, f"starts {event.node} before {earlier} is done")
+        if self._kinds[parent] == "or":
+            for other in siblings:
+                if other != child and self._is_touched(other):
+                    self._breach(event, f"starts {event.node}, though {parent} took {other}")
+
+    def _abandon(self, event: ev.NodeAbandoned) -> None:
+        if self._is_touched(event.node):
+            self._breach(event, f"abandons {event.node}, under which something is active or done")
+        if event.node == "/" or self._kinds[_parent(event.node)] != "or":
+            self._breach(event, f"abandons {event.node}, which is no alternative of an OR")
+        self._abandoned.add(event.node)
+
+    def _is_touched(self, node: str) -> bool:
+        prefix = node.rstrip("/") + "/"
+        return any(each == node or each.startswith(prefix) for each in (*self._active, *self._done))
+
+    def _is_done(self, node: str) -> bool:
+        kind = self._kinds[node]
+        if kind == "behavior":
+            return node in self._done
+        children = (self._is_done(each) for each in self._children[node])
+        return any(children) if kind == "or" else all(children)
+
+
+def _parent(path: str) -> str:
+    return path.rsplit("/", 1)[0] or "/"

@@ -1,0 +1,259 @@
+"""The journal in SQLite: WAL, `synchronous=FULL`, one writer thread with group commit."""
+
+import asyncio
+import json
+import sqlite3
+import threading
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any, TypeVar
+from uuid import UUID
+
+from server.journal.events import Event, any_event
+from server.journal.file_lock import FileLock
+from server.journal.journal import DuplicateReceiptError, Entry, JournalClosedError, Receipt
+from server.journal.migrations import migrate
+from server.journal.subscriptions import DEFAULT_CAPACITY, Record, Subscribers, Subscription
+from server.journal.upgrades import current_version, upgrade_text
+from server.journal.writer import CommitStatistics, Done, GroupCommitWriter
+
+T = TypeVar("T")
+
+IN_MEMORY = ":memory:"
+
+INSERT_EVENT = "INSERT INTO events (seq, run, type, time, version, body) VALUES (?, ?, ?, ?, ?, ?)"
+
+
+@dataclass(frozen=True, slots=True)
+class _Committed:
+    """An entry's events with their numbers, and their JSON."""
+
+    events: list[Event]
+    records: list[Record]
+
+
+class SqliteJournal:
+    """A journal in one file, or in memory for tests and runs that nobody needs afterwards.
+
+    Implements `server.journal.journal.Journal`. Raises `JournalLockedError` when another process
+    has the file, `JournalSchemaError` when it cannot be read. Belongs to one event loop at a time.
+    """
+
+    def __init__(self, path: Path | str, *, busy_timeout_s: float = 5.0) -> None:
+        self._lock: FileLock | None = None
+        if str(path) != IN_MEMORY:
+            path = Path(path)
+            path.parent.mkdir(parents=True, exist_ok=True)
+            self._lock = FileLock(path)
+        try:
+            self._open(str(path), busy_timeout_s)
+        except BaseException:
+            self._unlock()
+            raise
+        self._subscribers = Subscribers()
+        self._version = current_version()
+        self._closed = False
+        self._readers = ThreadPoolExecutor(max_workers=1, thread_name_prefix="journal-reader")
+        self._writer = GroupCommitWriter(
+            self._write_connection,
+            self._write_lock,
+            on_begin=self._begin,
+            on_rollback=self._roll_back,
+            on_commit=self._publish,
+        )
+
+    def _open(self, path: str, busy_timeout_s: float) -> None:
+        connect = partial(
+            sqlite3.connect, path, timeout=busy_timeout_s, isolation_level=None,
+            check_same_thread=False,
+        )  # fmt: skip
+        self._write_connection = connect()
+        self._write_lock = threading.Lock()
+        try:
+            migrate(self._write_connection)
+            self._write_connection.execute("PRAGMA journal_mode=WAL")
+            self._write_connection.execute("PRAGMA synchronous=FULL")
+            (head,) = self._write_connection.execute("SELECT max(seq) FROM events").fetchone()
+        except BaseException:
+            self._write_connection.close()
+            raise
+        self._head = int(head or 0)
+        self._next = self._batch_start = self._head + 1
+        in_memory = path == IN_MEMORY
+        self._read_connection = self._write_connection if in_memory else connect()
+        self._read_lock = self._write_lock if in_memory else threading.Lock()
+
+    @property
+    def head(self) -> int:
+        """The `seq` of the last event that was committed and published."""
+        return self._head
+
+    @property
+    def subscribers(self) -> Subscribers:
+        return self._subscribers
+
+    def commit_statistics(self) -> CommitStatistics:
+        return self._writer.statistics()
+
+    # --- writing ------------------------------------------------------------------------------
+
+    async def append(self, entry: Entry) -> list[Event]:
+        committed: _Committed = await self._writer.submit(partial(self._write_entry, entry))
+        return committed.events
+
+    async def save_tree(self, name: str, text: str) -> None:
+        await self._writer.submit(
+            lambda connection: (
+                connection.execute(
+                    "INSERT OR REPLACE INTO trees (name, text) VALUES (?, ?)", (name, text)
+                ).rowcount
+            )
+        )
+
+    async def delete_tree(self, name: str) -> bool:
+        deleted: int = await self._writer.submit(
+            lambda connection: (
+                connection.execute("DELETE FROM trees WHERE name = ?", (name,)).rowcount
+            )
+        )
+        return deleted > 0
+
+    def _write_entry(self, entry: Entry, connection: sqlite3.Connection) -> _Committed:
+        if entry.receipt is not None:
+            _refuse_duplicate(entry.receipt, connection)
+        committed = self._number(entry.events)
+        connection.executemany(
+            INSERT_EVENT,
+            [
+                (event.seq, str(event.run), _type(event), event.time, self._version, record.text)
+                for event, record in zip(committed.events, committed.records, strict=True)
+            ],
+        )
+        if entry.receipt is not None:
+            connection.execute(
+                "INSERT OR REPLACE INTO receipts (robot, boot, seq) VALUES (?, ?, ?)",
+                (entry.receipt.robot, entry.receipt.boot, entry.receipt.seq),
+            )
+        if entry.world is not None:
+            connection.execute(
+                "INSERT OR REPLACE INTO worlds (run, state) VALUES (?, ?)",
+                (str(entry.world_run), json.dumps(entry.world, allow_nan=False)),
+            )
+        connection.executemany(
+            "INSERT OR REPLACE INTO pictures (id, jpeg) VALUES (?, ?)",
+            [(str(picture), jpeg) for picture, jpeg in entry.pictures.items()],
+        )
+        self._next += len(committed.events)
+        return committed
+
+    def _number(self, events: Any) -> _Committed:
+        numbered = [
+            event.model_copy(update={"seq": seq}) for seq, event in enumerate(events, self._next)
+        ]
+        return _Committed(
+            numbered, [Record(event.seq, event.model_dump_json()) for event in numbered]
+        )
+
+    def _begin(self) -> None:
+        self._batch_start = self._next
+
+    def _roll_back(self) -> None:
+        self._next = self._batch_start
+
+    def _publish(self, done: list[Done]) -> None:
+        records = [
+            record
+            for each in done
+            if isinstance(each.result, _Committed)
+            for record in each.result.records
+        ]
+        if records:
+            self._head = records[-1].seq
+            self._subscribers.publish(records)
+
+    # --- reading ------------------------------------------------------------------------------
+
+    def subscribe(self, after: int, capacity: int = DEFAULT_CAPACITY) -> Subscription:
+        return Subscription(self, self._subscribers, after, capacity)
+
+    async def read(self, after: int, limit: int, run: UUID | None = None) -> list[Event]:
+        records = await self.read_records(after, limit, run)
+        return [any_event.validate_json(record.text) for record in records]
+
+    async def read_records(self, after: int, limit: int, run: UUID | None = None) -> list[Record]:
+        of_run = "" if run is None else "run = :run AND "
+        rows = await self._select(
+            f"SELECT seq, version, body FROM events WHERE {of_run}seq > :after"
+            " ORDER BY seq LIMIT :limit",
+            {"run": str(run), "after": after, "limit": limit},
+        )
+        return [Record(seq, upgrade_text(body, version)) for seq, version, body in rows]
+
+    async def received(self, robot: str, boot: str) -> int:
+        rows = await self._select(
+            "SELECT seq FROM receipts WHERE robot = ? AND boot = ?", (robot, boot)
+        )
+        return int(rows[0][0]) if rows else 0
+
+    async def world(self, run: UUID) -> dict[str, Any] | None:
+        rows = await self._select("SELECT state FROM worlds WHERE run = ?", (str(run),))
+        return json.loads(rows[0][0]) if rows else None
+
+    async def picture(self, picture: UUID) -> bytes | None:
+        rows = await self._select("SELECT jpeg FROM pictures WHERE id = ?", (str(picture),))
+        return rows[0][0] if rows else None
+
+    async def runs(self) -> list[UUID]:
+        rows = await self._select(
+            "SELECT run FROM events WHERE type = 'run_started' ORDER BY seq", ()
+        )
+        return [UUID(run) for (run,) in rows]
+
+    async def trees(self) -> dict[str, str]:
+        return dict(await self._select("SELECT name, text FROM trees ORDER BY name", ()))
+
+    async def _select(self, statement: str, parameters: Any) -> list[Any]:
+        def query() -> list[Any]:
+            with self._read_lock:
+                return self._read_connection.execute(statement, parameters).fetchall()
+
+        return await self._read(query)
+
+    async def _read(self, query: Callable[[], T]) -> T:
+        if self._closed:
+            raise JournalClosedError("the journal is closed")
+        return await asyncio.get_running_loop().run_in_executor(self._readers, query)
+
+    def close(self) -> None:
+        """Write what is waiting, end every subscription and free the file."""
+        if self._closed:
+            return
+        self._closed = True
+        self._writer.close()
+        self._subscribers.close()
+        self._readers.shutdown()
+        self._read_connection.close()
+        self._write_connection.close()
+        self._unlock()
+
+    def _unlock(self) -> None:
+        if self._lock is not None:
+            self._lock.release()
+
+
+def _type(event: Event) -> str:
+    """The event's discriminator, which every event type declares for itself."""
+    return str(vars(event)["type"])
+
+
+def _refuse_duplicate(receipt: Receipt, connection: sqlite3.Connection) -> None:
+    row = connection.execute(
+        "SELECT seq FROM receipts WHERE robot = ? AND boot = ?", (receipt.robot, receipt.boot)
+    ).fetchone()
+    if row is not None and receipt.seq <= row[0]:
+        raise DuplicateReceiptError(
+            f"report {receipt.seq} of robot {receipt.robot} was received before"
+        )

@@ -1,0 +1,182 @@
+"""The one thread that writes a journal: whatever is waiting shares one durable commit."""
+
+import asyncio
+import contextlib
+import queue
+import sqlite3
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from server.journal.journal import JournalClosedError, JournalWriteError
+
+MAX_BATCH = 1000
+
+COMMIT_BUCKETS_S = (0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 2.5)
+
+Work = Callable[[sqlite3.Connection], Any]
+"""Writes something within the transaction; if it raises, nothing of it remains."""
+
+
+@dataclass(frozen=True, slots=True)
+class Done:
+    """What a committed piece of work returned, for whoever waits for it."""
+
+    future: "asyncio.Future[Any]"
+    result: Any
+
+
+@dataclass(frozen=True, slots=True)
+class CommitStatistics:
+    """`buckets`: how many commits took at most so many seconds, cumulative."""
+
+    commits: int
+    failures: int
+    seconds: float
+    buckets: tuple[tuple[float, int], ...]
+
+
+class GroupCommitWriter:
+    """Runs work in one thread on one connection, as many pieces per transaction as are waiting.
+
+    `on_begin` and `on_rollback` are called in the writer's thread, `on_commit` with what was
+    committed in the event loop of those who wait, in the order of the commits.
+    """
+
+    def __init__(
+        self,
+        connection: sqlite3.Connection,
+        lock: threading.Lock,
+        *,
+        on_begin: Callable[[], None],
+        on_rollback: Callable[[], None],
+        on_commit: Callable[[list[Done]], None],
+    ) -> None:
+        self._connection = connection
+        self._lock = lock
+        self._on_begin = on_begin
+        self._on_rollback = on_rollback
+        self._on_commit = on_commit
+        self._waiting: queue.SimpleQueue[tuple[Work, asyncio.Future[Any]] | None] = (
+            queue.SimpleQueue()
+        )
+        self._closed = False
+        self._commits = 0
+        self._failures = 0
+        self._seconds = 0.0
+        self._at_most = [0] * len(COMMIT_BUCKETS_S)
+        self._thread = threading.Thread(target=self._run, name="journal-writer", daemon=True)
+        self._thread.start()
+
+    def submit(self, work: Work) -> "asyncio.Future[Any]":
+        """Queue a piece of work; the future has its result once it is durable."""
+        if self._closed:
+            raise JournalClosedError("the journal is closed")
+        future: asyncio.Future[Any] = asyncio.get_running_loop().create_future()
+        self._waiting.put((work, future))
+        return future
+
+    def statistics(self) -> CommitStatistics:
+        return CommitStatistics(
+            self._commits,
+            self._failures,
+            self._seconds,
+            tuple(zip(COMMIT_BUCKETS_S, self._at_most, strict=True)),
+        )
+
+    def close(self) -> None:
+        """Write what is waiting, then end the thread."""
+        if not self._closed:
+            self._closed = True
+            self._waiting.put(None)
+            self._thread.join()
+
+    def _run(self) -> None:
+        while batch := self._next_batch():
+            self._commit(batch)
+
+    def _next_batch(self) -> list[tuple[Work, "asyncio.Future[Any]"]]:
+        """Wait for work and take all there is; empty when the journal is to close."""
+        first = self._waiting.get()
+        if first is None:
+            return []
+        batch = [first]
+        with contextlib.suppress(queue.Empty):
+            while len(batch) < MAX_BATCH:
+                item = self._waiting.get_nowait()
+                if item is None:
+                    self._waiting.put(None)
+                    break
+                batch.append(item)
+        return batch
+
+    def _commit(self, batch: list[tuple[Work, "asyncio.Future[Any]"]]) -> None:
+        began = time.perf_counter()
+        done: list[Done] = []
+        refused: list[tuple[asyncio.Future[Any], Exception]] = []
+        try:
+            with self._lock:
+                self._on_begin()
+                self._connection.execute("BEGIN IMMEDIATE")
+                for work, future in batch:
+                    try:
+                        done.append(Done(future, self._do(work)))
+                    except sqlite3.OperationalError:
+                        raise
+                    except Exception as error:
+                        refused.append((future, error))
+                self._connection.execute("COMMIT")
+        except sqlite3.Error as error:
+            self._roll_back()
+            self._failures += 1
+            failure = JournalWriteError(f"the journal could not be written: {error}")
+            refused = [(future, failure) for _, future in batch]
+            done = []
+        else:
+            self._measure(time.perf_counter() - began)
+        self._deliver(batch[0][1].get_loop(), done, refused)
+
+    def _do(self, work: Work) -> Any:
+        """Do one piece; the others of the batch stand if it is refused."""
+        self._connection.execute("SAVEPOINT piece")
+        try:
+            result = work(self._connection)
+        except Exception:
+            self._connection.execute("ROLLBACK TO piece")
+            raise
+        finally:
+            self._connection.execute("RELEASE piece")
+        return result
+
+    def _roll_back(self) -> None:
+        with self._lock, contextlib.suppress(sqlite3.Error):
+            if self._connection.in_transaction:
+                self._connection.execute("ROLLBACK")
+        self._on_rollback()
+
+    def _measure(self, seconds: float) -> None:
+        self._commits += 1
+        self._seconds += seconds
+        for index, limit in enumerate(COMMIT_BUCKETS_S):
+            self._at_most[index] += seconds <= limit
+
+    def _deliver(
+        self,
+        loop: asyncio.AbstractEventLoop,
+        done: list[Done],
+        refused: list[tuple["asyncio.Future[Any]", Exception]],
+    ) -> None:
+        def settle() -> None:
+            self._on_commit(done)
+            for each in done:
+                if not each.future.done():
+                    each.future.set_result(each.result)
+            for future, error in refused:
+                if not future.done():
+                    future.set_exception(error)
+
+        # A loop that has ended has nobody left who waits.
+        with contextlib.suppress(RuntimeError):
+            loop.call_soon_threadsafe(settle)

@@ -1,0 +1,60 @@
+"""Claims: which helper is on which dialogue, so that the others need not be.
+
+A claim is a courtesy with a lease (wall time); it never keeps anybody from answering.
+"""
+
+from datetime import timedelta
+
+from server.errors import ConflictError
+from server.runtime.context import RunContext
+from server.runtime.dialogue_events import DialogueEvents
+from server.runtime.run_state import DialogueState
+
+
+class Claims:
+    """The claims on the open dialogues of one run."""
+
+    def __init__(self, context: RunContext) -> None:
+        self._context = context
+
+    async def claim(self, dialogue: DialogueState, helper: str) -> None:
+        """Claim a dialogue, or renew one's own claim.
+
+        Raises `ConflictError` while another helper's lease lasts, or once it is closed.
+        """
+        now = self._context.utc_now()
+        held = dialogue.claim
+        if dialogue.closed is not None:
+            raise ConflictError(f"this dialogue is closed ({dialogue.closed})")
+        if held is not None and held.helper != helper and held.until > now:
+            seconds = (held.until - now).total_seconds()
+            raise ConflictError(f"{held.helper} is on this dialogue for {seconds:.0f} s more")
+        lease = timedelta(seconds=self._context.settings.claim_lease_s)
+        await self._context.commit([self._make(dialogue).claimed(helper, now + lease)])
+
+    async def release(self, dialogue: DialogueState, helper: str) -> None:
+        """Give up one's own claim. Raises `ConflictError` when the helper has none."""
+        if dialogue.claim is None or dialogue.claim.helper != helper:
+            raise ConflictError(f"{helper} has no claim on this dialogue to release")
+        await self._context.commit([self._make(dialogue).released(helper, expired=False)])
+
+    async def expire(self) -> None:
+        """Release every claim whose lease has run out."""
+        now = self._context.utc_now()
+        for dialogue in self._context.state.open_dialogues:
+            if dialogue.claim is not None and dialogue.claim.until <= now:
+                released = self._make(dialogue).released(dialogue.claim.helper, expired=True)
+                await self._context.commit([released])
+
+    def expire_in_s(self) -> float | None:
+        """Seconds until the next lease runs out, if it is not renewed."""
+        now = self._context.utc_now()
+        left = [
+            (each.claim.until - now).total_seconds()
+            for each in self._context.state.open_dialogues
+            if each.claim is not None
+        ]
+        return max(0.0, min(left)) if left else None
+
+    def _make(self, dialogue: DialogueState) -> DialogueEvents:
+        return DialogueEvents(self._context.stamp, dialogue.id, dialogue.raised)

@@ -1,0 +1,81 @@
+"""The clock of a run: it never runs backwards, whatever a robot's clock does."""
+
+from collections.abc import Callable
+from typing import Protocol
+
+
+class RunClock(Protocol):
+    """Seconds since the run began."""
+
+    def now(self) -> float: ...
+
+    def observe(self, robot_time: float) -> None:
+        """Take note of a robot's clock."""
+        ...
+
+    def align(self, robot_time: float) -> None:
+        """A robot has (re)joined: its clock says `robot_time` now."""
+        ...
+
+    def to_robot(self, time: float) -> float:
+        """A time of this clock as the robot's clock says it."""
+        ...
+
+    def pause(self) -> None: ...
+
+    def resume(self) -> None: ...
+
+
+class SimulatedClock:
+    """Follows a simulated world's clock, which may start again when the world is rebuilt."""
+
+    def __init__(self, start: float = 0.0) -> None:
+        self._now = start
+        self._offset = start
+
+    def now(self) -> float:
+        return self._now
+
+    def observe(self, robot_time: float) -> None:
+        self._now = max(self._now, robot_time + self._offset)
+
+    def align(self, robot_time: float) -> None:
+        self._offset = self._now - robot_time
+
+    def to_robot(self, time: float) -> float:
+        return time - self._offset
+
+    def pause(self) -> None:
+        """Nothing to do: the world's clock only moves when it is told to."""
+
+    def resume(self) -> None:
+        """Nothing to do, as for `pause`."""
+
+
+class WallClock:
+    """Real time for real robots; it stands still while the run is paused."""
+
+    def __init__(self, monotonic: Callable[[], float], start: float = 0.0) -> None:
+        self._monotonic = monotonic
+        self._elapsed = start
+        self._since: float | None = monotonic()
+
+    def now(self) -> float:
+        running = 0.0 if self._since is None else self._monotonic() - self._since
+        return self._elapsed + running
+
+    def observe(self, robot_time: float) -> None:
+        """Nothing to do: a real robot's clock is its own."""
+
+    def align(self, robot_time: float) -> None:
+        """Nothing to do, as for `observe`."""
+
+    def to_robot(self, time: float) -> float:
+        return time
+
+    def pause(self) -> None:
+        self._elapsed, self._since = self.now(), None
+
+    def resume(self) -> None:
+        if self._since is None:
+            self._since = self._monotonic()

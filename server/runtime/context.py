@@ -1,0 +1,65 @@
+"""What the parts of a running run share: its state, clock, journal and settings."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from typing import Any
+from uuid import UUID
+
+from server.journal.events import Event
+from server.journal.journal import Entry, Journal, Receipt
+from server.runtime.clock import RunClock
+from server.runtime.run_state import RunState
+
+
+@dataclass(frozen=True, slots=True)
+class RunSettings:
+    """How patient a run is. Seconds of the run's clock, but for `robot_lost_timeout_s` (wall)."""
+
+    help_window_s: float = 30.0
+    robot_lost_timeout_s: float = 60.0
+    max_restarts: int = 5
+    claim_lease_s: float = 30.0
+
+
+class RunContext:
+    """A run's state and the one way to change it: commit events, then fold them."""
+
+    def __init__(
+        self,
+        state: RunState,
+        clock: RunClock,
+        journal: Journal,
+        settings: RunSettings,
+        utc_now: Callable[[], datetime],
+    ) -> None:
+        self.state = state
+        self.clock = clock
+        self.settings = settings
+        self.utc_now = utc_now
+        self._journal = journal
+
+    def stamp(self) -> dict[str, Any]:
+        """What every event of this run has now."""
+        return {"time": self.clock.now(), "wall_time": self.utc_now(), "run": self.state.id}
+
+    async def commit(
+        self,
+        events: Sequence[Event],
+        *,
+        receipt: Receipt | None = None,
+        world: Mapping[str, Any] | None = None,
+        pictures: Mapping[UUID, bytes] | None = None,
+    ) -> list[Event]:
+        """Commit an entry; only then does the state follow."""
+        entry = Entry(
+            events=events,
+            receipt=receipt,
+            world_run=self.state.id if world is not None else None,
+            world=world,
+            pictures=pictures or {},
+        )
+        numbered = await self._journal.append(entry)
+        for event in numbered:
+            self.state.fold(event)
+        return numbered

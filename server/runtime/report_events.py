@@ -1,0 +1,171 @@
+"""From a robot's reports to the events that journal them."""
+
+import base64
+import binascii
+import logging
+from uuid import UUID, uuid4
+
+from robots.link.messages import (
+    Finished,
+    Holding,
+    Intervened,
+    IssueDetected,
+    Rejected,
+    ReportBody,
+    Resumed,
+    StepStarted,
+)
+from server.journal import events as ev
+from server.runtime.context import RunContext
+from server.runtime.dialogue_driver import DialogueDriver
+from server.runtime.robot_side import Doing, RobotSide
+from server.runtime.run_state import Execution
+from tasks.resolution import Resolution
+
+log = logging.getLogger(__name__)
+
+
+class ReportEvents:
+    """Reads reports. One about an execution that is over is no news, and gives no event."""
+
+    def __init__(self, context: RunContext, dialogues: DialogueDriver) -> None:
+        self._context = context
+        self._dialogues = dialogues
+
+    def read(self, side: RobotSide, body: ReportBody) -> tuple[list[ev.Event], dict[UUID, bytes]]:
+        """The events of a report, and the pictures (JPEG) that they name."""
+        pictures: dict[UUID, bytes] = {}
+        events: list[ev.Event] = []
+        match body:
+            case StepStarted():
+                events = self._step_started(side, body)
+            case IssueDetected():
+                events = self._issue_detected(side, body, pictures)
+            case Finished():
+                events = self._finished(side, body)
+            case Holding():
+                events = [ev.RobotHolding(**self._context.stamp(), robot=side.robot, at=body.at)]
+            case Resumed():
+                events = [
+                    ev.RobotResumed(**self._context.stamp(), robot=side.robot, step=body.step)
+                ]
+            case Intervened():
+                events = [self._intervened(body)]
+            case Rejected():
+                events = self._rejected(side, body)
+        return events, pictures
+
+    def node(self, leaf: int) -> dict[str, str]:
+        """What every event of a node has."""
+        tree = self._context.state.tree
+        return {"node": tree.path_of(leaf), "name": tree.name_of(leaf)}
+
+    def reset(self, leaf: int, robot: str, reason: str, *, failed: bool) -> ev.NodeReset:
+        return ev.NodeReset(
+            **self._context.stamp(),
+            **self.node(leaf),
+            robot=robot,
+            reason=reason,
+            failed_attempt=failed,
+        )
+
+    def _current(self, side: RobotSide, execution: str) -> Execution | None:
+        """The robot's execution, if the report is about that and not about an earlier one."""
+        current = self._context.state.executions.get(side.robot)
+        return current if current is not None and str(current.id) == execution else None
+
+    def _step_started(self, side: RobotSide, body: StepStarted) -> list[ev.Event]:
+        execution = self._current(side, body.execution)
+        if execution is None:
+            return []
+        return [
+            ev.StepStarted(
+                **self._context.stamp(),
+                **self.node(execution.leaf),
+                robot=side.robot,
+                execution=execution.id,
+                step=body.step,
+                step_name=body.name,
+            )
+        ]
+
+    def _issue_detected(
+        self, side: RobotSide, body: IssueDetected, pictures: dict[UUID, bytes]
+    ) -> list[ev.Event]:
+        execution = self._current(side, body.execution)
+        state = self._context.state
+        if execution is None or state.dialogue_of(execution.leaf) is not None:
+            return []
+        picture = _decode(body.jpeg)
+        picture_id = uuid4() if picture else None
+        if picture_id is not None and picture is not None:
+            pictures[picture_id] = picture
+        raised = ev.IssueRaised(
+            **self._context.stamp(),
+            **self.node(execution.leaf),
+            robot=side.robot,
+            issue=body.issue,
+            object=state.tree.object_of(execution.leaf),
+            place=state.tree.place_of(execution.leaf),
+            execution=execution.id,
+            step=body.step,
+            interrupts=body.interrupts,
+            detection=body.detection,
+            picture=picture_id,
+        )
+        if body.issue not in state.scripts:
+            reason = f"there is no dialogue script for an issue '{body.issue}'"
+            reset = self.reset(execution.leaf, side.robot, reason, failed=True)
+            return [raised, reset] if body.interrupts else [raised]
+        return self._dialogues.open(raised, [raised])
+
+    def _finished(self, side: RobotSide, body: Finished) -> list[ev.Event]:
+        execution = self._current(side, body.execution)
+        if execution is None:
+            return []
+        state = self._context.state
+        path = state.tree.path_of(execution.leaf)
+        helped = any(
+            each.resolved is not None
+            and each.resolved.resolution is Resolution.COLLAB_FINISH
+            and each.raised.execution == execution.id
+            for each in state.dialogues.values()
+        )
+        events: list[ev.Event] = [
+            self._dialogues.abort(each) for each in state.open_dialogues if each.opened.node == path
+        ]
+        done = ev.NodeDone(
+            **self._context.stamp(),
+            **self.node(execution.leaf),
+            robot=side.robot,
+            by="both" if helped else "robot",
+        )
+        return [*events, done]
+
+    def _intervened(self, body: Intervened) -> ev.InterventionDone:
+        return ev.InterventionDone(
+            **self._context.stamp(),
+            act=str(body.intervention.act),
+            object=body.intervention.object,
+            intervention=body.intervention,
+            by=body.by,
+            ok=body.ok,
+            detail=body.detail,
+        )
+
+    def _rejected(self, side: RobotSide, body: Rejected) -> list[ev.Event]:
+        execution = self._context.state.executions.get(side.robot)
+        log.warning("robot %s rejected a command: %s", side.robot, body.reason)
+        if execution is None or side.doing is not Doing.WORKING or body.command != side.command:
+            return []
+        reason = f"the robot refused: {body.reason}"
+        return [self.reset(execution.leaf, side.robot, reason, failed=True)]
+
+
+def _decode(jpeg: str | None) -> bytes | None:
+    if jpeg is None:
+        return None
+    try:
+        return base64.b64decode(jpeg, validate=True)
+    except (binascii.Error, ValueError):
+        return None

@@ -1,0 +1,173 @@
+"""One robot of a run, as the run sees it: what it was last told, and what it last saw."""
+
+from dataclasses import dataclass, field
+from enum import StrEnum
+from typing import Any, Protocol
+from uuid import uuid4
+
+from robots.link.messages import (
+    CommandBody,
+    Hello,
+    Hold,
+    Holding,
+    Interrupt,
+    Intervene,
+    Location,
+    Look,
+    Looked,
+    Resume,
+    Sighting,
+    Start,
+)
+from server.runtime.run_state import Execution
+from tasks.intervention import Intervention
+from tasks.potential import Point
+
+
+class Doing(StrEnum):
+    """What a robot is busy with."""
+
+    ABSENT = "absent"
+    IDLE = "idle"
+    LOOKING = "looking"
+    WAITING = "waiting"
+    WORKING = "working"
+    RETREATING = "retreating"
+
+
+class Purpose(StrEnum):
+    """Why a robot was told to look."""
+
+    CHOOSE = "choose"
+    BASELINE = "baseline"
+    WATCH = "watch"
+    HELP = "help"
+    LAST = "last"
+
+
+class CommandSender(Protocol):
+    """The service's end of the robot link."""
+
+    def send(self, robot: str, command_id: str, body: CommandBody) -> None: ...
+
+
+@dataclass(slots=True)
+class RobotSide:
+    """A robot's activity; nothing here is durable, all of it follows from its next reports."""
+
+    robot: str
+    link: CommandSender
+    doing: Doing = Doing.ABSENT
+    hello: Hello | None = None
+    gone_for_good: bool = False
+    restarts: int = 0
+    command: str | None = None
+    purpose: Purpose | None = None
+    holds_execution: bool = False
+    seen: dict[str, Sighting] = field(default_factory=dict)
+    gripper: Point = (0.0, 0.0, 0.0)
+    looked_at: float | None = None
+
+    @property
+    def free(self) -> bool:
+        """Whether it may be told something new without cutting short what it does."""
+        return self.doing is Doing.IDLE
+
+    @property
+    def interruptible(self) -> bool:
+        """Whether it only lets time pass, so that a new command may replace what it does."""
+        return self.doing is Doing.WAITING or (
+            self.doing is Doing.LOOKING and self.purpose in (Purpose.BASELINE, Purpose.WATCH)
+        )
+
+    def suitability(self, behavior: str) -> float:
+        """How well it can do a behavior; 0 if it cannot."""
+        if self.gone_for_good or self.hello is None or behavior not in self.hello.behaviors:
+            return 0.0
+        return self.hello.suitability.get(behavior, 1.0)
+
+    def connect(self, hello: Hello) -> None:
+        self.hello = hello
+        self.looked_at = None
+        self.command = self.purpose = None
+        executing = hello.executing
+        self.holds_execution = executing is not None and executing.state == "holding"
+        if executing is None or self.holds_execution:
+            self.doing = Doing.IDLE
+        elif executing.state == "retreating":
+            self.doing = Doing.RETREATING
+        else:
+            self.doing = Doing.WORKING
+
+    def hold_execution(self, holding: Holding) -> None:
+        """It has stopped; away from neutral it keeps what it was executing."""
+        self.holds_execution = holding.execution is not None and holding.at != "neutral"
+        if self.doing in (Doing.WORKING, Doing.RETREATING):
+            self.doing = Doing.IDLE
+
+    def disconnect(self) -> None:
+        self.doing = Doing.ABSENT
+
+    def _tell(self, doing: Doing, command: str, body: CommandBody) -> None:
+        self.doing, self.command = doing, command
+        self.link.send(self.robot, command, body)
+
+    def look(self, purpose: Purpose, **fields: Any) -> None:
+        """Look, for a purpose; `fields` are those of the `look` command."""
+        self.purpose = purpose
+        self._tell(Doing.LOOKING, str(uuid4()), Look(**fields))
+
+    def hold(self, until: float, rate: float | None) -> None:
+        """Simulated worlds: let time pass until `until` (the robot's clock)."""
+        self._tell(Doing.WAITING, str(uuid4()), Hold(until=until, rate=rate))
+
+    def start(
+        self,
+        execution: Execution,
+        node: str,
+        behavior: str,
+        parameters: dict[str, Any],
+        size: tuple[float, float, float] | None,
+        target: Location | None,
+    ) -> None:
+        self.looked_at = None
+        self.holds_execution = False
+        self._tell(
+            Doing.WORKING,
+            str(execution.id),
+            Start(
+                execution=str(execution.id),
+                node=node,
+                behavior=behavior,
+                parameters=parameters,
+                size=size,
+                target=target,
+            ),
+        )
+
+    def resume(self, execution: Execution) -> None:
+        self.holds_execution = False
+        self._tell(Doing.WORKING, str(uuid4()), Resume(execution=str(execution.id)))
+
+    def stop(self) -> None:
+        """Stop where it is."""
+        self._tell(Doing.RETREATING, str(uuid4()), Interrupt(retreat=False))
+
+    def retreat(self) -> None:
+        """Stop, let go and move to neutral; ends what it was executing."""
+        self.holds_execution = False
+        self._tell(Doing.RETREATING, str(uuid4()), Interrupt(retreat=True))
+
+    def intervene(self, command: str, deed: Intervention, by: str, at: float | None) -> None:
+        """Simulated worlds: a person does something, now or at `at` (the robot's clock)."""
+        self.link.send(self.robot, command, Intervene(intervention=deed, by=by, at=at))
+
+    def take_look(self, looked: Looked, time: float) -> Purpose | None:
+        """Note what a look saw; returns its purpose if it is the look that was last asked for."""
+        self.seen = dict(looked.objects)
+        self.gripper = (looked.gripper.x, looked.gripper.y, looked.gripper.z)
+        self.looked_at = time
+        if looked.command != self.command or self.doing is not Doing.LOOKING:
+            return None
+        self.doing = Doing.IDLE
+        return self.purpose

@@ -1,0 +1,326 @@
+"""The state of a run: a fold over its events, and nothing else."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from datetime import datetime
+from functools import singledispatchmethod
+from typing import Literal
+from uuid import UUID
+
+from tasks.definition import TreeDefinition
+from tasks.task_tree import TaskTree
+
+from dialogue.conversation import Conversation
+from dialogue.script import CloseReason, Expectation, Help, Script, Turn
+from server.journal import events as ev
+from server.runtime.requests import RunRequest
+from server.runtime.views import RunResult, RunStatus
+from tasks.issue import Issue
+from tasks.scene import Scene
+
+
+@dataclass(slots=True)
+class Execution:
+    """One start of a leaf's behavior on a robot. `held`: the robot waits to be told to go on."""
+
+    id: UUID
+    leaf: int
+    robot: str
+    boot: str
+    step: int = 0
+    held: bool = False
+
+
+@dataclass(slots=True)
+class Claim:
+    """A helper says that they are on it; wall time."""
+
+    helper: str
+    until: datetime
+
+
+@dataclass(slots=True)
+class DialogueState:
+    """One dialogue: its conversation, its latest prompt and what it waits for."""
+
+    opened: ev.DialogueOpened
+    raised: ev.IssueRaised
+    conversation: Conversation
+    calls: list[str] = field(default_factory=list)
+    prompt: ev.Prompt | None = None
+    asked: ev.Prompt | None = None
+    prompts: dict[UUID, ev.Prompt] = field(default_factory=dict)
+    answers: dict[UUID, ev.Answered] = field(default_factory=dict)
+    awaiting: ev.HelpAwaited | None = None
+    claim: Claim | None = None
+    resolved: ev.Resolved | None = None
+    closed: CloseReason | None = None
+    helps: int = 0
+    ask_number: int = 0
+
+    @property
+    def id(self) -> UUID:
+        return self.opened.dialogue
+
+    @property
+    def open_ask(self) -> ev.Prompt | None:
+        """The question that waits for an answer."""
+        if self.closed or self.awaiting or self.asked is None:
+            return None
+        return None if self.asked.prompt in self.answers else self.asked
+
+    def turns_after(self, call: str, script: Script) -> list[Turn]:
+        """What the conversation would say after one more call, without making it."""
+        return rehearse(script, self.raised, [*self.calls, call])
+
+    def advance(self, call: str) -> None:
+        """Make a call to the conversation."""
+        converse(self.conversation, call)
+        self.calls.append(call)
+
+
+def converse(conversation: Conversation, call: str) -> list[Turn]:
+    """Make a call by its name: `open`, `yes`, `no`, `seen`, `not_seen`, `put_right:...`, ..."""
+    verb, _, argument = call.partition(":")
+    if verb in ("yes", "no"):
+        return conversation.answer("yes" if verb == "yes" else "no")
+    if verb == "put_right":
+        return conversation.put_right(Expectation(argument))
+    calls = {
+        "open": conversation.open,
+        "seen": conversation.help_seen,
+        "not_seen": conversation.help_not_seen,
+        "silence": conversation.silence,
+        "abort": conversation.abort,
+    }
+    return calls[verb]()
+
+
+def rehearse(script: Script, raised: ev.IssueRaised, calls: Sequence[str]) -> list[Turn]:
+    """What a conversation says to the last of `calls`, made one after the other."""
+    conversation = Conversation(script, issue_of(raised))
+    turns: list[Turn] = []
+    for call in calls:
+        turns = converse(conversation, call)
+    return turns
+
+
+def issue_of(raised: ev.IssueRaised) -> Issue:
+    """The issue as dialogue scripts know it."""
+    return Issue(
+        kind=raised.issue,
+        robot=raised.robot,
+        node=raised.node,
+        name=raised.name,
+        object=raised.object,
+        place=raised.place,
+        step=raised.step,
+    )
+
+
+class RunState:
+    """Everything about a run that its events say."""
+
+    def __init__(self, started: ev.RunStarted, scripts: Mapping[str, Script]) -> None:
+        self.started = started
+        self.request = RunRequest.model_validate(started.options)
+        self.scene = Scene.model_validate(started.scene, strict=False)
+        self.tree = TaskTree(TreeDefinition.model_validate(started.tree))
+        self.status = RunStatus.RUNNING
+        self.result: RunResult | None = None
+        self.executions: dict[str, Execution] = {}
+        self.dialogues: dict[UUID, DialogueState] = {}
+        self.lost: set[str] = set()
+        self.exhausted: set[int] = set()
+        self.asks = 0
+        self.helps = 0
+        self.seq = started.seq
+        self.time = started.time
+        self.scripts = scripts
+        self._raised: ev.IssueRaised | None = None
+
+    @property
+    def id(self) -> UUID:
+        return self.started.run
+
+    @property
+    def open_dialogues(self) -> list[DialogueState]:
+        return [each for each in self.dialogues.values() if each.closed is None]
+
+    def execution_of(self, leaf: int) -> Execution | None:
+        """The execution of an active leaf."""
+        return next((each for each in self.executions.values() if each.leaf == leaf), None)
+
+    def dialogue_of(self, leaf: int) -> DialogueState | None:
+        """The open dialogue about a leaf."""
+        path = self.tree.path_of(leaf)
+        return next((each for each in self.open_dialogues if each.opened.node == path), None)
+
+    def fold(self, event: ev.Event) -> None:
+        """Apply one event; events come in order of `seq`."""
+        self._apply(event)
+        self.seq = max(self.seq, event.seq)
+        self.time = max(self.time, event.time)
+
+    @singledispatchmethod
+    def _apply(self, event: ev.Event) -> None:
+        """Events that leave no trace in the state."""
+
+    @_apply.register
+    def _(self, event: ev.NodeStarted) -> None:
+        leaf = self.tree.index_of(event.node)
+        self.tree.start(leaf, event.robot)
+        self.executions[event.robot] = Execution(event.execution, leaf, event.robot, event.boot)
+
+    @_apply.register
+    def _(self, event: ev.StepStarted) -> None:
+        execution = self.executions.get(event.robot)
+        if execution is not None and execution.id == event.execution:
+            execution.step = event.step
+
+    @_apply.register
+    def _(self, event: ev.RobotHolding) -> None:
+        if event.robot in self.executions:
+            self.executions[event.robot].held = True
+
+    @_apply.register
+    def _(self, event: ev.RobotResumed) -> None:
+        if event.robot in self.executions:
+            self.executions[event.robot].held = False
+
+    @_apply.register
+    def _(self, event: ev.IssueRaised) -> None:
+        self._raised = event
+        if event.interrupts:
+            self.executions[event.robot].held = True
+
+    @_apply.register
+    def _(self, event: ev.DialogueOpened) -> None:
+        assert self._raised is not None, "a dialogue opens right after its issue was raised"
+        script = self.scripts[event.issue]
+        dialogue = DialogueState(event, self._raised, Conversation(script, issue_of(self._raised)))
+        dialogue.advance("open")
+        self.dialogues[event.dialogue] = dialogue
+
+    @_apply.register
+    def _(self, event: ev.Prompt) -> None:
+        dialogue = self.dialogues[event.dialogue]
+        dialogue.prompt = dialogue.prompts[event.prompt] = event
+        if event.kind == "ask":
+            self.asks += 1
+            dialogue.ask_number = self.asks
+            dialogue.asked = event
+            dialogue.awaiting = None
+
+    @_apply.register
+    def _(self, event: ev.Claimed) -> None:
+        self.dialogues[event.dialogue].claim = Claim(event.helper, event.lease_until)
+
+    @_apply.register
+    def _(self, event: ev.Released) -> None:
+        self.dialogues[event.dialogue].claim = None
+
+    @_apply.register
+    def _(self, event: ev.Answered) -> None:
+        dialogue = self.dialogues[event.dialogue]
+        dialogue.answers[event.prompt] = event
+        dialogue.claim = None
+        dialogue.advance(event.answer)
+
+    @_apply.register
+    def _(self, event: ev.HelpAwaited) -> None:
+        dialogue = self.dialogues[event.dialogue]
+        dialogue.awaiting = event
+        dialogue.helps += 1
+        self.helps += 1
+
+    @_apply.register
+    def _(self, event: ev.HelpVerified) -> None:
+        dialogue = self.dialogues[event.dialogue]
+        dialogue.awaiting = None
+        dialogue.advance("seen")
+
+    @_apply.register
+    def _(self, event: ev.HelpNotSeen) -> None:
+        dialogue = self.dialogues[event.dialogue]
+        dialogue.awaiting = None
+        dialogue.advance("not_seen")
+
+    @_apply.register
+    def _(self, event: ev.Resolved) -> None:
+        self.dialogues[event.dialogue].resolved = event
+
+    @_apply.register
+    def _(self, event: ev.DialogueClosed) -> None:
+        dialogue = self.dialogues[event.dialogue]
+        dialogue.closed = event.reason
+        dialogue.awaiting = None
+        dialogue.claim = None
+
+    @_apply.register
+    def _(self, event: ev.NodeDone) -> None:
+        leaf = self.tree.index_of(event.node)
+        self.tree.finish(leaf)
+        self._end_execution(leaf)
+
+    @_apply.register
+    def _(self, event: ev.NodeReset) -> None:
+        leaf = self.tree.index_of(event.node)
+        self.tree.put_back(leaf, failed=event.failed_attempt)
+        self._end_execution(leaf)
+        if self.tree.attempts(leaf) >= self.request.max_attempts:
+            self.exhausted.add(leaf)
+
+    def _end_execution(self, leaf: int) -> None:
+        self.executions = {
+            robot: each for robot, each in self.executions.items() if each.leaf != leaf
+        }
+
+    @_apply.register
+    def _(self, event: ev.NodeAbandoned) -> None:
+        self.tree.abandon(self.tree.index_of(event.node))
+
+    @_apply.register
+    def _(self, _event: ev.RunPaused) -> None:
+        self.status = RunStatus.PAUSED
+        self.tree.running = False
+
+    @_apply.register
+    def _(self, _event: ev.RunResumed) -> None:
+        self.status = RunStatus.RUNNING
+        self.tree.running = True
+
+    @_apply.register
+    def _(self, event: ev.RunFinished) -> None:
+        self._end(RunStatus.FINISHED, RunResult(reason="the task is done", missing=event.missing))
+
+    @_apply.register
+    def _(self, event: ev.RunFailed) -> None:
+        self._end(RunStatus.FAILED, RunResult(reason=event.reason, node=event.node))
+
+    @_apply.register
+    def _(self, event: ev.RunAborted) -> None:
+        self._end(RunStatus.ABORTED, RunResult(reason=event.reason or "aborted by a person"))
+
+    def _end(self, status: RunStatus, result: RunResult) -> None:
+        self.status, self.result = status, result
+        self.tree.running = False
+
+    @_apply.register
+    def _(self, event: ev.RobotLost) -> None:
+        self.lost.add(event.robot)
+
+    @_apply.register
+    def _(self, event: ev.RobotBack) -> None:
+        self.lost.discard(event.robot)
+
+
+HelpExpectation = Literal["at_place", "in_reach", "in_gripper", "way_clear"]
+
+EXPECTED: dict[Help, HelpExpectation] = {
+    Help.PLACE: "at_place",
+    Help.PUT_BACK: "in_reach",
+    Help.HAND_OVER: "in_gripper",
+    Help.CLEAR_WAY: "way_clear",
+}
+"""What a camera has to see before a promise counts as kept."""

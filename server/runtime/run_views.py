@@ -1,0 +1,109 @@
+"""From a run's state to what clients see of it."""
+
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from server.runtime.run_state import DialogueState, RunState
+from server.runtime.views import (
+    DialogueView,
+    NodeView,
+    PromptView,
+    RunSummary,
+    RunView,
+)
+
+
+def summary(state: RunState, time: float) -> RunSummary:
+    """One line about a run."""
+    started = state.started
+    return RunSummary(
+        id=started.run,
+        tree=started.tree_name,
+        world=started.world,
+        scenario=started.scenario,
+        seed=started.seed,
+        speed=started.speed,
+        status=state.status,
+        time=time,
+        started=started.wall_time,
+        robots=started.robots,
+        result=state.result,
+    )
+
+
+def view(state: RunState, time: float, leaf_potentials: NDArray[np.float64]) -> RunView:
+    """Everything about a run; `leaf_potentials` has one value per node (0 for goal nodes)."""
+    return RunView(
+        **summary(state, time).model_dump(),
+        seq=state.seq,
+        nodes=node_views(state, leaf_potentials),
+        dialogues=[dialogue_view(each) for each in state.open_dialogues],
+        options=state.started.options,
+    )
+
+
+def node_views(state: RunState, leaf_potentials: NDArray[np.float64]) -> list[NodeView]:
+    """Every node in the tree's order, levels and potentials evaluated now."""
+    tree = state.tree
+    potentials = tree.potentials(leaf_potentials)
+    levels = tree.levels()
+    views = []
+    for node in range(len(tree)):
+        kind = tree.kind_of(node)
+        leaf = tree.is_leaf(node)
+        views.append(
+            NodeView(
+                node=tree.path_of(node),
+                name=tree.name_of(node),
+                kind=kind.value,
+                behavior=tree.behavior_of(node) if leaf else None,
+                object=tree.object_of(node) if leaf else None,
+                place=tree.place_of(node) if leaf else None,
+                activation_level=float(levels[node]),
+                activation_potential=float(potentials[node]),
+                active=tree.active(node),
+                done=tree.done(node),
+                abandoned=tree.abandoned(node),
+                owner=tree.owner(node),
+                attempts=tree.attempts(node) if leaf else 0,
+            )
+        )
+    return views
+
+
+def dialogue_view(dialogue: DialogueState) -> DialogueView:
+    """One dialogue as clients see it."""
+    opened, prompt = dialogue.opened, dialogue.prompt
+    awaiting: Literal["answer", "help"] | None = None
+    if dialogue.closed is None:
+        awaiting = "help" if dialogue.awaiting else "answer" if dialogue.open_ask else None
+    last_answer = next(reversed(dialogue.answers.values()), None)
+    return DialogueView(
+        dialogue=dialogue.id,
+        run=opened.run,
+        status="closed" if dialogue.closed else "open",
+        reason=dialogue.closed,
+        issue=opened.issue,
+        object=opened.object,
+        robot=opened.robot,
+        node=opened.node,
+        name=opened.name,
+        prompt=None
+        if prompt is None
+        else PromptView(
+            prompt=prompt.prompt,
+            version=prompt.version,
+            kind=prompt.kind,
+            text=prompt.text,
+            answers=prompt.answers,
+            deadline=prompt.deadline,
+            to=prompt.to,
+        ),
+        awaiting=awaiting,
+        answered_by=last_answer.helper if last_answer else None,
+        claimed_by=dialogue.claim.helper if dialogue.claim else None,
+        claimed_until=dialogue.claim.until if dialogue.claim else None,
+        picture=dialogue.raised.picture,
+    )

@@ -1,0 +1,490 @@
+"""The runtime: every run of the service, taken up again after a restart."""
+
+import asyncio
+import logging
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from datetime import datetime
+from functools import partial
+from typing import Any, Literal, Protocol, cast
+from uuid import UUID, uuid4
+
+import numpy as np
+from tasks.definition import TreeDefinition
+
+from dialogue.script import Script
+from robots.link.messages import CommandBody, Hello
+from server.dialogues.answers import answer_source
+from server.dialogues.escalation import EscalationPolicy
+from server.errors import ConflictError, InvalidError, NotFoundError
+from server.journal import events as ev
+from server.journal.journal import Entry, Journal
+from server.runtime.choosing import potentials_for
+from server.runtime.clock import RunClock, SimulatedClock, WallClock
+from server.runtime.context import RunContext, RunSettings
+from server.runtime.dialogue_driver import DialogueDriver
+from server.runtime.requests import RunRequest
+from server.runtime.robot_side import RobotSide
+from server.runtime.run import Hardware, Run
+from server.runtime.run_state import DialogueState, RunState
+from server.runtime.run_views import dialogue_view, summary, view
+from server.runtime.views import DialogueView, RobotView, RunSummary, RunView, Snapshot
+from tasks.intervention import Intervention
+from tasks.scenario import Person, Scenario
+from tasks.scene import Scene
+
+log = logging.getLogger(__name__)
+
+LIVE = "live"
+"""The world of real robots."""
+
+
+@dataclass(frozen=True, slots=True)
+class LoadedTree:
+    """A checked task tree; `scene` None where the file names none."""
+
+    name: str
+    definition: TreeDefinition
+    scene: Scene | None
+
+
+class TreeSource(Protocol):
+    """Where task trees come from."""
+
+    async def load(self, name: str) -> LoadedTree:
+        """Raises `NotFoundError` or `InvalidError`."""
+        ...
+
+
+class ScenarioSource(Protocol):
+    """Where scenarios come from."""
+
+    def load(self, name: str) -> Scenario:
+        """Raises `NotFoundError`."""
+        ...
+
+
+class Robots(Protocol):
+    """The service's end of the robot link."""
+
+    def assign(self, robot: str, sink: Run) -> None: ...
+
+    def unassign(self, robot: str) -> None: ...
+
+    def send(self, robot: str, command_id: str, body: CommandBody) -> None: ...
+
+    async def take_picture(self, robot: str, camera: str, timeout_s: float = 2.0) -> bytes: ...
+
+    def hello(self, robot: str) -> Hello | None: ...
+
+    def connected(self, robot: str) -> bool: ...
+
+    def known(self) -> list[str]: ...
+
+
+class Worlds(Protocol):
+    """The worlds that a run can be in, apart from `live`."""
+
+    def check(self, world: str) -> None:
+        """Raises `InvalidError` when there is no such world, or it cannot run here."""
+        ...
+
+    def lay_out(self, world: str, tree: LoadedTree, seed: int) -> Scene:
+        """A scene for a tree that has none. Raises `InvalidError` where the world cannot."""
+        ...
+
+    async def open(self, state: RunState, run: "Callable[[], Run]") -> Hardware:
+        """Start the simulated robot of a run; its world as the journal has it, if it has one."""
+        ...
+
+
+class Runtime:
+    """Implements `server.runtime.service.RunService`."""
+
+    def __init__(
+        self,
+        *,
+        journal: Journal,
+        robots: Robots,
+        worlds: Worlds,
+        trees: TreeSource,
+        scenarios: ScenarioSource,
+        scripts: Mapping[str, Script],
+        policy: EscalationPolicy,
+        send_mail: Callable[[RunState, ev.Escalated, DialogueState], None],
+        settings: RunSettings,
+        monotonic: Callable[[], float],
+        utc_now: Callable[[], datetime],
+    ) -> None:
+        self._journal = journal
+        self._robots = robots
+        self._worlds = worlds
+        self._trees = trees
+        self._scenarios = scenarios
+        self._scripts = scripts
+        self._policy = policy
+        self._send_mail = send_mail
+        self._settings = settings
+        self._monotonic = monotonic
+        self._utc_now = utc_now
+        self._states: dict[UUID, RunState] = {}
+        self._runs: dict[UUID, Run] = {}
+        self._tasks: dict[UUID, asyncio.Task[None]] = {}
+
+    # --- Beginning and ending -----------------------------------------------------------------
+
+    async def recover(self) -> None:
+        """Fold the journal, and take up every run that had not ended."""
+        for run in await self._journal.runs():
+            state = await self._refold(run, None)
+            if state is None:
+                continue
+            self._states[run] = state
+            if not state.status.ended:
+                await self._take_up(state)
+
+    async def close(self) -> None:
+        """Stop without ending any run: they are taken up at the next start."""
+        for task in self._tasks.values():
+            task.cancel()
+        await asyncio.gather(*self._tasks.values(), return_exceptions=True)
+
+    async def wait_for_end(self, run: UUID) -> RunView:
+        """Wait until a run has ended."""
+        if run in self._tasks:
+            await asyncio.wait([self._tasks[run]])
+        return self.run(run)
+
+    async def start_run(self, request: RunRequest) -> RunView:
+        """Begin a run. Raises `NotFoundError`, `InvalidError` or `ConflictError`."""
+        started = await self._started(request)
+        if request.world == LIVE:
+            self._check_robots(request.robots)
+        numbered = await self._journal.append(Entry(events=[started]))
+        state = RunState(cast(ev.RunStarted, numbered[0]), self._scripts)
+        self._states[state.id] = state
+        await self._take_up(state)
+        return self.run(state.id)
+
+    async def _started(self, request: RunRequest) -> ev.RunStarted:
+        scenario = self._scenarios.load(request.scenario) if request.scenario else None
+        if scenario is not None and scenario.tree != request.tree:
+            raise InvalidError(
+                f"scenario '{scenario.name}' is for the tree '{scenario.tree}', "
+                f"not '{request.tree}'"
+            )
+        tree = await self._trees.load(request.tree)
+        if request.world == LIVE:
+            scene = tree.scene or Scene(name="live", objects={}, places={})
+        else:
+            if request.robots:
+                raise InvalidError(
+                    f"'robots' is for the world 'live'; '{request.world}' brings its own"
+                )
+            self._worlds.check(request.world)
+            scene = tree.scene or self._worlds.lay_out(request.world, tree, request.seed)
+        if scenario is not None:
+            scene = _moved(scene, scenario)
+        run = uuid4()
+        return ev.RunStarted(
+            time=0.0,
+            wall_time=self._utc_now(),
+            run=run,
+            tree_name=tree.name,
+            tree=tree.definition.model_dump(mode="json"),
+            scene=scene.model_dump(mode="json"),
+            world=request.world,
+            robots=request.robots if request.world == LIVE else [f"pr2-{str(run)[:8]}"],
+            seed=request.seed,
+            speed=request.speed,
+            scenario=request.scenario,
+            options=request.model_dump(mode="json"),
+        )
+
+    def _check_robots(self, robots: list[str]) -> None:
+        if not robots:
+            raise InvalidError(
+                "a run in the world 'live' needs 'robots': the ids of connected ones"
+            )
+        busy = {robot: run for run, each in self._runs.items() for robot in each.sides}
+        for robot in robots:
+            if not self._robots.connected(robot):
+                raise NotFoundError(f"no robot '{robot}' is connected")
+            if robot in busy:
+                raise ConflictError(f"the robot '{robot}' is busy with run {busy[robot]}")
+
+    async def _take_up(self, state: RunState) -> None:
+        live = state.started.world == LIVE
+        clock: RunClock = (
+            WallClock(self._monotonic, state.time) if live else SimulatedClock(state.time)
+        )
+        context = RunContext(state, clock, self._journal, self._settings, self._utc_now)
+        sides = {robot: RobotSide(robot, cast(Any, self._robots)) for robot in state.started.robots}
+        scenario = self._scenario_of(state)
+        dialogues = DialogueDriver(
+            context,
+            answer_source(state.request, scenario),
+            self._policy,
+            None if live else _person_of(state, scenario),
+            partial(self._send_mail, state),
+        )
+        hardware = (
+            RealRobots(self._robots, list(sides))
+            if live
+            else await self._worlds.open(state, lambda: self._runs[state.id])
+        )
+        run = Run(context, sides, dialogues, hardware)
+        self._runs[state.id] = run
+        for robot in sides:
+            self._robots.assign(robot, run)
+        task = asyncio.create_task(run.main(), name=f"run {state.id}")
+        task.add_done_callback(partial(self._ended, state))
+        self._tasks[state.id] = task
+
+    def _ended(self, state: RunState, task: asyncio.Task[None]) -> None:
+        for robot in state.started.robots:
+            self._robots.unassign(robot)
+        self._runs.pop(state.id, None)
+        if not task.cancelled() and (error := task.exception()) is not None:
+            log.error("run %s stopped for a fault of ours", state.id, exc_info=error)
+
+    def _scenario_of(self, state: RunState) -> Scenario | None:
+        name = state.request.scenario
+        return self._scenarios.load(name) if name else None
+
+    # --- What there is ------------------------------------------------------------------------
+
+    def _state(self, run: UUID) -> RunState:
+        if run not in self._states:
+            raise NotFoundError(f"there is no run {run}")
+        return self._states[run]
+
+    def _time(self, state: RunState) -> float:
+        run = self._runs.get(state.id)
+        return run.context.clock.now() if run and not state.status.ended else state.time
+
+    def runs(self) -> list[RunSummary]:
+        """All runs, newest first."""
+        return [summary(state, self._time(state)) for state in reversed(self._states.values())]
+
+    def run(self, run: UUID) -> RunView:
+        """Everything about one run. Raises `NotFoundError`."""
+        return self._view(self._state(run))
+
+    def _view(self, state: RunState) -> RunView:
+        tree = state.tree
+        potentials = np.zeros(len(tree))
+        run = self._runs.get(state.id)
+        leaves = np.asarray(tree.leaves(), dtype=np.intp)
+        for side in run.sides.values() if run else ():
+            own = potentials_for(state, side, leaves)
+            potentials[leaves] = np.maximum(potentials[leaves], own)
+        return view(state, self._time(state), potentials)
+
+    async def snapshot(self, seq: int | None) -> Snapshot:
+        """The state after event `seq`, or after the last one without it."""
+        head = self._journal.head
+        at = head if seq is None else min(seq, head)
+        views = []
+        for run in await self._journal.runs():
+            state: RunState | None = self._states.get(run)
+            if state is None or state.seq != await self._last_seq(run, at):
+                state = await self._refold(run, at)
+            if state is not None and not state.status.ended:
+                views.append(self._view(state))
+        return Snapshot(seq=at, runs=views, dialogues=[d for each in views for d in each.dialogues])
+
+    async def _last_seq(self, run: UUID, at: int) -> int:
+        """The last event of a run up to `at`, or -1 if its state may have gone beyond it."""
+        state = self._states[run]
+        if state.seq > at:
+            return -1
+        newer = await self._journal.read(state.seq, 1, run)
+        return -1 if newer and newer[0].seq <= at else state.seq
+
+    async def _refold(self, run: UUID, until: int | None) -> RunState | None:
+        """Fold a run's events again, up to `until`; None if it had not begun."""
+        state: RunState | None = None
+        after = 0
+        while events := await self._journal.read(after, 1000, run):
+            for event in events:
+                if until is not None and event.seq > until:
+                    return state
+                if state is None:
+                    state = RunState(cast(ev.RunStarted, event), self._scripts)
+                else:
+                    state.fold(event)
+            after = events[-1].seq
+        return state
+
+    # --- What people ask for ------------------------------------------------------------------
+
+    def _running(self, run: UUID) -> Run:
+        state = self._state(run)
+        if state.status.ended or run not in self._runs:
+            raise ConflictError(f"the run has ended ({state.status})")
+        return self._runs[run]
+
+    async def pause(self, run: UUID) -> RunView:
+        """Stop a run where it is. Raises `ConflictError` unless it is running."""
+        running = self._running(run)
+        await running.request(running.pause)
+        return self.run(run)
+
+    async def resume(self, run: UUID) -> RunView:
+        """Let a paused run go on. Raises `ConflictError` unless it is paused."""
+        running = self._running(run)
+        await running.request(running.resume)
+        return self.run(run)
+
+    async def abort(self, run: UUID) -> RunView:
+        """End a run. Raises `ConflictError` if it has ended."""
+        running = self._running(run)
+        await running.request(running.abort)
+        return self.run(run)
+
+    async def intervene(self, run: UUID, intervention: Intervention) -> None:
+        """Have a person do something in a simulated world. Raises `ConflictError`."""
+        running, state = self._running(run), self._state(run)
+        if state.started.world == LIVE:
+            raise ConflictError("a run in the world 'live' has no simulated person")
+        _check_intervention(state.scene, intervention)
+        for side in running.sides.values():
+            side.intervene(str(uuid4()), intervention, "api", None)
+
+    async def picture(self, run: UUID, camera: str) -> bytes:
+        """A camera's picture now, as JPEG. Raises `NotFoundError` or `ConflictError`."""
+        running = self._running(run)
+        for robot, side in running.sides.items():
+            if side.hello is not None and camera in side.hello.cameras:
+                return await self._robots.take_picture(robot, camera)
+        raise NotFoundError(f"no robot of this run has a camera '{camera}'")
+
+    # --- Dialogues ----------------------------------------------------------------------------
+
+    def dialogues(self, status: Literal["open", "closed"] | None) -> list[DialogueView]:
+        """Every dialogue, oldest first."""
+        views = [
+            dialogue_view(each)
+            for state in self._states.values()
+            for each in state.dialogues.values()
+        ]
+        return [each for each in views if status is None or each.status == status]
+
+    def _dialogue(self, dialogue: UUID) -> tuple[RunState, DialogueState]:
+        for state in self._states.values():
+            if dialogue in state.dialogues:
+                return state, state.dialogues[dialogue]
+        raise NotFoundError(f"there is no dialogue {dialogue}")
+
+    def dialogue(self, dialogue: UUID) -> DialogueView:
+        """One dialogue. Raises `NotFoundError`."""
+        return dialogue_view(self._dialogue(dialogue)[1])
+
+    async def answer(
+        self, dialogue: UUID, prompt: UUID, answer: Literal["yes", "no"], helper: str
+    ) -> ev.Answered:
+        """Answer a prompt: the first answer wins.
+
+        Raises `NotFoundError`, `LostRaceError` or `ConflictError`.
+        """
+        state, found = self._dialogue(dialogue)
+        run = self._runs.get(state.id)
+        if run is None:
+            raise ConflictError(f"the run has ended ({state.status})")
+        side = run.sides[found.opened.robot]
+        answered = await run.request(
+            lambda: run.dialogues.answer(found, prompt, answer, helper, side)
+        )
+        return cast(ev.Answered, answered)
+
+    async def claim(self, dialogue: UUID, helper: str) -> DialogueView:
+        """Show the others that a helper is on it. Raises `ConflictError` while another is."""
+        state, found = self._dialogue(dialogue)
+        run = self._running(state.id)
+        await run.request(lambda: run.claims.claim(found, helper))
+        return dialogue_view(found)
+
+    async def release(self, dialogue: UUID, helper: str) -> DialogueView:
+        """Give up a claim. Raises `ConflictError` without one."""
+        state, found = self._dialogue(dialogue)
+        run = self._running(state.id)
+        await run.request(lambda: run.claims.release(found, helper))
+        return dialogue_view(found)
+
+    # --- Robots -------------------------------------------------------------------------------
+
+    def robots(self) -> list[RobotView]:
+        """Every robot that is or was connected."""
+        owners = {robot: run for run in self._runs.values() for robot in run.sides}
+        return [
+            _robot_view(
+                robot, self._robots.hello(robot), self._robots.connected(robot), owners.get(robot)
+            )
+            for robot in self._robots.known()
+        ]
+
+
+class RealRobots:
+    """The robots of a `live` run: nothing to start again, only to let go of."""
+
+    simulated = False
+
+    def __init__(self, robots: Robots, assigned: list[str]) -> None:
+        self._robots = robots
+        self._assigned = assigned
+
+    async def restart(self, robot: str) -> None:
+        """A real robot comes back by itself."""
+
+    async def release(self) -> None:
+        """The runtime unassigns them."""
+
+
+def _person_of(state: RunState, scenario: Scenario | None) -> Person:
+    if state.request.person is not None:
+        return state.request.person
+    return scenario.person if scenario is not None else Person()
+
+
+def _moved(scene: Scene, scenario: Scenario) -> Scene:
+    """The scene with the objects where the scenario wants them. Raises `InvalidError`."""
+    unknown = sorted(set(scenario.scene) - set(scene.objects))
+    if unknown:
+        raise InvalidError(
+            f"scenario '{scenario.name}' moves '{unknown[0]}', which scene '{scene.name}' "
+            "does not have"
+        )
+    objects = {
+        name: part.model_copy(update={"pose": scenario.scene.get(name, part.pose)})
+        for name, part in scene.objects.items()
+    }
+    return scene.model_copy(update={"objects": objects})
+
+
+def _check_intervention(scene: Scene, intervention: Intervention) -> None:
+    if intervention.object is not None and intervention.object not in scene.objects:
+        raise InvalidError(f"the scene '{scene.name}' has no object '{intervention.object}'")
+    if intervention.place is not None and intervention.place not in scene.places:
+        raise InvalidError(f"the scene '{scene.name}' has no place '{intervention.place}'")
+
+
+def _robot_view(robot: str, hello: Hello | None, connected: bool, run: Run | None) -> RobotView:
+    side = run.sides[robot] if run else None
+    state: Literal["idle", "working", "holding", "lost"] = "idle"
+    if not connected:
+        state = "lost"
+    elif run is not None and side is not None:
+        execution = run.context.state.executions.get(robot)
+        if execution is not None:
+            state = "holding" if execution.held else "working"
+    return RobotView(
+        robot=robot,
+        connected=connected,
+        simulated=bool(hello and hello.simulated),
+        behaviors=hello.behaviors if hello else [],
+        cameras=hello.cameras if hello else [],
+        reach=hello.reach.model_dump() if hello else None,
+        run=run.context.state.id if run else None,
+        state=state,
+    )

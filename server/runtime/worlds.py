@@ -1,0 +1,129 @@
+"""Simulated worlds of runs: starting their robots, and starting them again where they were."""
+
+from collections.abc import Awaitable, Callable, Mapping
+from functools import partial
+from typing import Protocol
+
+import numpy as np
+
+from server.errors import InvalidError
+from server.journal.journal import Journal
+from server.runtime.run import Run
+from server.runtime.run_state import RunState
+from server.runtime.runtime import LoadedTree
+from sim.mischief import random_interventions
+from sim.world import WorldAdapter, WorldSetup, WorldUnavailableError
+from tasks.scenario import Scenario, ScriptedIntervention
+from tasks.scene import Scene
+
+
+class RobotHandle(Protocol):
+    """A simulated robot that runs, in its own process or in this one."""
+
+    async def stop(self) -> None: ...
+
+
+Launch = Callable[[str, WorldSetup, Callable[[str], None]], Awaitable[RobotHandle]]
+"""Starts a world's robot: the world's name, its setup, and what to call (a reason) if it ends."""
+
+
+class SimulatedWorlds:
+    """The worlds of the entry point group `mend.worlds`."""
+
+    def __init__(
+        self,
+        adapters: Mapping[str, WorldAdapter],
+        journal: Journal,
+        launch: Launch,
+        scenario: Callable[[str], Scenario],
+    ) -> None:
+        self._adapters = adapters
+        self._journal = journal
+        self._launch = launch
+        self._scenario = scenario
+
+    def check(self, world: str) -> None:
+        """Raise `InvalidError` when there is no such world, or it cannot run here."""
+        if world not in self._adapters:
+            known = ", ".join(["live", *self._adapters])
+            raise InvalidError(f"there is no world '{world}'; there are {known}")
+        try:
+            self._adapters[world].check_available()
+        except WorldUnavailableError as error:
+            raise InvalidError(str(error)) from error
+
+    def lay_out(self, world: str, tree: LoadedTree, seed: int) -> Scene:
+        """A scene for a tree that has none. Raises `InvalidError` where the world cannot."""
+        definition = tree.definition
+        try:
+            return self._adapters[world].lay_out(definition.objects(), definition.places(), seed)
+        except WorldUnavailableError as error:
+            raise InvalidError(f"tree '{tree.name}' names no scene: {error}") from error
+
+    async def open(self, state: RunState, run: Callable[[], Run]) -> "SimulatedHardware":
+        """Start the simulated robot of a run; its world as the journal has it, if it has one."""
+        hardware = SimulatedHardware(self._launch, self._journal, self._setup(state), state, run)
+        await hardware.restart(state.started.robots[0])
+        return hardware
+
+    def _setup(self, state: RunState) -> WorldSetup:
+        started, request = state.started, state.request
+        interventions: list[ScriptedIntervention] = []
+        if request.scenario:
+            interventions += self._scenario(request.scenario).interventions
+        if request.interventions == "random":
+            tree = state.tree
+            objects = [name for each in tree.leaves() if (name := tree.object_of(each))]
+            rng = np.random.default_rng([started.seed, len(objects)])
+            interventions += random_interventions(objects, state.scene, rng)
+        return WorldSetup(
+            robot=started.robots[0],
+            scene=state.scene,
+            seed=started.seed,
+            speed=None if started.speed == "max" else started.speed,
+            interventions=interventions,
+            options=dict(request.world_options),
+        )
+
+
+class SimulatedHardware:
+    """The simulated robot of one run; implements `server.runtime.run.Hardware`."""
+
+    simulated = True
+
+    def __init__(
+        self,
+        launch: Launch,
+        journal: Journal,
+        setup: WorldSetup,
+        state: RunState,
+        run: Callable[[], Run],
+    ) -> None:
+        self._launch = launch
+        self._journal = journal
+        self._setup = setup
+        self._state = state
+        self._run = run
+        self._handle: RobotHandle | None = None
+        self._life = 0
+
+    async def restart(self, robot: str) -> None:
+        """Start the robot (again), with its world as the journal has it."""
+        await self.release()
+        self._life += 1
+        snapshot = await self._journal.world(self._state.id)
+        setup = self._setup.model_copy(update={"robot": robot, "snapshot": snapshot})
+        ended = partial(self._ended, self._life, robot)
+        self._handle = await self._launch(self._state.started.world, setup, ended)
+
+    def _ended(self, life: int, robot: str, reason: str) -> None:
+        # The end of a robot that was already replaced is no news.
+        if life == self._life:
+            self._run().tell_lost(robot, reason)
+
+    async def release(self) -> None:
+        """Stop the robot."""
+        handle, self._handle = self._handle, None
+        self._life += 1
+        if handle is not None:
+            await handle.stop()

@@ -1,0 +1,50 @@
+"""Mischief: interventions at random, as a test of everything at once."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from sim.free_pose import free_pose
+from tasks.intervention import Act, Intervention
+from tasks.scenario import ScriptedIntervention, Trigger
+from tasks.scene import Scene
+
+_ACTS = (Act.STEAL, Act.MOVE, Act.BLOCK)
+_SHARES = (0.6, 0.25, 0.15)
+_ATTEMPTS = (1, 2)
+_ATTEMPT_SHARES = (0.8, 0.2)
+
+
+def random_interventions(
+    objects: Sequence[str], scene: Scene, rng: np.random.Generator, steps: int = 8
+) -> list[ScriptedIntervention]:
+    """Steal, move and block at random moments, at most once per two leaves.
+
+    `objects` are those that the tree's leaves handle, `steps` how many steps their behavior has.
+    """
+    handled = list(dict.fromkeys(objects))
+    count = int(rng.integers(0, (len(handled) + 1) // 2 + 1))
+    chosen = [handled[index] for index in rng.permutation(len(handled))[:count]]
+    return [
+        ScriptedIntervention(
+            when=Trigger(
+                object=each,
+                step=int(rng.integers(1, steps + 1)),
+                fraction=round(float(rng.random()), 3),
+                attempt=int(rng.choice(_ATTEMPTS, p=_ATTEMPT_SHARES)),
+            ),
+            do=_intervention(each, scene, rng),
+        )
+        for each in chosen
+    ]
+
+
+def _intervention(handled: str, scene: Scene, rng: np.random.Generator) -> Intervention:
+    act = _ACTS[int(rng.choice(len(_ACTS), p=_SHARES))]
+    if act is Act.BLOCK:
+        return Intervention(act=act)
+    if act is Act.MOVE and (to := free_pose(handled, scene, rng)) is not None:
+        return Intervention(act=act, object=handled, to=to)
+    return Intervention(
+        act=Act.STEAL, object=handled, manner="pull" if rng.random() < 0.5 else "vanish"
+    )

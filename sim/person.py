@@ -1,0 +1,69 @@
+"""The simulated person who keeps, more or less, what the helper promised."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from sim.free_pose import free_pose
+from tasks.intervention import Act, Intervention
+from tasks.scenario import Person
+from tasks.scene import Scene
+
+_ACTS = {
+    "place": Act.PLACE,
+    "put_back": Act.PUT_BACK,
+    "hand_over": Act.HAND_OVER,
+    "clear_way": Act.RELEASE,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Promise:
+    """What was promised: `help` is a dialogue's word for it (`place`, `put_back`, ...)."""
+
+    help: str
+    object: str | None
+    place: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class Deed:
+    """What the person really does, `delay_s` after the promise on the run's clock."""
+
+    intervention: Intervention
+    delay_s: float
+
+
+def deed(
+    promise: Promise,
+    person: Person,
+    scene: Scene,
+    others: Sequence[str],
+    rng: np.random.Generator,
+) -> Deed | None:
+    """What comes of a promise; None when nothing does.
+
+    `others` are the objects that the person may confuse with the promised one. Raises `ValueError`
+    for help that nobody can give.
+    """
+    if promise.help not in _ACTS:
+        known = ", ".join(_ACTS)
+        raise ValueError(f"a person cannot give the help '{promise.help}', only {known}")
+    act = _ACTS[promise.help]
+    # Always as many draws, so that one probability does not change what another one decides.
+    never, late, wrong_object, wrong_place = rng.random(4)
+    if not person.acts or never < person.never:
+        return None
+    delay_s = person.delay_s + (person.late_s if late < person.late else 0.0)
+    if act is Act.RELEASE:
+        return Deed(Intervention(act=act), delay_s)
+    if promise.object is None:
+        return None
+    handled = promise.object
+    if others and wrong_object < person.wrong_object:
+        handled = others[int(rng.integers(len(others)))]
+    if wrong_place < person.wrong_place and (to := free_pose(handled, scene, rng)) is not None:
+        return Deed(Intervention(act=Act.MOVE, object=handled, to=to), delay_s)
+    place = promise.place if act is Act.PLACE else None
+    return Deed(Intervention(act=act, object=handled, place=place), delay_s)

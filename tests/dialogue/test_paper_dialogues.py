@@ -1,0 +1,47 @@
+"""The dialogues of the paper's Section 4.1, walked with its scenario's answers."""
+
+from collections.abc import Iterator
+
+from dialogue.conversation import Conversation, Phase
+from dialogue.registry import load_scripts
+from dialogue.script import Close
+from tasks.issue import Issue
+from tasks.resolution import Resolution
+from tasks.scenario_file import load_scenario
+
+ISSUES = [
+    ("dropped", "pink_bar"),
+    ("dropped", "yellow_bar"),
+    ("positioning", "yellow_bar"),
+    ("missed", "blue_leg"),
+    ("positioning", "blue_leg"),
+    ("unreachable", "purple_top"),
+]
+
+
+def resolution_of(kind: str, handled: str, answers: Iterator[str]) -> Resolution | None:
+    """How the dialogue ends when help is seen as soon as it is promised."""
+    issue = Issue(kind, "pr2", "/0", handled, handled, None, 5)
+    conversation = Conversation(load_scripts()[kind], issue)
+    turns = conversation.open()
+    while conversation.phase is not Phase.CLOSED:
+        if conversation.phase is Phase.AWAITING_HELP:
+            turns += conversation.help_seen()
+        else:
+            turns += conversation.answer("yes" if next(answers) == "yes" else "no")
+    close = turns[-1]
+    assert isinstance(close, Close)
+    return close.resolution
+
+
+def test_the_papers_answers_lead_to_the_papers_resolutions_and_none_is_left_over() -> None:
+    answers = iter(load_scenario("eket_paper").answers)
+    assert [resolution_of(kind, handled, answers) for kind, handled in ISSUES] == [
+        Resolution.HUMAN_FINISH,
+        Resolution.ROBOT_RETRY,
+        Resolution.COLLAB_FINISH,
+        Resolution.ROBOT_RETRY,
+        Resolution.COLLAB_FINISH,
+        Resolution.ROBOT_FINISH,
+    ]
+    assert list(answers) == []

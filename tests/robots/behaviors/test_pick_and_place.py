@@ -1,0 +1,57 @@
+"""Pick and place lays out the paper's eight steps."""
+
+import pytest
+from drawn_scene import PARTS, TABLE_Z
+
+from robots.behaviors.behavior import Move, SetGripper, Situation
+from robots.behaviors.pick_and_place import APPROACH_M, PickAndPlace, PickAndPlaceParameters
+from robots.grasp import RELEASE_CLEARANCE_M, grasp_of
+from robots.link.messages import Location
+
+PARAMETERS = PickAndPlaceParameters(object="pink_bar", place="left")
+FOUND = Location(x=0.45, y=-0.30, z=TABLE_Z + 0.04, yaw=0.2)
+TARGET = Location(x=0.55, y=0.05)
+
+
+def lay_out(found=FOUND, target=TARGET, part=PARTS["pink_bar"]):
+    return PickAndPlace().steps(PARAMETERS, Situation(part, found, target, TABLE_Z))
+
+
+def test_the_eight_steps_have_their_names_and_actions() -> None:
+    steps = lay_out()
+    assert [each.name for each in steps] == [
+        "above pick",
+        "pick",
+        "close gripper",
+        "above pick",
+        "above place",
+        "place",
+        "open gripper",
+        "above place",
+    ]
+    assert [number for number, each in enumerate(steps, 1) if isinstance(each.action, Move)] == [
+        1, 2, 4, 5, 6, 8,
+    ]  # fmt: skip
+    assert steps[2].action == SetGripper("closed")
+    assert steps[6].action == SetGripper("open")
+
+
+def test_pick_and_place_heights_come_from_the_grasp() -> None:
+    above_pick, pick, *_ = (each.action.to for each in lay_out() if isinstance(each.action, Move))
+    place = lay_out()[5].action
+    height_m = grasp_of(PARTS["pink_bar"]).height_m
+    assert pick.z == pytest.approx(TABLE_Z + 0.04 + height_m)
+    assert above_pick.z == pytest.approx(pick.z + APPROACH_M)
+    assert isinstance(place, Move)
+    assert place.to.z == pytest.approx(TABLE_Z + height_m + RELEASE_CLEARANCE_M)
+    assert (place.to.x, place.to.y) == (TARGET.x, TARGET.y)
+
+
+def test_an_object_in_the_gripper_needs_no_pick_pose() -> None:
+    carried = lay_out(found=None)
+    assert carried[4:] == lay_out()[4:]
+
+
+def test_an_unknown_place_is_refused() -> None:
+    with pytest.raises(ValueError, match="expects a known object and a known place"):
+        lay_out(target=None)

@@ -1,0 +1,145 @@
+"""Monitors, each with scripted views: when it speaks, when it is silent, what it says."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from drawn_scene import PARTS, TABLE_Z, DrawnScene
+from pydantic import ValidationError
+
+from robots.body import Reach
+from robots.monitors.blocked import Blocked
+from robots.monitors.dropped import Dropped
+from robots.monitors.missed import Missed
+from robots.monitors.missing import Missing
+from robots.monitors.monitor import Meanwhile, Monitor, MonitorView
+from robots.monitors.positioning import Positioning
+from robots.monitors.unreachable import Unreachable
+from robots.vision.blob import Blob
+from robots.vision.forearm import GripReading, GripState
+from robots.vision.head import HeadSighting
+from robots.vision.obstruction import Obstruction
+from tasks.plugins import load_plugins
+
+BLOB = Blob((50.0, 60.0), 200, (40, 50, 20, 20), np.zeros((120, 160), np.uint8))
+SEEN = HeadSighting(0.5, -0.2, TABLE_Z, 0.0, TABLE_Z + 0.04, True, BLOB, 0.0)
+VIEW = MonitorView(
+    time_s=1.0,
+    step=0,
+    part=PARTS["pink_bar"],
+    needs_help=False,
+    reach=Reach((0.0, 0.0), 0.3, 0.8),
+    table_z=TABLE_Z,
+    sighting=SEEN,
+)
+
+
+def grip(state: GripState) -> GripReading:
+    image = DrawnScene().picture(with_depth=False)
+    return GripReading(
+        "pink_bar", state, False, BLOB, (80.0, 60.0), 5.0, 30.0, (80.0, 60.0), 300.0, image
+    )
+
+
+@pytest.mark.parametrize(
+    ("kind", "start", "stop", "meanwhile"),
+    [
+        (Missing, 0, 0, Meanwhile.DO_NOT_START),
+        (Unreachable, 0, 0, Meanwhile.DO_NOT_START),
+        (Missed, 1, 4, Meanwhile.GO_TO_NEUTRAL),
+        (Dropped, 4, 5, Meanwhile.GO_TO_NEUTRAL),
+        (Positioning, 5, 5, Meanwhile.SLOW_DOWN),
+        (Blocked, 0, 8, Meanwhile.STOP_IN_PLACE),
+    ],
+)
+def test_each_is_registered_and_watches_its_steps(kind, start, stop, meanwhile) -> None:
+    assert load_plugins("mend.monitors")[kind.issue] is kind
+    monitor: Monitor = kind.create({})
+    assert [step for step in range(10) if monitor.watches(step)] == list(range(start, stop + 1))
+    assert monitor.meanwhile is meanwhile
+    assert monitor.interrupts is (kind is not Positioning)
+
+
+@pytest.mark.parametrize("kind", [Missing, Unreachable, Missed, Dropped, Positioning, Blocked])
+def test_none_speaks_when_all_is_well(kind) -> None:
+    monitor: Monitor = kind.create({})
+    for step in range(9):
+        held = grip(GripState.HELD) if step in (4, 5) else None
+        assert monitor.check(replace(VIEW, step=step, grip=held, contact_forces_n=(2.0,))) is None
+
+
+def test_missing_speaks_of_what_is_nowhere_but_not_of_what_is_in_the_gripper() -> None:
+    detection = Missing.create({}).check(replace(VIEW, sighting=None))
+    assert detection is not None
+    assert "pink_bar is nowhere" in detection.explanation
+    assert Missing.create({}).check(
+        replace(VIEW, sighting=None, grip=grip(GripState.HELD))
+    ) is None  # fmt: skip
+    assert Missing.create({}).check(replace(VIEW, sighting=None, part=None)) is None
+
+
+@pytest.mark.parametrize(
+    ("x", "z", "path_found", "says"),
+    [
+        (0.95, TABLE_Z, True, "0.97 m away; the arm grasps 0.30 to 0.80 m"),
+        (0.1, TABLE_Z, True, "0.22 m away"),
+        (0.5, TABLE_Z, False, "finds no path"),
+        (0.5, TABLE_Z - 0.05, True, "toppled over"),
+    ],
+)
+def test_unreachable_says_why(x, z, path_found, says) -> None:
+    sighting = replace(SEEN, x=x, z=z)
+    detection = Unreachable.create({}).check(
+        replace(VIEW, sighting=sighting, path_found=path_found)
+    )
+    assert detection is not None
+    assert says in detection.explanation
+    assert detection.center == BLOB.center
+
+
+def test_unreachable_keeps_its_margin() -> None:
+    near_the_end = replace(VIEW, sighting=replace(SEEN, x=0.75))
+    assert Unreachable.create({}).check(near_the_end) is None
+    assert Unreachable.create({"margin_m": 0.1}).check(near_the_end) is not None
+
+
+@pytest.mark.parametrize("state", list(GripState))
+def test_missed_and_dropped_never_speak_of_the_same_grip(state: GripState) -> None:
+    view = replace(VIEW, step=4, grip=grip(state))
+    missed, dropped = Missed.create({}).check(view), Dropped.create({}).check(view)
+    assert (missed is not None) is (state is GripState.ABSENT)
+    assert (dropped is not None) is (state is GripState.LOST)
+    for detection in (missed, dropped):
+        if detection is not None:
+            assert detection.camera == "forearm"
+            assert detection.center == BLOB.center
+            assert detection.expected == (80.0, 60.0)
+
+
+def test_positioning_speaks_of_what_needs_help() -> None:
+    assert Positioning.create({}).check(replace(VIEW, step=5, needs_help=True)) is not None
+
+
+def test_blocked_counts_cycles_across_checks() -> None:
+    monitor = Blocked.create({"limit_n": 10.0, "cycles": 3})
+    assert monitor.check(replace(VIEW, step=5, contact_forces_n=(15.0, 15.0))) is None
+    assert monitor.check(replace(VIEW, step=5, contact_forces_n=(5.0, 15.0, 15.0))) is None
+    detection = monitor.check(replace(VIEW, step=5, contact_forces_n=(17.0,)))
+    assert detection is not None
+    assert "17 N" in detection.explanation
+
+
+def test_blocked_heeds_the_path_check_before_the_first_step_only() -> None:
+    in_the_way = Obstruction((0.5, -0.1, 0.9), (100.0, 80.0), 300)
+    monitor = Blocked.create({})
+    before = monitor.check(replace(VIEW, obstruction=in_the_way))
+    assert before is not None
+    assert before.center == (100.0, 80.0)
+    assert monitor.check(replace(VIEW, step=5, obstruction=in_the_way)) is None
+
+
+def test_wrong_parameters_are_refused() -> None:
+    with pytest.raises(ValidationError, match="limit_n"):
+        Blocked.create({"limit_n": -1.0})
+    with pytest.raises(ValidationError, match="colour"):
+        Missing.create({"colour": "pink"})

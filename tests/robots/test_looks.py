@@ -1,0 +1,221 @@
+"""Looks: what is seen, and waiting until what was promised has come to be."""
+
+import math
+
+import pytest
+from robot_bench import RobotBench
+from scripted_body import HAND_OVER, NEUTRAL, STARTS
+
+from robots.link.messages import (
+    Finished,
+    Holding,
+    Interrupt,
+    IssueDetected,
+    Looked,
+    Resume,
+    Resumed,
+)
+
+
+def hold_with_issue(bench: RobotBench, name: str = "pink_bar") -> None:
+    """Bring a robot to hold at neutral because the object is missing."""
+    bench.body.vanish(name)
+    bench.start(name)
+    bench.run()
+    assert bench.of(IssueDetected)[-1].issue == "missing"
+
+
+def looked(bench: RobotBench) -> Looked:
+    bench.run()
+    return bench.of(Looked)[-1]
+
+
+def test_a_plain_look_sees_all_and_says_where_the_gripper_is() -> None:
+    bench = RobotBench()
+    bench.look()
+    seen = looked(bench)
+    assert set(seen.objects) == set(STARTS)
+    assert seen.fulfilled is None
+    for name, where in STARTS.items():
+        assert math.dist((seen.objects[name].x, seen.objects[name].y), (where.x, where.y)) < 0.003
+    assert math.dist((seen.gripper.x, seen.gripper.y), (NEUTRAL.x, NEUTRAL.y)) < 0.001
+
+
+def test_the_arm_clears_the_view_first() -> None:
+    bench = RobotBench()
+    bench.start("pink_bar")
+    bench.run()
+    assert bench.body.tool != NEUTRAL
+    bench.look()
+    bench.run()
+    assert bench.body.tool == NEUTRAL
+
+
+def test_what_comes_to_its_place_in_time_is_seen() -> None:
+    bench = RobotBench()
+    hold_with_issue(bench)
+    asked_s = bench.robot.time_s()
+
+    def place() -> None:
+        if bench.robot.time_s() > asked_s + 1.7 and "pink_bar" not in bench.body.parts:
+            bench.body.parts["pink_bar"] = type(STARTS["pink_bar"])(0.55, 0.05)
+
+    bench.body.at_cycle = place
+    bench.look(expect="at_place", object="pink_bar", place="left", within_s=10.0)
+    seen = looked(bench)
+    assert seen.fulfilled is True
+    assert 1.7 < bench.robot.time_s() - asked_s < 2.6
+
+
+def test_what_does_not_come_is_given_up_in_time() -> None:
+    bench = RobotBench()
+    hold_with_issue(bench)
+    asked_s = bench.robot.time_s()
+    bench.look(expect="at_place", object="pink_bar", place="left", within_s=3.2)
+    assert looked(bench).fulfilled is False
+    assert bench.robot.time_s() - asked_s == pytest.approx(3.2, abs=0.05)
+
+
+def test_a_wrong_place_and_a_wrong_height_do_not_count() -> None:
+    bench = RobotBench()
+    resting = type(STARTS["pink_bar"])
+    for x, z in ((0.58, 0.7), (0.55, 0.74)):
+        bench.body.parts["pink_bar"] = resting(x, 0.05, z)
+        bench.look(expect="at_place", object="pink_bar", place="left")
+        assert looked(bench).fulfilled is False
+
+
+def test_in_reach_waits_until_the_object_rests() -> None:
+    bench = RobotBench()
+    hold_with_issue(bench)
+    resting = type(STARTS["pink_bar"])
+    began_s = bench.robot.time_s()
+
+    def carry() -> None:
+        passed = bench.robot.time_s() - began_s
+        bench.body.parts["pink_bar"] = resting(0.45, -0.5 + 0.1 * min(passed, 2.0))
+
+    bench.body.at_cycle = carry
+    bench.look(expect="in_reach", object="pink_bar", within_s=8.0)
+    assert looked(bench).fulfilled is True
+    assert bench.robot.time_s() - began_s > 2.0
+
+
+def test_out_of_reach_is_not_in_reach() -> None:
+    bench = RobotBench()
+    bench.body.parts["pink_bar"].x = 0.95
+    bench.look(expect="in_reach", object="pink_bar", within_s=1.5)
+    assert looked(bench).fulfilled is False
+    bench.body.parts["pink_bar"].x = 0.45
+
+
+def test_a_look_does_not_end_what_is_held() -> None:
+    bench = RobotBench()
+    hold_with_issue(bench)
+    bench.body.parts["pink_bar"] = STARTS["pink_bar"]
+    bench.look(expect="in_reach", object="pink_bar", within_s=5.0)
+    assert looked(bench).fulfilled is True
+    bench.send(Resume(execution="e1"))
+    bench.run()
+    assert bench.of(Finished) == [Finished(execution="e1")]
+
+
+@pytest.mark.parametrize("name", ["pink_bar", "purple_top"])
+def test_an_object_is_taken_from_a_person_and_placed(name: str) -> None:
+    bench = RobotBench()
+    hold_with_issue(bench, name)
+    asked_s = bench.robot.time_s()
+
+    def offer() -> None:
+        late = bench.robot.time_s() > asked_s + 4.0
+        if late and bench.body.in_hand is None and bench.body.held_out is None:
+            bench.body.hold_out(name)
+
+    bench.body.at_cycle = offer
+    bench.look(expect="in_gripper", object=name, within_s=20.0)
+    seen = looked(bench)
+    assert seen.fulfilled is True
+    assert bench.of(Holding)[-1] == Holding(execution="e1", at="hand_over")
+    assert bench.robot.time_s() - asked_s > 4.0
+    bench.body.at_cycle = lambda: None
+    bench.send(Resume(execution="e1"))
+    bench.run()
+    assert bench.of(Resumed) == [Resumed(execution="e1", step=5)]
+    assert bench.of(Finished) == [Finished(execution="e1")]
+    where = bench.body.parts[name]
+    assert math.dist((where.x, where.y), (0.55, 0.05)) < 0.004
+
+
+def test_nothing_handed_over_is_given_up_with_the_gripper_open() -> None:
+    bench = RobotBench()
+    hold_with_issue(bench)
+    bench.look(expect="in_gripper", object="pink_bar", within_s=6.0)
+    assert looked(bench).fulfilled is False
+    assert bench.body.tool.y == pytest.approx(HAND_OVER.y)
+    assert bench.body.gripper_opening_m() > 0.05
+    bench.look(expect="in_reach", object="green_leg", within_s=2.0)
+    assert looked(bench).fulfilled is True
+    assert bench.body.tool == NEUTRAL
+
+
+def test_the_wrong_object_is_not_taken() -> None:
+    bench = RobotBench()
+    hold_with_issue(bench)
+    bench.body.hold_out("green_leg")
+    bench.look(expect="in_gripper", object="pink_bar", within_s=5.0)
+    assert looked(bench).fulfilled is False
+    assert bench.body.in_hand is None
+
+
+def test_the_way_is_clear_once_nothing_pushes_or_stands_in_it() -> None:
+    bench = RobotBench()
+    bench.start("pink_bar")
+    bench.run_to(5, 0.5)
+    bench.body.force_n = 60.0
+    bench.run_until(IssueDetected)
+    where = bench.body.tool
+    bench.look(expect="way_clear", within_s=1.0)
+    assert looked(bench).fulfilled is False
+    bench.body.force_n = 0.0
+    bench.look(expect="way_clear", within_s=5.0)
+    assert looked(bench).fulfilled is True
+    assert bench.body.tool == where
+    bench.send(Resume(execution="e1"))
+    bench.run()
+    assert bench.of(Resumed) == [Resumed(execution="e1", step=5)]
+    assert bench.kinds()[-1] == "finished"
+
+
+def test_what_stands_in_the_way_of_a_held_start_is_seen_until_it_is_gone() -> None:
+    bench = RobotBench()
+    bench.body.grey_boxes.append(((0.5, -0.12, 0.7), (0.12, 0.12, 0.2)))
+    bench.start("pink_bar")
+    bench.run()
+    bench.look(expect="way_clear", within_s=1.0)
+    assert looked(bench).fulfilled is False
+    bench.body.grey_boxes.clear()
+    bench.look(expect="way_clear", within_s=1.0)
+    assert looked(bench).fulfilled is True
+
+
+def test_a_new_command_replaces_a_look_without_a_word() -> None:
+    bench = RobotBench()
+    hold_with_issue(bench)
+    bench.look(expect="in_reach", object="pink_bar", within_s=30.0)
+    bench.robot.advance(1.0)
+    bench.body.parts["pink_bar"] = STARTS["pink_bar"]
+    bench.start("pink_bar")
+    bench.run()
+    assert bench.of(Looked) == []
+    assert len(bench.of(Finished)) == 1
+
+
+def test_an_interrupt_ends_a_hand_over() -> None:
+    bench = RobotBench()
+    hold_with_issue(bench)
+    bench.look(expect="in_gripper", object="pink_bar", within_s=30.0)
+    bench.robot.advance(0.3)
+    assert bench.body.moving
+    bench.send(Interrupt(retreat=False))
+    assert not bench.body.moving
+    assert bench.of(Holding)[-1] == Holding(execution="e1", at="in_place")

@@ -1,0 +1,48 @@
+"""The path check: unknown things in the way are seen; table, parts and the arm are not."""
+
+import numpy as np
+import pytest
+from drawn_scene import TABLE_Z, DrawnScene, Resting
+from scripted_body import trained_model
+
+from robots.body import ToolPose
+from robots.vision.obstruction import Clearance, Obstruction, corridor, find_obstruction
+
+MODEL = trained_model()
+WAY = corridor([ToolPose(0.5, -0.4, TABLE_Z + 0.16, 0.0), ToolPose(0.5, 0.1, TABLE_Z + 0.16, 0.0)])
+BOX = ((0.5, -0.15, TABLE_Z), (0.1, 0.1, 0.2))
+
+
+def check(scene: DrawnScene, way=WAY, arm=()) -> Obstruction | None:
+    image = scene.picture()
+    return find_obstruction(image, MODEL.segment(image.bgr), way, arm, TABLE_Z, Clearance())
+
+
+def test_a_grey_box_in_the_way_is_seen_where_it_is() -> None:
+    found = check(DrawnScene(grey_boxes=[BOX]))
+    assert found is not None
+    assert np.allclose(found.position[:2], BOX[0][:2], atol=0.08)
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        DrawnScene(),
+        DrawnScene({"green_leg": Resting(0.5, -0.15, TABLE_Z + 0.1)}),
+        DrawnScene({"purple_top": Resting(0.5, -0.15, TABLE_Z + 0.1)}, noise=4.0),
+        DrawnScene(grey_boxes=[((0.5, -0.15, TABLE_Z), (0.1, 0.1, 0.015))]),
+        DrawnScene(grey_boxes=[((0.75, -0.15, TABLE_Z), (0.1, 0.1, 0.2))]),
+    ],
+    ids=["nothing", "a part", "a part in noise", "something flat", "something beside"],
+)
+def test_what_is_not_in_the_way_is_let_be(scene: DrawnScene) -> None:
+    assert check(scene) is None
+
+
+def test_the_arm_does_not_block_itself() -> None:
+    above = (np.array([0.5, -0.15, TABLE_Z]), np.array([0.5, -0.15, TABLE_Z + 0.4]))
+    assert check(DrawnScene(grey_boxes=[BOX]), arm=(above,)) is None
+
+
+def test_no_way_is_never_blocked() -> None:
+    assert check(DrawnScene(grey_boxes=[BOX]), way=[]) is None

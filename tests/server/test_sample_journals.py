@@ -1,0 +1,67 @@
+"""Journals that earlier versions of Mend wrote are read for ever."""
+
+import json
+import sqlite3
+from pathlib import Path
+
+import pytest
+
+from server.journal.events import AnyEvent
+from server.journal.migrations import MIGRATIONS
+from server.journal.sqlite import SqliteJournal
+from server.journal.upgrades import (
+    UnknownEventVersionError,
+    current_version,
+    upgrade_text,
+)
+
+SAMPLES = sorted((Path(__file__).parent / "journals").glob("v*.sql"))
+
+
+def test_there_is_a_sample_of_every_schema_version() -> None:
+    assert [sample.stem for sample in SAMPLES] == [f"v{n}" for n in range(1, len(MIGRATIONS) + 1)]
+
+
+@pytest.fixture(params=SAMPLES, ids=lambda sample: sample.stem)
+def sample_journal(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
+    path = tmp_path / "journal.db"
+    connection = sqlite3.connect(path)
+    connection.executescript(request.param.read_text())
+    connection.close()
+    return path
+
+
+async def test_sample_is_read_completely(sample_journal: Path) -> None:
+    journal = SqliteJournal(sample_journal)
+    events = await journal.read(0, 10_000)
+    assert [event.seq for event in events] == list(range(1, journal.head + 1))
+    assert {event.type for event in events} == every_event_type()
+    (run,) = await journal.runs()
+    assert await journal.read(0, 10_000, run) == events
+    assert await journal.world(run) is not None
+    issue = next(event for event in events if event.type == "issue_raised")
+    assert await journal.picture(issue.picture) is not None
+    assert await journal.received(issue.robot, "boot-1") > 0
+    assert await journal.trees()
+    journal.close()
+
+
+def every_event_type() -> set[str]:
+    union = AnyEvent.__origin__  # type: ignore[attr-defined]
+    return {each.model_fields["type"].default for each in union.__args__}
+
+
+def test_event_of_an_older_version_goes_through_every_upgrade_in_turn() -> None:
+    upgrades = (
+        lambda event: {"second": event["first"]},
+        lambda event: {**event, "third": event["second"] + 1},
+    )
+    assert current_version(upgrades) == 3
+    assert json.loads(upgrade_text('{"first": 1}', 1, upgrades)) == {"second": 1, "third": 2}
+    assert json.loads(upgrade_text('{"second": 5}', 2, upgrades)) == {"second": 5, "third": 6}
+    assert upgrade_text('{"third": 9}', 3, upgrades) == '{"third": 9}'
+
+
+def test_event_of_a_newer_version_is_refused() -> None:
+    with pytest.raises(UnknownEventVersionError, match="version 4"):
+        upgrade_text("{}", 4, ())

@@ -1,0 +1,201 @@
+import asyncio
+import math
+import sqlite3
+from collections.abc import Iterator
+from pathlib import Path
+from uuid import UUID, uuid4
+
+import pytest
+from sample_events import RUN, paused, started
+
+from server.journal.file_lock import JournalLockedError
+from server.journal.journal import (
+    DuplicateReceiptError,
+    Entry,
+    JournalClosedError,
+    JournalWriteError,
+    Receipt,
+)
+from server.journal.migrations import JournalSchemaError
+from server.journal.sqlite import SqliteJournal
+
+
+@pytest.fixture(params=["file", "memory"])
+def journal(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[SqliteJournal]:
+    journal = SqliteJournal(tmp_path / "journal.db" if request.param == "file" else ":memory:")
+    yield journal
+    journal.close()
+
+
+async def test_events_are_numbered_from_one_without_gaps(journal: SqliteJournal) -> None:
+    assert journal.head == 0
+    first = await journal.append(Entry(events=[started(), paused()]))
+    second = await journal.append(Entry(events=[paused(2.0)]))
+    assert [event.seq for event in first + second] == [1, 2, 3]
+    assert journal.head == 3
+    assert await journal.read(0, 10) == first + second
+    assert await journal.read(1, 1) == first[1:]
+
+
+async def test_concurrent_producers_share_one_sequence(journal: SqliteJournal) -> None:
+    async def produce(run: UUID) -> list[int]:
+        return [
+            event.seq
+            for _ in range(20)
+            for event in await journal.append(Entry(events=[paused(run=run), paused(run=run)]))
+        ]
+
+    runs = [uuid4() for _ in range(16)]
+    numbers = await asyncio.gather(*(produce(run) for run in runs))
+    assert sorted(seq for each in numbers for seq in each) == list(range(1, 641))
+    for run, mine in zip(runs, numbers, strict=True):
+        assert [event.seq for event in await journal.read(0, 1000, run)] == mine
+
+
+async def test_duplicate_receipt_commits_nothing_and_leaves_no_gap(journal: SqliteJournal) -> None:
+    receipt = Receipt("arm", "boot", 1)
+    await journal.append(Entry(events=[paused()], receipt=receipt))
+    picture = uuid4()
+    outcomes = await asyncio.gather(
+        journal.append(Entry(events=[paused(5.0)])),
+        journal.append(Entry(events=[paused(6.0)], receipt=receipt, pictures={picture: b"x"})),
+        journal.append(Entry(events=[paused(7.0)])),
+        return_exceptions=True,
+    )
+    assert isinstance(outcomes[1], DuplicateReceiptError)
+    assert [event.time for event in await journal.read(0, 10)] == [1.0, 5.0, 7.0]
+    assert journal.head == 3
+    assert await journal.picture(picture) is None
+
+
+async def test_receipts_are_kept_per_boot(journal: SqliteJournal) -> None:
+    await journal.append(Entry(receipt=Receipt("arm", "first", 4)))
+    await journal.append(Entry(receipt=Receipt("arm", "second", 1)))
+    assert await journal.received("arm", "first") == 4
+    assert await journal.received("arm", "second") == 1
+    assert await journal.received("other", "first") == 0
+
+
+async def test_latest_world_replaces_the_one_before(journal: SqliteJournal) -> None:
+    await journal.append(Entry(world_run=RUN, world={"clock": 1.0}))
+    await journal.append(Entry(world_run=RUN, world={"clock": 2.0}))
+    assert await journal.world(RUN) == {"clock": 2.0}
+    assert await journal.world(uuid4()) is None
+
+
+async def test_pictures_and_trees_are_kept(journal: SqliteJournal) -> None:
+    picture = uuid4()
+    await journal.append(Entry(pictures={picture: b"\xff\xd8jpeg"}))
+    await journal.save_tree("mine", "then: []")
+    await journal.save_tree("mine", "and: []")
+    assert await journal.picture(picture) == b"\xff\xd8jpeg"
+    assert await journal.trees() == {"mine": "and: []"}
+    assert await journal.delete_tree("mine")
+    assert not await journal.delete_tree("mine")
+
+
+async def test_runs_are_listed_in_the_order_in_which_they_began(journal: SqliteJournal) -> None:
+    runs = [uuid4() for _ in range(5)]
+    for run in runs:
+        await journal.append(Entry(events=[started(run), paused(run=run)]))
+    assert await journal.runs() == runs
+
+
+async def test_entry_that_cannot_be_written_is_refused_alone(journal: SqliteJournal) -> None:
+    outcomes = await asyncio.gather(
+        journal.append(Entry(events=[paused(1.0)])),
+        journal.append(Entry(events=[paused(2.0), paused(math.nan)])),
+        journal.append(Entry(events=[paused(3.0)], world_run=RUN, world={"bad": math.inf})),
+        journal.append(Entry(events=[paused(4.0)])),
+        return_exceptions=True,
+    )
+    assert isinstance(outcomes[1], sqlite3.IntegrityError)
+    assert isinstance(outcomes[2], ValueError)
+    assert [event.time for event in await journal.read(0, 10)] == [1.0, 4.0]
+    assert journal.head == 2
+
+
+async def test_cancelled_caller_does_not_take_its_entry_back(journal: SqliteJournal) -> None:
+    append = asyncio.ensure_future(journal.append(Entry(events=[paused()])))
+    await asyncio.sleep(0)
+    append.cancel()
+    await journal.append(Entry(events=[paused(2.0)]))
+    assert [event.time for event in await journal.read(0, 10)] == [1.0, 2.0]
+
+
+async def test_closed_journal_takes_nothing(journal: SqliteJournal) -> None:
+    journal.close()
+    journal.close()
+    with pytest.raises(JournalClosedError):
+        await journal.append(Entry(events=[paused()]))
+    with pytest.raises(JournalClosedError):
+        await journal.read(0, 1)
+
+
+async def test_reopened_journal_goes_on_where_it_was(tmp_path: Path) -> None:
+    first = SqliteJournal(tmp_path / "journal.db")
+    written = await first.append(Entry(events=[started(), paused()]))
+    first.close()
+    second = SqliteJournal(tmp_path / "journal.db")
+    assert second.head == 2
+    assert await second.read(0, 10) == written
+    assert (await second.append(Entry(events=[paused()])))[0].seq == 3
+    second.close()
+
+
+async def test_close_writes_what_was_waiting(tmp_path: Path) -> None:
+    journal = SqliteJournal(tmp_path / "journal.db")
+    appends = [
+        asyncio.ensure_future(journal.append(Entry(events=[paused(float(n))]))) for n in range(50)
+    ]
+    await asyncio.sleep(0)
+    journal.close()
+    await asyncio.gather(*appends)
+    again = SqliteJournal(tmp_path / "journal.db")
+    assert again.head == 50
+    again.close()
+
+
+async def test_failed_write_fails_its_callers_and_publishes_nothing(tmp_path: Path) -> None:
+    journal = SqliteJournal(tmp_path / "journal.db", busy_timeout_s=0.0)
+    await journal.append(Entry(events=[paused()]))
+    with journal.subscribe(after=1) as subscription:
+        blocker = sqlite3.connect(tmp_path / "journal.db", isolation_level=None)
+        blocker.execute("BEGIN IMMEDIATE")
+        outcomes = await asyncio.gather(
+            *(journal.append(Entry(events=[paused()])) for _ in range(3)), return_exceptions=True
+        )
+        assert all(isinstance(each, JournalWriteError) for each in outcomes)
+        assert "could not be written" in str(outcomes[0])
+        assert journal.head == 1
+        blocker.execute("ROLLBACK")
+        blocker.close()
+        (event,) = await journal.append(Entry(events=[paused(9.0)]))
+        assert event.seq == 2
+        assert [record.seq for record in await subscription.take()] == [2]
+    journal.close()
+
+
+def test_second_writer_of_one_journal_is_refused(tmp_path: Path) -> None:
+    first = SqliteJournal(tmp_path / "journal.db")
+    with pytest.raises(JournalLockedError, match="in use by another process"):
+        SqliteJournal(tmp_path / "journal.db")
+    first.close()
+    SqliteJournal(tmp_path / "journal.db").close()
+
+
+def test_file_that_is_no_journal_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "notes.txt"
+    path.write_text("not a database" * 200)
+    with pytest.raises(JournalSchemaError, match="not a journal"):
+        SqliteJournal(path)
+
+
+def test_journal_of_a_newer_mend_is_refused(tmp_path: Path) -> None:
+    SqliteJournal(tmp_path / "journal.db").close()
+    connection = sqlite3.connect(tmp_path / "journal.db")
+    connection.execute("INSERT INTO schema_version VALUES (99, '')")
+    connection.commit()
+    connection.close()
+    with pytest.raises(JournalSchemaError, match="version 99"):
+        SqliteJournal(tmp_path / "journal.db")
