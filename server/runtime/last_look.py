@@ -20,10 +20,10 @@ def missing_parts(state: RunState, seen: Mapping[str, Sighting]) -> list[Missing
     tree, scene = state.tree, state.scene
     done = [
         (leaf, name, place_name, scene.objects.get(name), scene.places.get(place_name))
-        for leaf in tree.leaves()
+        for leaf in tree.leaves
         if tree.done(leaf)
-        and (name := tree.object_of(leaf)) is not None
-        and (place_name := tree.place_of(leaf)) is not None
+        and (name := tree.leaf_definition(leaf).object) is not None
+        and (place_name := tree.leaf_definition(leaf).place) is not None
     ]
     missing = []
     for leaf, name, place_name, part, place in done:

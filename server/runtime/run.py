@@ -24,6 +24,7 @@ from robots.link.messages import (
     Rejected,
     Report,
     Resumed,
+    StepStarted,
 )
 from server.errors import ConflictError
 from server.journal import events as ev
@@ -271,8 +272,9 @@ class Run:
 
     async def _reported(self, side: RobotSide, report: Report, receipt: Receipt) -> None:
         self._context.clock.observe(report.time)
-        side.restarts = 0
         body = report.body
+        if isinstance(body, StepStarted):
+            side.restarts = 0
         events, pictures = self._reports.read(side, body)
         await self._context.commit(events, receipt=receipt, world=report.world, pictures=pictures)
         await self._after_report(side, body)
@@ -344,7 +346,7 @@ class Run:
         if side.holds_execution:
             side.retreat()
             return False
-        if state.tree.root_done:
+        if state.tree.done(0):
             if not state.executions:
                 side.look(Purpose.LAST)
             return False
@@ -380,13 +382,13 @@ class Run:
     def _start(self, side: RobotSide, execution: Execution) -> None:
         state = self._context.state
         tree, scene = state.tree, state.scene
-        part = scene.objects.get(tree.object_of(execution.leaf) or "")
-        place = scene.places.get(tree.place_of(execution.leaf) or "")
+        part = scene.objects.get(tree.leaf_definition(execution.leaf).object or "")
+        place = scene.places.get(tree.leaf_definition(execution.leaf).place or "")
         side.start(
             execution,
             node=tree.path_of(execution.leaf),
-            behavior=tree.behavior_of(execution.leaf),
-            parameters=dict(tree.parameters_of(execution.leaf)),
+            behavior=tree.leaf_definition(execution.leaf).behavior,
+            parameters=dict(tree.leaf_definition(execution.leaf).parameters),
             size=part.size if part else None,
             target=Location(**place.pose.model_dump()) if place else None,
         )
@@ -403,7 +405,8 @@ class Run:
                 leaf
                 for leaf in (int(each) for each in tree.eligible_leaves())
                 if not any(
-                    side.suitability(tree.behavior_of(leaf)) > 0 for side in self._sides.values()
+                    side.suitability(tree.leaf_definition(leaf).behavior) > 0
+                    for side in self._sides.values()
                 )
             ][:1]
             reason = "no robot can do it"
@@ -422,7 +425,7 @@ class Run:
             return
         events: list[ev.Event] = []
         cut_short: list[RobotSide] = []
-        for active in given_up.active_leaves:
+        for active in given_up.put_back:
             owner = state.tree.owner(active) or ""
             if dialogue := state.dialogue_of(active):
                 events.append(self._dialogues.abort(dialogue))

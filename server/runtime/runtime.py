@@ -10,7 +10,6 @@ from typing import Any, Literal, Protocol, cast
 from uuid import UUID, uuid4
 
 import numpy as np
-from tasks.definition import TreeDefinition
 
 from dialogue.script import Script
 from robots.link.messages import CommandBody, Hello
@@ -29,6 +28,7 @@ from server.runtime.run import Hardware, Run
 from server.runtime.run_state import DialogueState, RunState
 from server.runtime.run_views import dialogue_view, summary, view
 from server.runtime.views import DialogueView, RobotView, RunSummary, RunView, Snapshot
+from tasks.definition import TaskTreeDefinition
 from tasks.intervention import Intervention
 from tasks.scenario import Person, Scenario
 from tasks.scene import Scene
@@ -44,7 +44,7 @@ class LoadedTree:
     """A checked task tree; `scene` None where the file names none."""
 
     name: str
-    definition: TreeDefinition
+    definition: TaskTreeDefinition
     scene: Scene | None
 
 
@@ -191,7 +191,7 @@ class Runtime:
             wall_time=self._utc_now(),
             run=run,
             tree_name=tree.name,
-            tree=tree.definition.model_dump(mode="json"),
+            tree=tree.definition.to_json(),
             scene=scene.model_dump(mode="json"),
             world=request.world,
             robots=request.robots if request.world == LIVE else [f"pr2-{str(run)[:8]}"],
@@ -272,14 +272,13 @@ class Runtime:
         return self._view(self._state(run))
 
     def _view(self, state: RunState) -> RunView:
-        tree = state.tree
-        potentials = np.zeros(len(tree))
+        leaves = np.asarray(state.tree.leaves, dtype=np.int64)
+        potentials = np.zeros(len(leaves))
         run = self._runs.get(state.id)
-        leaves = np.asarray(tree.leaves(), dtype=np.intp)
         for side in run.sides.values() if run else ():
-            own = potentials_for(state, side, leaves)
-            potentials[leaves] = np.maximum(potentials[leaves], own)
-        return view(state, self._time(state), potentials)
+            potentials = np.maximum(potentials, potentials_for(state, side, leaves))
+        by_leaf = dict(zip(leaves.tolist(), potentials.tolist(), strict=True))
+        return view(state, self._time(state), by_leaf)
 
     async def snapshot(self, seq: int | None) -> Snapshot:
         """The state after event `seq`, or after the last one without it."""

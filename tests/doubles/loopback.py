@@ -1,0 +1,32 @@
+"""The robot endpoint on a real socket of this machine."""
+
+import asyncio
+import socket
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+
+import uvicorn
+from fastapi import FastAPI
+
+from server.robots.endpoint import ROBOT_PATH, add_robot_route
+from server.robots.registry import RobotRegistry
+
+
+@asynccontextmanager
+async def served(
+    registry: RobotRegistry, token: str | None = None, port: int = 0
+) -> AsyncIterator[str]:
+    """Serve robots; gives the URL that they connect to."""
+    app = FastAPI()
+    add_robot_route(app, registry, token)
+    listener = socket.create_server(("127.0.0.1", port))
+    config = uvicorn.Config(app, log_level="warning", ws="websockets-sansio", lifespan="off")
+    server = uvicorn.Server(config)
+    task = asyncio.create_task(server.serve(sockets=[listener]))
+    try:
+        yield f"ws://127.0.0.1:{listener.getsockname()[1]}{ROBOT_PATH}"
+    finally:
+        registry.close()
+        server.should_exit = True
+        await task
+        listener.close()
