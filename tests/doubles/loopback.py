@@ -22,11 +22,15 @@ class _Server(uvicorn.Server):
 
 @asynccontextmanager
 async def served(
-    registry: RobotRegistry, token: str | None = None, port: int = 0
+    registry: RobotRegistry,
+    token: str | None = None,
+    port: int = 0,
+    *,
+    allowed_origins: tuple[str, ...] = (),
 ) -> AsyncIterator[str]:
     """Serve robots; gives the URL that they connect to."""
     app = FastAPI()
-    add_robot_route(app, registry, token)
+    add_robot_route(app, registry, token, allowed_origins=allowed_origins)
     listener = socket.create_server(("127.0.0.1", port))
     config = uvicorn.Config(app, log_level="warning", ws="websockets-sansio", lifespan="off")
     server = _Server(config)
