@@ -30,7 +30,7 @@ def start(execution: str) -> Start:
         execution=execution,
         node="/0",
         behavior="pick_and_place",
-        parameters={"object": "green_leg", "place": "green_leg_place"},
+        parameters={"object": "green_leg", "place": "green_leg"},
         target=Location(x=0.46, y=-0.05),
     )
 
@@ -45,7 +45,7 @@ async def test_it_places_a_part_and_sees_it_there(journal: SqliteJournal) -> Non
     registry.assign("demo", sink)
     async with served(registry, TOKEN) as url, example_robot(url):
         await sink.wait_until(lambda: len(sink.hellos) == 1)
-        at_place = Look(object="green_leg", place="green_leg_place", expect="at_place")
+        at_place = Look(object="green_leg", place="green_leg", expect="at_place")
         registry.send("demo", "c1", at_place)
         registry.send("demo", "c2", start("e1"))
         await sink.wait_until(lambda: "finished" in sink.types())
