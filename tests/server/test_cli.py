@@ -148,6 +148,8 @@ def test_help_names_every_command(mend: Mend) -> None:
         ["run", "./eket"],
         ["run", ""],
         ["run", "x" * 65],
+        ["run", "eket", "--report", "/dev/null/report.html"],
+        ["run", "eket", "--journal", "/dev/null/journal.sqlite"],
         ["check", "no_such_file.yaml"],
         ["check", "."],
         ["schema", "pictures"],
@@ -226,9 +228,11 @@ def test_a_task_that_does_not_finish_exits_with_1(
 ) -> None:
     kind, fields = end
     service(ended_by(kind, **fields))
-    outcome = mend("run", "eket")
-    assert outcome.code == 1
-    assert sentence in outcome.out
+    told, as_json = mend("run", "eket"), mend("run", "eket", "--json")
+    assert (told.code, as_json.code) == (1, 1)
+    assert told.err == ""
+    assert sentence in told.out
+    assert sentence in as_json.err
 
 
 def test_a_run_that_stops_for_a_fault_of_ours_is_told_with_its_journal(
@@ -557,7 +561,7 @@ def test_ctrl_c_aborts_a_real_run_which_its_journal_then_tells(data_dir: Path) -
         first = ev.any_event.validate_json(process.stdout.readline())
         process.send_signal(signal.SIGINT)
         out, err = process.communicate(timeout=60)
-    assert (process.returncode, err) == (130, "")
+    assert (process.returncode, err) == (130, "mend: the run was aborted: by a person\n")
     assert isinstance(ev.any_event.validate_json(out.splitlines()[-1]), ev.RunAborted)
     (journal,) = (data_dir / "runs").glob("*.sqlite")
     with JournalReader(journal) as reader:
