@@ -22,7 +22,8 @@ _LEAVES = (3, 5, 6, 7)
 _NODE_KEYS = ("mask", "parent", "children", "peers")
 IGNORED_KEYS = ("loc_obj", "off_x", "off_y", "off_z")
 """Where the published systems put an object; here the scene's places say so."""
-_LEAF_KEYS = ("object", "place", "needs_help", *IGNORED_KEYS)
+_PARAMETER_KEYS = ("object", "place", "needs_help")
+_LEAF_KEYS = (*_PARAMETER_KEYS, *IGNORED_KEYS)
 
 
 @dataclass(frozen=True, slots=True)
@@ -262,23 +263,28 @@ def _add_nodes(draft: Draft, nodes: dict[str, _FlatNode], root: _FlatNode) -> No
             message = f"root '{name}' stands under another node"
             draft.problems.append(Problem(flat.source.line_of("parent"), None, message))
         index = len(draft.nodes)
-        draft.nodes.append(_draft_node(flat, parent, position))
+        draft.nodes.append(_draft_node(draft, flat, parent, position))
         children = [(child, index, place) for place, child in enumerate(flat.children)]
         pending.extend(reversed(children))
 
 
-def _draft_node(flat: _FlatNode, parent: int | None, position: int) -> DraftNode:
+def _draft_node(draft: Draft, flat: _FlatNode, parent: int | None, position: int) -> DraftNode:
     if flat.type not in _LEAVES:
-        kind = _GOALS.get(flat.type, "and") if flat.type is not None else "behavior"
+        # Where the mask is wrong the kind does not matter any more: the draft has a problem.
+        kind = "and" if flat.type is None else _GOALS.get(flat.type, "and")
         return DraftNode(kind, parent, position, flat.source, name=flat.name)
-    parameters = LinedMapping(flat.source.line)
-    for key in ("object", "place", "needs_help"):
+    leaf = DraftNode("behavior", parent, position, flat.source, name=flat.name)
+    handled = flat.source.get("object")
+    if not isinstance(handled, str):
+        message = f"'object' of node '{flat.name}' must be text, but it is {show_kind(handled)}"
+        draft.problems.append(Problem(flat.source.line_of("object"), None, message))
+        return leaf
+    leaf.behavior = LEAF_BEHAVIOR
+    leaf.parameters = LinedMapping(flat.source.line)
+    # The published form has one place for each object, without a name of its own.
+    leaf.parameters.update(object=handled, place=handled)
+    for key in _PARAMETER_KEYS:
         if key in flat.source:
-            parameters[key] = flat.source[key]
-            parameters.key_lines[key] = flat.source.line_of(key)
-    if "object" in parameters:
-        # The published form has one place for each object, without a name of its own.
-        parameters.setdefault("place", parameters["object"])
-    return DraftNode(
-        "behavior", parent, position, flat.source, flat.name, LEAF_BEHAVIOR, parameters
-    )
+            leaf.parameters[key] = flat.source[key]
+            leaf.parameters.key_lines[key] = flat.source.line_of(key)
+    return leaf

@@ -1,23 +1,19 @@
 """The example robot, as a user runs it, against the real endpoint."""
 
-import asyncio
-import os
-import sys
 import time
 from collections.abc import AsyncIterator
-from contextlib import AsyncExitStack, asynccontextmanager
+from contextlib import AsyncExitStack
 from pathlib import Path
 from urllib.parse import urlsplit
 
 import pytest
+from example_robot import TOKEN, example_robot
 from loopback import served
 from recording_sink import RecordingSink
 
 from robots.link.messages import Interrupt, Location, Look, Looked, Resume, Start
 from server.journal.sqlite import SqliteJournal
 from server.robots.registry import RobotRegistry
-
-ROBOT = Path(__file__).parents[2] / "examples" / "robot" / "robot.py"
 
 pytestmark = pytest.mark.slow
 
@@ -29,26 +25,12 @@ async def journal() -> AsyncIterator[SqliteJournal]:
     journal.close()
 
 
-@asynccontextmanager
-async def example_robot(url: str, *options: str) -> AsyncIterator[asyncio.subprocess.Process]:
-    process = await asyncio.create_subprocess_exec(
-        sys.executable, str(ROBOT), "--url", url, "--robot", "demo", "--step-s", "0.001", *options,
-        env={**os.environ, "MEND_TOKEN": "secret"}, stderr=asyncio.subprocess.PIPE,
-    )  # fmt: skip
-    try:
-        yield process
-    finally:
-        if process.returncode is None:
-            process.kill()
-        await process.communicate()
-
-
 def start(execution: str) -> Start:
     return Start(
         execution=execution,
         node="/0",
         behavior="pick_and_place",
-        parameters={"object": "green_leg", "place": "green_leg_place"},
+        parameters={"object": "green_leg", "place": "green_leg"},
         target=Location(x=0.46, y=-0.05),
     )
 
@@ -61,9 +43,9 @@ async def test_it_places_a_part_and_sees_it_there(journal: SqliteJournal) -> Non
     registry = RobotRegistry(journal, time.monotonic)
     sink = RecordingSink(journal)
     registry.assign("demo", sink)
-    async with served(registry, "secret") as url, example_robot(url):
+    async with served(registry, TOKEN) as url, example_robot(url):
         await sink.wait_until(lambda: len(sink.hellos) == 1)
-        at_place = Look(object="green_leg", place="green_leg_place", expect="at_place")
+        at_place = Look(object="green_leg", place="green_leg", expect="at_place")
         registry.send("demo", "c1", at_place)
         registry.send("demo", "c2", start("e1"))
         await sink.wait_until(lambda: "finished" in sink.types())
@@ -79,7 +61,7 @@ async def test_it_holds_resumes_and_rejects(journal: SqliteJournal) -> None:
     registry = RobotRegistry(journal, time.monotonic)
     sink = RecordingSink(journal)
     registry.assign("demo", sink)
-    async with served(registry, "secret") as url, example_robot(url, "--step-s", "0.05"):
+    async with served(registry, TOKEN) as url, example_robot(url, "--step-s", "0.05"):
         await sink.wait_until(lambda: len(sink.hellos) == 1)
         registry.send("demo", "c1", start("e1"))
         await sink.wait_until(lambda: len(sink.reports) >= 2)
@@ -99,7 +81,7 @@ async def test_it_goes_on_after_the_service_was_away_and_delivers_what_happened_
         registry = RobotRegistry(journal, time.monotonic)
         before = RecordingSink(journal)
         registry.assign("demo", before)
-        async with served(registry, "secret") as url:
+        async with served(registry, TOKEN) as url:
             await robot.enter_async_context(example_robot(url, "--step-s", "0.05"))
             await before.wait_until(lambda: len(before.hellos) == 1)
             registry.send("demo", "c1", start("e1"))
@@ -107,7 +89,7 @@ async def test_it_goes_on_after_the_service_was_away_and_delivers_what_happened_
         again = RobotRegistry(journal, time.monotonic)
         after = RecordingSink(journal)
         again.assign("demo", after)
-        async with served(again, "secret", port=urlsplit(url).port or 0):
+        async with served(again, TOKEN, port=urlsplit(url).port or 0):
             await after.wait_until(lambda: "finished" in after.types())
     assert after.hellos[0].boot == before.hellos[0].boot
     assert [each.seq for each in before.receipts + after.receipts] == list(range(1, 10))
@@ -120,7 +102,7 @@ async def test_a_later_start_delivers_what_the_earlier_one_left(
     sink = RecordingSink(journal)
     registry.assign("demo", sink)
     outbox = ("--outbox", str(tmp_path / "outbox.db"))
-    async with served(registry, "secret") as url:
+    async with served(registry, TOKEN) as url:
         async with example_robot(url, "--step-s", "0.02", *outbox):
             await sink.wait_until(lambda: len(sink.hellos) == 1)
             registry.send("demo", "c1", start("e1"))

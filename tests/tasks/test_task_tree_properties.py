@@ -200,13 +200,12 @@ class TreeAgainstFullEvaluation(RuleBasedStateMachine):
         self.were_done = done
 
 
-TestTreeAgainstFullEvaluation = TreeAgainstFullEvaluation.TestCase
+TestTreeAgainstFullEvaluation = pytest.mark.slow(TreeAgainstFullEvaluation.TestCase)
 TestTreeAgainstFullEvaluation.settings = settings(
     max_examples=150, stateful_step_count=50, deadline=None
 )
 
 
-@pytest.mark.slow
 @settings(max_examples=40, deadline=None)
 @given(root=trees(max_leaves=60), random=st.randoms(use_true_random=False))
 def test_every_run_ends_done_or_with_nothing_left_to_give_up(root: Node, random: Any) -> None:
