@@ -481,10 +481,13 @@ def test_a_reader_changes_nothing(
 # --- train-colors -----------------------------------------------------------------------------
 
 
-def test_colors_are_learned_from_a_rendered_scene(mend: Mend, tmp_path: Path) -> None:
+@pytest.mark.parametrize("world", ["tabletop", "workcell"])
+def test_colors_are_learned_from_a_rendered_scene(mend: Mend, tmp_path: Path, world: str) -> None:
+    if world == "workcell":
+        pytest.importorskip("pybullet")
     scene, model = tmp_path / "scene.yaml", tmp_path / "made" / "colors.npz"
     scene.write_text(SCENE)
-    outcome = mend("train-colors", str(model), "--scene", str(scene))
+    outcome = mend("train-colors", str(model), "--scene", str(scene), "--world", world)
     assert (outcome.code, outcome.out) == (0, f"{model}: the colours of cup\n")
     assert model.is_file()
 
