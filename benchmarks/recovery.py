@@ -49,30 +49,38 @@ async def measure(world: str, renderer: str | None, answers: int) -> list[float]
 
 
 async def _answer_no(service: Service, run: UUID, answers: int) -> list[float]:
+    """Move the part away, wait until the robot stands still, answer no, and see it go on."""
     waits: list[float] = []
     answered_at: float | None = None
+    asked: tuple[UUID, UUID] | None = None
+    still = False
     moves = 0
     with service.journal.subscribe(0) as subscription:
         async for record in subscription:
             event = json.loads(record.text)
-            if event["type"] == "step_started":
-                if answered_at is not None:
-                    waits.append(time.perf_counter() - answered_at)
-                    answered_at = None
-                    if len(waits) >= answers:
-                        break
-                if event["step"] == 2:
-                    spot = SPOTS[moves % 2]
-                    moves += 1
-                    deed = Intervention(act=Act.MOVE, object=PART, to=spot)
-                    await service.runtime.intervene(run, deed)
-            elif event["type"] == "prompt" and event["kind"] == "ask":
+            match event["type"]:
+                case "step_started":
+                    still = False
+                    if answered_at is not None:
+                        waits.append(time.perf_counter() - answered_at)
+                        answered_at = None
+                    if event["step"] == 2:
+                        deed = Intervention(act=Act.MOVE, object=PART, to=SPOTS[moves % 2])
+                        moves += 1
+                        await service.runtime.intervene(run, deed)
+                case "robot_holding":
+                    still = True
+                case "prompt" if event["kind"] == "ask":
+                    asked = UUID(event["dialogue"]), UUID(event["prompt"])
+                case "run_failed" | "run_finished":
+                    raise RuntimeError(f"the run ended early: {event}")
+            if len(waits) >= answers:
+                break
+            if still and asked is not None:
+                dialogue, prompt = asked
+                asked = None
                 answered_at = time.perf_counter()
-                await service.runtime.answer(
-                    UUID(event["dialogue"]), UUID(event["prompt"]), "no", "benchmark"
-                )
-            elif event["type"] in ("run_failed", "run_finished"):
-                raise RuntimeError(f"the run ended early: {event}")
+                await service.runtime.answer(dialogue, prompt, "no", "benchmark")
     return waits
 
 
