@@ -2,13 +2,13 @@
 
 import json
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
 from sim.workcell.bench import Bench
 from sim.workcell.body import PERIOD_S, WorkcellBody
-from sim.workcell.cameras import WorkcellCamera, forearm_optics, head_optics
+from sim.workcell.cameras import Optics, WorkcellCamera, forearm_optics, head_optics
 from sim.workcell.lighting import Lighting
 from sim.workcell.options import WorkcellOptions
 from sim.workcell.parts import Part
@@ -60,20 +60,23 @@ class WorkcellWorld:
         self._pr2 = Pr2(client)
         self._body = WorkcellBody(self._pr2, self._rng, self._step)
         self._person = Person(client, self._bench, self._pr2, self._body)
-        renderer: Renderer = (
+        self._lighting = lighting
+        self._renderer: Renderer = (
             BulletRenderer(client) if options.renderer == "bullet" else FastRenderer(client)
         )
-        self.head = WorkcellCamera(
-            head_optics(), renderer, lighting, lambda: self._pr2.head_camera_pose, self._body.time_s
-        )
-        self.forearm = WorkcellCamera(
-            forearm_optics(1.0 / _FOREARM_HZ[options.renderer]),
-            renderer,
-            lighting,
-            self._pr2.forearm_camera_pose,
-            self._body.time_s,
-        )
+        self.head = self.camera("head", head_optics())
+        self.forearm = self.camera("forearm", forearm_optics(1.0 / _FOREARM_HZ[options.renderer]))
         self._body.cameras = {"head": self.head, "forearm": self.forearm}
+
+    def camera(self, name: Literal["head", "forearm"], optics: Optics) -> WorkcellCamera:
+        """Another camera where one of the robot's is."""
+        poses = {
+            "head": lambda: self._pr2.head_camera_pose,
+            "forearm": self._pr2.forearm_camera_pose,
+        }
+        return WorkcellCamera(
+            optics, self._renderer, self._lighting, poses[name], self._body.time_s
+        )
 
     @property
     def body(self) -> WorkcellBody:
