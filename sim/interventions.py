@@ -46,6 +46,10 @@ class PendingInterventions:
         """Let somebody do something when the clock reaches `at_s`."""
         self._queued.append(Queued(do=command.intervention, by=command.by, at_s=at_s))
 
+    def withdraw(self, handled: str | None) -> None:
+        """Nobody needs to do any more what was queued for an object, or to clear the way."""
+        self._queued = [each for each in self._queued if each.do.object not in (None, handled)]
+
     def take_due(
         self, time_s: float, progress: TaskProgress | None
     ) -> list[tuple[Intervention, str]]:
