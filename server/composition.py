@@ -112,9 +112,10 @@ async def _open(
             await runtime.recover()
         yield Service(runtime, journal, registry, trees, url, settings)
     finally:
+        # First: a report that no run takes any more must not be acknowledged.
+        registry.close()
         await runtime.close()
         await mail.close()
-        registry.close()
         server.should_exit = True
         with suppress(asyncio.CancelledError):
             await serving

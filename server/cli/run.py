@@ -88,6 +88,9 @@ def run(
             max_attempts=max_attempts,
             person=None if person is None else Person(acts=person),
         )
+        if report is not None:
+            # A report that cannot be written is told before the run, not after it.
+            report.parent.mkdir(parents=True, exist_ok=True)
         settings = _settings(journal, argument)
         output = JsonLines() if json else LiveTranscript()
         live_run = LiveRun(
