@@ -115,7 +115,7 @@ def _settings(journal: Path | None, tree: TreeArgument) -> Settings:
         log_level="warning",
     )
     chosen = journal or new_run_journal(own, tree.name)
-    return own.model_copy(update={"journal": chosen})
+    return own.model_copy(update={"journal": chosen, "scenes": tree.scenes or own.scenes})
 
 
 def _answers(text: str | None, scenario: str | None) -> Answers | None:
