@@ -15,13 +15,14 @@ from dialogue.script import Script
 from robots.link.messages import CommandBody, Hello
 from server.dialogues.answers import answer_source
 from server.dialogues.escalation import EscalationPolicy
-from server.errors import ConflictError, InvalidError, NotFoundError
+from server.errors import ConflictError, InvalidError, NotFoundError, ServiceError
 from server.journal import events as ev
 from server.journal.journal import Entry, Journal
 from server.runtime.choosing import potentials_for
 from server.runtime.clock import RunClock, SimulatedClock, WallClock
 from server.runtime.context import RunContext, RunSettings
 from server.runtime.dialogue_driver import DialogueDriver
+from server.runtime.failure import fail_run, fault_of_ours
 from server.runtime.requests import RunRequest
 from server.runtime.robot_side import RobotSide
 from server.runtime.run import Hardware, Run
@@ -130,18 +131,25 @@ class Runtime:
         self._states: dict[UUID, RunState] = {}
         self._runs: dict[UUID, Run] = {}
         self._tasks: dict[UUID, asyncio.Task[None]] = {}
+        self._unreadable: set[UUID] = set()
 
     # --- Beginning and ending -----------------------------------------------------------------
 
     async def recover(self) -> None:
         """Fold the journal, and take up every run that had not ended."""
         for run in await self._journal.runs():
-            state = await self._refold(run, None)
+            try:
+                state = await self._refold(run, None)
+            except Exception:
+                # One run that cannot be read must not keep the others from going on.
+                log.exception("run %s cannot be read from the journal", run)
+                self._unreadable.add(run)
+                continue
             if state is None:
                 continue
             self._states[run] = state
             if not state.status.ended:
-                await self._take_up(state)
+                await self._take_up_or_fail(state)
 
     async def close(self) -> None:
         """Stop without ending any run: they are taken up at the next start."""
@@ -166,7 +174,7 @@ class Runtime:
 
         await self._journal.append(Entry(events=[started]), fold)
         state = self._states[started.run]
-        await self._take_up(state)
+        await self._take_up_or_fail(state)
         return self.run(state.id)
 
     async def _started(self, request: RunRequest) -> ev.RunStarted:
@@ -216,12 +224,23 @@ class Runtime:
             if robot in busy:
                 raise ConflictError(f"the robot '{robot}' is busy with run {busy[robot]}")
 
-    async def _take_up(self, state: RunState) -> None:
+    async def _take_up_or_fail(self, state: RunState) -> None:
+        """Let a run go on; if that cannot be, it fails and says why."""
         live = state.started.world == LIVE
         clock: RunClock = (
             WallClock(self._monotonic, state.time) if live else SimulatedClock(state.time)
         )
         context = RunContext(state, clock, self._journal, self._settings, self._utc_now)
+        try:
+            await self._take_up(context, live=live)
+        except ServiceError as error:
+            await fail_run(context, f"it could not go on: {error}")
+        except Exception as error:
+            log.exception("run %s could not be taken up", state.id)
+            await fail_run(context, fault_of_ours(error))
+
+    async def _take_up(self, context: RunContext, *, live: bool) -> None:
+        state = context.state
         sides = {robot: RobotSide(robot, cast(Any, self._robots)) for robot in state.started.robots}
         scenario = self._scenario_of(state)
         dialogues = DialogueDriver(
@@ -249,7 +268,7 @@ class Runtime:
             self._robots.unassign(robot)
         self._runs.pop(state.id, None)
         if not task.cancelled() and (error := task.exception()) is not None:
-            log.error("run %s stopped for a fault of ours", state.id, exc_info=error)
+            log.error("run %s stopped and could not say so", state.id, exc_info=error)
 
     def _scenario_of(self, state: RunState) -> Scenario | None:
         name = state.request.scenario
@@ -289,6 +308,8 @@ class Runtime:
         at = head if seq is None else min(seq, head)
         views = []
         for run in await self._journal.runs():
+            if run in self._unreadable:
+                continue
             state: RunState | None = self._states.get(run)
             if state is None or state.seq != await self._last_seq(run, at):
                 state = await self._refold(run, at)
