@@ -18,7 +18,7 @@ $(READY): requirements.lock pyproject.toml scripts/setup
 demo: $(READY)  ## A PR2 builds a table base, is robbed, asks for help, and finishes
 	$(BIN)/mend run eket --world workcell --scenario eket_paper --speed max --seed 7 --report out/eket_paper.html
 
-serve: $(READY)  ## The service with the helper's page on http://127.0.0.1:8000
+serve: $(READY)  ## The service with the helper's page on http://127.0.0.1:8080
 	$(BIN)/mend serve
 
 test: $(READY)  ## Every test, in random order

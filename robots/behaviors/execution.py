@@ -24,7 +24,7 @@ from robots.link.messages import (
 from robots.monitors.monitor import BEFORE_FIRST_STEP, Meanwhile, Monitor, MonitorView
 from robots.senses import FOREARM, HEAD, Senses
 from robots.vision.drawing import draw_detection, encode_jpeg
-from robots.vision.forearm import GripReading, GripState
+from robots.vision.forearm import GripReading
 from robots.vision.head import HeadSighting
 from robots.vision.obstruction import Obstruction
 from tasks.scene import StrictModel
@@ -153,6 +153,7 @@ class Execution:
         self._raised: set[str] = set()
         self._forces_n: list[float] = []
         self._next_check_s = -math.inf
+        self._read_s = -math.inf
 
     @property
     def id(self) -> str:
@@ -335,15 +336,16 @@ class Execution:
         self._step = number
         self._report(StepStarted(execution=self.id, step=number, name=step.name))
         self._begin(plan, number, step)
-        over_since: float | None = None
+        arrived_s: float | None = None
         # A step may be over before the camera's next picture; it is judged at its start as well.
         self._check(None)
         while True:
             self._check_if_due()
-            now = self._arm.body.time_s()
-            if not self._arm.body.moving and not self._grip_is_open_question():
-                over_since = now if over_since is None else over_since
-                if now - over_since >= step.settle_s - 1e-9:
+            now_s = self._arm.body.time_s()
+            if not self._arm.body.moving:
+                arrived_s = now_s if arrived_s is None else arrived_s
+                settled = now_s - arrived_s >= step.settle_s - 1e-9
+                if settled and not self._grip_is_open_question(arrived_s):
                     return
             yield
             self._forces_n.append(self._arm.body.contact_force_n())
@@ -361,13 +363,19 @@ class Execution:
             self._senses.let_go()
             self._arm.start_opening()
 
-    def _grip_is_open_question(self) -> bool:
-        """Whether the gripper has closed and the pictures have yet to show on what."""
-        grip = self._senses.grip
-        return grip is not None and grip.state is GripState.UNDECIDED and self._judges_grip()
+    def _grip_is_open_question(self, arrived_s: float) -> bool:
+        """Whether the pictures have yet to show what the gripper holds.
 
-    def _judges_grip(self) -> bool:
-        return any(each.camera == FOREARM for each in self._monitors if each.watches(self._step))
+        The last step in which they are looked at ends with one taken after the arm has arrived.
+        """
+        grip = self._senses.grip
+        if grip is None or not self._judges_grip(self._step):
+            return False
+        unseen = self._read_s < arrived_s and not self._judges_grip(self._step + 1)
+        return grip.in_doubt or unseen
+
+    def _judges_grip(self, step: int) -> bool:
+        return any(each.camera == FOREARM for each in self._monitors if each.watches(step))
 
     def _check_if_due(self) -> None:
         """Check at the forearm camera's period. Raises `Interruption`."""
@@ -375,7 +383,8 @@ class Execution:
         if now < self._next_check_s - 1e-9:
             return
         self._next_check_s = now + self._senses.forearm_period_s
-        looking = self._judges_grip() and not self._closing()
+        looking = self._judges_grip(self._step) and not self._closing()
+        self._read_s = now if looking else self._read_s
         self._check(self._senses.read_grip() if looking else None)
 
     def _closing(self) -> bool:

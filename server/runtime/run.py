@@ -150,6 +150,11 @@ class Run:
             if item.done.cancelled():
                 raise
             item.done.set_exception(error)
+        except asyncio.CancelledError:
+            # Whoever waits for it must not wait for ever when the service shuts down.
+            if not item.done.done():
+                item.done.set_exception(ConflictError("the service is shutting down"))
+            raise
         else:
             if not item.done.cancelled():
                 item.done.set_result(result)
@@ -181,7 +186,8 @@ class Run:
         try:
             await self.request(lambda: self._reported(self._sides[robot], report, receipt))
         except ConflictError:
-            if not self.ended.is_set():
+            # A service that shuts down takes nothing more: the robot sends it again afterwards.
+            if not self._context.state.status.ended:
                 raise
             await self._context.commit([], receipt=receipt)
 
@@ -271,6 +277,10 @@ class Run:
             await self._fail(f"the robot '{side.robot}' is lost: {reason}", None)
 
     async def _reported(self, side: RobotSide, report: Report, receipt: Receipt) -> None:
+        if side.hello is not None and receipt.boot != side.hello.boot:
+            # An earlier boot's: what it did was put back when the robot came with its new one.
+            await self._context.commit([], receipt=receipt)
+            return
         self._context.clock.observe(report.time)
         body = report.body
         if isinstance(body, StepStarted):

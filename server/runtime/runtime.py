@@ -160,9 +160,12 @@ class Runtime:
         started = await self._started(request)
         if request.world == LIVE:
             self._check_robots(request.robots)
-        numbered = await self._journal.append(Entry(events=[started]))
-        state = RunState(cast(ev.RunStarted, numbered[0]), self._scripts)
-        self._states[state.id] = state
+
+        def fold(numbered: list[ev.Event]) -> None:
+            self._states[started.run] = RunState(cast(ev.RunStarted, numbered[0]), self._scripts)
+
+        await self._journal.append(Entry(events=[started]), fold)
+        state = self._states[started.run]
         await self._take_up(state)
         return self.run(state.id)
 

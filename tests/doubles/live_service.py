@@ -60,4 +60,5 @@ async def live_service(
         try:
             yield LiveService(runtime, registry, journal, url)
         finally:
+            registry.close()
             await runtime.close()

@@ -264,7 +264,7 @@ def test_a_push_against_the_arm_holds_it_in_place() -> None:
     bench = RobotBench()
     bench.start("pink_bar")
     bench.run_to(5, 0.5)
-    bench.body.force_n = 60.0
+    bench.body.force_n = 200.0
     issue = bench.run_until(IssueDetected)
     assert (issue.issue, issue.step) == ("blocked", 5)
     where = bench.body.tool
