@@ -3,16 +3,15 @@
 import asyncio
 import logging
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from datetime import datetime
 from functools import partial
-from typing import Any, Literal, Protocol, cast
+from typing import Any, Literal, cast
 from uuid import UUID, uuid4
 
 import numpy as np
 
 from dialogue.script import Script
-from robots.link.messages import CommandBody, Hello
+from robots.link.messages import Hello
 from server.dialogues.answers import answer_source
 from server.dialogues.escalation import EscalationPolicy
 from server.errors import ConflictError, InvalidError, NotFoundError, ServiceError
@@ -23,80 +22,18 @@ from server.runtime.clock import RunClock, SimulatedClock, WallClock
 from server.runtime.context import RunContext, RunSettings
 from server.runtime.dialogue_driver import DialogueDriver
 from server.runtime.failure import fail_run, fault_of_ours
+from server.runtime.ports import LIVE, RealRobots, Robots, ScenarioSource, TreeSource, Worlds
 from server.runtime.requests import RunRequest
 from server.runtime.robot_side import RobotSide
-from server.runtime.run import Hardware, Run
+from server.runtime.run import Run
 from server.runtime.run_state import DialogueState, RunState
 from server.runtime.run_views import dialogue_view, summary, view
 from server.runtime.views import DialogueView, RobotView, RunSummary, RunView, Snapshot
-from tasks.definition import TaskTreeDefinition
 from tasks.intervention import Intervention
 from tasks.scenario import Person, Scenario
 from tasks.scene import Scene
 
 log = logging.getLogger(__name__)
-
-LIVE = "live"
-"""The world of real robots."""
-
-
-@dataclass(frozen=True, slots=True)
-class LoadedTree:
-    """A checked task tree; `scene` None where the file names none."""
-
-    name: str
-    definition: TaskTreeDefinition
-    scene: Scene | None
-
-
-class TreeSource(Protocol):
-    """Where task trees come from."""
-
-    async def load(self, name: str) -> LoadedTree:
-        """Raises `NotFoundError` or `InvalidError`."""
-        ...
-
-
-class ScenarioSource(Protocol):
-    """Where scenarios come from."""
-
-    def load(self, name: str) -> Scenario:
-        """Raises `NotFoundError`."""
-        ...
-
-
-class Robots(Protocol):
-    """The service's end of the robot link."""
-
-    def assign(self, robot: str, sink: Run) -> None: ...
-
-    def unassign(self, robot: str) -> None: ...
-
-    def send(self, robot: str, command_id: str, body: CommandBody) -> None: ...
-
-    async def take_picture(self, robot: str, camera: str, timeout_s: float = 2.0) -> bytes: ...
-
-    def hello(self, robot: str) -> Hello | None: ...
-
-    def connected(self, robot: str) -> bool: ...
-
-    def known(self) -> list[str]: ...
-
-
-class Worlds(Protocol):
-    """The worlds that a run can be in, apart from `live`."""
-
-    def check(self, world: str) -> None:
-        """Raises `InvalidError` when there is no such world, or it cannot run here."""
-        ...
-
-    def lay_out(self, world: str, tree: LoadedTree, seed: int) -> Scene:
-        """A scene for a tree that has none. Raises `InvalidError` where the world cannot."""
-        ...
-
-    async def open(self, state: RunState, run: "Callable[[], Run]") -> Hardware:
-        """Start the simulated robot of a run; its world as the journal has it, if it has one."""
-        ...
 
 
 class Runtime:
@@ -446,22 +383,6 @@ class Runtime:
             )
             for robot in self._robots.known()
         ]
-
-
-class RealRobots:
-    """The robots of a `live` run: nothing to start again, only to let go of."""
-
-    simulated = False
-
-    def __init__(self, robots: Robots, assigned: list[str]) -> None:
-        self._robots = robots
-        self._assigned = assigned
-
-    async def restart(self, robot: str) -> None:
-        """A real robot comes back by itself."""
-
-    async def release(self) -> None:
-        """The runtime unassigns them."""
 
 
 def _person_of(state: RunState, scenario: Scenario | None) -> Person:
