@@ -10,6 +10,7 @@ from typing import Any, Literal, Self
 from urllib.parse import quote
 from uuid import UUID
 
+from pydantic import ValidationError
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidStatus
 
@@ -100,6 +101,14 @@ class EventStream:
             except StreamRefusedError as error:
                 self._queue.put_nowait(error)
                 return
+            except ValidationError as error:
+                # Without this, whoever iterates would wait for ever.
+                unreadable = StreamRefusedError(
+                    "the service sent what this client cannot read; is it of another version? "
+                    f"({error})"
+                )
+                self._queue.put_nowait(unreadable)
+                return
             finally:
                 self._socket = None
                 self._forget_commands()
@@ -138,8 +147,10 @@ class EventStream:
                 elif message["type"] in ("result", "error"):
                     self._settle(message)
                 else:
-                    self._seen = message["seq"]
-                    yield any_event.validate_python(message)
+                    # From the text: strict models take a list for a tuple in JSON only.
+                    event: Event = any_event.validate_json(text)
+                    self._seen = event.seq
+                    yield event
         if socket.close_code == POLICY_VIOLATION:
             raise StreamRefusedError(f"the service closed the connection: {socket.close_reason}")
 
@@ -149,7 +160,7 @@ class EventStream:
         self._snapshot_wanted = False
         self._seen = message["seq"]
         del message["type"]
-        return Snapshot.model_validate(message) if wanted else None
+        return Snapshot.model_validate_json(json.dumps(message)) if wanted else None
 
     # --- commands -----------------------------------------------------------------------------
 

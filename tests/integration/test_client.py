@@ -1,9 +1,12 @@
 import asyncio
 import socket as sockets
 from collections.abc import AsyncIterator
+from typing import Any
 from uuid import uuid4
 
 import pytest
+from pydantic import TypeAdapter
+from recorded_service import recorded_events
 from sample_events import paused
 from service_under_test import TOKEN, ServiceUnderTest, build, serving
 
@@ -120,6 +123,36 @@ async def test_stream_goes_on_after_lost_connections_without_gap(
             socket.transport.abort()
             await service.runs.commit(*(paused(run=run) for _ in range(5)))
             assert await collect(messages, 5) == list(range(start + 6, start + 11))
+
+
+async def test_stream_gives_every_event_of_a_real_run(
+    client: MendClient, service: ServiceUnderTest
+) -> None:
+    recorded = recorded_events()
+    async with client.follow("anna") as stream:
+        messages = aiter(stream)
+        await anext(messages)
+        await service.runs.commit(*recorded)
+        async with asyncio.timeout(20):
+            came = [await anext(messages) for _ in recorded]
+    assert [told(each) for each in came] == [told(each) for each in recorded]
+
+
+def told(event: Snapshot | Event) -> dict[str, Any]:
+    return event.model_dump(exclude={"seq"})
+
+
+async def test_stream_ends_with_a_sentence_at_what_it_cannot_read(
+    client: MendClient, service: ServiceUnderTest, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("server.client_stream.any_event", TypeAdapter(RunAborted))
+    async with client.follow("anna") as stream:
+        messages = aiter(stream)
+        await anext(messages)
+        await service.runs.commit(paused())
+        with pytest.raises(StreamRefusedError, match="is it of another version"):
+            async with asyncio.timeout(20):
+                await anext(messages)
 
 
 async def test_wrong_token_ends_the_stream(service: ServiceUnderTest) -> None:
