@@ -57,7 +57,7 @@ class EventStream:
         self._ids = itertools.count(1)
         self._waiting: dict[int, asyncio.Future[dict[str, Any]]] = {}
         self._reader: asyncio.Task[None] | None = None
-        self._queue: asyncio.Queue[Snapshot | Event | StreamRefusedError] = asyncio.Queue()
+        self._queue: asyncio.Queue[Snapshot | Event | Exception] = asyncio.Queue()
 
     @property
     def seen(self) -> int | None:
@@ -84,7 +84,7 @@ class EventStream:
     async def _taken(self) -> AsyncIterator[Snapshot | Event]:
         while True:
             message = await self._queue.get()
-            if isinstance(message, StreamRefusedError):
+            if isinstance(message, Exception):
                 raise message
             yield message
 
@@ -97,7 +97,8 @@ class EventStream:
             before = self._seen
             try:
                 await self._read_connection()
-            except StreamRefusedError as error:
+            except Exception as error:
+                # Also one that is no refusal: whoever follows must not wait for ever.
                 self._queue.put_nowait(error)
                 return
             finally:
@@ -139,7 +140,8 @@ class EventStream:
                     self._settle(message)
                 else:
                     self._seen = message["seq"]
-                    yield any_event.validate_python(message)
+                    # As JSON: an event's strict parts take a list for a tuple only there.
+                    yield any_event.validate_json(text)
         if socket.close_code == POLICY_VIOLATION:
             raise StreamRefusedError(f"the service closed the connection: {socket.close_reason}")
 

@@ -214,7 +214,8 @@ class InProcessRobot:
         outbox = Outbox(IN_MEMORY, setup.robot, uuid4().hex)
         reason = "it was shut down"
         try:
-            agent = self._adapter.create_agent(setup)
+            # A world takes a while to build, for which nobody else should have to wait.
+            agent = await asyncio.to_thread(self._adapter.create_agent, setup)
             await run_agent(agent, self._connect, outbox, LoopClock(), random.Random(setup.seed))
         except Exception as error:
             log.exception("the simulated robot %s failed", setup.robot)

@@ -16,10 +16,11 @@ from server.dialogues.escalation import EscalationPolicy
 from server.journal import events as ev
 from server.journal.sqlite import SqliteJournal
 from server.runtime.context import RunSettings
+from server.runtime.ports import LoadedTree
 from server.runtime.requests import RunRequest
 from server.runtime.run import Run
 from server.runtime.run_state import DialogueState, RunState
-from server.runtime.runtime import LoadedTree, Runtime
+from server.runtime.runtime import Runtime
 from server.runtime.views import RunView
 from tasks.definition import TaskTreeDefinition
 from tasks.scenario import Scenario
