@@ -9,6 +9,7 @@ from task_documents import definition_of
 from server.journal import events as ev
 from server.journal.untruths import Rest, find_untruths
 from sim.tabletop.layout import lay_out
+from tasks.intervention import Act, Intervention
 
 NAMES = [("part_1", "spot_1"), ("part_2", "spot_2")]
 SCENE = lay_out(NAMES, seed=1)
@@ -55,6 +56,15 @@ async def test_a_part_at_its_place_must_not_be_told_to_be_missing() -> None:
     assert find_untruths(events, at_places()) == [
         "'part_1' is told to be missing, but is at its place"
     ]
+
+
+async def test_what_somebody_hides_may_be_told_to_be_missing() -> None:
+    told = ev.MissingPart(node="/0", name="part_1", object="part_1", place="spot_1")
+    *before, end = with_end(await events_of("then"), missing=[told])
+    act = Intervention(act=Act.BLOCK)
+    stamp = {"time": end.time, "wall_time": end.wall_time, "run": end.run}
+    block = ev.InterventionDone(**stamp, act="block", object=None, intervention=act, by="scenario")
+    assert find_untruths([*before, block, end], at_places()) == []
 
 
 async def test_a_leaf_done_without_its_part_is_untrue_even_if_that_is_told() -> None:
