@@ -183,11 +183,10 @@ def where_parts_rest(
     """Where a simulated world's parts really are, from its last snapshot; None for gone ones."""
     objects = started.scene["objects"]
     world = {} if snapshot is None else snapshot["world"]
-    if started.world == "workcell":
-        parts = world.get("parts", {})
+    if "parts" in world:
         return {
-            name: None if parts[name]["stolen"] else tuple(parts[name]["rest"]["position"])
-            for name in objects
+            name: None if part["stolen"] else tuple(part["rest"]["position"])
+            for name, part in world["parts"].items()
         }
     height_m = started.scene["table"]["height"]
     resting: dict[str, Rest | None] = {}

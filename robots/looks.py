@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from robots.arm import Arm, Routine
-from robots.behaviors.execution import is_at
+from robots.behaviors.preparation import is_at
 from robots.body import ToolPose
 from robots.catalogue import Part
 from robots.link.messages import Holding, Location, Looked, ReportBody

@@ -58,7 +58,7 @@ class EventStream:
         self._ids = itertools.count(1)
         self._waiting: dict[int, asyncio.Future[dict[str, Any]]] = {}
         self._reader: asyncio.Task[None] | None = None
-        self._queue: asyncio.Queue[Snapshot | Event | StreamRefusedError] = asyncio.Queue()
+        self._queue: asyncio.Queue[Snapshot | Event | Exception] = asyncio.Queue()
 
     @property
     def seen(self) -> int | None:
@@ -85,7 +85,7 @@ class EventStream:
     async def _taken(self) -> AsyncIterator[Snapshot | Event]:
         while True:
             message = await self._queue.get()
-            if isinstance(message, StreamRefusedError):
+            if isinstance(message, Exception):
                 raise message
             yield message
 
@@ -98,9 +98,6 @@ class EventStream:
             before = self._seen
             try:
                 await self._read_connection()
-            except StreamRefusedError as error:
-                self._queue.put_nowait(error)
-                return
             except ValidationError as error:
                 # Without this, whoever iterates would wait for ever.
                 unreadable = StreamRefusedError(
@@ -108,6 +105,10 @@ class EventStream:
                     f"({error})"
                 )
                 self._queue.put_nowait(unreadable)
+                return
+            except Exception as error:
+                # Also one that is no refusal: whoever follows must not wait for ever.
+                self._queue.put_nowait(error)
                 return
             finally:
                 self._socket = None

@@ -5,7 +5,7 @@ from pathlib import Path
 from pydantic import BaseModel
 
 from server.errors import InvalidError, NotFoundError
-from server.runtime.runtime import LoadedTree
+from server.runtime.ports import LoadedTree
 from server.trees import CheckedTree, TreeLibrary
 from tasks.definition import TaskTreeDefinition
 from tasks.library import SCENARIOS, TREES, NotInLibraryError

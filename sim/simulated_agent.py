@@ -133,7 +133,7 @@ class SimulatedAgent:
             case Hold():
                 self._hold = (command_id, body)
             case Intervene():
-                self._intervene_when_due(body)
+                self._intervene_when_due(command_id, body)
             case Shutdown():
                 self._shut_down = True
             case _:
@@ -142,11 +142,11 @@ class SimulatedAgent:
                 self._robot.handle(command_id, body)
                 self._note_progress()
 
-    def _intervene_when_due(self, command: Intervene) -> None:
+    def _intervene_when_due(self, command_id: str, command: Intervene) -> None:
         if command.at is None or command.at <= self.time_s():
             self._intervene(command.intervention, command.by)
         else:
-            self._pending.queue(command, command.at)
+            self._pending.queue(command_id, command, command.at)
 
     # --- Time ---------------------------------------------------------------------------------
 

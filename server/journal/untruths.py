@@ -43,13 +43,14 @@ def _untrue_missing(
     leaves = _leaves(started)
     scene = Scene.model_validate(started.scene, strict=False)
     told = {each.node for each in end.missing}
+    blocked = _somebody_stands_there(events)
     wrong = []
     for done in (each for each in events if isinstance(each, ev.NodeDone)):
         leaf = leaves[done.node]
         if leaf.object is None or leaf.place is None:
             continue
         there = _is_there(resting[leaf.object], scene, scene.places[leaf.place])
-        if there and done.node in told:
+        if there and done.node in told and not blocked:
             wrong.append(f"'{leaf.object}' is told to be missing, but is at its place")
         if not there and done.node not in told:
             wrong.append(f"'{leaf.object}' is not at its place, but is not told to be missing")
@@ -64,6 +65,16 @@ def _is_there(rest: Rest | None, scene: Scene, place: Place) -> bool:
     height_m = scene.table.height if place.pose.z is None else place.pose.z
     near = math.hypot(rest[0] - place.pose.x, rest[1] - place.pose.y) <= AT_PLACE_M
     return near and abs(rest[2] - height_m) <= AT_PLACE_M
+
+
+def _somebody_stands_there(events: Sequence[ev.Event]) -> bool:
+    """Whether somebody still stands in the way at the end: what they hide cannot be found."""
+    acts = [
+        each.act
+        for each in events
+        if isinstance(each, ev.InterventionDone) and each.ok and each.act in ("block", "release")
+    ]
+    return acts[-1:] == ["block"]
 
 
 def _disturbed_since(events: Sequence[ev.Event], node: str, handled: str) -> bool:

@@ -26,13 +26,14 @@ from robots.link.messages import (
     Resumed,
     StepStarted,
 )
-from server.errors import ConflictError
+from server.errors import ConflictError, ServiceError
 from server.journal import events as ev
-from server.journal.journal import Receipt
+from server.journal.journal import DuplicateReceiptError, Receipt
 from server.runtime.choosing import choose
 from server.runtime.claims import Claims
 from server.runtime.context import RunContext
 from server.runtime.dialogue_driver import DialogueDriver
+from server.runtime.failure import fail_run, fault_of_ours
 from server.runtime.last_look import missing_parts
 from server.runtime.report_events import ReportEvents
 from server.runtime.robot_side import Doing, Purpose, RobotSide
@@ -42,6 +43,9 @@ from server.runtime.views import RunStatus
 log = logging.getLogger(__name__)
 
 Task = Callable[[], Awaitable[object]]
+
+REFUSALS = (ServiceError, DuplicateReceiptError)
+"""What a request or a report may be answered with; anything else is a fault of ours."""
 
 
 class Hardware(Protocol):
@@ -61,7 +65,10 @@ class Hardware(Protocol):
 
 @dataclass(slots=True)
 class _Item:
+    """`asked_for`: somebody waits for what comes of it, and is told if it is refused."""
+
     task: Task
+    asked_for: bool
     done: asyncio.Future[object] = field(default_factory=asyncio.Future)
 
 
@@ -104,22 +111,32 @@ class Run:
     # --- The actor ----------------------------------------------------------------------------
 
     async def main(self) -> None:
-        """Take items from the inbox until the run has ended."""
-        state = self._context.state
+        """Take items from the inbox until the run has ended; a fault of ours fails it."""
         try:
-            if not self._hardware.simulated:
-                for side in self._sides.values():
-                    self._wait_for(side)
-            await self._settle()
-            while not state.status.ended:
-                item = await self._next_item()
-                if item is not None:
-                    await self._carry_out(item)
-                if not state.status.ended:
-                    await self._claims.expire()
-                    await self._settle()
+            await self._work_off()
+        except Exception as error:
+            log.exception("run %s stopped for a fault of ours", self._context.state.id)
+            await self.fail(fault_of_ours(error))
         finally:
             await self._stop_everything()
+
+    async def _work_off(self) -> None:
+        state = self._context.state
+        if not self._hardware.simulated:
+            for side in self._sides.values():
+                self._wait_for(side)
+        await self._settle()
+        while not state.status.ended:
+            item = await self._next_item()
+            if item is not None:
+                await self._carry_out(item)
+            else:
+                await self._go_on()
+
+    async def _go_on(self) -> None:
+        if not self._context.state.status.ended:
+            await self._claims.expire()
+            await self._settle()
 
     async def request(self, task: Task) -> object:
         """Have something done in turn, and wait for what comes of it.
@@ -128,7 +145,7 @@ class Run:
         """
         if self.ended.is_set():
             raise ConflictError(f"the run has ended ({self._context.state.status})")
-        item = _Item(task)
+        item = _Item(task, asked_for=True)
         self._inbox.put_nowait(item)
         return await item.done
 
@@ -146,15 +163,19 @@ class Run:
     async def _carry_out(self, item: _Item) -> None:
         try:
             result = await item.task()
-        except Exception as error:
-            if item.done.cancelled():
-                raise
-            item.done.set_exception(error)
+            # Before anybody hears of it: a simulated robot that knows its report was taken lets
+            # time pass, and what follows from the report is to reach it before that.
+            await self._go_on()
         except asyncio.CancelledError:
             # Whoever waits for it must not wait for ever when the service shuts down.
             if not item.done.done():
                 item.done.set_exception(ConflictError("the service is shutting down"))
             raise
+        except Exception as error:
+            if not item.done.cancelled():
+                item.done.set_exception(error)
+            if not (item.asked_for and isinstance(error, REFUSALS)):
+                raise
         else:
             if not item.done.cancelled():
                 item.done.set_result(result)
@@ -200,7 +221,7 @@ class Run:
         self._put(lambda: self._lost(self._sides[robot], reason))
 
     def _put(self, task: Task) -> None:
-        item = _Item(task)
+        item = _Item(task, asked_for=False)
         item.done.add_done_callback(_log_failure)
         self._inbox.put_nowait(item)
 
@@ -274,7 +295,7 @@ class Run:
             )
         await self._context.commit(events)
         if all(each.gone_for_good for each in self._sides.values()):
-            await self._fail(f"the robot '{side.robot}' is lost: {reason}", None)
+            await fail_run(self._context, f"the robot '{side.robot}' is lost: {reason}")
 
     async def _reported(self, side: RobotSide, report: Report, receipt: Receipt) -> None:
         if side.hello is not None and receipt.boot != side.hello.boot:
@@ -431,7 +452,8 @@ class Run:
         given_up = state.tree.give_up(leaf)
         if given_up is None:
             name = state.tree.name_of(leaf)
-            await self._fail(f"'{name}' could not be done: {reason}", state.tree.path_of(leaf))
+            reason = f"'{name}' could not be done: {reason}"
+            await fail_run(self._context, reason, state.tree.path_of(leaf))
             return
         events: list[ev.Event] = []
         cut_short: list[RobotSide] = []
@@ -462,12 +484,6 @@ class Run:
         missing = missing_parts(self._context.state, side.seen)
         await self._context.commit([ev.RunFinished(**self._context.stamp(), missing=missing)])
 
-    async def _fail(self, reason: str, node: str | None) -> None:
-        state = self._context.state
-        closings = [self._dialogues.abort(each) for each in state.open_dialogues]
-        failed = ev.RunFailed(**self._context.stamp(), reason=reason, node=node)
-        await self._context.commit([*closings, failed])
-
     # --- What people ask for ------------------------------------------------------------------
 
     async def pause(self) -> None:
@@ -497,7 +513,7 @@ class Run:
     async def fail(self, reason: str) -> None:
         """End the run because it cannot go on."""
         if not self._context.state.status.ended:
-            await self._fail(reason, None)
+            await fail_run(self._context, reason)
 
     def _require(self, status: RunStatus, what: str) -> None:
         now = self._context.state.status

@@ -3,99 +3,37 @@
 import asyncio
 import logging
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from datetime import datetime
 from functools import partial
-from typing import Any, Literal, Protocol, cast
+from typing import Any, Literal, cast
 from uuid import UUID, uuid4
 
 import numpy as np
 
 from dialogue.script import Script
-from robots.link.messages import CommandBody, Hello
+from robots.link.messages import Hello
 from server.dialogues.answers import answer_source
 from server.dialogues.escalation import EscalationPolicy
-from server.errors import ConflictError, InvalidError, NotFoundError
+from server.errors import ConflictError, InvalidError, NotFoundError, ServiceError
 from server.journal import events as ev
 from server.journal.journal import Entry, Journal
 from server.runtime.choosing import potentials_for
 from server.runtime.clock import RunClock, SimulatedClock, WallClock
 from server.runtime.context import RunContext, RunSettings
 from server.runtime.dialogue_driver import DialogueDriver
+from server.runtime.failure import fail_run, fault_of_ours
+from server.runtime.ports import LIVE, RealRobots, Robots, ScenarioSource, TreeSource, Worlds
 from server.runtime.requests import RunRequest
 from server.runtime.robot_side import RobotSide
-from server.runtime.run import Hardware, Run
+from server.runtime.run import Run
 from server.runtime.run_state import DialogueState, RunState
 from server.runtime.run_views import dialogue_view, summary, view
 from server.runtime.views import DialogueView, RobotView, RunSummary, RunView, Snapshot
-from tasks.definition import TaskTreeDefinition
 from tasks.intervention import Intervention
 from tasks.scenario import Person, Scenario
 from tasks.scene import Scene
 
 log = logging.getLogger(__name__)
-
-LIVE = "live"
-"""The world of real robots."""
-
-
-@dataclass(frozen=True, slots=True)
-class LoadedTree:
-    """A checked task tree; `scene` None where the file names none."""
-
-    name: str
-    definition: TaskTreeDefinition
-    scene: Scene | None
-
-
-class TreeSource(Protocol):
-    """Where task trees come from."""
-
-    async def load(self, name: str) -> LoadedTree:
-        """Raises `NotFoundError` or `InvalidError`."""
-        ...
-
-
-class ScenarioSource(Protocol):
-    """Where scenarios come from."""
-
-    def load(self, name: str) -> Scenario:
-        """Raises `NotFoundError`."""
-        ...
-
-
-class Robots(Protocol):
-    """The service's end of the robot link."""
-
-    def assign(self, robot: str, sink: Run) -> None: ...
-
-    def unassign(self, robot: str) -> None: ...
-
-    def send(self, robot: str, command_id: str, body: CommandBody) -> None: ...
-
-    async def take_picture(self, robot: str, camera: str, timeout_s: float = 2.0) -> bytes: ...
-
-    def hello(self, robot: str) -> Hello | None: ...
-
-    def connected(self, robot: str) -> bool: ...
-
-    def known(self) -> list[str]: ...
-
-
-class Worlds(Protocol):
-    """The worlds that a run can be in, apart from `live`."""
-
-    def check(self, world: str) -> None:
-        """Raises `InvalidError` when there is no such world, or it cannot run here."""
-        ...
-
-    def lay_out(self, world: str, tree: LoadedTree, seed: int) -> Scene:
-        """A scene for a tree that has none. Raises `InvalidError` where the world cannot."""
-        ...
-
-    async def open(self, state: RunState, run: "Callable[[], Run]") -> Hardware:
-        """Start the simulated robot of a run; its world as the journal has it, if it has one."""
-        ...
 
 
 class Runtime:
@@ -130,18 +68,25 @@ class Runtime:
         self._states: dict[UUID, RunState] = {}
         self._runs: dict[UUID, Run] = {}
         self._tasks: dict[UUID, asyncio.Task[None]] = {}
+        self._unreadable: set[UUID] = set()
 
     # --- Beginning and ending -----------------------------------------------------------------
 
     async def recover(self) -> None:
         """Fold the journal, and take up every run that had not ended."""
         for run in await self._journal.runs():
-            state = await self._refold(run, None)
+            try:
+                state = await self._refold(run, None)
+            except Exception:
+                # One run that cannot be read must not keep the others from going on.
+                log.exception("run %s cannot be read from the journal", run)
+                self._unreadable.add(run)
+                continue
             if state is None:
                 continue
             self._states[run] = state
             if not state.status.ended:
-                await self._take_up(state)
+                await self._take_up_or_fail(state)
 
     async def close(self) -> None:
         """Stop without ending any run: they are taken up at the next start."""
@@ -166,7 +111,7 @@ class Runtime:
 
         await self._journal.append(Entry(events=[started]), fold)
         state = self._states[started.run]
-        await self._take_up(state)
+        await self._take_up_or_fail(state)
         return self.run(state.id)
 
     async def _started(self, request: RunRequest) -> ev.RunStarted:
@@ -216,12 +161,23 @@ class Runtime:
             if robot in busy:
                 raise ConflictError(f"the robot '{robot}' is busy with run {busy[robot]}")
 
-    async def _take_up(self, state: RunState) -> None:
+    async def _take_up_or_fail(self, state: RunState) -> None:
+        """Let a run go on; if that cannot be, it fails and says why."""
         live = state.started.world == LIVE
         clock: RunClock = (
             WallClock(self._monotonic, state.time) if live else SimulatedClock(state.time)
         )
         context = RunContext(state, clock, self._journal, self._settings, self._utc_now)
+        try:
+            await self._take_up(context, live=live)
+        except ServiceError as error:
+            await fail_run(context, f"it could not go on: {error}")
+        except Exception as error:
+            log.exception("run %s could not be taken up", state.id)
+            await fail_run(context, fault_of_ours(error))
+
+    async def _take_up(self, context: RunContext, *, live: bool) -> None:
+        state = context.state
         sides = {robot: RobotSide(robot, cast(Any, self._robots)) for robot in state.started.robots}
         scenario = self._scenario_of(state)
         dialogues = DialogueDriver(
@@ -249,7 +205,7 @@ class Runtime:
             self._robots.unassign(robot)
         self._runs.pop(state.id, None)
         if not task.cancelled() and (error := task.exception()) is not None:
-            log.error("run %s stopped for a fault of ours", state.id, exc_info=error)
+            log.error("run %s stopped and could not say so", state.id, exc_info=error)
 
     def _scenario_of(self, state: RunState) -> Scenario | None:
         name = state.request.scenario
@@ -289,6 +245,8 @@ class Runtime:
         at = head if seq is None else min(seq, head)
         views = []
         for run in await self._journal.runs():
+            if run in self._unreadable:
+                continue
             state: RunState | None = self._states.get(run)
             if state is None or state.seq != await self._last_seq(run, at):
                 state = await self._refold(run, at)
@@ -425,22 +383,6 @@ class Runtime:
             )
             for robot in self._robots.known()
         ]
-
-
-class RealRobots:
-    """The robots of a `live` run: nothing to start again, only to let go of."""
-
-    simulated = False
-
-    def __init__(self, robots: Robots, assigned: list[str]) -> None:
-        self._robots = robots
-        self._assigned = assigned
-
-    async def restart(self, robot: str) -> None:
-        """A real robot comes back by itself."""
-
-    async def release(self) -> None:
-        """The runtime unassigns them."""
 
 
 def _person_of(state: RunState, scenario: Scenario | None) -> Person:

@@ -1,5 +1,6 @@
 """A world with a counting robot, for tests of robot processes."""
 
+import sys
 from pathlib import Path
 
 from counting_agent import CountingAgent
@@ -34,9 +35,22 @@ class CountingWorld:
         return HangingAgent(setup.robot, steps=50, pace=setup.speed)
 
 
+class EndlessWorld(CountingWorld):
+    """Building it never comes to an end."""
+
+    def create_agent(self, setup: WorldSetup) -> CountingAgent:  # noqa: ARG002
+        sys.stderr.write("building for ever\n")
+        sys.stderr.flush()
+        while True:
+            pass
+
+
 counting = CountingWorld()
 embedded = CountingWorld(own_process=False)
 absent = CountingWorld(available=False)
+endless = EndlessWorld()
+
+NAMES = ("counting", "embedded", "absent", "endless")
 
 
 def install(folder: Path) -> None:
@@ -44,5 +58,5 @@ def install(folder: Path) -> None:
     metadata = folder / "counting_world-1.0.dist-info"
     metadata.mkdir()
     (metadata / "METADATA").write_text("Metadata-Version: 2.1\nName: counting-world\nVersion: 1\n")
-    entries = [f"{name} = counting_world:{name}" for name in ("counting", "embedded", "absent")]
+    entries = [f"{name} = counting_world:{name}" for name in NAMES]
     (metadata / "entry_points.txt").write_text("\n".join(["[mend.worlds]", *entries]))

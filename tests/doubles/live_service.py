@@ -14,7 +14,8 @@ from server.dialogues.escalation import EscalationPolicy
 from server.journal.sqlite import SqliteJournal
 from server.robots.registry import RobotRegistry
 from server.runtime.context import RunSettings
-from server.runtime.runtime import LoadedTree, Runtime
+from server.runtime.ports import LoadedTree
+from server.runtime.runtime import Runtime
 
 
 @dataclass(frozen=True)

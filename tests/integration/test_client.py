@@ -7,12 +7,13 @@ from uuid import uuid4
 import pytest
 from pydantic import TypeAdapter
 from recorded_service import recorded_events
-from sample_events import paused
+from sample_events import detected, paused
 from service_under_test import TOKEN, ServiceUnderTest, build, serving
 
 from server.client import MendClient, RefusedError, UnreachableError
 from server.client_stream import CommandRefusedError, StreamRefusedError
 from server.journal.events import Answered, Event, RunAborted, RunStarted
+from server.journal.journal import Entry
 from server.runtime.requests import RunRequest
 from server.runtime.views import RunStatus, Snapshot
 from tasks.intervention import Act, Intervention
@@ -123,6 +124,17 @@ async def test_stream_goes_on_after_lost_connections_without_gap(
             socket.transport.abort()
             await service.runs.commit(*(paused(run=run) for _ in range(5)))
             assert await collect(messages, 5) == list(range(start + 6, start + 11))
+
+
+async def test_an_event_with_a_detection_comes_as_it_was_committed(
+    client: MendClient, service: ServiceUnderTest
+) -> None:
+    async with client.follow("anna") as stream:
+        messages = aiter(stream)
+        assert isinstance(await anext(messages), Snapshot)
+        [raised] = await service.journal.append(Entry(events=[detected()]))
+        async with asyncio.timeout(20):
+            assert await anext(messages) == raised
 
 
 async def test_stream_gives_every_event_of_a_real_run(

@@ -20,8 +20,8 @@ import tasks
 from robots.link.channel import memory_channel
 from robots.link.messages import Hello, Holding, ReachLimits, Report
 from server.journal.sqlite import SqliteJournal
+from server.runtime.ports import LoadedTree
 from server.runtime.requests import RunRequest
-from server.runtime.runtime import LoadedTree
 from server.runtime.views import RunStatus, RunView
 from tasks.scene import Scene
 

@@ -145,13 +145,34 @@ async def test_a_world_that_cannot_run_here_is_refused_with_its_reason(
         )
 
 
+@pytest.mark.slow
+@pytest.mark.usefixtures("_worlds")
+async def test_a_process_whose_parent_died_ends_while_it_builds_its_world() -> None:
+    told = {"world": "endless", "url": "ws://unused", "setup": SETUP.model_dump(mode="json")}
+    process = await asyncio.create_subprocess_exec(
+        sys.executable, "-P", "-m", "sim.robot_process",
+        stdin=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.PIPE,
+    )  # fmt: skip
+    assert process.stdin is not None
+    assert process.stderr is not None
+    process.stdin.write(json.dumps(told).encode() + b"\n")
+    assert await process.stderr.readline() == b"building for ever\n"
+    process.stdin.close()
+    async with asyncio.timeout(30):
+        assert await process.wait() == 0
+
+
 async def run_process(told: bytes) -> tuple[int | None, str]:
     process = await asyncio.create_subprocess_exec(
         sys.executable, "-P", "-m", "sim.robot_process",
         stdin=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.PIPE,
     )  # fmt: skip
-    _, complaint = await process.communicate(told)
-    return process.returncode, complaint.decode()
+    assert process.stdin is not None
+    assert process.stderr is not None
+    # Not `communicate`: a closed stdin means that the parent has died.
+    process.stdin.write(told)
+    complaint = await process.stderr.read()
+    return await process.wait(), complaint.decode()
 
 
 @pytest.mark.slow

@@ -365,6 +365,18 @@ def test_a_retreat_puts_back_what_is_carried_and_ends_the_execution() -> None:
     assert "is not held" in bench.of(Rejected)[0].reason
 
 
+def test_a_start_right_after_a_retreat_command_waits_for_it() -> None:
+    bench = RobotBench()
+    bench.start("pink_bar")
+    bench.run_to(5, 0.5)
+    bench.send(Interrupt(retreat=True))
+    bench.start("green_leg", "right")
+    bench.run()
+    assert bench.of(Rejected) == []
+    assert bench.of(Holding) == [Holding(execution="e1", at="neutral")]
+    assert bench.of(Finished) == [Finished(execution="e3")]
+
+
 def test_an_interrupt_of_a_retreat_holds_and_resumes() -> None:
     bench = RobotBench()
     bench.at(5, 0.5, lambda: bench.body.vanish("pink_bar"))

@@ -8,17 +8,21 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from pretend_service import PretendService, pretend_service
+from pretend_service import NoHardware, PretendService, PretendWorlds, pretend_service
 from task_documents import definition_of
 
 from server.dialogues.escalation import EscalationPolicy
 from server.errors import ConflictError, InvalidError, LostRaceError, NotFoundError
 from server.journal import events as ev
 from server.journal.audit import audit
+from server.journal.journal import Entry
 from server.runtime.requests import RunRequest
+from server.runtime.run_state import RunState
 from server.runtime.views import DialogueView, RunStatus, RunView
+from sim.tabletop.layout import lay_out
 from tasks.random_task import random_task
 from tasks.resolution import Resolution
+from tasks.scenario import Person
 
 TWO_PARTS = definition_of(
     {
@@ -78,6 +82,16 @@ async def test_an_issue_is_resolved_as_it_was_answered(
     done = next(each for each in of_type(events, ev.NodeDone) if each.name == "part_1")
     assert done.by == done_by
     check(view, events)
+
+
+async def test_nobody_takes_a_finished_part_for_the_promised_one() -> None:
+    faults = {"part_2": [("missed", 4)]}
+    clumsy = Person(wrong_object=1.0)
+    scene = lay_out([("part_1", "spot_1"), ("part_2", "spot_2")], seed=1)
+    async with pretend_service(TWO_PARTS, faults, scene=scene) as service:
+        _, events = await service.run_to_end(answers=["yes"], person=clumsy)
+    deeds = of_type(events, ev.InterventionDone)
+    assert [each.object for each in deeds if each.by == "helper"] == ["part_2"]
 
 
 async def test_silence_fails_the_run_after_three_attempts_and_says_why() -> None:
@@ -268,6 +282,96 @@ async def test_after_a_restart_the_same_dialogue_is_still_open(tmp_path: Path) -
         events = await service.journal.read(0, 10_000, before.run)
     assert view.status is RunStatus.FINISHED
     check(view, events)
+
+
+# --- Faults of ours ---------------------------------------------------------------------------
+
+
+async def test_a_fault_of_ours_fails_the_run_instead_of_hanging_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def broken(*_: object) -> None:
+        raise RuntimeError("no such thing")
+
+    monkeypatch.setattr("server.runtime.run.choose", broken)
+    async with pretend_service(TWO_PARTS) as service:
+        view, events = await asyncio.wait_for(service.run_to_end(), timeout=10)
+    assert view.status is RunStatus.FAILED
+    assert view.result is not None
+    assert "a fault in Mend stopped it (RuntimeError: no such thing)" in view.result.reason
+    check(view, events)
+
+
+async def test_a_robot_that_cannot_be_started_again_fails_the_run(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    async def refuse(*_: object) -> None:
+        raise InvalidError("the world cannot run here")
+
+    monkeypatch.setattr(NoHardware, "restart", refuse)
+    async with pretend_service(TWO_PARTS, HELD, deaf=True) as service:
+        request = RunRequest(tree="tree", world="tabletop", speed="max")
+        started = await service.runtime.start_run(request)
+        service.run_of(started).tell_lost(started.robots[0], "it was killed")
+        view = await asyncio.wait_for(service.runtime.wait_for_end(started.id), timeout=10)
+    assert view.status is RunStatus.FAILED
+    assert view.result is not None
+    assert "the world cannot run here" in view.result.reason
+
+
+async def test_a_run_that_cannot_be_taken_up_fails_and_the_others_go_on(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "journal.sqlite"
+    request = RunRequest(tree="tree", world="tabletop", speed="max")
+    async with pretend_service(TWO_PARTS, deaf=True, journal=path) as service:
+        stuck = await service.runtime.start_run(request)
+        other = await service.runtime.start_run(request)
+    opened = PretendWorlds.open
+
+    async def refuse(worlds: PretendWorlds, state: RunState, run: Any) -> Any:
+        if state.id == stuck.id:
+            raise InvalidError("the world is no longer there")
+        return await opened(worlds, state, run)
+
+    monkeypatch.setattr(PretendWorlds, "open", refuse)
+    async with pretend_service(TWO_PARTS, journal=path, boot=2) as service:
+        failed = service.runtime.run(stuck.id)
+        finished = await service.runtime.wait_for_end(other.id)
+    assert failed.status is RunStatus.FAILED
+    assert failed.result is not None
+    assert failed.result.reason == "it could not go on: the world is no longer there"
+    assert finished.status is RunStatus.FINISHED
+
+
+async def test_a_run_that_cannot_be_read_does_not_keep_the_service_from_starting(
+    tmp_path: Path,
+) -> None:
+    path = tmp_path / "journal.sqlite"
+    async with pretend_service(TWO_PARTS, journal=path) as service:
+        view, events = await service.run_to_end()
+        impossible = of_type(events, ev.NodeDone)[0].model_copy(update={"node": "/7"})
+        await service.journal.append(Entry(events=[impossible]))
+    async with pretend_service(TWO_PARTS, journal=path) as service:
+        with pytest.raises(NotFoundError):
+            service.runtime.run(view.id)
+        again, _ = await service.run_to_end()
+        assert again.status is RunStatus.FINISHED
+        assert (await service.runtime.snapshot(None)).runs == []
+
+
+@pytest.mark.usefixtures("deaf_watch")
+async def test_a_refusal_that_nobody_waits_for_any_more_leaves_the_run_alone() -> None:
+    async with pretend_service(TWO_PARTS, HELD) as service:
+        dialogue = await open_question(service)
+        run = service.run_of(service.runtime.run(dialogue.run))
+        asked = asyncio.create_task(run.request(run.resume))
+        await asyncio.sleep(0)
+        asked.cancel()
+        await asyncio.gather(asked, return_exceptions=True)
+        await service.runtime.answer(dialogue.dialogue, prompt_of(dialogue), "yes", "ann")
+        view = await service.runtime.wait_for_end(dialogue.run)
+    assert view.status is RunStatus.FINISHED
 
 
 async def test_a_snapshot_of_the_past_is_the_state_of_then() -> None:
