@@ -12,6 +12,11 @@ help:  ## Say what there is
 
 setup: $(READY)  ## Make .venv with everything (the other targets do this first)
 
+# An environment that was moved here, or whose Python has gone since, is made anew.
+ifneq ($(shell [ "$$(cat $(READY) 2>/dev/null)" = "$(CURDIR)" ] && $(BIN)/python -c '' && echo good),good)
+.PHONY: $(READY)
+endif
+
 $(READY): requirements.lock pyproject.toml scripts/setup
 	scripts/setup
 
