@@ -1,5 +1,6 @@
 """How a run fails: its dialogues are aborted, and it says why."""
 
+from server.errors import ServiceError
 from server.journal import events as ev
 from server.runtime.context import RunContext
 from server.runtime.dialogue_events import DialogueEvents
@@ -15,6 +16,8 @@ async def fail_run(context: RunContext, reason: str, node: str | None = None) ->
     await context.commit([*closings, failed])
 
 
-def fault_of_ours(error: Exception) -> str:
-    """The reason of a run that an unforeseen error has stopped."""
+def why_it_stopped(error: Exception) -> str:
+    """The reason of a run that an error has stopped."""
+    if isinstance(error, ServiceError):
+        return f"it could not go on: {error}"
     return f"a fault in Mend stopped it ({type(error).__name__}: {error}); the log has more"

@@ -69,8 +69,8 @@ class Worlds(Protocol):
         """A scene for a tree that has none. Raises `InvalidError` where the world cannot."""
         ...
 
-    async def open(self, state: RunState, run: "Callable[[], Run]") -> Hardware:
-        """Start the simulated robot of a run; its world as the journal has it, if it has one."""
+    def open(self, state: RunState, run: Callable[[], Run]) -> Hardware:
+        """The hardware of a run, which starts it; `run` is asked for only then."""
         ...
 
 
@@ -78,10 +78,6 @@ class RealRobots:
     """The robots of a `live` run: nothing to start again, only to let go of."""
 
     simulated = False
-
-    def __init__(self, robots: Robots, assigned: list[str]) -> None:
-        self._robots = robots
-        self._assigned = assigned
 
     async def restart(self, robot: str) -> None:
         """A real robot comes back by itself."""

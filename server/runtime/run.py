@@ -33,7 +33,7 @@ from server.runtime.choosing import choose
 from server.runtime.claims import Claims
 from server.runtime.context import RunContext
 from server.runtime.dialogue_driver import DialogueDriver
-from server.runtime.failure import fail_run, fault_of_ours
+from server.runtime.failure import fail_run, why_it_stopped
 from server.runtime.last_look import missing_parts
 from server.runtime.report_events import ReportEvents
 from server.runtime.robot_side import Doing, Purpose, RobotSide
@@ -55,7 +55,7 @@ class Hardware(Protocol):
     def simulated(self) -> bool: ...
 
     async def restart(self, robot: str) -> None:
-        """Start a simulated robot again with its world as the journal has it."""
+        """Start a simulated robot (again), with its world as the journal has it."""
         ...
 
     async def release(self) -> None:
@@ -115,15 +115,17 @@ class Run:
         try:
             await self._work_off()
         except Exception as error:
-            log.exception("run %s stopped for a fault of ours", self._context.state.id)
-            await self.fail(fault_of_ours(error))
+            log.exception("run %s has to stop", self._context.state.id)
+            await self.fail(why_it_stopped(error))
         finally:
             await self._stop_everything()
 
     async def _work_off(self) -> None:
         state = self._context.state
-        if not self._hardware.simulated:
-            for side in self._sides.values():
+        for side in self._sides.values():
+            if self._hardware.simulated:
+                await self._hardware.restart(side.robot)
+            else:
                 self._wait_for(side)
         await self._settle()
         while not state.status.ended:

@@ -14,14 +14,14 @@ from dialogue.script import Script
 from robots.link.messages import Hello
 from server.dialogues.answers import answer_source
 from server.dialogues.escalation import EscalationPolicy
-from server.errors import ConflictError, InvalidError, NotFoundError, ServiceError
+from server.errors import ConflictError, InvalidError, NotFoundError
 from server.journal import events as ev
 from server.journal.journal import Entry, Journal
 from server.runtime.choosing import potentials_for
 from server.runtime.clock import RunClock, SimulatedClock, WallClock
 from server.runtime.context import RunContext, RunSettings
 from server.runtime.dialogue_driver import DialogueDriver
-from server.runtime.failure import fail_run, fault_of_ours
+from server.runtime.failure import fail_run, why_it_stopped
 from server.runtime.ports import LIVE, RealRobots, Robots, ScenarioSource, TreeSource, Worlds
 from server.runtime.requests import RunRequest
 from server.runtime.robot_side import RobotSide
@@ -169,14 +169,12 @@ class Runtime:
         )
         context = RunContext(state, clock, self._journal, self._settings, self._utc_now)
         try:
-            await self._take_up(context, live=live)
-        except ServiceError as error:
-            await fail_run(context, f"it could not go on: {error}")
+            self._take_up(context, live=live)
         except Exception as error:
             log.exception("run %s could not be taken up", state.id)
-            await fail_run(context, fault_of_ours(error))
+            await fail_run(context, why_it_stopped(error))
 
-    async def _take_up(self, context: RunContext, *, live: bool) -> None:
+    def _take_up(self, context: RunContext, *, live: bool) -> None:
         state = context.state
         sides = {robot: RobotSide(robot, cast(Any, self._robots)) for robot in state.started.robots}
         scenario = self._scenario_of(state)
@@ -188,9 +186,9 @@ class Runtime:
             partial(self._send_mail, state),
         )
         hardware = (
-            RealRobots(self._robots, list(sides))
+            RealRobots()
             if live
-            else await self._worlds.open(state, lambda: self._runs[state.id])
+            else self._worlds.open(state, lambda: self._runs[state.id])
         )
         run = Run(context, sides, dialogues, hardware)
         self._runs[state.id] = run

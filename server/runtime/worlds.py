@@ -67,11 +67,9 @@ class SimulatedWorlds:
         except ValueError as error:
             raise InvalidError(f"tree '{tree.name}' cannot be laid out: {error}") from error
 
-    async def open(self, state: RunState, run: Callable[[], Run]) -> "SimulatedHardware":
-        """Start the simulated robot of a run; its world as the journal has it, if it has one."""
-        hardware = SimulatedHardware(self._launch, self._journal, self._setup(state), state, run)
-        await hardware.restart(state.started.robots[0])
-        return hardware
+    def open(self, state: RunState, run: Callable[[], Run]) -> "SimulatedHardware":
+        """The hardware of a run, which starts it; `run` is asked for only then."""
+        return SimulatedHardware(self._launch, self._journal, self._setup(state), state, run)
 
     def _setup(self, state: RunState) -> WorldSetup:
         started, request = state.started, state.request
@@ -115,7 +113,7 @@ class SimulatedHardware:
         self._life = 0
 
     async def restart(self, robot: str) -> None:
-        """Start the robot (again), with its world as the journal has it."""
+        """Start the robot, its world as the journal has it if it has one."""
         await self.release()
         self._life += 1
         snapshot = await self._journal.world(self._state.id)

@@ -51,7 +51,7 @@ class PretendWorlds:
     def lay_out(self, world: str, tree: LoadedTree, seed: int) -> Scene:  # noqa: ARG002
         return self.scene
 
-    async def open(self, state: RunState, run: Any) -> NoHardware:  # noqa: ARG002
+    def open(self, state: RunState, run: Any) -> NoHardware:  # noqa: ARG002
         return NoHardware(self.restarted)
 
 

@@ -308,15 +308,16 @@ async def test_a_robot_that_cannot_be_started_again_fails_the_run(
     async def refuse(*_: object) -> None:
         raise InvalidError("the world cannot run here")
 
-    monkeypatch.setattr(NoHardware, "restart", refuse)
     async with pretend_service(TWO_PARTS, HELD, deaf=True) as service:
         request = RunRequest(tree="tree", world="tabletop", speed="max")
         started = await service.runtime.start_run(request)
+        await service.runtime.pause(started.id)
+        monkeypatch.setattr(NoHardware, "restart", refuse)
         service.run_of(started).tell_lost(started.robots[0], "it was killed")
         view = await asyncio.wait_for(service.runtime.wait_for_end(started.id), timeout=10)
     assert view.status is RunStatus.FAILED
     assert view.result is not None
-    assert "the world cannot run here" in view.result.reason
+    assert view.result.reason == "it could not go on: the world cannot run here"
 
 
 async def test_a_run_that_cannot_be_taken_up_fails_and_the_others_go_on(
@@ -329,10 +330,10 @@ async def test_a_run_that_cannot_be_taken_up_fails_and_the_others_go_on(
         other = await service.runtime.start_run(request)
     opened = PretendWorlds.open
 
-    async def refuse(worlds: PretendWorlds, state: RunState, run: Any) -> Any:
+    def refuse(worlds: PretendWorlds, state: RunState, run: Any) -> Any:
         if state.id == stuck.id:
             raise InvalidError("the world is no longer there")
-        return await opened(worlds, state, run)
+        return opened(worlds, state, run)
 
     monkeypatch.setattr(PretendWorlds, "open", refuse)
     async with pretend_service(TWO_PARTS, journal=path, boot=2) as service:
