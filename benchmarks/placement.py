@@ -21,9 +21,8 @@ from typing import Any
 import numpy as np
 
 from robots.catalogue import Catalogue
-from robots.link.messages import IssueDetected, ReportBody, Start
+from robots.link.messages import IssueDetected, Look, Looked, ReportBody, Start
 from robots.robot import Robot
-from robots.senses import Senses
 from sim.simulated_agent import SimulatedAgent
 from sim.workcell.colors import learn_colors
 from sim.workcell.options import read_options
@@ -73,7 +72,6 @@ def build(scene: Scene, seed: int, options: dict[str, Any], tally: Tally) -> Non
     world = WorkcellWorld(scene, seed, chosen)
     model = learn_colors(scene, chosen.camera_noise)
     catalogue = Catalogue.from_scene(scene)
-    senses = Senses(world.body, model, catalogue)
     robot = Robot(
         "r1",
         world.body,
@@ -86,9 +84,12 @@ def build(scene: Scene, seed: int, options: dict[str, Any], tally: Tally) -> Non
     reports: list[ReportBody] = []
     agent.attach(lambda body, _time, _world: reports.append(body), lambda _picture: None)
     for name in order_of(Random(seed)):
-        seen = senses.sight(catalogue.parts[name], senses.look())
-        if seen is not None:
-            x, y, _ = world.parts[name].pose().position
+        agent.handle(f"look for {name}", Look())
+        while agent.advance(1.0):
+            pass
+        looked = reports[-1]
+        if isinstance(looked, Looked) and name in looked.objects:
+            seen, (x, y, _) = looked.objects[name], world.parts[name].pose().position
             error = math.hypot(seen.x - x, seen.y - y) * 1e3
             tally.picked_mm.setdefault(name, []).append(error)
         parameters = {"object": name, "place": name}

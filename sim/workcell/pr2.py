@@ -41,7 +41,6 @@ _TIP_TORQUE_NM = 100.0
 _FINGER_GAINS = (0.1, 0.1, 0.5, 0.5)
 _FINGER_FRICTION = 1.2
 _FINGER_SPIN_FRICTION = 0.02
-_FINGER_ROLL_FRICTION = 0.0005
 
 _FINGER_LENGTH_M = 0.09137
 _FINGER_OFFSET_M = 0.00495
@@ -192,7 +191,7 @@ class Pr2:
                     link,
                     lateralFriction=_FINGER_FRICTION,
                     spinningFriction=_FINGER_SPIN_FRICTION,
-                    rollingFriction=_FINGER_ROLL_FRICTION,
+                    rollingFriction=0,
                 )
 
     def _paint(self, link_of: dict[str, int]) -> None:
