@@ -185,11 +185,7 @@ class Runtime:
             None if live else _person_of(state, scenario),
             partial(self._send_mail, state),
         )
-        hardware = (
-            RealRobots()
-            if live
-            else self._worlds.open(state, lambda: self._runs[state.id])
-        )
+        hardware = RealRobots() if live else self._worlds.open(state, lambda: self._runs[state.id])
         run = Run(context, sides, dialogues, hardware)
         self._runs[state.id] = run
         for robot in sides:
