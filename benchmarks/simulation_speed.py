@@ -25,11 +25,11 @@ from tasks.plugins import load_plugins
 from tasks.scene import Scene
 
 BUILD = (
-    ("green_leg", "green_leg_place"),
-    ("pink_bar", "pink_bar_place"),
-    ("yellow_bar", "yellow_bar_place"),
-    ("blue_leg", "blue_leg_place"),
-    ("purple_top", "top_place"),
+    ("green_leg", "green_leg"),
+    ("pink_bar", "pink_bar"),
+    ("yellow_bar", "yellow_bar"),
+    ("blue_leg", "blue_leg"),
+    ("purple_top", "purple_top"),
 )
 
 CASES: tuple[tuple[str, str, dict[str, Any]], ...] = (

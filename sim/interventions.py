@@ -15,8 +15,9 @@ _EPSILON = 1e-9
 
 
 class Queued(StrictModel):
-    """An intervention that somebody asked for, to happen when the clock reaches `at_s`."""
+    """An intervention that a command asked for, to happen when the clock reaches `at_s`."""
 
+    command: str
     do: Intervention
     by: str
     at_s: float
@@ -42,9 +43,19 @@ class PendingInterventions:
         """Whether anything is still to come."""
         return bool(self._queued) or len(self._fired) < len(self._scripted)
 
-    def queue(self, command: Intervene, at_s: float) -> None:
-        """Let somebody do something when the clock reaches `at_s`."""
-        self._queued.append(Queued(do=command.intervention, by=command.by, at_s=at_s))
+    def queue(self, command_id: str, command: Intervene, at_s: float) -> None:
+        """Let somebody do something when the clock reaches `at_s`.
+
+        A command that waits already is not doubled: a rebuilt world is told again what it may know.
+        """
+        if any(each.command == command_id for each in self._queued):
+            return
+        queued = Queued(command=command_id, do=command.intervention, by=command.by, at_s=at_s)
+        self._queued.append(queued)
+
+    def withdraw(self, handled: str | None) -> None:
+        """Nobody needs to do any more what was queued for an object, or to clear the way."""
+        self._queued = [each for each in self._queued if each.do.object not in (None, handled)]
 
     def take_due(
         self, time_s: float, progress: TaskProgress | None

@@ -133,7 +133,7 @@ class SimulatedAgent:
             case Hold():
                 self._hold = (command_id, body)
             case Intervene():
-                self._intervene_when_due(body)
+                self._intervene_when_due(command_id, body)
             case Shutdown():
                 self._shut_down = True
             case _:
@@ -142,11 +142,11 @@ class SimulatedAgent:
                 self._robot.handle(command_id, body)
                 self._note_progress()
 
-    def _intervene_when_due(self, command: Intervene) -> None:
+    def _intervene_when_due(self, command_id: str, command: Intervene) -> None:
         if command.at is None or command.at <= self.time_s():
             self._intervene(command.intervention, command.by)
         else:
-            self._pending.queue(command, command.at)
+            self._pending.queue(command_id, command, command.at)
 
     # --- Time ---------------------------------------------------------------------------------
 
@@ -218,6 +218,9 @@ class SimulatedAgent:
         if isinstance(body, _SEEN_AT_ONCE):
             self._reported = True
         if isinstance(body, Looked):
+            if body.fulfilled and self._look is not None:
+                # Nobody still does what the robot has just said that it sees done.
+                self._pending.withdraw(self._look.object)
             self._look = None
         if isinstance(body, Finished) and not body.found_in_place and self._progress is not None:
             # The last moments of the last step are over before anybody can ask for them.

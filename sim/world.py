@@ -1,9 +1,11 @@
 """A world: stands in for hardware and the people around it; workcell and tabletop are two."""
 
-from typing import Any, Protocol
+from collections.abc import Iterable
+from typing import Any, Protocol, runtime_checkable
 
 from robots.agent import AgentCore
 from robots.body import Body
+from robots.vision.color_model import ColorModel
 from tasks.intervention import Intervention
 from tasks.scenario import ScriptedIntervention
 from tasks.scene import Scene, StrictModel
@@ -77,6 +79,26 @@ class WorldAdapter(Protocol):
         """Raise `WorldUnavailableError` if it cannot run here."""
         ...
 
+    def lay_out(self, names: Iterable[tuple[str, str | None]], seed: int) -> Scene:
+        """A scene for the (object, place) names of a tree, where `lays_out_anything`.
+
+        Raises `ValueError` when there is no room for all of them.
+        """
+        ...
+
     def create_agent(self, setup: WorldSetup) -> AgentCore:
         """Build the world and the robot in it."""
+        ...
+
+
+@runtime_checkable
+class ColorTeacher(Protocol):
+    """A world adapter whose pictures a colour model can be trained from."""
+
+    def train_colors(self, scene: Scene) -> ColorModel:
+        """Learn the colours of a scene's objects from rendered pictures of them.
+
+        Raises `ColorModelError` for an object without a colour of its own, and
+        `WorldUnavailableError`.
+        """
         ...

@@ -1,66 +1,54 @@
-"""Reading scenario files: YAML or JSON, one sentence with its line per mistake."""
+"""Scenario files: reading and checking them."""
 
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 from typing import Any
 
-from pydantic import ValidationError
-
-from tasks.document import Document, DocumentError, read_document
+from tasks.document import DocumentError, LinedMapping, read_document, read_text
+from tasks.library import SCENARIOS
+from tasks.problem import InvalidFileError, Problem
 from tasks.scenario import Scenario
 from tasks.scene import Scene
-
-SCENARIOS = Path(__file__).parent / "scenarios"
-
-
-class ScenarioFileError(Exception):
-    """A scenario file cannot be used; `problems` has one sentence per mistake."""
-
-    def __init__(self, source: str, problems: list[str]) -> None:
-        super().__init__("\n".join(f"{source}: {problem}" for problem in problems))
-        self.source = source
-        self.problems = problems
+from tasks.validation import show_kind, validate_part
 
 
-def scenario_names() -> list[str]:
-    """The scenarios that come with Mend."""
-    return sorted(path.stem for path in SCENARIOS.glob("*.yaml"))
+class ScenarioFileError(InvalidFileError):
+    """A scenario file has mistakes; raised by every function that reads one."""
 
 
-def load_scenario(name: str) -> Scenario:
-    """Read a scenario that comes with Mend; never any other file, whatever the name.
-
-    Raises `ScenarioFileError`.
-    """
-    if name not in scenario_names():
-        known = ", ".join(scenario_names())
-        raise ScenarioFileError(name, [f"there is no such scenario; there are {known}"])
-    return read_scenario(SCENARIOS / f"{name}.yaml")
-
-
-def read_scenario(path: Path) -> Scenario:
-    """Read anybody's scenario file. Raises `ScenarioFileError`."""
+def check_scenario_file(path: Path) -> Scenario:
+    """Read and check a scenario file (YAML or JSON). Raises `ScenarioFileError`."""
     try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        raise ScenarioFileError(str(path), [f"the file cannot be read: {error}"]) from error
-    return parse_scenario(text, str(path))
-
-
-def parse_scenario(text: str, source: str) -> Scenario:
-    """Read a scenario from text; `source` says in errors where it is from.
-
-    Raises `ScenarioFileError`.
-    """
-    try:
-        document = read_document(text)
+        text = read_text(path)
     except DocumentError as error:
-        raise ScenarioFileError(source, error.problems) from error
+        raise ScenarioFileError(str(path), [error.problem]) from error
+    return check_scenario_text(text, source=str(path))
+
+
+def check_scenario_text(text: str, *, source: str = "scenario") -> Scenario:
+    """Check the text of a scenario file; `source` names it in errors.
+
+    Raises `ScenarioFileError`.
+    """
     try:
-        return Scenario.model_validate(document.data)
-    except ValidationError as error:
-        problems = [_problem(document, each["loc"], each["msg"]) for each in error.errors()]
-        raise ScenarioFileError(source, problems) from error
+        document, problems = read_document(text)
+    except DocumentError as error:
+        raise ScenarioFileError(source, [error.problem]) from error
+    if not isinstance(document, LinedMapping):
+        message = f"a scenario file is a mapping, but this is {show_kind(document)}"
+        raise ScenarioFileError(source, [*problems, Problem(1, None, message)])
+    scenario, mistakes = validate_part(Scenario, document)
+    problems += mistakes
+    if scenario is None or problems:
+        raise ScenarioFileError(source, problems)
+    return scenario
+
+
+@cache
+def built_in_scenario(name: str) -> Scenario:
+    """A scenario of the library. Raises `NotInLibraryError`."""
+    return check_scenario_text(SCENARIOS.read(name), source=f"scenarios/{name}.yaml")
 
 
 def scene_problems(scenario: Scenario, scene: Scene) -> list[str]:
@@ -80,9 +68,3 @@ def scene_problems(scenario: Scenario, scene: Scene) -> list[str]:
         problems += unknown("object", each.do.object, scene.objects, f"{where}.do")
         problems += unknown("place", each.do.place, scene.places, f"{where}.do")
     return problems
-
-
-def _problem(document: Document, location: tuple[int | str, ...], message: str) -> str:
-    where = ".".join(str(part) for part in location) or "the file"
-    message = message.removeprefix("Value error, ")
-    return f"line {document.line_of(location)}: {where}: {message}"

@@ -8,6 +8,10 @@ class ChannelClosedError(Exception):
     """The other end is gone; raised by `send` and `receive`."""
 
 
+class LinkRefusedError(Exception):
+    """The service does not want this robot; the message says why. Trying again will not help."""
+
+
 class Channel(Protocol):
     """One end of a connection between a robot and the service."""
 

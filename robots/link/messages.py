@@ -1,21 +1,32 @@
 """The protocol between the service and a robot: every message, as docs/robot_protocol.md says.
 
-JSON text frames over one WebSocket. The robot sends `hello`, `report`, `heartbeat` and `picture`;
-the service sends `welcome`, `ack`, `command` and `error`. Reports are durable: the robot keeps
-each in its outbox under (robot, boot, seq) until the service has acknowledged it, which it does
-after it has committed it. Commands are idempotent: a robot carries out a command `id` once.
+JSON text frames over one WebSocket. The robot sends `hello`, `report`, `heartbeat`, `taken` and
+`picture`; the service sends `welcome`, `ack`, `command` and `error`. Reports are durable: the robot
+keeps each in its outbox under (robot, boot, seq) until the service has acknowledged it, which it
+does after it has committed it. Commands are idempotent: a robot carries out a command `id` once,
+and the service sends it again after a reconnect until it is `taken`.
 All lengths are metres, angles radians, times seconds of the robot's clock, poses in its base frame.
 """
 
+import json
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, TypeAdapter
 
 from tasks.intervention import Intervention
 
 PROTOCOL_VERSION = 1
 
 Identifier = Annotated[str, Field(min_length=1, max_length=128)]
+
+
+def _require_json(value: dict[str, Any]) -> dict[str, Any]:
+    """Refuse NaN and infinities, which `Any` lets through and JSON does not have."""
+    json.dumps(value, allow_nan=False)
+    return value
+
+
+JsonObject = Annotated[dict[str, Any], AfterValidator(_require_json)]
 
 
 class Message(BaseModel):
@@ -195,7 +206,7 @@ class Start(Message):
     execution: str
     node: str
     behavior: str
-    parameters: dict[str, Any]
+    parameters: JsonObject
     size: tuple[float, float, float] | None = None
     target: Location | None = None
 
@@ -252,7 +263,10 @@ class Hold(Message):
 
 
 class Intervene(Message):
-    """Simulated worlds: a person does this, now or when the clock reaches `at`."""
+    """Simulated worlds: a person does this, now or when the clock reaches `at`.
+
+    Nobody does what is still to come for an object once a look saw what it expected of it.
+    """
 
     type: Literal["intervene"] = "intervene"
     intervention: Intervention
@@ -304,16 +318,19 @@ class Hello(Message):
 
 
 class Report(Message):
-    """A durable report; `seq` counts from 1 within a boot.
+    """A durable report; `seq` counts from 1 within a boot, without gaps.
 
-    `world`: a simulated world's state after it, from which it can be rebuilt.
+    `boot` None is the boot of the hello; a report that an earlier start of the robot's program
+    left undelivered names its own. `world`: a simulated world's state after it, from which it can
+    be rebuilt.
     """
 
     type: Literal["report"] = "report"
+    boot: Identifier | None = None
     seq: Annotated[int, Field(ge=1)]
     time: float
     body: ReportBody
-    world: dict[str, Any] | None = None
+    world: JsonObject | None = None
 
 
 class Heartbeat(Message):
@@ -321,6 +338,13 @@ class Heartbeat(Message):
 
     type: Literal["heartbeat"] = "heartbeat"
     time: float
+
+
+class Taken(Message):
+    """The robot has the command and need not be sent it again in this boot; not durable."""
+
+    type: Literal["taken"] = "taken"
+    command: Identifier
 
 
 class Picture(Message):
@@ -332,7 +356,7 @@ class Picture(Message):
     jpeg: str
 
 
-RobotMessage = Annotated[Hello | Report | Heartbeat | Picture, Field(discriminator="type")]
+RobotMessage = Annotated[Hello | Report | Heartbeat | Taken | Picture, Field(discriminator="type")]
 
 
 class Welcome(Message):
@@ -345,9 +369,10 @@ class Welcome(Message):
 
 
 class Ack(Message):
-    """All reports up to `seq` of this boot are committed."""
+    """All reports of a boot up to `seq` are committed; `boot` None is that of the hello."""
 
     type: Literal["ack"] = "ack"
+    boot: Identifier | None = None
     seq: int
 
 
@@ -368,5 +393,5 @@ class LinkError(Message):
 
 ServiceMessage = Annotated[Welcome | Ack | Command | LinkError, Field(discriminator="type")]
 
-robot_message: TypeAdapter[Hello | Report | Heartbeat | Picture] = TypeAdapter(RobotMessage)
+robot_message: TypeAdapter[Hello | Report | Heartbeat | Taken | Picture] = TypeAdapter(RobotMessage)
 service_message: TypeAdapter[Welcome | Ack | Command | LinkError] = TypeAdapter(ServiceMessage)

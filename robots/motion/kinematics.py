@@ -59,6 +59,12 @@ class KinematicChain:
         self._tail = pending
         self.lower: Joints = np.array([low for low, _ in limits])
         self.upper: Joints = np.array([high for _, high in limits])
+        self._compile()
+
+    def _compile(self) -> None:
+        """Compile what a plan calls: amid a run that would stop the robot for seconds."""
+        middle = (self.lower + self.upper) / 2
+        self.solve(self.pose(middle), middle, middle, iterations=1)
 
     def pose(self, joints: Joints) -> Matrix4:
         """The tip's pose in the root's frame."""

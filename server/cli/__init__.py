@@ -1,0 +1,76 @@
+"""The command line: `mend`, one module per command."""
+
+import os
+import sys
+from collections.abc import Callable
+from importlib.metadata import version
+from typing import Annotated
+
+import typer
+
+from server.cli.check import check
+from server.cli.failures import CommandLineError
+from server.cli.replay import replay
+from server.cli.run import run
+from server.cli.scenarios import scenarios
+from server.cli.schema import schema
+from server.cli.serve import serve
+from server.cli.train_colors import train_colors
+from server.cli.trees import trees
+
+PIPE_CLOSED = 141
+"""Exit code when whoever read the output went away (128 and the number of SIGPIPE)."""
+
+app = typer.Typer(
+    name="mend",
+    help="Run robots through task trees, and ask a person for help when they fail.",
+    no_args_is_help=True,
+    rich_markup_mode=None,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+
+def _show_version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"mend {version('mend')}")
+        raise typer.Exit
+
+
+@app.callback()
+def common_options(
+    _version: Annotated[
+        bool,
+        typer.Option("--version", callback=_show_version, is_eager=True, help="Say the version."),
+    ] = False,
+) -> None:
+    """Run robots through task trees, and ask a person for help when they fail."""
+
+
+COMMANDS: dict[str, tuple[Callable[..., None], str]] = {
+    "run": (run, "Run a task tree and print what happens."),
+    "serve": (serve, "Serve the API, the helpers' page, the robots."),
+    "check": (check, "Find the mistakes of a file."),
+    "trees": (trees, "List the task trees that there are."),
+    "scenarios": (scenarios, "List the scenarios that there are."),
+    "schema": (schema, "Print a schema as JSON."),
+    "replay": (replay, "Tell a run again from its journal."),
+    "train-colors": (train_colors, "Learn the colours of objects."),
+}
+
+for name, (command, summary) in COMMANDS.items():
+    app.command(name, short_help=summary)(command)
+
+
+def main() -> None:
+    """The entry point: every failure ends in sentences on stderr, never in a traceback."""
+    try:
+        app(prog_name="mend")
+    except CommandLineError as failure:
+        for sentence in str(failure).splitlines():
+            print(f"mend: {sentence}", file=sys.stderr)  # noqa: T201 - this is what it is for
+        sys.exit(failure.exit_code)
+    except BrokenPipeError:
+        # What is still buffered has nobody to read it, and must not fail again at exit.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        sys.exit(PIPE_CLOSED)

@@ -23,7 +23,7 @@ class Choice:
 
 
 def potentials_for(
-    state: RunState, side: RobotSide, leaves: NDArray[np.intp]
+    state: RunState, side: RobotSide, leaves: NDArray[np.int64]
 ) -> NDArray[np.float64]:
     """The activation potential of each leaf for a robot, from where it last saw the objects."""
     last_seen = {name: (each.x, each.y, each.z) for name, each in side.seen.items()}
@@ -31,10 +31,10 @@ def potentials_for(
     return np.array(
         [
             leaf_potential(
-                tree.object_of(int(leaf)),
+                tree.leaf_definition(int(leaf)).object,
                 last_seen,
                 side.gripper,
-                side.suitability(tree.behavior_of(int(leaf))),
+                side.suitability(tree.leaf_definition(int(leaf)).behavior),
             )
             for leaf in leaves
         ],
@@ -42,12 +42,12 @@ def potentials_for(
     )
 
 
-def able_mask(state: RunState, side: RobotSide, leaves: NDArray[np.intp]) -> NDArray[np.bool_]:
+def able_mask(state: RunState, side: RobotSide, leaves: NDArray[np.int64]) -> NDArray[np.bool_]:
     """Which of the leaves a robot can do at all and has not tried too often."""
     return np.array(
         [
             int(leaf) not in state.exhausted
-            and side.suitability(state.tree.behavior_of(int(leaf))) > 0
+            and side.suitability(state.tree.leaf_definition(int(leaf)).behavior) > 0
             for leaf in leaves
         ],
         dtype=np.bool_,
@@ -68,7 +68,7 @@ def choose(state: RunState, side: RobotSide) -> Choice | None:
 
 
 def _candidates(
-    state: RunState, leaves: NDArray[np.intp], potentials: NDArray[np.float64]
+    state: RunState, leaves: NDArray[np.int64], potentials: NDArray[np.float64]
 ) -> list[Candidate]:
     tree = state.tree
     order = sorted(

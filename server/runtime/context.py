@@ -14,11 +14,14 @@ from server.runtime.run_state import RunState
 
 @dataclass(frozen=True, slots=True)
 class RunSettings:
-    """How patient a run is. Seconds of the run's clock, but for `robot_lost_timeout_s` (wall)."""
+    """How patient a run is. Seconds of the run's clock, but for `robot_lost_timeout_s` (wall).
+
+    `max_restarts`: so often a simulated robot is started again without having begun a step since.
+    """
 
     help_window_s: float = 30.0
     robot_lost_timeout_s: float = 60.0
-    max_restarts: int = 5
+    max_restarts: int = 20
     claim_lease_s: float = 30.0
 
 
@@ -59,7 +62,16 @@ class RunContext:
             world=world,
             pictures=pictures or {},
         )
-        numbered = await self._journal.append(entry)
-        for event in numbered:
-            self.state.fold(event)
-        return numbered
+        failures: list[Exception] = []
+
+        def fold(numbered: list[Event]) -> None:
+            try:
+                for event in numbered:
+                    self.state.fold(event)
+            except Exception as error:
+                failures.append(error)
+
+        committed = await self._journal.append(entry, fold)
+        if failures:
+            raise failures[0]
+        return committed

@@ -24,14 +24,16 @@ from robots.link.messages import (
     Rejected,
     Report,
     Resumed,
+    StepStarted,
 )
-from server.errors import ConflictError
+from server.errors import ConflictError, ServiceError
 from server.journal import events as ev
-from server.journal.journal import Receipt
+from server.journal.journal import DuplicateReceiptError, Receipt
 from server.runtime.choosing import choose
 from server.runtime.claims import Claims
 from server.runtime.context import RunContext
 from server.runtime.dialogue_driver import DialogueDriver
+from server.runtime.failure import fail_run, why_it_stopped
 from server.runtime.last_look import missing_parts
 from server.runtime.report_events import ReportEvents
 from server.runtime.robot_side import Doing, Purpose, RobotSide
@@ -42,6 +44,9 @@ log = logging.getLogger(__name__)
 
 Task = Callable[[], Awaitable[object]]
 
+REFUSALS = (ServiceError, DuplicateReceiptError)
+"""What a request or a report may be answered with; anything else is a fault of ours."""
+
 
 class Hardware(Protocol):
     """What stands behind a run's robots: simulated worlds that can be started again, or nothing."""
@@ -50,7 +55,7 @@ class Hardware(Protocol):
     def simulated(self) -> bool: ...
 
     async def restart(self, robot: str) -> None:
-        """Start a simulated robot again with its world as the journal has it."""
+        """Start a simulated robot (again), with its world as the journal has it."""
         ...
 
     async def release(self) -> None:
@@ -60,7 +65,10 @@ class Hardware(Protocol):
 
 @dataclass(slots=True)
 class _Item:
+    """`asked_for`: somebody waits for what comes of it, and is told if it is refused."""
+
     task: Task
+    asked_for: bool
     done: asyncio.Future[object] = field(default_factory=asyncio.Future)
 
 
@@ -103,22 +111,34 @@ class Run:
     # --- The actor ----------------------------------------------------------------------------
 
     async def main(self) -> None:
-        """Take items from the inbox until the run has ended."""
-        state = self._context.state
+        """Take items from the inbox until the run has ended; a fault of ours fails it."""
         try:
-            if not self._hardware.simulated:
-                for side in self._sides.values():
-                    self._wait_for(side)
-            await self._settle()
-            while not state.status.ended:
-                item = await self._next_item()
-                if item is not None:
-                    await self._carry_out(item)
-                if not state.status.ended:
-                    await self._claims.expire()
-                    await self._settle()
+            await self._work_off()
+        except Exception as error:
+            log.exception("run %s has to stop", self._context.state.id)
+            await self.fail(why_it_stopped(error))
         finally:
             await self._stop_everything()
+
+    async def _work_off(self) -> None:
+        state = self._context.state
+        for side in self._sides.values():
+            if self._hardware.simulated:
+                await self._hardware.restart(side.robot)
+            else:
+                self._wait_for(side)
+        await self._settle()
+        while not state.status.ended:
+            item = await self._next_item()
+            if item is not None:
+                await self._carry_out(item)
+            else:
+                await self._go_on()
+
+    async def _go_on(self) -> None:
+        if not self._context.state.status.ended:
+            await self._claims.expire()
+            await self._settle()
 
     async def request(self, task: Task) -> object:
         """Have something done in turn, and wait for what comes of it.
@@ -127,7 +147,7 @@ class Run:
         """
         if self.ended.is_set():
             raise ConflictError(f"the run has ended ({self._context.state.status})")
-        item = _Item(task)
+        item = _Item(task, asked_for=True)
         self._inbox.put_nowait(item)
         return await item.done
 
@@ -145,10 +165,19 @@ class Run:
     async def _carry_out(self, item: _Item) -> None:
         try:
             result = await item.task()
+            # Before anybody hears of it: a simulated robot that knows its report was taken lets
+            # time pass, and what follows from the report is to reach it before that.
+            await self._go_on()
+        except asyncio.CancelledError:
+            # Whoever waits for it must not wait for ever when the service shuts down.
+            if not item.done.done():
+                item.done.set_exception(ConflictError("the service is shutting down"))
+            raise
         except Exception as error:
-            if item.done.cancelled():
+            if not item.done.cancelled():
+                item.done.set_exception(error)
+            if not (item.asked_for and isinstance(error, REFUSALS)):
                 raise
-            item.done.set_exception(error)
         else:
             if not item.done.cancelled():
                 item.done.set_result(result)
@@ -180,7 +209,8 @@ class Run:
         try:
             await self.request(lambda: self._reported(self._sides[robot], report, receipt))
         except ConflictError:
-            if not self.ended.is_set():
+            # A service that shuts down takes nothing more: the robot sends it again afterwards.
+            if not self._context.state.status.ended:
                 raise
             await self._context.commit([], receipt=receipt)
 
@@ -193,7 +223,7 @@ class Run:
         self._put(lambda: self._lost(self._sides[robot], reason))
 
     def _put(self, task: Task) -> None:
-        item = _Item(task)
+        item = _Item(task, asked_for=False)
         item.done.add_done_callback(_log_failure)
         self._inbox.put_nowait(item)
 
@@ -267,12 +297,17 @@ class Run:
             )
         await self._context.commit(events)
         if all(each.gone_for_good for each in self._sides.values()):
-            await self._fail(f"the robot '{side.robot}' is lost: {reason}", None)
+            await fail_run(self._context, f"the robot '{side.robot}' is lost: {reason}")
 
     async def _reported(self, side: RobotSide, report: Report, receipt: Receipt) -> None:
+        if side.hello is not None and receipt.boot != side.hello.boot:
+            # An earlier boot's: what it did was put back when the robot came with its new one.
+            await self._context.commit([], receipt=receipt)
+            return
         self._context.clock.observe(report.time)
-        side.restarts = 0
         body = report.body
+        if isinstance(body, StepStarted):
+            side.restarts = 0
         events, pictures = self._reports.read(side, body)
         await self._context.commit(events, receipt=receipt, world=report.world, pictures=pictures)
         await self._after_report(side, body)
@@ -344,7 +379,7 @@ class Run:
         if side.holds_execution:
             side.retreat()
             return False
-        if state.tree.root_done:
+        if state.tree.done(0):
             if not state.executions:
                 side.look(Purpose.LAST)
             return False
@@ -380,13 +415,13 @@ class Run:
     def _start(self, side: RobotSide, execution: Execution) -> None:
         state = self._context.state
         tree, scene = state.tree, state.scene
-        part = scene.objects.get(tree.object_of(execution.leaf) or "")
-        place = scene.places.get(tree.place_of(execution.leaf) or "")
+        part = scene.objects.get(tree.leaf_definition(execution.leaf).object or "")
+        place = scene.places.get(tree.leaf_definition(execution.leaf).place or "")
         side.start(
             execution,
             node=tree.path_of(execution.leaf),
-            behavior=tree.behavior_of(execution.leaf),
-            parameters=dict(tree.parameters_of(execution.leaf)),
+            behavior=tree.leaf_definition(execution.leaf).behavior,
+            parameters=dict(tree.leaf_definition(execution.leaf).parameters),
             size=part.size if part else None,
             target=Location(**place.pose.model_dump()) if place else None,
         )
@@ -403,7 +438,8 @@ class Run:
                 leaf
                 for leaf in (int(each) for each in tree.eligible_leaves())
                 if not any(
-                    side.suitability(tree.behavior_of(leaf)) > 0 for side in self._sides.values()
+                    side.suitability(tree.leaf_definition(leaf).behavior) > 0
+                    for side in self._sides.values()
                 )
             ][:1]
             reason = "no robot can do it"
@@ -418,11 +454,12 @@ class Run:
         given_up = state.tree.give_up(leaf)
         if given_up is None:
             name = state.tree.name_of(leaf)
-            await self._fail(f"'{name}' could not be done: {reason}", state.tree.path_of(leaf))
+            reason = f"'{name}' could not be done: {reason}"
+            await fail_run(self._context, reason, state.tree.path_of(leaf))
             return
         events: list[ev.Event] = []
         cut_short: list[RobotSide] = []
-        for active in given_up.active_leaves:
+        for active in given_up.put_back:
             owner = state.tree.owner(active) or ""
             if dialogue := state.dialogue_of(active):
                 events.append(self._dialogues.abort(dialogue))
@@ -448,12 +485,6 @@ class Run:
     async def _finish(self, side: RobotSide) -> None:
         missing = missing_parts(self._context.state, side.seen)
         await self._context.commit([ev.RunFinished(**self._context.stamp(), missing=missing)])
-
-    async def _fail(self, reason: str, node: str | None) -> None:
-        state = self._context.state
-        closings = [self._dialogues.abort(each) for each in state.open_dialogues]
-        failed = ev.RunFailed(**self._context.stamp(), reason=reason, node=node)
-        await self._context.commit([*closings, failed])
 
     # --- What people ask for ------------------------------------------------------------------
 
@@ -484,7 +515,7 @@ class Run:
     async def fail(self, reason: str) -> None:
         """End the run because it cannot go on."""
         if not self._context.state.status.ended:
-            await self._fail(reason, None)
+            await fail_run(self._context, reason)
 
     def _require(self, status: RunStatus, what: str) -> None:
         now = self._context.state.status

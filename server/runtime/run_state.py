@@ -7,16 +7,15 @@ from functools import singledispatchmethod
 from typing import Literal
 from uuid import UUID
 
-from tasks.definition import TreeDefinition
-from tasks.task_tree import TaskTree
-
 from dialogue.conversation import Conversation
 from dialogue.script import CloseReason, Expectation, Help, Script, Turn
 from server.journal import events as ev
 from server.runtime.requests import RunRequest
 from server.runtime.views import RunResult, RunStatus
+from tasks.definition import TaskTreeDefinition
 from tasks.issue import Issue
 from tasks.scene import Scene
+from tasks.task_tree import TaskTree
 
 
 @dataclass(slots=True)
@@ -125,7 +124,8 @@ class RunState:
         self.started = started
         self.request = RunRequest.model_validate(started.options)
         self.scene = Scene.model_validate(started.scene, strict=False)
-        self.tree = TaskTree(TreeDefinition.model_validate(started.tree))
+        self.tree = TaskTree(TaskTreeDefinition.model_validate(started.tree))
+        self.tree.running = True
         self.status = RunStatus.RUNNING
         self.result: RunResult | None = None
         self.executions: dict[str, Execution] = {}

@@ -1,9 +1,7 @@
 """From a run's state to what clients see of it."""
 
+from collections.abc import Mapping
 from typing import Literal
-
-import numpy as np
-from numpy.typing import NDArray
 
 from server.runtime.run_state import DialogueState, RunState
 from server.runtime.views import (
@@ -13,6 +11,7 @@ from server.runtime.views import (
     RunSummary,
     RunView,
 )
+from tasks.definition import NodeKind
 
 
 def summary(state: RunState, time: float) -> RunSummary:
@@ -33,8 +32,8 @@ def summary(state: RunState, time: float) -> RunSummary:
     )
 
 
-def view(state: RunState, time: float, leaf_potentials: NDArray[np.float64]) -> RunView:
-    """Everything about a run; `leaf_potentials` has one value per node (0 for goal nodes)."""
+def view(state: RunState, time: float, leaf_potentials: Mapping[int, float]) -> RunView:
+    """Everything about a run; `leaf_potentials` by leaf (0 where not given)."""
     return RunView(
         **summary(state, time).model_dump(),
         seq=state.seq,
@@ -44,7 +43,7 @@ def view(state: RunState, time: float, leaf_potentials: NDArray[np.float64]) -> 
     )
 
 
-def node_views(state: RunState, leaf_potentials: NDArray[np.float64]) -> list[NodeView]:
+def node_views(state: RunState, leaf_potentials: Mapping[int, float]) -> list[NodeView]:
     """Every node in the tree's order, levels and potentials evaluated now."""
     tree = state.tree
     potentials = tree.potentials(leaf_potentials)
@@ -52,17 +51,17 @@ def node_views(state: RunState, leaf_potentials: NDArray[np.float64]) -> list[No
     views = []
     for node in range(len(tree)):
         kind = tree.kind_of(node)
-        leaf = tree.is_leaf(node)
+        leaf = tree.leaf_definition(node) if kind is NodeKind.BEHAVIOR else None
         views.append(
             NodeView(
                 node=tree.path_of(node),
                 name=tree.name_of(node),
                 kind=kind.value,
-                behavior=tree.behavior_of(node) if leaf else None,
-                object=tree.object_of(node) if leaf else None,
-                place=tree.place_of(node) if leaf else None,
-                activation_level=float(levels[node]),
-                activation_potential=float(potentials[node]),
+                behavior=leaf.behavior if leaf else None,
+                object=leaf.object if leaf else None,
+                place=leaf.place if leaf else None,
+                activation_level=levels[node],
+                activation_potential=potentials[node],
                 active=tree.active(node),
                 done=tree.done(node),
                 abandoned=tree.abandoned(node),

@@ -3,17 +3,15 @@
 import asyncio
 import logging
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from datetime import datetime
 from functools import partial
-from typing import Any, Literal, Protocol, cast
+from typing import Any, Literal, cast
 from uuid import UUID, uuid4
 
 import numpy as np
-from tasks.definition import TreeDefinition
 
 from dialogue.script import Script
-from robots.link.messages import CommandBody, Hello
+from robots.link.messages import Hello
 from server.dialogues.answers import answer_source
 from server.dialogues.escalation import EscalationPolicy
 from server.errors import ConflictError, InvalidError, NotFoundError
@@ -23,9 +21,11 @@ from server.runtime.choosing import potentials_for
 from server.runtime.clock import RunClock, SimulatedClock, WallClock
 from server.runtime.context import RunContext, RunSettings
 from server.runtime.dialogue_driver import DialogueDriver
+from server.runtime.failure import fail_run, why_it_stopped
+from server.runtime.ports import LIVE, RealRobots, Robots, ScenarioSource, TreeSource, Worlds
 from server.runtime.requests import RunRequest
 from server.runtime.robot_side import RobotSide
-from server.runtime.run import Hardware, Run
+from server.runtime.run import Run
 from server.runtime.run_state import DialogueState, RunState
 from server.runtime.run_views import dialogue_view, summary, view
 from server.runtime.views import DialogueView, RobotView, RunSummary, RunView, Snapshot
@@ -34,68 +34,6 @@ from tasks.scenario import Person, Scenario
 from tasks.scene import Scene
 
 log = logging.getLogger(__name__)
-
-LIVE = "live"
-"""The world of real robots."""
-
-
-@dataclass(frozen=True, slots=True)
-class LoadedTree:
-    """A checked task tree; `scene` None where the file names none."""
-
-    name: str
-    definition: TreeDefinition
-    scene: Scene | None
-
-
-class TreeSource(Protocol):
-    """Where task trees come from."""
-
-    async def load(self, name: str) -> LoadedTree:
-        """Raises `NotFoundError` or `InvalidError`."""
-        ...
-
-
-class ScenarioSource(Protocol):
-    """Where scenarios come from."""
-
-    def load(self, name: str) -> Scenario:
-        """Raises `NotFoundError`."""
-        ...
-
-
-class Robots(Protocol):
-    """The service's end of the robot link."""
-
-    def assign(self, robot: str, sink: Run) -> None: ...
-
-    def unassign(self, robot: str) -> None: ...
-
-    def send(self, robot: str, command_id: str, body: CommandBody) -> None: ...
-
-    async def take_picture(self, robot: str, camera: str, timeout_s: float = 2.0) -> bytes: ...
-
-    def hello(self, robot: str) -> Hello | None: ...
-
-    def connected(self, robot: str) -> bool: ...
-
-    def known(self) -> list[str]: ...
-
-
-class Worlds(Protocol):
-    """The worlds that a run can be in, apart from `live`."""
-
-    def check(self, world: str) -> None:
-        """Raises `InvalidError` when there is no such world, or it cannot run here."""
-        ...
-
-    def lay_out(self, world: str, tree: LoadedTree, seed: int) -> Scene:
-        """A scene for a tree that has none. Raises `InvalidError` where the world cannot."""
-        ...
-
-    async def open(self, state: RunState, run: "Callable[[], Run]") -> Hardware:
-        """Start the simulated robot of a run; its world as the journal has it, if it has one."""
-        ...
 
 
 class Runtime:
@@ -130,18 +68,25 @@ class Runtime:
         self._states: dict[UUID, RunState] = {}
         self._runs: dict[UUID, Run] = {}
         self._tasks: dict[UUID, asyncio.Task[None]] = {}
+        self._unreadable: set[UUID] = set()
 
     # --- Beginning and ending -----------------------------------------------------------------
 
     async def recover(self) -> None:
         """Fold the journal, and take up every run that had not ended."""
         for run in await self._journal.runs():
-            state = await self._refold(run, None)
+            try:
+                state = await self._refold(run, None)
+            except Exception:
+                # One run that cannot be read must not keep the others from going on.
+                log.exception("run %s cannot be read from the journal", run)
+                self._unreadable.add(run)
+                continue
             if state is None:
                 continue
             self._states[run] = state
             if not state.status.ended:
-                await self._take_up(state)
+                await self._take_up_or_fail(state)
 
     async def close(self) -> None:
         """Stop without ending any run: they are taken up at the next start."""
@@ -160,10 +105,13 @@ class Runtime:
         started = await self._started(request)
         if request.world == LIVE:
             self._check_robots(request.robots)
-        numbered = await self._journal.append(Entry(events=[started]))
-        state = RunState(cast(ev.RunStarted, numbered[0]), self._scripts)
-        self._states[state.id] = state
-        await self._take_up(state)
+
+        def fold(numbered: list[ev.Event]) -> None:
+            self._states[started.run] = RunState(cast(ev.RunStarted, numbered[0]), self._scripts)
+
+        await self._journal.append(Entry(events=[started]), fold)
+        state = self._states[started.run]
+        await self._take_up_or_fail(state)
         return self.run(state.id)
 
     async def _started(self, request: RunRequest) -> ev.RunStarted:
@@ -191,7 +139,7 @@ class Runtime:
             wall_time=self._utc_now(),
             run=run,
             tree_name=tree.name,
-            tree=tree.definition.model_dump(mode="json"),
+            tree=tree.definition.to_json(),
             scene=scene.model_dump(mode="json"),
             world=request.world,
             robots=request.robots if request.world == LIVE else [f"pr2-{str(run)[:8]}"],
@@ -213,12 +161,21 @@ class Runtime:
             if robot in busy:
                 raise ConflictError(f"the robot '{robot}' is busy with run {busy[robot]}")
 
-    async def _take_up(self, state: RunState) -> None:
+    async def _take_up_or_fail(self, state: RunState) -> None:
+        """Let a run go on; if that cannot be, it fails and says why."""
         live = state.started.world == LIVE
         clock: RunClock = (
             WallClock(self._monotonic, state.time) if live else SimulatedClock(state.time)
         )
         context = RunContext(state, clock, self._journal, self._settings, self._utc_now)
+        try:
+            self._take_up(context, live=live)
+        except Exception as error:
+            log.exception("run %s could not be taken up", state.id)
+            await fail_run(context, why_it_stopped(error))
+
+    def _take_up(self, context: RunContext, *, live: bool) -> None:
+        state = context.state
         sides = {robot: RobotSide(robot, cast(Any, self._robots)) for robot in state.started.robots}
         scenario = self._scenario_of(state)
         dialogues = DialogueDriver(
@@ -228,11 +185,7 @@ class Runtime:
             None if live else _person_of(state, scenario),
             partial(self._send_mail, state),
         )
-        hardware = (
-            RealRobots(self._robots, list(sides))
-            if live
-            else await self._worlds.open(state, lambda: self._runs[state.id])
-        )
+        hardware = RealRobots() if live else self._worlds.open(state, lambda: self._runs[state.id])
         run = Run(context, sides, dialogues, hardware)
         self._runs[state.id] = run
         for robot in sides:
@@ -246,7 +199,7 @@ class Runtime:
             self._robots.unassign(robot)
         self._runs.pop(state.id, None)
         if not task.cancelled() and (error := task.exception()) is not None:
-            log.error("run %s stopped for a fault of ours", state.id, exc_info=error)
+            log.error("run %s stopped and could not say so", state.id, exc_info=error)
 
     def _scenario_of(self, state: RunState) -> Scenario | None:
         name = state.request.scenario
@@ -272,14 +225,13 @@ class Runtime:
         return self._view(self._state(run))
 
     def _view(self, state: RunState) -> RunView:
-        tree = state.tree
-        potentials = np.zeros(len(tree))
+        leaves = np.asarray(state.tree.leaves, dtype=np.int64)
+        potentials = np.zeros(len(leaves))
         run = self._runs.get(state.id)
-        leaves = np.asarray(tree.leaves(), dtype=np.intp)
         for side in run.sides.values() if run else ():
-            own = potentials_for(state, side, leaves)
-            potentials[leaves] = np.maximum(potentials[leaves], own)
-        return view(state, self._time(state), potentials)
+            potentials = np.maximum(potentials, potentials_for(state, side, leaves))
+        by_leaf = dict(zip(leaves.tolist(), potentials.tolist(), strict=True))
+        return view(state, self._time(state), by_leaf)
 
     async def snapshot(self, seq: int | None) -> Snapshot:
         """The state after event `seq`, or after the last one without it."""
@@ -287,6 +239,8 @@ class Runtime:
         at = head if seq is None else min(seq, head)
         views = []
         for run in await self._journal.runs():
+            if run in self._unreadable:
+                continue
             state: RunState | None = self._states.get(run)
             if state is None or state.seq != await self._last_seq(run, at):
                 state = await self._refold(run, at)
@@ -423,22 +377,6 @@ class Runtime:
             )
             for robot in self._robots.known()
         ]
-
-
-class RealRobots:
-    """The robots of a `live` run: nothing to start again, only to let go of."""
-
-    simulated = False
-
-    def __init__(self, robots: Robots, assigned: list[str]) -> None:
-        self._robots = robots
-        self._assigned = assigned
-
-    async def restart(self, robot: str) -> None:
-        """A real robot comes back by itself."""
-
-    async def release(self) -> None:
-        """The runtime unassigns them."""
 
 
 def _person_of(state: RunState, scenario: Scenario | None) -> Person:

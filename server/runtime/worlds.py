@@ -8,11 +8,12 @@ import numpy as np
 
 from server.errors import InvalidError
 from server.journal.journal import Journal
+from server.runtime.ports import LoadedTree
 from server.runtime.run import Run
 from server.runtime.run_state import RunState
-from server.runtime.runtime import LoadedTree
 from sim.mischief import random_interventions
 from sim.world import WorldAdapter, WorldSetup, WorldUnavailableError
+from tasks.definition import BehaviorNode
 from tasks.scenario import Scenario, ScriptedIntervention
 from tasks.scene import Scene
 
@@ -54,17 +55,21 @@ class SimulatedWorlds:
 
     def lay_out(self, world: str, tree: LoadedTree, seed: int) -> Scene:
         """A scene for a tree that has none. Raises `InvalidError` where the world cannot."""
-        definition = tree.definition
+        adapter = self._adapters[world]
+        if not adapter.lays_out_anything:
+            raise InvalidError(
+                f"tree '{tree.name}' names no scene, and the world '{world}' needs one"
+            )
+        leaves = [each for each in tree.definition.nodes if isinstance(each, BehaviorNode)]
+        names = [(each.object, each.place) for each in leaves if each.object is not None]
         try:
-            return self._adapters[world].lay_out(definition.objects(), definition.places(), seed)
-        except WorldUnavailableError as error:
-            raise InvalidError(f"tree '{tree.name}' names no scene: {error}") from error
+            return adapter.lay_out(names, seed)
+        except ValueError as error:
+            raise InvalidError(f"tree '{tree.name}' cannot be laid out: {error}") from error
 
-    async def open(self, state: RunState, run: Callable[[], Run]) -> "SimulatedHardware":
-        """Start the simulated robot of a run; its world as the journal has it, if it has one."""
-        hardware = SimulatedHardware(self._launch, self._journal, self._setup(state), state, run)
-        await hardware.restart(state.started.robots[0])
-        return hardware
+    def open(self, state: RunState, run: Callable[[], Run]) -> "SimulatedHardware":
+        """The hardware of a run, which starts it; `run` is asked for only then."""
+        return SimulatedHardware(self._launch, self._journal, self._setup(state), state, run)
 
     def _setup(self, state: RunState) -> WorldSetup:
         started, request = state.started, state.request
@@ -73,7 +78,7 @@ class SimulatedWorlds:
             interventions += self._scenario(request.scenario).interventions
         if request.interventions == "random":
             tree = state.tree
-            objects = [name for each in tree.leaves() if (name := tree.object_of(each))]
+            objects = [name for each in tree.leaves if (name := tree.leaf_definition(each).object)]
             rng = np.random.default_rng([started.seed, len(objects)])
             interventions += random_interventions(objects, state.scene, rng)
         return WorldSetup(
@@ -108,7 +113,7 @@ class SimulatedHardware:
         self._life = 0
 
     async def restart(self, robot: str) -> None:
-        """Start the robot (again), with its world as the journal has it."""
+        """Start the robot, its world as the journal has it if it has one."""
         await self.release()
         self._life += 1
         snapshot = await self._journal.world(self._state.id)

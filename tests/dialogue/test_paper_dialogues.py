@@ -7,7 +7,7 @@ from dialogue.registry import load_scripts
 from dialogue.script import Close
 from tasks.issue import Issue
 from tasks.resolution import Resolution
-from tasks.scenario_file import load_scenario
+from tasks.scenario_file import built_in_scenario
 
 ISSUES = [
     ("dropped", "pink_bar"),
@@ -35,7 +35,7 @@ def resolution_of(kind: str, handled: str, answers: Iterator[str]) -> Resolution
 
 
 def test_the_papers_answers_lead_to_the_papers_resolutions_and_none_is_left_over() -> None:
-    answers = iter(load_scenario("eket_paper").answers)
+    answers = iter(built_in_scenario("eket_paper").answers)
     assert [resolution_of(kind, handled, answers) for kind, handled in ISSUES] == [
         Resolution.HUMAN_FINISH,
         Resolution.ROBOT_RETRY,

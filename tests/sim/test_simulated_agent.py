@@ -288,6 +288,19 @@ def test_a_rebuilt_agent_goes_on_where_the_report_was() -> None:
     assert [each.body.by for each in again.of(Intervened)] == ["scenario", "bob"]
 
 
+def test_a_rebuilt_agent_that_is_told_again_what_it_knows_does_it_once() -> None:
+    promised = Intervene(intervention=PUT_BACK_A, by="helper", at=30.0)
+    first = Driver(make_agent())
+    first.agent.handle("promise", promised)
+    kept = first.agent.snapshot()
+
+    again = Driver(make_agent(snapshot=kept))
+    again.agent.handle("promise", promised)
+    again.send(Hold(until=60.0))
+    again.run()
+    assert [each.body.by for each in again.of(Intervened)] == ["helper"]
+
+
 def test_a_snapshot_that_does_not_fit_is_refused() -> None:
     kept = make_agent().snapshot()
     kept["world"]["gone"] = ["piano"]
@@ -323,3 +336,14 @@ def transcript(chunk_s: Callable[[int], float]) -> list[str]:
 
 def test_the_same_seed_gives_the_same_reports_however_time_is_cut() -> None:
     assert transcript(lambda _: 1.0) == transcript(lambda index: 0.37 + index)
+
+
+def test_nobody_does_later_what_the_robot_has_seen_done_already() -> None:
+    driver = Driver(make_agent())
+    driver.send(Intervene(intervention=PUT_BACK_A, by="helper", at=3.0))
+    driver.send(Look(object="a", expect="in_reach", within_s=10.0))
+    driver.run()
+    assert [each.body.fulfilled for each in driver.of(Looked)] == [True]
+    driver.send(Hold(until=5.0))
+    driver.run()
+    assert driver.of(Intervened) == []

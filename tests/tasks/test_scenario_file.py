@@ -6,13 +6,13 @@ from pathlib import Path
 import pytest
 
 from tasks.intervention import Act
+from tasks.library import SCENARIOS, NotInLibraryError
 from tasks.scenario import Scenario, Trigger
 from tasks.scenario_file import (
     ScenarioFileError,
-    load_scenario,
-    parse_scenario,
-    read_scenario,
-    scenario_names,
+    built_in_scenario,
+    check_scenario_file,
+    check_scenario_text,
     scene_problems,
 )
 from tasks.scene import Place, Pose, Scene, SceneObject
@@ -30,95 +30,72 @@ person: {acts: false}
 
 def problems_of(text: str) -> list[str]:
     with pytest.raises(ScenarioFileError) as caught:
-        parse_scenario(text, "mine.yaml")
-    return caught.value.problems
+        check_scenario_text(text, source="mine.yaml")
+    return [each.describe("mine.yaml") for each in caught.value.problems]
 
 
-@pytest.mark.parametrize("name", scenario_names())
+@pytest.mark.parametrize("name", SCENARIOS.names())
 def test_every_scenario_that_comes_with_mend_is_sound(name: str) -> None:
-    scenario = load_scenario(name)
+    scenario = built_in_scenario(name)
     assert scenario.name == name
     assert scenario.description
 
 
 def test_plain_yes_and_no_are_answers_and_true_and_false_are_not() -> None:
-    scenario = parse_scenario(GOOD, "mine.yaml")
+    scenario = check_scenario_text(GOOD, source="mine.yaml")
     assert scenario.answers == ["no", "yes", "silence"]
     assert scenario.person.acts is False
 
 
 def test_a_scenario_may_be_written_in_json() -> None:
-    scenario = parse_scenario(GOOD, "mine.yaml")
+    scenario = check_scenario_text(GOOD, source="mine.yaml")
     as_json = json.dumps(scenario.model_dump(mode="json", exclude_defaults=True))
-    assert parse_scenario(as_json, "mine.json") == scenario
+    assert check_scenario_text(as_json, source="mine.json") == scenario
 
 
 def test_a_scenario_is_read_from_a_file_of_anybodys(tmp_path: Path) -> None:
     path = tmp_path / "mine.yaml"
     path.write_text(GOOD)
-    assert read_scenario(path) == parse_scenario(GOOD, "mine.yaml")
+    assert check_scenario_file(path) == check_scenario_text(GOOD, source="mine.yaml")
 
 
 def test_an_unknown_scenario_is_told_with_those_that_there_are() -> None:
-    with pytest.raises(ScenarioFileError, match=r"there are .*eket_paper"):
-        load_scenario("eket_papr")
+    with pytest.raises(NotInLibraryError, match="eket_paper"):
+        built_in_scenario("eket_papr")
 
 
 def test_a_name_never_leads_to_another_file(tmp_path: Path) -> None:
     path = tmp_path / "mine.yaml"
     path.write_text(GOOD)
-    with pytest.raises(ScenarioFileError, match="there is no such scenario"):
-        load_scenario(str(path))
+    with pytest.raises(NotInLibraryError, match="there is no scenario"):
+        built_in_scenario(str(path))
 
 
 def test_a_file_that_is_not_there_is_told(tmp_path: Path) -> None:
     with pytest.raises(ScenarioFileError, match="cannot be read"):
-        read_scenario(tmp_path / "mine.yaml")
+        check_scenario_file(tmp_path / "mine.yaml")
 
 
 def test_a_file_that_is_no_text_is_told(tmp_path: Path) -> None:
     path = tmp_path / "mine.yaml"
     path.write_bytes(b"\xff\xfe\x00")
-    with pytest.raises(ScenarioFileError, match="cannot be read"):
-        read_scenario(path)
+    with pytest.raises(ScenarioFileError, match=r"mine\.yaml"):
+        check_scenario_file(path)
 
 
 def test_every_mistake_is_told_with_its_line() -> None:
     text = GOOD.replace("step: 5", "step: 0").replace("silence", "perhaps") + "helpers: [ana]\n"
     assert problems_of(text) == [
-        "line 4: interventions.0.when.step: Input should be greater than or equal to 1",
-        "line 6: answers.2: Input should be 'yes', 'no' or 'silence'",
-        "line 8: helpers: Extra inputs are not permitted",
+        "mine.yaml:4: 'interventions.0.when.step' must be greater than or equal to 1, but it is 0",
+        "mine.yaml:6: 'answers.2' must be 'yes', 'no' or 'silence', but it is \"perhaps\"",
+        "mine.yaml:8: unknown key 'helpers'; known are 'answer_delay_s', 'answers', "
+        "'description', 'interventions', 'name', 'person', 'scene', 'tree'",
     ]
 
 
 def test_an_act_without_what_it_needs_is_told() -> None:
     text = GOOD.replace("{act: steal, object: pink_bar}", "{act: move, object: pink_bar}")
-    assert problems_of(text) == ["line 5: interventions.0.do: act 'move' needs a pose 'to'"]
-
-
-@pytest.mark.parametrize(
-    ("text", "problem"),
-    [
-        ("", "the file is empty"),
-        ("- 1", "line 1: the file: Input should be a valid dictionary"),
-        ("name: [", "line 1: expected the node content"),
-        ("name: a\nname: b", "line 2: 'name' is there twice"),
-        ("a: &many [1]\nb: *many", "line 2: aliases (*) are not allowed"),
-        ("[" * 30, "nested deeper than 20"),
-        ("? [a]\n: 1", "line 1: found unhashable key"),
-        ("a: !!python/object:os.system x", "line 1: tags (!) are not allowed here"),
-        ("when: 2020-99-99", "month must be"),
-        ("a: \x01", "special characters are not allowed"),
-    ],
-)
-def test_what_cannot_be_read_is_told_in_one_sentence(text: str, problem: str) -> None:
-    (only,) = problems_of(text)
-    assert problem in only
-
-
-def test_a_file_of_unreasonable_size_is_refused() -> None:
-    assert problems_of(f"description: {'a' * 300_000}") == ["the file is larger than 256 KiB"]
+    assert problems_of(text) == ["mine.yaml:5: 'interventions.0.do': act 'move' needs a pose 'to'"]
 
 
 def test_names_that_the_scene_has_not_are_told() -> None:
@@ -149,10 +126,10 @@ def test_names_that_the_scene_has_not_are_told() -> None:
 
 
 def test_the_papers_thefts_are_those_of_its_section_4_1() -> None:
-    scenario = load_scenario("eket_paper")
+    scenario = built_in_scenario("eket_paper")
     assert [(each.when, each.do.act) for each in scenario.interventions] == [
         (Trigger(object="pink_bar", step=5, fraction=0.9), Act.STEAL),
-        (Trigger(object="yellow_bar", step=5, fraction=0.05), Act.STEAL),
+        (Trigger(object="yellow_bar", step=4, fraction=0.8), Act.STEAL),
         (Trigger(object="blue_leg", step=2, fraction=0.9), Act.STEAL),
     ]
     assert list(scenario.scene) == ["purple_top"]

@@ -1,0 +1,41 @@
+# ruff: noqa: T201
+"""Start a run, follow it and answer every question with yes.
+
+Start a service first (`mend serve`); give its token in MEND_TOKEN if it has one.
+"""
+
+import asyncio
+import os
+import sys
+
+from server.client import MendClient
+from server.journal.events import Prompt, RunAborted, RunFailed, RunFinished
+from server.runtime.requests import RunRequest
+from server.runtime.views import Snapshot
+
+ENDS = (RunFinished, RunFailed, RunAborted)
+
+
+async def main(url: str) -> int:
+    """Build the EKET base and help wherever the robot asks."""
+    async with MendClient(url, token=os.environ.get("MEND_TOKEN")) as client:
+        await client.wait_until_ready()
+        run = await client.start_run(RunRequest(tree="eket", world="tabletop", speed="max"))
+        async with client.follow(helper="example", after=run.seq) as stream:
+            async for event in stream:
+                if isinstance(event, Snapshot) or event.run != run.id:
+                    continue
+                print(f"{event.time:8.1f} s  {type(event).__name__}")
+                if isinstance(event, Prompt) and event.kind == "ask":
+                    print(f"            {event.text} - yes")
+                    await client.answer(event.dialogue, event.prompt, "yes", "example")
+                if isinstance(event, ENDS):
+                    break
+        ended = await client.run(run.id)
+        print(f"the run has {ended.status}")
+        return 0 if ended.status == "finished" else 1
+
+
+if __name__ == "__main__":
+    address = sys.argv[1] if len(sys.argv) > 1 else "http://127.0.0.1:8080"
+    raise SystemExit(asyncio.run(main(address)))

@@ -1,0 +1,211 @@
+"""The robot's end of the link: drives an agent, and keeps it connected to the service."""
+
+import asyncio
+import logging
+import random
+from collections import deque
+from collections.abc import Awaitable, Callable
+from contextlib import suppress
+from dataclasses import dataclass
+from typing import Any
+
+from robots.agent import AgentCore
+from robots.link.backoff import Backoff
+from robots.link.channel import Channel, ChannelClosedError
+from robots.link.clock import Clock
+from robots.link.command_memory import CommandMemory
+from robots.link.connection import Connection, UnknownCommand
+from robots.link.messages import Command, Picture, Rejected, ReportBody, Taken
+from robots.link.outbox import Outbox
+from robots.link.pacing import Pacer
+
+log = logging.getLogger(__name__)
+
+Connect = Callable[[], Awaitable[Channel]]
+"""Opens a channel. Raises `ChannelClosedError` (try again) or `LinkRefusedError` (give up)."""
+
+TURNS_OF_THE_LOOP = 5
+"""So many turns of the event loop bring a frame from the socket to the agent."""
+
+
+@dataclass(frozen=True, slots=True)
+class LinkSettings:
+    """How a robot reconnects, and how long it says goodbye."""
+
+    first_backoff_s: float = 0.1
+    longest_backoff_s: float = 2.0
+    goodbye_s: float = 2.0
+
+
+async def run_agent(
+    agent: AgentCore,
+    connect: Connect,
+    outbox: Outbox,
+    clock: Clock,
+    generator: random.Random,
+    settings: LinkSettings | None = None,
+) -> None:
+    """Run a robot until it is told to shut down.
+
+    Raises `LinkRefusedError` if the service does not want it.
+    """
+    await _RobotEnd(agent, connect, outbox, clock, generator, settings or LinkSettings()).run()
+
+
+class _RobotEnd:
+    def __init__(
+        self,
+        agent: AgentCore,
+        connect: Connect,
+        outbox: Outbox,
+        clock: Clock,
+        generator: random.Random,
+        settings: LinkSettings,
+    ) -> None:
+        self._agent = agent
+        self._connect = connect
+        self._outbox = outbox
+        self._clock = clock
+        self._settings = settings
+        self._backoff = Backoff(
+            generator, first_s=settings.first_backoff_s, longest_s=settings.longest_backoff_s
+        )
+        self._pacer = Pacer()
+        self._memory = CommandMemory()
+        self._commands: deque[Command | UnknownCommand] = deque()
+        self._wake = asyncio.Event()
+        self._connection: Connection | None = None
+        self._simulated = False
+
+    async def run(self) -> None:
+        self._agent.attach(self._emit, self._emit_picture)
+        self._simulated = self._agent.hello(self._outbox.boot).simulated
+        link = asyncio.create_task(self._stay_connected())
+        pump = asyncio.create_task(self._pump())
+        try:
+            await asyncio.wait([link, pump], return_when=asyncio.FIRST_COMPLETED)
+            for task in (link, pump):
+                if task.done():
+                    task.result()
+        finally:
+            for task in (link, pump):
+                task.cancel()
+            await asyncio.gather(link, pump, return_exceptions=True)
+
+    # --- What the agent emits -----------------------------------------------------------------
+
+    def _emit(self, body: ReportBody, time_s: float, world: dict[str, Any] | None) -> None:
+        self._outbox.add(body, time_s, world)
+        if self._connection is not None:
+            self._connection.wake()
+
+    def _emit_picture(self, picture: Picture) -> None:
+        if self._connection is not None:
+            self._connection.send(picture)
+
+    # --- The connection -----------------------------------------------------------------------
+
+    async def _stay_connected(self) -> None:
+        while True:
+            with suppress(ChannelClosedError):
+                channel = await self._connect()
+                try:
+                    await self._talk(channel)
+                finally:
+                    self._connection = None
+                    with suppress(ChannelClosedError):
+                        await channel.close()
+            delay_s = self._backoff.next_s()
+            log.info("not connected; trying again in %.1f s", delay_s)
+            await self._clock.wait(asyncio.Event(), delay_s)
+
+    async def _talk(self, channel: Channel) -> None:
+        connection = Connection(
+            channel,
+            self._outbox,
+            self._clock,
+            self._agent.time_s,
+            self._take,
+            self._wake.set,
+        )
+
+        def welcomed() -> None:
+            self._connection = connection
+
+        began = self._clock.now()
+        try:
+            await connection.run(self._agent.hello(self._outbox.boot), welcomed)
+        finally:
+            # Two programs that both claim to be this robot end each other's connections at once:
+            # only one that lasted counts as a success.
+            if self._clock.now() - began > self._settings.longest_backoff_s:
+                self._backoff.reset()
+
+    def _take(self, command: Command | UnknownCommand) -> None:
+        self._commands.append(command)
+        self._wake.set()
+
+    # --- The agent ----------------------------------------------------------------------------
+
+    async def _pump(self) -> None:
+        agent = self._agent
+        while True:
+            self._wake.clear()
+            self._carry_out_commands()
+            if agent.shut_down:
+                await self._say_goodbye()
+                return
+            if self._must_wait():
+                await self._wake.wait()
+                continue
+            delay_s = self._pacer.delay_s(agent.pace, self._clock.now(), agent.time_s())
+            if delay_s > 0.0:
+                await self._clock.wait(self._wake, delay_s)
+            elif self._advance():
+                await self._let_commands_in()
+            else:
+                self._pacer.rest()
+                await self._wake.wait()
+
+    def _must_wait(self) -> bool:
+        """Whether no time may pass before the service has taken what happened so far.
+
+        A simulated world waits for its journal, so that it never is ahead of what it would be
+        rebuilt from. A real robot goes on, until its outbox is crowded.
+        """
+        return len(self._outbox) > 0 if self._simulated else self._outbox.crowded
+
+    def _advance(self) -> bool:
+        """Let a slice of time pass; False when there is nothing to do."""
+        agent = self._agent
+        began, robot_began = self._clock.now(), agent.time_s()
+        busy = agent.advance(self._pacer.slice_s(agent.pace))
+        self._pacer.took(self._clock.now() - began, agent.time_s() - robot_began)
+        return busy
+
+    def _carry_out_commands(self) -> None:
+        while self._commands:
+            command = self._commands.popleft()
+            if self._memory.is_new(command.id):
+                if isinstance(command, UnknownCommand):
+                    rejected = Rejected(command=command.id, reason=command.reason)
+                    self._emit(rejected, self._agent.time_s(), None)
+                else:
+                    self._agent.handle(command.id, command.body)
+            if self._connection is not None:
+                self._connection.send(Taken(command=command.id))
+
+    async def _let_commands_in(self) -> None:
+        for _ in range(TURNS_OF_THE_LOOP):
+            await asyncio.sleep(0)
+
+    async def _say_goodbye(self) -> None:
+        """Deliver what is left, but do not wait for a service that is not there."""
+        until = self._clock.now() + self._settings.goodbye_s
+        while len(self._outbox) > 0 and self._connection is not None:
+            left_s = until - self._clock.now()
+            if left_s <= 0.0:
+                return
+            self._wake.clear()
+            await self._clock.wait(self._wake, left_s)
+        await self._let_commands_in()

@@ -1,0 +1,57 @@
+"""A channel to the service over a WebSocket."""
+
+from websockets.asyncio.client import ClientConnection, connect
+from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidStatus
+
+from robots.link.channel import ChannelClosedError, LinkRefusedError
+
+MAX_MESSAGE_BYTES = 1 << 20
+
+
+class WebSocketChannel:
+    """The robot's end of a WebSocket."""
+
+    def __init__(self, connection: ClientConnection) -> None:
+        self._connection = connection
+
+    async def send(self, text: str) -> None:
+        try:
+            await self._connection.send(text)
+        except ConnectionClosed as error:
+            raise ChannelClosedError(str(error)) from error
+
+    async def receive(self) -> str:
+        try:
+            return await self._connection.recv(decode=True)
+        except ConnectionClosed as error:
+            raise ChannelClosedError(str(error)) from error
+
+    async def close(self) -> None:
+        await self._connection.close()
+
+
+async def websocket_channel(url: str, token: str | None) -> WebSocketChannel:
+    """Connect to the service at `url` (`ws://` or `wss://`, path `/ws/robot`).
+
+    Raises `LinkRefusedError` if the service turns the robot away (a wrong token) and
+    `ChannelClosedError` if there is no service.
+    """
+    headers = {} if token is None else {"Authorization": f"Bearer {token}"}
+    try:
+        connection = await connect(
+            url,
+            additional_headers=headers,
+            compression=None,
+            max_size=MAX_MESSAGE_BYTES,
+            user_agent_header=None,
+            proxy=None,
+        )
+    except InvalidStatus as error:
+        status, body = error.response.status_code, bytes(error.response.body or b"")
+        if 400 <= status < 500:
+            detail = body.decode(errors="replace").strip() or f"HTTP status {status}"
+            raise LinkRefusedError(f"{url} turned the robot away: {detail}") from error
+        raise ChannelClosedError(f"{url} answered with status {status}") from error
+    except (OSError, InvalidHandshake) as error:
+        raise ChannelClosedError(f"no service at {url}: {error}") from error
+    return WebSocketChannel(connection)

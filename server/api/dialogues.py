@@ -1,0 +1,87 @@
+"""Dialogues over REST: what is asked, answering it, and being on it."""
+
+from typing import Annotated, Literal
+from uuid import UUID
+
+from fastapi import APIRouter, Body, Query
+from pydantic import BaseModel, ConfigDict, Field
+
+from server.api.parts import DialogueId, HelperName, Limit, Offset, WithParts
+from server.api.problems import documented
+from server.api.strict_json import StrictJsonRoute
+from server.journal.events import Answered
+from server.runtime.views import DialogueView
+
+router = APIRouter(prefix="/api/dialogues", tags=["dialogues"], route_class=StrictJsonRoute)
+
+PROMPT = "3f0c5b1e-8a55-4d7c-9d2b-6b1e8a554d7c"
+CHANGES = documented(400, 401, 403, 404, 409, 413, 421, 422)
+
+
+class AnswerRequest(BaseModel):
+    """One helper's answer to one prompt."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+
+    prompt: Annotated[UUID, Field(strict=False)]
+    answer: Literal["yes", "no"]
+    helper: HelperName
+
+
+class ClaimRequest(BaseModel):
+    """Who is on it."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+
+    helper: HelperName
+
+
+@router.get("", operation_id="list_dialogues", responses=documented(401, 421, 422))
+async def list_dialogues(
+    parts: WithParts,
+    status: Annotated[Literal["open", "closed"] | None, Query()] = None,
+    limit: Limit = 100,
+    offset: Offset = 0,
+) -> list[DialogueView]:
+    """Dialogues, all or those of one status."""
+    return parts.runs.dialogues(status)[offset : offset + limit]
+
+
+@router.get("/{dialogue}", operation_id="get_dialogue", responses=documented(401, 404, 421, 422))
+async def get_dialogue(dialogue: DialogueId, parts: WithParts) -> DialogueView:
+    """One dialogue with its latest prompt."""
+    return parts.runs.dialogue(dialogue)
+
+
+@router.post(
+    "/{dialogue}/answers", operation_id="answer_prompt", status_code=201, responses=CHANGES
+)
+async def answer_prompt(
+    dialogue: DialogueId,
+    body: Annotated[
+        AnswerRequest, Body(examples=[{"prompt": PROMPT, "answer": "yes", "helper": "anna"}])
+    ],
+    parts: WithParts,
+) -> Answered:
+    """Answer a prompt. The first answer wins; a later one gets 409 with `answered_by`."""
+    return await parts.runs.answer(dialogue, body.prompt, body.answer, body.helper)
+
+
+@router.post("/{dialogue}/claim", operation_id="claim_dialogue", responses=CHANGES)
+async def claim_dialogue(
+    dialogue: DialogueId,
+    body: Annotated[ClaimRequest, Body(examples=[{"helper": "anna"}])],
+    parts: WithParts,
+) -> DialogueView:
+    """Show the other helpers that you are on it; the claim ends with its lease."""
+    return await parts.runs.claim(dialogue, body.helper)
+
+
+@router.post("/{dialogue}/release", operation_id="release_dialogue", responses=CHANGES)
+async def release_dialogue(
+    dialogue: DialogueId,
+    body: Annotated[ClaimRequest, Body(examples=[{"helper": "anna"}])],
+    parts: WithParts,
+) -> DialogueView:
+    """Give up your claim."""
+    return await parts.runs.release(dialogue, body.helper)

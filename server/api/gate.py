@@ -1,0 +1,72 @@
+"""The gate before every HTTP request: Host, Origin, token and the size of the body."""
+
+from starlette.exceptions import HTTPException
+from starlette.requests import HTTPConnection
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from server.api.access import Access
+from server.api.problems import Problem, problem, problem_response
+
+MAX_BODY_BYTES = 8 * 1024 * 1024
+PROTECTED = ("/api/", "/metrics")
+OPEN = ("/api/session",)
+SAFE_METHODS = ("GET", "HEAD", "OPTIONS")
+
+
+class Gate:
+    """ASGI middleware that refuses what must not even be parsed."""
+
+    def __init__(self, app: ASGIApp, access: Access) -> None:
+        self._app = app
+        self._access = access
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["type"] != "http":
+            await self._app(scope, receive, send)
+            return
+        connection = HTTPConnection(scope)
+        refusal = self._refusal(scope, connection)
+        if refusal is None:
+            await self._app(scope, _limited(receive), send)
+            return
+        headers = {"WWW-Authenticate": "Bearer"} if refusal.status == 401 else {}
+        await problem_response(refusal, headers)(scope, receive, send)
+
+    def _refusal(self, scope: Scope, connection: HTTPConnection) -> Problem | None:
+        path: str = scope["path"]
+        if not self._access.host_allowed(connection):
+            return problem(
+                421, "this Host is not one of the service's names: add it to 'allowed_hosts'"
+            )
+        if scope["method"] not in SAFE_METHODS and not self._access.origin_allowed(connection):
+            return problem(403, "pages of this Origin may not do that: see 'allowed_origins'")
+        protected = path.startswith(PROTECTED) and path not in OPEN
+        if protected and not self._access.admits(connection):
+            return problem(401, "show the token: 'Authorization: Bearer ...', or sign in")
+        if _declared_length(connection) > MAX_BODY_BYTES:
+            return problem(413, _too_large())
+        return None
+
+
+def _declared_length(connection: HTTPConnection) -> int:
+    declared = connection.headers.get("content-length", "0")
+    return int(declared) if declared.isascii() and declared.isdigit() else 0
+
+
+def _limited(receive: Receive) -> Receive:
+    """A body without a declared length is counted as it comes."""
+    received = 0
+
+    async def limited() -> Message:
+        nonlocal received
+        message = await receive()
+        received += len(message.get("body", b""))
+        if received > MAX_BODY_BYTES:
+            raise HTTPException(413, _too_large())
+        return message
+
+    return limited
+
+
+def _too_large() -> str:
+    return f"the body is larger than {MAX_BODY_BYTES // 1024**2} MiB"

@@ -1,0 +1,30 @@
+"""Whether the service lives, and whether it can work."""
+
+from typing import Literal
+
+from fastapi import APIRouter
+from pydantic import BaseModel
+
+from server.api.parts import WithParts
+from server.api.problems import documented
+
+router = APIRouter(tags=["health"])
+
+
+class Health(BaseModel):
+    """`status` is always `ok`: anything else is a problem document."""
+
+    status: Literal["ok"] = "ok"
+
+
+@router.get("/healthz", operation_id="healthz", responses=documented(421))
+async def healthz() -> Health:
+    """The process answers."""
+    return Health()
+
+
+@router.get("/readyz", operation_id="readyz", responses=documented(421, 503))
+async def readyz(parts: WithParts) -> Health:
+    """The journal can be read, so runs can be started and watched."""
+    await parts.journal.read_records(parts.journal.head, 1)
+    return Health()

@@ -1,0 +1,94 @@
+"""What a helper's WebSocket carries: every message but the events themselves."""
+
+from typing import Annotated, Any, Literal
+from uuid import UUID
+
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
+
+from server.runtime.views import DialogueView, RunView
+
+CommandId = Annotated[str, Field(max_length=128)] | Annotated[int, Field(ge=0, le=2**53 - 1)]
+
+
+class HelperMessage(BaseModel):
+    """Base of what a client sends. With an `id`, its result or error carries the same."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+
+    id: CommandId | None = None
+
+
+class Auth(HelperMessage):
+    """Show the token, where no header or cookie did; must be the first message."""
+
+    type: Literal["auth"]
+    token: Annotated[str, Field(max_length=1024)]
+
+
+class Answer(HelperMessage):
+    """Answer a prompt; the first answer wins."""
+
+    type: Literal["answer"]
+    dialogue: UUID
+    prompt: UUID
+    answer: Literal["yes", "no"]
+
+
+class Claim(HelperMessage):
+    """Show the others that you are on it; send it again to renew the lease."""
+
+    type: Literal["claim"]
+    dialogue: UUID
+
+
+class Release(HelperMessage):
+    """Give up your claim."""
+
+    type: Literal["release"]
+    dialogue: UUID
+
+
+class Ping(HelperMessage):
+    """Is anybody there?"""
+
+    type: Literal["ping"]
+
+
+ClientMessage = Annotated[Auth | Answer | Claim | Release | Ping, Field(discriminator="type")]
+
+client_message: TypeAdapter[Auth | Answer | Claim | Release | Ping] = TypeAdapter(ClientMessage)
+
+
+class ServerMessage(BaseModel):
+    """Base of what the service sends, events apart."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class SnapshotMessage(ServerMessage):
+    """The first message: the state after event `seq`; every later event follows."""
+
+    type: Literal["snapshot"] = "snapshot"
+    seq: int
+    runs: list[RunView]
+    dialogues: list[DialogueView]
+
+
+class Result(ServerMessage):
+    """What was asked for is done. `result`: the answer's event, or the dialogue after a claim."""
+
+    type: Literal["result"] = "result"
+    id: str | int | None = None
+    result: dict[str, Any] = {}
+
+
+class Error(ServerMessage):
+    """It was not done. `answered_by`: who answered first."""
+
+    type: Literal["error"] = "error"
+    id: str | int | None = None
+    status: int
+    title: str
+    detail: str
+    answered_by: str | None = None
+    errors: list[str] | None = None

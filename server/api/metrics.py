@@ -1,0 +1,75 @@
+"""What Prometheus may know: runs, dialogues, events, subscribers and the journal's commits."""
+
+from collections import Counter
+from collections.abc import Iterator
+
+from fastapi import APIRouter, Response
+from prometheus_client import CONTENT_TYPE_LATEST, CollectorRegistry, generate_latest
+from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily, HistogramMetricFamily
+from prometheus_client.metrics_core import Metric
+from prometheus_client.registry import Collector
+
+from server.api.parts import Parts, WithParts
+from server.api.problems import documented
+from server.runtime.views import RunStatus
+
+router = APIRouter(tags=["health"])
+
+
+class ServiceCollector(Collector):
+    """Reads the figures where they are, when they are asked for."""
+
+    def __init__(self, parts: Parts) -> None:
+        self._parts = parts
+
+    def collect(self) -> Iterator[Metric]:
+        runs = GaugeMetricFamily("mend_runs", "Runs by status.", labels=["status"])
+        counts = Counter(run.status for run in self._parts.runs.runs())
+        for status in RunStatus:
+            runs.add_metric([status.value], counts[status])
+        yield runs
+        open_dialogues = len(self._parts.runs.dialogues("open"))
+        yield GaugeMetricFamily("mend_open_dialogues", "Open dialogues.", value=open_dialogues)
+        connected = sum(robot.connected for robot in self._parts.runs.robots())
+        yield GaugeMetricFamily("mend_robots_connected", "Robots connected.", value=connected)
+        yield from self._journal()
+
+    def _journal(self) -> Iterator[Metric]:
+        journal = self._parts.journal
+        yield CounterMetricFamily("mend_events", "Events in the journal.", value=journal.head)
+        subscribers = journal.subscribers
+        yield GaugeMetricFamily(
+            "mend_subscribers", "Clients that follow the journal.", value=len(subscribers)
+        )
+        yield CounterMetricFamily(
+            "mend_subscribers_cut_off",
+            "Clients cut off because they were too slow.",
+            value=subscribers.overflows,
+        )
+        commits = journal.commit_statistics()
+        yield CounterMetricFamily(
+            "mend_journal_failures", "Commits that failed.", value=commits.failures
+        )
+        yield HistogramMetricFamily(
+            "mend_journal_commit_seconds",
+            "How long a durable commit took.",
+            buckets=[(str(limit), count) for limit, count in commits.buckets]
+            + [("+Inf", commits.commits)],
+            sum_value=commits.seconds,
+        )
+
+
+@router.get(
+    "/metrics",
+    operation_id="metrics",
+    response_class=Response,
+    responses={
+        200: {"content": {"text/plain": {}}, "description": "Prometheus' text format."},
+        **documented(401, 421),
+    },
+)
+async def metrics(parts: WithParts) -> Response:
+    """The service's figures for Prometheus."""
+    registry = CollectorRegistry(auto_describe=False)
+    registry.register(ServiceCollector(parts))
+    return Response(generate_latest(registry), media_type=CONTENT_TYPE_LATEST)

@@ -1,0 +1,65 @@
+"""What the routes work with: the parts of the service, and parameters that many of them take."""
+
+from dataclasses import dataclass
+from typing import Annotated, Protocol
+from uuid import UUID
+
+from fastapi import Depends, Path, Query
+from pydantic import Field
+from starlette.requests import HTTPConnection
+
+from server.api.access import Access
+from server.journal.journal import Journal
+from server.journal.subscriptions import Subscribers
+from server.journal.writer import CommitStatistics
+from server.runtime.service import RunService
+from server.settings import Settings
+from server.trees import ScenarioLibrary, TreeLibrary
+
+MAX_SEQ = 2**63 - 1
+
+
+class ObservedJournal(Journal, Protocol):
+    """A journal that tells how it is doing."""
+
+    @property
+    def subscribers(self) -> Subscribers: ...
+
+    def commit_statistics(self) -> CommitStatistics: ...
+
+
+@dataclass(frozen=True, slots=True)
+class Parts:
+    """The parts of one service; `app.state.parts` holds them."""
+
+    runs: RunService
+    journal: ObservedJournal
+    trees: TreeLibrary
+    scenarios: ScenarioLibrary
+    settings: Settings
+    access: Access
+
+
+def parts_of(connection: HTTPConnection) -> Parts:
+    parts: Parts = connection.app.state.parts
+    return parts
+
+
+WithParts = Annotated[Parts, Depends(parts_of)]
+
+RunId = Annotated[UUID, Path(description="The run's id.")]
+DialogueId = Annotated[UUID, Path(description="The dialogue's id.")]
+TreeName = Annotated[str, Path(pattern=r"^[A-Za-z][A-Za-z0-9_\-]{0,63}$", examples=["eket"])]
+After = Annotated[int, Query(ge=0, le=MAX_SEQ, description="Only what comes after this `seq`.")]
+Limit = Annotated[int, Query(ge=1, le=1000, description="At most so many.")]
+Offset = Annotated[int, Query(ge=0, le=MAX_SEQ, description="Skip so many.")]
+HelperName = Annotated[
+    str,
+    Field(
+        min_length=1,
+        max_length=64,
+        pattern=r"^[^\x00-\x1f\x7f]+$",
+        description="The helper's name; the others see it.",
+        examples=["anna"],
+    ),
+]

@@ -1,0 +1,146 @@
+"""Problem documents (RFC 9457): how every refusal looks on the wire."""
+
+import json
+import logging
+from collections.abc import Mapping, Sequence
+from http import HTTPStatus
+from typing import Any
+from uuid import UUID
+
+from fastapi import FastAPI, Request
+from fastapi.exceptions import RequestValidationError
+from pydantic import BaseModel, ConfigDict
+from starlette.exceptions import HTTPException
+from starlette.responses import Response
+
+from server.errors import (
+    ConflictError,
+    InvalidError,
+    LostRaceError,
+    NotFoundError,
+    ServiceError,
+)
+from server.journal.journal import JournalClosedError, JournalWriteError
+
+log = logging.getLogger(__name__)
+
+MEDIA_TYPE = "application/problem+json"
+
+STATUSES: tuple[tuple[type[Exception], int], ...] = (
+    (NotFoundError, 404),
+    (ConflictError, 409),
+    (InvalidError, 422),
+    (JournalWriteError, 503),
+    (JournalClosedError, 503),
+)
+
+
+class Problem(BaseModel):
+    """Why a request was refused. `answered_by` on a lost race, `errors` one per mistake."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    type: str = "about:blank"
+    title: str
+    status: int
+    detail: str
+    answered_by: str | None = None
+    prompt: UUID | None = None
+    errors: list[str] | None = None
+
+
+class ProblemError(Exception):
+    """A refusal that the API itself decides on."""
+
+    def __init__(self, status: int, detail: str, headers: Mapping[str, str] | None = None) -> None:
+        super().__init__(detail)
+        self.status = status
+        self.headers = headers
+
+
+def problem(status: int, detail: str, **more: Any) -> Problem:
+    return Problem(title=HTTPStatus(status).phrase, status=status, detail=detail, **more)
+
+
+def problem_of(error: Exception) -> Problem | None:
+    """The problem that an error of the service stands for; None if it is a defect."""
+    status = next((status for kind, status in STATUSES if isinstance(error, kind)), None)
+    if status is None:
+        return None
+    if isinstance(error, LostRaceError):
+        return problem(status, str(error), answered_by=error.answered_by, prompt=error.prompt)
+    if isinstance(error, InvalidError):
+        return problem(status, str(error), errors=error.problems or [str(error)])
+    return problem(status, str(error))
+
+
+def problem_response(refusal: Problem, headers: Mapping[str, str] | None = None) -> Response:
+    # What a client sent may come back in a message, lone surrogates included.
+    text = json.dumps(refusal.model_dump(mode="json", exclude_none=True), ensure_ascii=False)
+    return Response(
+        text.encode("utf-8", "replace"),
+        refusal.status,
+        media_type=MEDIA_TYPE,
+        headers=dict(headers or {}),
+    )
+
+
+def documented(*statuses: int) -> dict[int | str, dict[str, Any]]:
+    """The refusals of an operation, for its OpenAPI description."""
+    content = {MEDIA_TYPE: {"schema": {"$ref": "#/components/schemas/Problem"}}}
+    return {
+        status: {"description": HTTPStatus(status).phrase, "content": content}
+        for status in sorted(statuses)
+    }
+
+
+def answer_errors_with_problems(app: FastAPI) -> None:
+    """Make every error of an application a problem document."""
+    app.add_exception_handler(HTTPException, _http_error)
+    app.add_exception_handler(RequestValidationError, _validation_error)
+    app.add_exception_handler(ProblemError, _problem_error)
+    for kind in (ServiceError, JournalWriteError, JournalClosedError):
+        app.add_exception_handler(kind, _service_error)
+    app.add_exception_handler(Exception, _defect)
+
+
+async def _http_error(request: Request, error: Exception) -> Response:
+    assert isinstance(error, HTTPException)
+    details = {
+        404: f"there is nothing at {request.url.path}",
+        405: f"{request.method} is not possible at {request.url.path}",
+    }
+    detail = details.get(error.status_code, str(error.detail))
+    return problem_response(problem(error.status_code, detail), error.headers)
+
+
+async def _validation_error(_request: Request, error: Exception) -> Response:
+    assert isinstance(error, RequestValidationError)
+    sentences = validation_sentences(error.errors())
+    detail = sentences[0] if len(sentences) == 1 else f"{len(sentences)} things are wrong"
+    return problem_response(problem(422, detail, errors=sentences))
+
+
+async def _problem_error(_request: Request, error: Exception) -> Response:
+    assert isinstance(error, ProblemError)
+    return problem_response(problem(error.status, str(error)), error.headers)
+
+
+async def _service_error(_request: Request, error: Exception) -> Response:
+    refusal = problem_of(error)
+    assert refusal is not None, "every service error has a status"
+    return problem_response(refusal)
+
+
+async def _defect(request: Request, error: Exception) -> Response:
+    log.error("%s %s failed", request.method, request.url.path, exc_info=error)
+    return problem_response(problem(500, "the service made a mistake; its log says more"))
+
+
+def validation_sentences(errors: Sequence[Any]) -> list[str]:
+    """One sentence per mistake that pydantic found: where, and what is wrong."""
+    return [
+        f"{'.'.join(str(part) for part in error['loc']) or 'body'}: "
+        f"{str(error['msg']).removeprefix('Value error, ')}"
+        for error in errors
+    ]

@@ -1,0 +1,121 @@
+"""Runs over REST: start, watch, pause, resume, abort, and step into their worlds."""
+
+from typing import Annotated
+
+from fastapi import APIRouter, Body, Path, Response
+
+from server.api.parts import After, Limit, Offset, RunId, WithParts
+from server.api.problems import documented
+from server.api.strict_json import StrictJsonRoute
+from server.journal.events import AnyEvent
+from server.runtime.requests import RunRequest
+from server.runtime.views import RunSummary, RunView
+from tasks.intervention import Intervention
+
+router = APIRouter(prefix="/api/runs", tags=["runs"], route_class=StrictJsonRoute)
+
+Camera = Annotated[str, Path(pattern=r"^[a-z][a-z0-9_]{0,31}$", examples=["head", "forearm"])]
+
+RUN_EXAMPLES = [
+    {"tree": "eket", "world": "workcell", "speed": 1.0, "seed": 7, "scenario": "eket_paper"},
+    {"tree": "eket", "world": "tabletop", "speed": "max"},
+]
+STEAL_EXAMPLE = [{"act": "steal", "object": "pink_bar"}]
+
+CHANGES = documented(401, 403, 404, 409, 421, 422)
+
+
+@router.post(
+    "",
+    operation_id="start_run",
+    status_code=201,
+    responses=documented(400, 401, 403, 404, 409, 413, 421, 422),
+)
+async def start_run(
+    request: Annotated[RunRequest, Body(examples=RUN_EXAMPLES)],
+    response: Response,
+    parts: WithParts,
+) -> RunView:
+    """Begin a run of a task tree in a world."""
+    run = await parts.runs.start_run(request)
+    response.headers["Location"] = f"/api/runs/{run.id}"
+    return run
+
+
+@router.get("", operation_id="list_runs", responses=documented(401, 421, 422))
+async def list_runs(parts: WithParts, limit: Limit = 100, offset: Offset = 0) -> list[RunSummary]:
+    """All runs, newest first."""
+    return parts.runs.runs()[offset : offset + limit]
+
+
+@router.get("/{run}", operation_id="get_run", responses=documented(401, 404, 421, 422))
+async def get_run(run: RunId, parts: WithParts) -> RunView:
+    """One run: status, every node's state, open dialogues, result."""
+    return parts.runs.run(run)
+
+
+@router.post("/{run}/pause", operation_id="pause_run", responses=CHANGES)
+async def pause_run(run: RunId, parts: WithParts) -> RunView:
+    """Stop the robots where they are, until the run is resumed."""
+    return await parts.runs.pause(run)
+
+
+@router.post("/{run}/resume", operation_id="resume_run", responses=CHANGES)
+async def resume_run(run: RunId, parts: WithParts) -> RunView:
+    """Go on with a paused run."""
+    return await parts.runs.resume(run)
+
+
+@router.post("/{run}/abort", operation_id="abort_run", responses=CHANGES)
+async def abort_run(run: RunId, parts: WithParts) -> RunView:
+    """End a run for good."""
+    return await parts.runs.abort(run)
+
+
+@router.get(
+    "/{run}/events",
+    operation_id="list_events",
+    response_model=list[AnyEvent],
+    responses=documented(401, 404, 421, 422),
+)
+async def list_events(
+    run: RunId, parts: WithParts, after: After = 0, limit: Limit = 100
+) -> Response:
+    """A run's events in order; go on with the last `seq` as `after`."""
+    records = await parts.journal.read_records(after, limit, run)
+    if not records:
+        parts.runs.run(run)
+    # The journal holds the very JSON that clients get.
+    body = "[" + ",".join(record.text for record in records) + "]"
+    return Response(body, media_type="application/json")
+
+
+@router.get(
+    "/{run}/cameras/{camera}",
+    operation_id="get_camera_picture",
+    response_class=Response,
+    responses={
+        200: {"content": {"image/jpeg": {}}, "description": "The picture."},
+        **documented(401, 404, 409, 421, 422),
+    },
+)
+async def get_camera_picture(run: RunId, camera: Camera, parts: WithParts) -> Response:
+    """What a robot's camera sees now."""
+    picture = await parts.runs.picture(run, camera)
+    return Response(picture, media_type="image/jpeg", headers={"Cache-Control": "no-store"})
+
+
+@router.post(
+    "/{run}/interventions",
+    operation_id="intervene",
+    status_code=201,
+    responses=documented(400, 401, 403, 404, 409, 413, 421, 422),
+)
+async def intervene(
+    run: RunId,
+    intervention: Annotated[Intervention, Body(examples=STEAL_EXAMPLE)],
+    parts: WithParts,
+) -> Intervention:
+    """Have a person do something in a simulated world."""
+    await parts.runs.intervene(run, intervention)
+    return intervention

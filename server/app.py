@@ -1,0 +1,159 @@
+"""The application: every route, the gate before them, and how it is served."""
+
+import socket
+import time
+from collections.abc import AsyncIterator, Callable
+from contextlib import AbstractAsyncContextManager, asynccontextmanager
+from importlib.metadata import version
+from typing import Any
+
+import uvicorn
+from fastapi import FastAPI
+
+from server.api import (
+    dialogues,
+    health,
+    helper_socket,
+    metrics,
+    page,
+    pictures,
+    robots,
+    runs,
+    session,
+    trees,
+)
+from server.api.access import Access
+from server.api.gate import Gate
+from server.api.parts import ObservedJournal, Parts
+from server.api.problems import Problem, answer_errors_with_problems
+from server.runtime.service import RunService
+from server.settings import Settings
+from server.trees import ScenarioLibrary, TreeLibrary
+
+MAX_SOCKET_MESSAGE_BYTES = 4 * 1024 * 1024
+"""Robots send pictures; helpers get an `error` message for anything above 64 KiB."""
+
+ROUTES = (
+    session,
+    trees,
+    runs,
+    dialogues,
+    robots,
+    pictures,
+    health,
+    metrics,
+    helper_socket,
+    page,
+)
+
+STUCK_CLIENT_S = 30
+"""How long a connection may take nothing of what was sent to it before the kernel drops it."""
+
+Lifespan = Callable[[], AbstractAsyncContextManager[None]]
+
+DESCRIPTION = "Runs robots through task trees, and asks a person for help when they fail."
+
+
+def create_app(
+    service: RunService,
+    journal: ObservedJournal,
+    settings: Settings,
+    *,
+    trees_library: TreeLibrary,
+    scenarios: ScenarioLibrary,
+    lifespan: Lifespan | None = None,
+    wall_time_s: Callable[[], float] = time.time,
+) -> FastAPI:
+    """Build the application around a runtime and a journal.
+
+    `lifespan` is entered before the first request and left after the last.
+    """
+    token = settings.token.get_secret_value() if settings.token else None
+    access = Access(
+        token,
+        allowed_hosts=[settings.host, *settings.allowed_hosts],
+        allowed_origins=settings.allowed_origins,
+        wall_time_s=wall_time_s,
+    )
+    app = described_app(lifespan)
+    app.state.parts = Parts(service, journal, trees_library, scenarios, settings, access)
+    app.add_middleware(Gate, access=access)
+    return app
+
+
+def described_app(lifespan: Lifespan | None = None) -> FastAPI:
+    """The application with its routes, but nothing behind them; enough to describe it."""
+    app = FastAPI(
+        title="Mend",
+        version=version("mend"),
+        description=DESCRIPTION,
+        lifespan=_entered(lifespan),
+        docs_url="/docs",
+        redoc_url=None,
+    )
+    for module in ROUTES:
+        app.include_router(module.router)
+    answer_errors_with_problems(app)
+    _describe(app)
+    return app
+
+
+def serve_config(app: FastAPI, settings: Settings) -> uvicorn.Config:
+    """How uvicorn serves the application."""
+    return uvicorn.Config(
+        app,
+        host=settings.host,
+        port=settings.port,
+        log_level=settings.log_level,
+        ws="websockets-sansio",
+        ws_max_size=MAX_SOCKET_MESSAGE_BYTES,
+        # Compressing the same event again for every client costs more than it saves.
+        ws_per_message_deflate=False,
+        timeout_graceful_shutdown=5,
+        server_header=False,
+    )
+
+
+def drop_stuck_clients(listening: socket.socket) -> None:
+    """Let the kernel end connections whose client reads nothing for `STUCK_CLIENT_S`.
+
+    A client that is stopped, or hostile, keeps its connection open. Closing such a connection
+    waits until everything was read, which is never.
+    """
+    if hasattr(socket, "TCP_USER_TIMEOUT"):
+        timeout_ms = STUCK_CLIENT_S * 1000
+        listening.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, timeout_ms)
+
+
+def _entered(
+    lifespan: Lifespan | None,
+) -> Callable[[FastAPI], AbstractAsyncContextManager[None]] | None:
+    if lifespan is None:
+        return None
+
+    @asynccontextmanager
+    async def entered(_app: FastAPI) -> AsyncIterator[None]:
+        async with lifespan():
+            yield
+
+    return entered
+
+
+def _describe(app: FastAPI) -> None:
+    """Add to the OpenAPI what the routes do not say themselves: the token and the problems."""
+    generate = app.openapi
+
+    def openapi() -> dict[str, Any]:
+        if app.openapi_schema is None:
+            schema = generate()
+            components = schema.setdefault("components", {})
+            components.setdefault("schemas", {})["Problem"] = Problem.model_json_schema()
+            components["securitySchemes"] = {
+                "token": {"type": "http", "scheme": "bearer"},
+                "session": {"type": "apiKey", "in": "cookie", "name": "mend_session"},
+            }
+            schema["security"] = [{"token": []}, {"session": []}, {}]
+        assert app.openapi_schema is not None, "generating it keeps it"
+        return app.openapi_schema
+
+    app.openapi = openapi  # type: ignore[method-assign]

@@ -1,0 +1,59 @@
+"""`mend check`: every mistake of a task, scene or scenario file."""
+
+import json
+import re
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from server.cli.failures import NOT_FINISHED, CommandLineError, told_plainly
+from server.cli.task_files import read_text, scenario_mistakes, scene_mistakes, task_mistakes
+
+CHECKERS: Mapping[str, Callable[[Path], list[str]]] = {
+    "task": task_mistakes,
+    "scene": scene_mistakes,
+    "scenario": scenario_mistakes,
+}
+
+SCENE_KEYS = {"objects", "places"}
+SCENARIO_KEYS = {"interventions", "answers", "answer_delay_s", "person"}
+TOP_LEVEL_KEY = re.compile(r"""^["']?(\w+)["']?[ \t]*:""", re.MULTILINE)
+TREE_BY_NAME = re.compile(r"""^["']?tree["']?[ \t]*:[ \t]*["']?\w""", re.MULTILINE)
+
+
+def check(
+    file: Annotated[
+        Path, typer.Argument(metavar="FILE", help="A task, scene or scenario file, YAML or JSON.")
+    ],
+) -> None:
+    """Check a task, scene or scenario file, and name every mistake with its line.
+
+    The exit code is 1 if there are any.
+    """
+    with told_plainly():
+        kind = kind_of_file(read_text(file))
+        mistakes = CHECKERS[kind](file)
+    if mistakes:
+        raise CommandLineError("\n".join(mistakes), NOT_FINISHED)
+    typer.echo(f"{file}: a {kind} file without mistakes")
+
+
+def kind_of_file(text: str) -> str:
+    """Tell the three kinds of file apart, even where they are full of mistakes."""
+    keys, tree_by_name = _top_level(text)
+    if keys & SCENE_KEYS:
+        return "scene"
+    return "scenario" if keys & SCENARIO_KEYS or tree_by_name else "task"
+
+
+def _top_level(text: str) -> tuple[set[str], bool]:
+    """The top-level keys, and whether `tree` is one that names a tree."""
+    try:
+        data = json.loads(text)
+    except (ValueError, RecursionError):
+        return set(TOP_LEVEL_KEY.findall(text)), TREE_BY_NAME.search(text) is not None
+    if not isinstance(data, dict):
+        return set(), False
+    return set(data), isinstance(data.get("tree"), str)

@@ -1,0 +1,148 @@
+"""`mend run`: one run of a task tree, without a server, told live."""
+
+import asyncio
+import secrets
+import sys
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from pydantic import SecretStr, ValidationError
+
+from server.cli.answers import Answers, read_answers
+from server.cli.failures import CommandLineError, told_plainly
+from server.cli.journals import new_run_journal
+from server.cli.live_run import LiveRun
+from server.cli.output import JsonLines, LiveTranscript
+from server.cli.tree_argument import TreeArgument, read_tree_argument
+from server.runtime.requests import RunRequest
+from server.settings import Settings, load_settings
+from tasks.scenario import Person
+from tasks.scenario_file import built_in_scenario
+
+
+def run(
+    tree: Annotated[
+        str, typer.Argument(metavar="TREE", help="A task tree: its name (`mend trees`) or a file.")
+    ],
+    world: Annotated[str, typer.Option(help="Where: workcell, tabletop or a world of yours.")] = (
+        "workcell"
+    ),
+    scenario: Annotated[
+        str | None, typer.Option(help="What happens meanwhile (`mend scenarios`).")
+    ] = None,
+    speed: Annotated[
+        str, typer.Option(help="Simulated seconds per second, or max for as fast as possible.")
+    ] = "1.0",
+    seed: Annotated[int, typer.Option(help="Makes every chance in the run repeatable.")] = 0,
+    answers: Annotated[
+        str | None,
+        typer.Option(
+            help="The helper's answers in turn (yes,no,silence,...); random: by the seed; none: "
+            "nobody answers. Without it the scenario's answers, else you at the terminal."
+        ),
+    ] = None,
+    interventions: Annotated[
+        str | None, typer.Option(help="random: a person steals, moves and blocks, by the seed.")
+    ] = None,
+    json: Annotated[
+        bool, typer.Option("--json", help="Print every event as a JSON line, and nothing else.")
+    ] = False,
+    report: Annotated[
+        Path | None, typer.Option(help="Write a report of the run to this HTML file.")
+    ] = None,
+    journal: Annotated[
+        Path | None, typer.Option(help="The journal's file; otherwise one of the run's own.")
+    ] = None,
+    max_attempts: Annotated[
+        int, typer.Option(help="After so many failed attempts a leaf is given up.")
+    ] = 3,
+    person: Annotated[
+        bool | None,
+        typer.Option(
+            "--person/--no-person",
+            help="Whether a simulated person does what the helper promised.",
+        ),
+    ] = None,
+) -> None:
+    """Run a task tree in a simulated world, and print what happens.
+
+    The exit code is 0 only if the task finished; 1 if it failed, 2 if it could not begin. Ctrl-C
+    aborts the run.
+    """
+    # Imported only here: the whole service would make every other command wait.
+    from server.composition import open_service
+
+    with told_plainly():
+        argument = read_tree_argument(tree)
+        given = _answers(answers, scenario)
+        asks_at_terminal = given is None and sys.stdin.isatty() and not json
+        request = _request(
+            tree=argument.name,
+            world=world,
+            scenario=scenario,
+            speed=_read_speed(speed),
+            seed=seed,
+            answers="none" if given is None and not asks_at_terminal else given,
+            interventions=interventions,
+            max_attempts=max_attempts,
+            person=None if person is None else Person(acts=person),
+        )
+        if report is not None:
+            # A report that cannot be written is told before the run, not after it.
+            report.parent.mkdir(parents=True, exist_ok=True)
+        settings = _settings(journal, argument)
+        output = JsonLines() if json else LiveTranscript()
+        live_run = LiveRun(
+            open_service,
+            settings,
+            argument,
+            request,
+            output,
+            report,
+            asks_at_terminal=asks_at_terminal,
+        )
+        exit_code = asyncio.run(live_run.carry_out())
+    raise typer.Exit(exit_code)
+
+
+def _settings(journal: Path | None, tree: TreeArgument) -> Settings:
+    """A service that only this process can use: loopback, a free port, a token of its own."""
+    own = load_settings(
+        host="127.0.0.1",
+        port=0,
+        token=SecretStr(secrets.token_urlsafe(32)),
+        log_level="warning",
+    )
+    chosen = journal or new_run_journal(own, tree.name)
+    return own.model_copy(update={"journal": chosen, "scenes": tree.scenes or own.scenes})
+
+
+def _answers(text: str | None, scenario: str | None) -> Answers | None:
+    """The scripted answers of the command line, else of the scenario, else None."""
+    if text is not None:
+        return read_answers(text)
+    return list(built_in_scenario(scenario).answers) or None if scenario is not None else None
+
+
+def _read_speed(text: str) -> Any:
+    if text == "max":
+        return text
+    try:
+        return float(text)
+    except ValueError:
+        raise CommandLineError(f"--speed is '{text}'; it has to be a number or max") from None
+
+
+def _request(**fields: Any) -> RunRequest:
+    try:
+        return RunRequest(**fields)
+    except ValidationError as error:
+        problems = {str(each["loc"][0]): each["msg"] for each in error.errors()}
+        raise CommandLineError(
+            "\n".join(
+                f"{'TREE' if name == 'tree' else '--' + name.replace('_', '-')} is wrong: "
+                f"{message[0].lower()}{message[1:]}"
+                for name, message in problems.items()
+            )
+        ) from error

@@ -1,0 +1,16 @@
+"""`mend scenarios`: the scenarios that come with Mend."""
+
+from server.cli.failures import told_plainly
+from server.cli.output import print_rows
+from tasks.library import SCENARIOS
+from tasks.scenario_file import built_in_scenario
+
+
+def scenarios() -> None:
+    """List the scenarios that come with Mend, and the task tree that each is for."""
+    with told_plainly():
+        loaded = [built_in_scenario(name) for name in SCENARIOS.names()]
+    print_rows(
+        [(each.name, each.tree, " ".join(each.description.split())) for each in loaded],
+        ("scenario", "tree", "what happens"),
+    )

@@ -1,0 +1,70 @@
+"""`mend schema`: the schemas of files, events and interfaces."""
+
+import json
+from collections.abc import Callable, Mapping
+from enum import StrEnum
+from typing import Annotated, Any
+
+import typer
+
+from server.cli.failures import told_plainly
+from server.library import behavior_parameters
+from tasks.json_schema import scenario_schema, scene_schema, task_schema
+
+
+class SchemaName(StrEnum):
+    """The schemas that there are."""
+
+    OPENAPI = "openapi"
+    ASYNCAPI = "asyncapi"
+    EVENTS = "events"
+    TASK = "task"
+    SCENE = "scene"
+    SCENARIO = "scenario"
+
+
+def schema(
+    name: Annotated[
+        SchemaName,
+        typer.Argument(
+            metavar="[openapi|asyncapi|events|task|scene|scenario]",
+            help="openapi: REST; asyncapi: WebSockets; events: the journal; "
+            "task, scene, scenario: files.",
+        ),
+    ] = SchemaName.OPENAPI,
+) -> None:
+    """Print a schema as JSON: OpenAPI, AsyncAPI, or a JSON Schema."""
+    with told_plainly():
+        described = SCHEMAS[name]()
+    typer.echo(json.dumps(described, indent=2))
+
+
+# What describes the wire is imported only here: it brings the whole API with it.
+
+
+def _openapi() -> dict[str, Any]:
+    from server.schemas import openapi
+
+    return openapi()
+
+
+def _asyncapi() -> dict[str, Any]:
+    from server.schemas import asyncapi
+
+    return asyncapi()
+
+
+def _events() -> dict[str, Any]:
+    from server.schemas import json_schemas
+
+    return json_schemas()["event"]
+
+
+SCHEMAS: Mapping[SchemaName, Callable[[], dict[str, Any]]] = {
+    SchemaName.OPENAPI: _openapi,
+    SchemaName.ASYNCAPI: _asyncapi,
+    SchemaName.EVENTS: _events,
+    SchemaName.TASK: lambda: task_schema(behavior_parameters()),
+    SchemaName.SCENE: scene_schema,
+    SchemaName.SCENARIO: scenario_schema,
+}

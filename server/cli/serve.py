@@ -1,0 +1,43 @@
+"""`mend serve`: the service, until it is told to stop."""
+
+import asyncio
+import signal
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from server.cli.failures import told_plainly
+from server.cli.live_run import OpenService
+from server.settings import Settings, load_settings
+
+
+def serve(
+    host: Annotated[
+        str | None, typer.Option(help="Address to listen on; all but loopback needs a token.")
+    ] = None,
+    port: Annotated[int | None, typer.Option(help="Port to listen on; 0 takes a free one.")] = None,
+    journal: Annotated[Path | None, typer.Option(help="The journal's file.")] = None,
+    config: Annotated[Path | None, typer.Option(help="Settings in a TOML file.")] = None,
+) -> None:
+    """Serve the API, the helpers' page and the robots' socket.
+
+    Settings come from these options, then from MEND_* variables, then from the file. Runs that had
+    not ended when the service stopped go on. Ctrl-C stops it.
+    """
+    # Imported only here: the whole service would make every other command wait.
+    from server.composition import open_service
+
+    with told_plainly():
+        settings = load_settings(config, host=host, port=port, journal=journal)
+        asyncio.run(_serve(open_service, settings))
+
+
+async def _serve(open_service: OpenService, settings: Settings) -> None:
+    stop = asyncio.Event()
+    loop = asyncio.get_running_loop()
+    async with open_service(settings, recover=True) as service:
+        for number in (signal.SIGINT, signal.SIGTERM):
+            loop.add_signal_handler(number, stop.set)
+        typer.echo(f"Mend listens on {service.url}; its journal is {settings.journal_path}")
+        await stop.wait()

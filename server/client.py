@@ -1,0 +1,226 @@
+"""A typed client of the service, for users, the command line, the demo and tests."""
+
+import asyncio
+from types import TracebackType
+from typing import Any, Literal, Self, TypeVar
+from uuid import UUID
+
+import httpx
+from pydantic import TypeAdapter, ValidationError
+
+from server.api.problems import Problem, problem
+from server.client_stream import EventStream
+from server.journal.events import (
+    Answered,
+    AnyEvent,
+    Event,
+    RunAborted,
+    RunFailed,
+    RunFinished,
+)
+from server.runtime.requests import RunRequest
+from server.runtime.views import DialogueView, RobotView, RunSummary, RunView, Snapshot
+from server.trees import TreeSummary, TreeView
+from tasks.intervention import Intervention
+from tasks.scenario import Scenario
+
+T = TypeVar("T")
+
+DEFAULT_URL = "http://127.0.0.1:8080"
+READY_PAUSE_S = 0.1
+
+ENDS = (RunFinished, RunFailed, RunAborted)
+
+_events: TypeAdapter[Any] = TypeAdapter(list[AnyEvent])
+
+
+class RefusedError(Exception):
+    """The service refused a request; `problem` says why."""
+
+    def __init__(self, refusal: Problem) -> None:
+        more = [each for each in refusal.errors or [] if each != refusal.detail]
+        super().__init__("\n".join([refusal.detail, *more]))
+        self.problem = refusal
+
+
+class UnreachableError(Exception):
+    """No service answers at the address."""
+
+
+class MendClient:
+    """Talks to one service; an asynchronous context manager.
+
+    Every method raises `RefusedError` or `UnreachableError`.
+    """
+
+    def __init__(
+        self, url: str = DEFAULT_URL, *, token: str | None = None, timeout_s: float = 30.0
+    ) -> None:
+        self._url = url.rstrip("/")
+        self._headers = {"Authorization": f"Bearer {token}"} if token else {}
+        self._http = httpx.AsyncClient(base_url=self._url, headers=self._headers, timeout=timeout_s)
+
+    async def __aenter__(self) -> Self:
+        return self
+
+    async def __aexit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        await self._http.aclose()
+
+    # --- trees and scenarios ------------------------------------------------------------------
+
+    async def trees(self) -> list[TreeSummary]:
+        return await self._get("/api/trees", list[TreeSummary])
+
+    async def tree(self, name: str) -> TreeView:
+        return await self._get(f"/api/trees/{name}", TreeView)
+
+    async def upload_tree(self, text: str, name: str | None = None) -> TreeView:
+        """Keep a task file (YAML or JSON); replaces an uploaded one of the same name."""
+        body = {"text": text} if name is None else {"text": text, "name": name}
+        return await self._post("/api/trees", TreeView, body)
+
+    async def delete_tree(self, name: str) -> None:
+        await self._request("DELETE", f"/api/trees/{name}")
+
+    async def scenarios(self) -> list[Scenario]:
+        return await self._get("/api/scenarios", list[Scenario])
+
+    # --- runs ---------------------------------------------------------------------------------
+
+    async def start_run(self, request: RunRequest) -> RunView:
+        return await self._post("/api/runs", RunView, request.model_dump(mode="json"))
+
+    async def runs(self, *, limit: int = 100, offset: int = 0) -> list[RunSummary]:
+        """Runs, newest first."""
+        return await self._get("/api/runs", list[RunSummary], limit=limit, offset=offset)
+
+    async def run(self, run: UUID) -> RunView:
+        return await self._get(f"/api/runs/{run}", RunView)
+
+    async def pause(self, run: UUID) -> RunView:
+        return await self._post(f"/api/runs/{run}/pause", RunView)
+
+    async def resume(self, run: UUID) -> RunView:
+        return await self._post(f"/api/runs/{run}/resume", RunView)
+
+    async def abort(self, run: UUID) -> RunView:
+        return await self._post(f"/api/runs/{run}/abort", RunView)
+
+    async def events(self, run: UUID, *, after: int = 0, limit: int = 100) -> list[Event]:
+        """A run's events with `seq` > `after`, in order."""
+        response = await self._request(
+            "GET", f"/api/runs/{run}/events", params={"after": after, "limit": limit}
+        )
+        events: list[Event] = _events.validate_json(response.content)
+        return events
+
+    async def camera(self, run: UUID, camera: str) -> bytes:
+        """What a camera sees now, as JPEG."""
+        return (await self._request("GET", f"/api/runs/{run}/cameras/{camera}")).content
+
+    async def intervene(self, run: UUID, intervention: Intervention) -> Intervention:
+        """Have a person do something in a simulated world."""
+        body = intervention.model_dump(mode="json")
+        return await self._post(f"/api/runs/{run}/interventions", Intervention, body)
+
+    async def wait_for_end(self, run: UUID) -> RunView:
+        """Follow the events until a run has ended."""
+        async with self.follow("waiting") as stream:
+            async for message in stream:
+                if isinstance(message, Snapshot) or (
+                    isinstance(message, ENDS) and message.run == run
+                ):
+                    view = await self.run(run)
+                    if view.status.ended:
+                        return view
+        raise AssertionError("a stream has no end of its own")
+
+    # --- dialogues ----------------------------------------------------------------------------
+
+    async def dialogues(
+        self, status: Literal["open", "closed"] | None = None
+    ) -> list[DialogueView]:
+        return await self._get("/api/dialogues", list[DialogueView], status=status)
+
+    async def dialogue(self, dialogue: UUID) -> DialogueView:
+        return await self._get(f"/api/dialogues/{dialogue}", DialogueView)
+
+    async def answer(
+        self, dialogue: UUID, prompt: UUID, answer: Literal["yes", "no"], helper: str
+    ) -> Answered:
+        """Answer a prompt. A `RefusedError` has `problem.answered_by` if another was first."""
+        body = {"prompt": str(prompt), "answer": answer, "helper": helper}
+        return await self._post(f"/api/dialogues/{dialogue}/answers", Answered, body)
+
+    async def claim(self, dialogue: UUID, helper: str) -> DialogueView:
+        path = f"/api/dialogues/{dialogue}/claim"
+        return await self._post(path, DialogueView, {"helper": helper})
+
+    async def release(self, dialogue: UUID, helper: str) -> DialogueView:
+        path = f"/api/dialogues/{dialogue}/release"
+        return await self._post(path, DialogueView, {"helper": helper})
+
+    async def picture(self, picture: UUID) -> bytes:
+        """The picture that an event names, as JPEG."""
+        return (await self._request("GET", f"/api/pictures/{picture}")).content
+
+    async def robots(self) -> list[RobotView]:
+        return await self._get("/api/robots", list[RobotView])
+
+    # --- events as they come ------------------------------------------------------------------
+
+    def follow(self, helper: str, after: int | None = None) -> EventStream:
+        """Follow every event from now on, or from the one after `after`, as a helper."""
+        return EventStream(self._url, self._headers, helper, after)
+
+    async def wait_until_ready(self, timeout_s: float = 30.0) -> None:
+        """Wait until the service can be used. Raises `UnreachableError` after the time-out."""
+        try:
+            async with asyncio.timeout(timeout_s):
+                while True:
+                    if await self._ready():
+                        return
+                    await asyncio.sleep(READY_PAUSE_S)
+        except TimeoutError:
+            raise UnreachableError(
+                f"no service is ready at {self._url} after {timeout_s:g} s"
+            ) from None
+
+    async def _ready(self) -> bool:
+        try:
+            await self._request("GET", "/readyz")
+        except (UnreachableError, RefusedError):
+            return False
+        return True
+
+    # --- the wire -----------------------------------------------------------------------------
+
+    async def _get(self, path: str, shape: type[T], **parameters: Any) -> T:
+        given = {name: value for name, value in parameters.items() if value is not None}
+        response = await self._request("GET", path, params=given)
+        return TypeAdapter(shape).validate_json(response.content)
+
+    async def _post(self, path: str, shape: type[T], body: Any = None) -> T:
+        response = await self._request("POST", path, json=body)
+        return TypeAdapter(shape).validate_json(response.content)
+
+    async def _request(self, method: str, path: str, **more: Any) -> httpx.Response:
+        try:
+            response = await self._http.request(method, path, **more)
+        except httpx.HTTPError as error:
+            raise UnreachableError(f"no service answers at {self._url}: {error}") from error
+        if response.is_error:
+            raise RefusedError(_problem_in(response))
+        return response
+
+
+def _problem_in(response: httpx.Response) -> Problem:
+    try:
+        return Problem.model_validate_json(response.content)
+    except ValidationError:
+        return problem(response.status_code, response.text[:200] or "the service said no more")

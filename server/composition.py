@@ -1,0 +1,181 @@
+"""The whole service put together: journal, robots, worlds, runtime and API, in one process."""
+
+import asyncio
+import socket
+import time
+from collections.abc import AsyncIterator, Iterator
+from contextlib import asynccontextmanager, contextmanager, suppress
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from functools import partial
+
+import uvicorn
+
+from dialogue.registry import load_scripts
+from server.app import create_app, drop_stuck_clients, serve_config
+from server.dialogues.escalation import EscalationPolicy
+from server.dialogues.mail import Mailer
+from server.journal.sqlite import SqliteJournal
+from server.library import (
+    BuiltInScenarios,
+    Scenes,
+    TaskLibrary,
+    built_in_trees,
+    check_uploaded_tree,
+)
+from server.robots.endpoint import ROBOT_PATH, add_robot_route
+from server.robots.process import launch
+from server.robots.registry import RobotRegistry
+from server.robots.times import LinkTimes
+from server.runtime.context import RunSettings
+from server.runtime.operator_mail import OperatorMail
+from server.runtime.runtime import Runtime
+from server.runtime.worlds import SimulatedWorlds
+from server.settings import Settings
+from server.trees import JournaledTrees
+from tasks.plugins import load_plugins
+
+
+@dataclass(frozen=True, slots=True)
+class Service:
+    """A service that runs; `url` is where it listens."""
+
+    runtime: Runtime
+    journal: SqliteJournal
+    registry: RobotRegistry
+    trees: JournaledTrees
+    url: str
+    settings: Settings
+
+
+@asynccontextmanager
+async def open_service(settings: Settings, *, recover: bool = True) -> AsyncIterator[Service]:
+    """Start a service, take up the runs that had not ended, and stop it at the end.
+
+    Raises `JournalLockedError` when another process has the journal, `OSError` when it cannot
+    listen. `recover` False leaves unfinished runs alone.
+    """
+    journal = SqliteJournal(settings.journal_path)
+    try:
+        async with _open(settings, journal, recover) as service:
+            yield service
+    finally:
+        journal.close()
+
+
+@asynccontextmanager
+async def _open(
+    settings: Settings, journal: SqliteJournal, recover: bool
+) -> AsyncIterator[Service]:
+    token = settings.token.get_secret_value() if settings.token else None
+    registry = RobotRegistry(
+        journal,
+        time.monotonic,
+        LinkTimes(heartbeat_s=settings.heartbeat_s, silence_s=settings.robot_hang_timeout_s),
+    )
+    config_socket = _bind(settings)
+    url = f"http://{_reachable(settings.host)}:{config_socket.getsockname()[1]}"
+    scenes = Scenes(settings.scenes)
+    trees = JournaledTrees(journal, built_in_trees(), partial(check_uploaded_tree, scenes=scenes))
+    scenarios = BuiltInScenarios()
+    worlds = SimulatedWorlds(
+        load_plugins("mend.worlds"),
+        journal,
+        partial(
+            launch,
+            registry=registry,
+            url=f"ws{url.removeprefix('http')}{ROBOT_PATH}",
+            token=token,
+        ),
+        scenarios.load,
+    )
+    mail = OperatorMail(
+        Mailer(settings.mail) if settings.mail else None, lambda: datetime.now(UTC), url
+    )
+    runtime = Runtime(
+        journal=journal,
+        robots=registry,
+        worlds=worlds,
+        trees=TaskLibrary(trees, scenes),
+        scenarios=scenarios,
+        scripts=load_scripts(),
+        policy=_policy(settings),
+        send_mail=mail.send_later,
+        settings=RunSettings(
+            help_window_s=settings.help_window_s,
+            robot_lost_timeout_s=settings.robot_lost_timeout_s,
+            claim_lease_s=settings.claim_lease_s,
+        ),
+        monotonic=time.monotonic,
+        utc_now=lambda: datetime.now(UTC),
+    )
+    app = create_app(runtime, journal, settings, trees_library=trees, scenarios=scenarios)
+    add_robot_route(app, registry, token)
+    server = _Server(serve_config(app, settings))
+    serving = asyncio.create_task(server.serve(sockets=[config_socket]), name="server")
+    try:
+        await server.wait_until_started(serving)
+        if recover:
+            await runtime.recover()
+        yield Service(runtime, journal, registry, trees, url, settings)
+    finally:
+        # First: a report that no run takes any more must not be acknowledged.
+        registry.close()
+        await runtime.close()
+        await mail.close()
+        server.should_exit = True
+        with suppress(asyncio.CancelledError):
+            await serving
+        config_socket.close()
+
+
+class _Server(uvicorn.Server):
+    """A uvicorn within somebody else's event loop."""
+
+    @contextmanager
+    def capture_signals(self) -> Iterator[None]:
+        """Leave signals to whoever opened the service."""
+        yield
+
+    async def wait_until_started(self, serving: "asyncio.Task[None]") -> None:
+        """Return once it listens; raises what kept it from doing so."""
+        while not self.started:
+            if serving.done():
+                serving.result()
+                raise OSError("the server ended before it listened")
+            await asyncio.sleep(0.005)
+
+
+def _bind(settings: Settings) -> socket.socket:
+    """The listening socket. Raises `OSError` with a sentence if the port is taken."""
+    family = socket.AF_INET6 if ":" in settings.host else socket.AF_INET
+    listening = socket.socket(family)
+    listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    drop_stuck_clients(listening)
+    try:
+        listening.bind((settings.host, settings.port))
+    except OSError as error:
+        listening.close()
+        raise OSError(
+            f"cannot listen on {settings.host}:{settings.port}: {error.strerror}"
+        ) from error
+    return listening
+
+
+def _reachable(host: str) -> str:
+    """The host under which this machine reaches its own service."""
+    if host in ("0.0.0.0", ""):
+        return "127.0.0.1"
+    if host == "::":
+        return "[::1]"
+    return f"[{host}]" if ":" in host else host
+
+
+def _policy(settings: Settings) -> EscalationPolicy:
+    return EscalationPolicy(
+        helpers=tuple(settings.helpers),
+        repeats=settings.ask_repeats,
+        operators=settings.mail.operators if settings.mail else (),
+        answer_within_s=settings.ask_deadline_s,
+        mail_answer_within_s=settings.mail_deadline_s,
+    )

@@ -1,0 +1,68 @@
+"""The task tree as a run left it: the run's events folded into its tree, and each node's fate."""
+
+from collections import Counter
+
+from server.journal import events as ev
+from server.report.record import RunRecord
+from server.report.tree_drawing import NodeFate, NodeState
+from tasks.definition import NodeKind, TaskTreeDefinition
+from tasks.task_tree import TaskTree
+
+DOERS = {"robot": "by the robot", "human": "by the human", "both": "by robot and human"}
+
+
+def node_states(record: RunRecord) -> list[NodeState]:
+    """Every node, parents first."""
+    tree = _folded(record)
+    starts = Counter(each.started.node for each in record.executions)
+    return [_node_state(tree, node, record, starts) for node in range(len(tree))]
+
+
+def _folded(record: RunRecord) -> TaskTree:
+    tree = TaskTree(TaskTreeDefinition.model_validate(record.started.tree))
+    tree.running = True
+    for event in record.events:
+        match event:
+            case ev.NodeStarted():
+                tree.start(tree.index_of(event.node), event.robot)
+            case ev.NodeDone():
+                tree.finish(tree.index_of(event.node))
+            case ev.NodeReset():
+                tree.put_back(tree.index_of(event.node), failed=event.failed_attempt)
+            case ev.NodeAbandoned():
+                tree.abandon(tree.index_of(event.node))
+    return tree
+
+
+def _node_state(tree: TaskTree, node: int, record: RunRecord, starts: Counter[str]) -> NodeState:
+    path, leaf = tree.path_of(node), tree.kind_of(node) is NodeKind.BEHAVIOR
+    return NodeState(
+        path=path,
+        kind=tree.kind_of(node).value,
+        name=tree.name_of(node),
+        object=tree.leaf_definition(node).object if leaf else None,
+        fate=_fate(tree, node, starts[path]),
+        detail=_detail(tree, node, record, starts[path]) if leaf else "",
+    )
+
+
+def _fate(tree: TaskTree, node: int, starts: int) -> NodeFate:
+    if tree.done(node):
+        return "done"
+    if tree.abandoned(node):
+        return "abandoned"
+    if tree.active(node):
+        return "active"
+    return "tried" if starts else "untouched"
+
+
+def _detail(tree: TaskTree, leaf: int, record: RunRecord, starts: int) -> str:
+    parts = []
+    done = record.done.get(tree.path_of(leaf))
+    if done is not None:
+        parts.append(DOERS[done.by])
+    if starts > 1:
+        parts.append(f"{starts} starts")
+    if failed := tree.attempts(leaf):
+        parts.append(f"{failed} failed")
+    return ", ".join(parts)

@@ -1,0 +1,231 @@
+"""One robot that the service knows: what it is, what it was told, who owns it."""
+
+import asyncio
+import base64
+import binascii
+import logging
+from collections import OrderedDict
+from collections.abc import Callable, Coroutine
+from typing import Any
+from uuid import uuid4
+
+from robots.link.messages import (
+    PROTOCOL_VERSION,
+    Ack,
+    Command,
+    CommandBody,
+    Hello,
+    Picture,
+    Rejected,
+    Report,
+    Taken,
+    TakePicture,
+    Welcome,
+)
+from server.errors import ConflictError, NotFoundError
+from server.journal.journal import DuplicateReceiptError, Entry, Journal, Receipt
+from server.robots.session import MissingReportError, PictureError, RobotSession
+from server.robots.sink import RobotSink
+from server.robots.times import LinkTimes
+
+log = logging.getLogger(__name__)
+
+MOST_UNTAKEN_COMMANDS = 1000
+
+
+class KnownRobot:
+    """Implements `server.robots.session.Receiver`."""
+
+    def __init__(self, name: str, journal: Journal, times: LinkTimes) -> None:
+        self.name = name
+        self.hello: Hello | None = None
+        self.session: RobotSession | None = None
+        self.taking_over = asyncio.Lock()
+        self._journal = journal
+        self._times = times
+        self._sink: RobotSink | None = None
+        self._sink_sees_it = False
+        self._untaken: OrderedDict[str, Command] = OrderedDict()
+        self._pictures: dict[str, asyncio.Future[bytes]] = {}
+        self._received: dict[str, int] = {}
+        self._heard_of: set[str] = set()
+        self._absence: asyncio.TimerHandle | None = None
+        self._tasks: set[asyncio.Task[None]] = set()
+
+    @property
+    def forgettable(self) -> bool:
+        """Whether nobody will ask for it again: a simulated robot whose run is over."""
+        gone = self.session is None and self._sink is None and not self.taking_over.locked()
+        return gone and (self.hello is None or self.hello.simulated)
+
+    # --- Its connection -----------------------------------------------------------------------
+
+    async def connect(self, session: RobotSession, hello: Hello) -> None:
+        """Let a new connection take the place of the one there may be."""
+        if self.session is not None:
+            await self.session.end("a newer connection of this robot has replaced this one")
+        received = await self._journal.received(self.name, hello.boot)
+        self._cancel_absence()
+        if self.hello is None or self.hello.boot != hello.boot:
+            if self.hello is not None:
+                self._untaken.clear()
+            self._received.clear()
+        self._heard_of.clear()
+        self._received[hello.boot] = received
+        self.hello, self.session = hello, session
+        session.send(
+            Welcome(
+                protocol=PROTOCOL_VERSION, received=received, heartbeat_s=self._times.heartbeat_s
+            )
+        )
+        for command in self._untaken.values():
+            session.send(command)
+        session.do(self._announce)
+
+    def disconnect(self, session: RobotSession) -> None:
+        """A connection has ended; after a while without a new one the robot is lost."""
+        if self.session is not session:
+            return
+        self.session = None
+        for future in self._pictures.values():
+            if not future.done():
+                future.set_exception(ConflictError(f"the robot '{self.name}' is not connected"))
+        reason = session.reason
+        self._absence = asyncio.get_running_loop().call_later(
+            self._times.absence_s, lambda: self._spawn(self._tell_lost(reason))
+        )
+
+    async def end_connection(self, reason: str) -> None:
+        """Its program has ended; whoever ran it tells its owner."""
+        if self.session is not None:
+            session = self.session
+            await session.end(reason)
+            self.disconnect(session)
+        self._cancel_absence()
+        self._sink_sees_it = False
+
+    def close(self) -> None:
+        self._cancel_absence()
+        if self.session is not None:
+            self.session.end_soon("the service is shutting down")
+        for task in self._tasks:
+            task.cancel()
+
+    def _cancel_absence(self) -> None:
+        if self._absence is not None:
+            self._absence.cancel()
+            self._absence = None
+
+    def _spawn(self, work: Coroutine[Any, Any, None]) -> None:
+        task = asyncio.create_task(work)
+        self._tasks.add(task)
+        task.add_done_callback(self._tasks.discard)
+
+    # --- Its owner ----------------------------------------------------------------------------
+
+    def assign(self, sink: RobotSink) -> None:
+        if self._sink is not None and self._sink is not sink:
+            raise ConflictError(f"the robot '{self.name}' is busy with another run")
+        self._sink, self._sink_sees_it = sink, False
+        if self.session is not None:
+            self.session.do(self._announce)
+
+    def unassign(self) -> None:
+        self._sink, self._sink_sees_it = None, False
+
+    async def _announce(self) -> None:
+        if self._sink is not None and self.hello is not None:
+            self._sink_sees_it = True
+            await self._sink.robot_connected(self.name, self.hello)
+
+    async def _tell_lost(self, reason: str) -> None:
+        if self.session is None and self._sink is not None and self._sink_sees_it:
+            self._sink_sees_it = False
+            await self._sink.robot_lost(self.name, reason)
+
+    # --- What it is told ----------------------------------------------------------------------
+
+    def command(self, command_id: str, body: CommandBody) -> None:
+        """Send a command, now or when the robot is back. Raises `ConflictError`: too many wait."""
+        if command_id in self._untaken:
+            return
+        if len(self._untaken) >= MOST_UNTAKEN_COMMANDS:
+            raise ConflictError(
+                f"the robot '{self.name}' has not taken its last {MOST_UNTAKEN_COMMANDS} commands"
+            )
+        command = self._untaken[command_id] = Command(id=command_id, body=body)
+        if self.session is not None:
+            self.session.send(command)
+
+    async def take_picture(self, camera: str, timeout_s: float) -> bytes:
+        """A camera's picture (JPEG). Raises `NotFoundError` or `ConflictError`."""
+        if self.hello is None or self.session is None:
+            raise ConflictError(f"the robot '{self.name}' is not connected")
+        if camera not in self.hello.cameras:
+            raise NotFoundError(f"the robot '{self.name}' has no camera '{camera}'")
+        command_id = str(uuid4())
+        future: asyncio.Future[bytes] = asyncio.get_running_loop().create_future()
+        self._pictures[command_id] = future
+        self.session.send(Command(id=command_id, body=TakePicture(camera=camera)))
+        try:
+            async with asyncio.timeout(timeout_s):
+                return await future
+        except TimeoutError:
+            raise ConflictError(
+                f"the robot '{self.name}' sent no picture of '{camera}' within {timeout_s:g} s"
+            ) from None
+        finally:
+            del self._pictures[command_id]
+
+    # --- What it sends ------------------------------------------------------------------------
+
+    def receive_taken(self, taken: Taken) -> None:
+        self._untaken.pop(taken.command, None)
+
+    def receive_picture(self, picture: Picture) -> None:
+        try:
+            jpeg = base64.b64decode(picture.jpeg, validate=True)
+        except binascii.Error as error:
+            raise PictureError(f"the picture of '{picture.camera}' is not base64") from error
+        self._answer(picture.command, lambda future: future.set_result(jpeg))
+
+    def _answer(self, command: str, answer: Callable[[asyncio.Future[bytes]], None]) -> None:
+        future = self._pictures.get(command)
+        if future is not None and not future.done():
+            answer(future)
+
+    async def receive_report(self, report: Report) -> Ack:
+        """Commit a report unless it is known; returns what may be acknowledged.
+
+        Raises `MissingReportError` when the one before it was left out.
+        """
+        assert self.hello is not None, "reports only come after a hello"
+        boot = report.boot or self.hello.boot
+        if boot not in self._received:
+            self._received[boot] = await self._journal.received(self.name, boot)
+        last = self._received[boot]
+        if report.seq > last:
+            self._require_no_gap(boot, last, report.seq)
+            await self._commit(report, Receipt(self.name, boot, report.seq))
+            last = self._received[boot] = report.seq
+        self._heard_of.add(boot)
+        if isinstance(report.body, Rejected):
+            refusal = ConflictError(f"the robot '{self.name}' refused: {report.body.reason}")
+            self._answer(report.body.command, lambda future: future.set_exception(refusal))
+        return Ack(boot=report.boot, seq=last)
+
+    def _require_no_gap(self, boot: str, last: int, seq: int) -> None:
+        """The first report of a connection may be any: the journal may have been begun anew."""
+        if boot in self._heard_of and seq != last + 1:
+            raise MissingReportError(
+                f"report {seq} came, but the last one was {last}; send {last + 1} first"
+            )
+
+    async def _commit(self, report: Report, receipt: Receipt) -> None:
+        try:
+            if self._sink is None:
+                await self._journal.append(Entry(receipt=receipt))
+            else:
+                await self._sink.robot_reported(self.name, report, receipt)
+        except DuplicateReceiptError:
+            log.info("report %d of %s was received before", receipt.seq, self.name)

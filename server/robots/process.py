@@ -1,0 +1,255 @@
+"""Simulated robots: each in a process of its own that is watched, or within this one."""
+
+import asyncio
+import logging
+import os
+import random
+import signal
+import sys
+from asyncio.subprocess import DEVNULL, PIPE, Process
+from collections.abc import Callable
+from contextlib import suppress
+from typing import Protocol
+from uuid import uuid4
+
+from robots.link.channel import Channel, memory_channel
+from robots.link.client import run_agent
+from robots.link.clock import LoopClock
+from robots.link.outbox import IN_MEMORY, Outbox
+from server.errors import InvalidError
+from server.robots.registry import RobotRegistry
+from sim.robot_process import RobotProcessSetup, find_world
+from sim.world import WorldAdapter, WorldSetup, WorldUnavailableError
+from tasks.plugins import PluginError
+
+log = logging.getLogger(__name__)
+
+CHECK_S = 0.5
+
+ONE_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+"""A robot's matrices are small: more threads would only wait for each other."""
+
+
+Ended = Callable[[str], None]
+"""Told why, once, when a simulated robot has ended without being stopped."""
+
+
+class SimulatedRobot(Protocol):
+    """A simulated robot that this service runs."""
+
+    @property
+    def pid(self) -> int | None:
+        """Its process, if it has one of its own and that is running."""
+        ...
+
+    async def start(self, setup: WorldSetup) -> None:
+        """Start it, again if need be. Raises `InvalidError` if its world cannot run here."""
+        ...
+
+    async def stop(self) -> None:
+        """End it; nobody is told."""
+        ...
+
+
+async def launch(
+    world_name: str,
+    setup: WorldSetup,
+    ended: Ended,
+    *,
+    registry: RobotRegistry,
+    url: str,
+    token: str | None,
+) -> SimulatedRobot:
+    """Start a simulated robot in a world of the entry points.
+
+    `url` is this service's `/ws/robot`, as seen from this machine. Raises `InvalidError` if there
+    is no such world or it cannot run here.
+    """
+    try:
+        adapter = find_world(world_name)
+    except (WorldUnavailableError, PluginError) as error:
+        raise InvalidError(str(error)) from error
+    robot: SimulatedRobot
+    if adapter.own_process:
+        robot = RobotProcess(world_name, ended, registry, url, token)
+    else:
+        robot = InProcessRobot(adapter, ended, registry)
+    await robot.start(setup)
+    return robot
+
+
+class RobotProcess:
+    """A robot in a child process; one that is silent for `hang_s` is killed.
+
+    Until it has connected for the first time it has `start_s` to load its world.
+    """
+
+    def __init__(
+        self,
+        world_name: str,
+        ended: Ended,
+        registry: RobotRegistry,
+        url: str,
+        token: str | None,
+        *,
+        hang_s: float = 6.0,
+        start_s: float = 120.0,
+        stop_s: float = 2.0,
+    ) -> None:
+        self._world_name = world_name
+        self._ended = ended
+        self._registry = registry
+        self._url = url
+        self._token = token
+        self._hang_s = hang_s
+        self._start_s = start_s
+        self._stop_s = stop_s
+        self._process: Process | None = None
+        self._watcher: asyncio.Task[None] | None = None
+
+    @property
+    def pid(self) -> int | None:
+        running = self._process is not None and self._process.returncode is None
+        return self._process.pid if self._process is not None and running else None
+
+    async def start(self, setup: WorldSetup) -> None:
+        """Start the process, after ending the one there may be."""
+        await self.stop()
+        process = await asyncio.create_subprocess_exec(
+            sys.executable,
+            "-P",
+            "-m",
+            "sim.robot_process",
+            stdin=PIPE,
+            stdout=DEVNULL,
+            stderr=PIPE,
+            env=ONE_THREAD | os.environ,
+        )
+        self._process = process
+        self._watcher = asyncio.create_task(self._watch(process, setup.robot))
+        told = RobotProcessSetup(
+            world=self._world_name, setup=setup, url=self._url, token=self._token
+        )
+        assert process.stdin is not None, "stdin is a pipe"
+        process.stdin.write(told.model_dump_json().encode() + b"\n")
+        # If it has died already, the watcher says so.
+        with suppress(ConnectionError):
+            await process.stdin.drain()
+
+    async def stop(self) -> None:
+        """End the process, by force if closing its stdin does not do it in time."""
+        process, watcher = self._process, self._watcher
+        self._process = self._watcher = None
+        if process is None or watcher is None:
+            return
+        if watcher is not asyncio.current_task():
+            watcher.cancel()
+            await asyncio.gather(watcher, return_exceptions=True)
+        assert process.stdin is not None, "stdin is a pipe"
+        process.stdin.close()
+        try:
+            async with asyncio.timeout(self._stop_s):
+                await process.wait()
+        except TimeoutError:
+            _kill(process)
+            await process.wait()
+
+    async def _watch(self, process: Process, robot: str) -> None:
+        complaints = asyncio.create_task(_last_line(process))
+        ended = asyncio.create_task(process.wait())
+        try:
+            hung = await self._wait_for_the_end(process, ended, robot)
+            reason = hung or _how_it_ended(process.returncode, await complaints)
+        finally:
+            complaints.cancel()
+            ended.cancel()
+        log.warning("the process of robot %s is gone: %s", robot, reason)
+        await self._registry.end_connection(robot, reason)
+        self._ended(reason)
+
+    async def _wait_for_the_end(
+        self, process: Process, ended: asyncio.Task[int], robot: str
+    ) -> str | None:
+        """Wait until the process has ended; says so if that was because it hung."""
+        now = asyncio.get_running_loop().time
+        last_heard, patience_s = now(), self._start_s
+        hung: str | None = None
+        while not ended.done():
+            await asyncio.wait([ended], timeout=CHECK_S)
+            silent_s = self._registry.silent_for_s(robot)
+            if silent_s is not None:
+                last_heard, patience_s = now() - silent_s, self._hang_s
+            if hung is None and not ended.done() and now() - last_heard > patience_s:
+                hung = f"its process hung: nothing was heard of it for {now() - last_heard:.1f} s"
+                _kill(process)
+        return hung
+
+
+class InProcessRobot:
+    """A robot that runs in this event loop; for worlds that neither block nor crash."""
+
+    def __init__(self, adapter: WorldAdapter, ended: Ended, registry: RobotRegistry) -> None:
+        self._adapter = adapter
+        self._ended = ended
+        self._registry = registry
+        self._task: asyncio.Task[None] | None = None
+        self._served: set[asyncio.Task[None]] = set()
+
+    @property
+    def pid(self) -> int | None:
+        return None
+
+    async def start(self, setup: WorldSetup) -> None:
+        """Build the world and let the robot connect, after ending the one there may be."""
+        await self.stop()
+        self._task = asyncio.create_task(self._run(setup), name=f"robot {setup.robot}")
+
+    async def stop(self) -> None:
+        task, self._task = self._task, None
+        if task is not None and task is not asyncio.current_task():
+            task.cancel()
+            await asyncio.gather(task, return_exceptions=True)
+
+    async def _run(self, setup: WorldSetup) -> None:
+        outbox = Outbox(IN_MEMORY, setup.robot, uuid4().hex)
+        reason = "it was shut down"
+        try:
+            # A world takes a while to build, for which nobody else should have to wait.
+            agent = await asyncio.to_thread(self._adapter.create_agent, setup)
+            await run_agent(agent, self._connect, outbox, LoopClock(), random.Random(setup.seed))
+        except Exception as error:
+            log.exception("the simulated robot %s failed", setup.robot)
+            reason = f"its program failed: {error}"
+        finally:
+            outbox.close()
+        self._task = None
+        await self._registry.end_connection(setup.robot, reason)
+        self._ended(reason)
+
+    async def _connect(self) -> Channel:
+        robot_end, service_end = memory_channel()
+        task = asyncio.create_task(self._registry.serve(service_end))
+        self._served.add(task)
+        task.add_done_callback(self._served.discard)
+        return robot_end
+
+
+async def _last_line(process: Process) -> str:
+    """What the process wrote to stderr last; reads on so that it never blocks on it."""
+    assert process.stderr is not None, "stderr is a pipe"
+    tail = b""
+    while chunk := await process.stderr.read(4096):
+        tail = (tail + chunk)[-4096:]
+    lines = tail.decode(errors="replace").strip().splitlines()
+    return lines[-1] if lines else ""
+
+
+def _how_it_ended(code: int | None, complaint: str) -> str:
+    if code is not None and code < 0:
+        return f"its process was ended by {signal.Signals(-code).name}"
+    return f"its process ended with code {code}" + (f": {complaint}" if complaint else "")
+
+
+def _kill(process: Process) -> None:
+    with suppress(ProcessLookupError):
+        process.kill()

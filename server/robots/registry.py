@@ -1,0 +1,176 @@
+"""Every robot that is or was connected, and the service's end of their connections."""
+
+import asyncio
+import json
+import logging
+from collections.abc import Callable
+from contextlib import suppress
+
+from pydantic import ValidationError
+
+from robots.link.channel import Channel, ChannelClosedError
+from robots.link.messages import PROTOCOL_VERSION, CommandBody, Hello, LinkError, robot_message
+from server.errors import ConflictError
+from server.journal.journal import Journal, JournalClosedError
+from server.robots.known_robot import KnownRobot
+from server.robots.session import RobotSession, sentence
+from server.robots.sink import RobotSink
+from server.robots.times import LinkTimes
+
+__all__ = ["RobotRegistry", "RobotSink"]
+
+log = logging.getLogger(__name__)
+
+
+class RobotRegistry:
+    """Hands commands to robots and their reports to whoever owns them.
+
+    `clock` is any monotonic clock in seconds.
+    """
+
+    def __init__(
+        self, journal: Journal, clock: Callable[[], float], times: LinkTimes | None = None
+    ) -> None:
+        self._journal = journal
+        self._clock = clock
+        self._times = times or LinkTimes()
+        self._robots: dict[str, KnownRobot] = {}
+        self._closed = False
+
+    # --- What the runtime asks ----------------------------------------------------------------
+
+    def assign(self, robot: str, sink: RobotSink) -> None:
+        """Give a robot to a run; it is told at once if the robot is connected.
+
+        Raises `ConflictError` if another run has it.
+        """
+        self._known(robot).assign(sink)
+
+    def unassign(self, robot: str) -> None:
+        """Take a robot from the run that has it."""
+        if robot in self._robots:
+            self._robots[robot].unassign()
+            self._forget(robot)
+
+    def send(self, robot: str, command_id: str, body: CommandBody) -> None:
+        """Send a command, when connected; again after a reconnect, until the robot has taken it.
+
+        Dropped when the robot comes back with a new boot. A command id that is still waiting is
+        sent once. Raises `ConflictError` when too many wait.
+        """
+        self._known(robot).command(command_id, body)
+
+    async def take_picture(self, robot: str, camera: str, timeout_s: float = 2.0) -> bytes:
+        """A camera's picture now, as JPEG.
+
+        Raises `NotFoundError` if there is no such camera, `ConflictError` if it does not come.
+        """
+        if robot not in self._robots:
+            raise ConflictError(f"the robot '{robot}' is not connected")
+        return await self._robots[robot].take_picture(camera, timeout_s)
+
+    def hello(self, robot: str) -> Hello | None:
+        """The robot's last hello; None if it never said one."""
+        return self._robots[robot].hello if robot in self._robots else None
+
+    def connected(self, robot: str) -> bool:
+        return robot in self._robots and self._robots[robot].session is not None
+
+    def known(self) -> list[str]:
+        """Every robot that is or was connected, by name."""
+        return sorted(name for name, robot in self._robots.items() if robot.hello is not None)
+
+    def silent_for_s(self, robot: str) -> float | None:
+        """How long ago something last came from a robot; None if it is not connected."""
+        session = self._robots[robot].session if robot in self._robots else None
+        return None if session is None else self._clock() - session.last_heard
+
+    async def end_connection(self, robot: str, reason: str) -> None:
+        """The robot's program has ended: wait for nothing more of it.
+
+        Its owner is not told that it is lost: whoever ran the program does that.
+        """
+        if robot in self._robots:
+            await self._robots[robot].end_connection(reason)
+
+    def close(self) -> None:
+        """End every connection; robots come back when there is a service again."""
+        self._closed = True
+        for robot in self._robots.values():
+            robot.close()
+
+    def _known(self, name: str) -> KnownRobot:
+        if name not in self._robots:
+            self._robots[name] = KnownRobot(name, self._journal, self._times)
+        return self._robots[name]
+
+    def _forget(self, name: str) -> None:
+        if name in self._robots and self._robots[name].forgettable:
+            del self._robots[name]
+
+    # --- Connections --------------------------------------------------------------------------
+
+    async def serve(self, channel: Channel) -> None:
+        """Serve one connection of a robot until it ends."""
+        try:
+            hello = await self._greeted(channel)
+            if hello is not None and not self._closed:
+                await self._serve_robot(channel, hello)
+        finally:
+            with suppress(ChannelClosedError):
+                await channel.close()
+
+    async def _serve_robot(self, channel: Channel, hello: Hello) -> None:
+        robot = self._known(hello.robot)
+        session = RobotSession(channel, robot, self._clock, self._times)
+        try:
+            async with robot.taking_over:
+                await robot.connect(session, hello)
+            await session.run()
+        except JournalClosedError:
+            log.info("robot %s came while the service was shutting down", hello.robot)
+        finally:
+            robot.disconnect(session)
+            self._forget(hello.robot)
+
+    async def _greeted(self, channel: Channel) -> Hello | None:
+        """The hello, or None if there is none to go on with."""
+        try:
+            async with asyncio.timeout(self._times.hello_s):
+                while True:
+                    text = await channel.receive()
+                    complaint = _other_protocol(text)
+                    if complaint is not None:
+                        await _complain(channel, complaint)
+                        return None
+                    try:
+                        message = robot_message.validate_json(text)
+                    except ValidationError as error:
+                        await _complain(channel, sentence(error))
+                        continue
+                    if isinstance(message, Hello):
+                        return message
+                    await _complain(channel, "the first message of a connection is a hello")
+        except (ChannelClosedError, TimeoutError):
+            return None
+
+
+async def _complain(channel: Channel, detail: str) -> None:
+    await channel.send(LinkError(detail=detail).model_dump_json())
+
+
+def _other_protocol(text: str) -> str | None:
+    """What to say to a hello of another protocol version, whatever else it holds."""
+    try:
+        message = json.loads(text)
+    except (ValueError, RecursionError):
+        return None
+    if not isinstance(message, dict) or message.get("type") != "hello":
+        return None
+    version = message.get("protocol")
+    if not isinstance(version, int) or version == PROTOCOL_VERSION:
+        return None
+    return (
+        f"this service speaks protocol {PROTOCOL_VERSION} and the robot speaks {version}; "
+        "they must be the same"
+    )

@@ -1,0 +1,232 @@
+"""One connection of one robot: reads, answers, and works its reports off in order."""
+
+import asyncio
+import logging
+from collections.abc import Awaitable, Callable
+from contextlib import suppress
+from typing import Protocol
+
+from pydantic import ValidationError
+
+from robots.link.channel import Channel, ChannelClosedError
+from robots.link.messages import (
+    Ack,
+    Command,
+    Heartbeat,
+    Hello,
+    LinkError,
+    Picture,
+    Report,
+    Taken,
+    Welcome,
+    robot_message,
+)
+from server.errors import ServiceError
+from server.journal.journal import JournalClosedError
+from server.robots.times import LinkTimes
+
+log = logging.getLogger(__name__)
+
+ACK_AT_LEAST_EVERY = 32
+WAITING_REPORTS = 256
+WAITING_MESSAGES = 2048
+LAST_WORD_S = 1.0
+
+
+class MissingReportError(Exception):
+    """A report came without its predecessor; the message says which."""
+
+
+class PictureError(Exception):
+    """A picture that nobody can use; the message says why."""
+
+
+class Receiver(Protocol):
+    """Where a session takes what the robot sends."""
+
+    async def receive_report(self, report: Report) -> Ack:
+        """Commit a report unless it is known. Raises `MissingReportError`."""
+        ...
+
+    def receive_taken(self, taken: Taken) -> None: ...
+
+    def receive_picture(self, picture: Picture) -> None:
+        """Raises `PictureError`."""
+        ...
+
+
+def sentence(error: ValidationError) -> str:
+    """What is wrong with a message, and where."""
+    first = error.errors(include_url=False, include_input=False, include_context=False)[0]
+    where = ".".join(str(each) for each in first["loc"])
+    return f"the message was not understood{f' at {where}' if where else ''}: {first['msg']}"
+
+
+class RobotSession:
+    """One connection after its hello. `last_heard` is the clock when something last came."""
+
+    def __init__(
+        self,
+        channel: Channel,
+        receiver: Receiver,
+        clock: Callable[[], float],
+        times: LinkTimes,
+    ) -> None:
+        self.last_heard = clock()
+        self._channel = channel
+        self._receiver = receiver
+        self._clock = clock
+        self._times = times
+        self._outgoing: asyncio.Queue[Welcome | Ack | Command | LinkError] = asyncio.Queue(
+            WAITING_MESSAGES
+        )
+        self._work: asyncio.Queue[Report | Callable[[], Awaitable[None]]] = asyncio.Queue()
+        self._room = asyncio.Semaphore(WAITING_REPORTS)
+        self._owed: Ack | None = None
+        self._owed_for = 0
+        self._ending = asyncio.Event()
+        self._ended = asyncio.Event()
+        self._last_word = ""
+        self.reason = "its connection was closed"
+
+    def send(self, message: Welcome | Ack | Command | LinkError) -> None:
+        """Send a message after those that wait already; a robot that reads none is cut off."""
+        try:
+            self._outgoing.put_nowait(message)
+        except asyncio.QueueFull:
+            self.end_soon("the robot does not read what it is sent")
+
+    def do(self, work: Callable[[], Awaitable[None]]) -> None:
+        """Have something done between two reports."""
+        self._work.put_nowait(work)
+
+    def end_soon(self, reason: str) -> None:
+        """End the connection, telling the robot why; a report under way is still committed."""
+        if not self._ending.is_set():
+            self.reason = self._last_word = reason
+            self._ending.set()
+
+    async def end(self, reason: str) -> None:
+        """End the connection and wait until nothing of it is under way any more."""
+        self.end_soon(reason)
+        await self._ended.wait()
+
+    async def run(self) -> None:
+        """Serve the robot until its connection ends, for whatever reason."""
+        worker = asyncio.create_task(self._work_off())
+        others = [
+            asyncio.create_task(each)
+            for each in (self._read(), self._write(), self._watch(), self._wait_for_end())
+        ]
+        try:
+            await asyncio.wait([worker, *others], return_when=asyncio.FIRST_COMPLETED)
+            self._ending.set()
+            self._work.put_nowait(_nothing)
+            await self._finish(worker)
+        finally:
+            self._ending.set()
+            for task in (worker, *others):
+                task.cancel()
+            results = await asyncio.gather(*others, return_exceptions=True)
+            self._ended.set()
+        for result in results:
+            if isinstance(result, Exception):
+                log.error("a robot's connection ended for a fault of ours", exc_info=result)
+        await self._say_last_word()
+
+    async def _finish(self, worker: asyncio.Task[None]) -> None:
+        try:
+            await worker
+        except JournalClosedError:
+            self._last_word = "the service is shutting down"
+        except ServiceError as error:
+            self._last_word = f"the report could not be committed: {error}"
+        except Exception:
+            log.exception("a robot's report could not be committed")
+            self._last_word = "the service could not commit a report; send it again"
+
+    async def _say_last_word(self) -> None:
+        with suppress(ChannelClosedError, TimeoutError):
+            async with asyncio.timeout(LAST_WORD_S):
+                if self._last_word:
+                    await self._channel.send(LinkError(detail=self._last_word).model_dump_json())
+
+    async def _wait_for_end(self) -> None:
+        await self._ending.wait()
+
+    # --- Reading ------------------------------------------------------------------------------
+
+    async def _read(self) -> None:
+        with suppress(ChannelClosedError):
+            while True:
+                text = await self._channel.receive()
+                self.last_heard = self._clock()
+                try:
+                    await self._take(robot_message.validate_json(text))
+                except ValidationError as error:
+                    self.send(LinkError(detail=sentence(error)))
+
+    async def _take(self, message: Hello | Report | Heartbeat | Taken | Picture) -> None:
+        match message:
+            case Report():
+                await self._room.acquire()
+                self._work.put_nowait(message)
+            case Taken():
+                self._receiver.receive_taken(message)
+            case Picture():
+                try:
+                    self._receiver.receive_picture(message)
+                except PictureError as error:
+                    self.send(LinkError(detail=str(error)))
+            case Hello():
+                self.send(LinkError(detail="a hello is only the first message of a connection"))
+
+    async def _watch(self) -> None:
+        """End when nothing comes any more, unless it is us who do not read."""
+        silent_s = 0.0
+        while silent_s <= self._times.silence_s:
+            await asyncio.sleep(self._times.heartbeat_s)
+            silent_s = 0.0 if self._room.locked() else self._clock() - self.last_heard
+        self.end_soon(f"nothing was heard of it for {silent_s:.1f} s")
+
+    # --- Reports ------------------------------------------------------------------------------
+
+    async def _work_off(self) -> None:
+        while not self._ending.is_set():
+            work = await self._work.get()
+            if isinstance(work, Report):
+                await self._commit(work)
+                self._room.release()
+            else:
+                await work()
+            if self._work.empty():
+                self._acknowledge()
+
+    async def _commit(self, report: Report) -> None:
+        try:
+            ack = await self._receiver.receive_report(report)
+        except MissingReportError as error:
+            self.send(LinkError(detail=str(error)))
+            return
+        if self._owed is not None and self._owed.boot != ack.boot:
+            self._acknowledge()
+        self._owed, self._owed_for = ack, self._owed_for + 1
+        if self._owed_for >= ACK_AT_LEAST_EVERY:
+            self._acknowledge()
+
+    def _acknowledge(self) -> None:
+        if self._owed is not None:
+            self.send(self._owed)
+        self._owed, self._owed_for = None, 0
+
+    # --- Writing ------------------------------------------------------------------------------
+
+    async def _write(self) -> None:
+        with suppress(ChannelClosedError):
+            while True:
+                message = await self._outgoing.get()
+                await self._channel.send(message.model_dump_json(exclude_none=True))
+
+
+async def _nothing() -> None:
+    return None

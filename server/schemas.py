@@ -1,0 +1,158 @@
+"""The wire, described for machines: OpenAPI, AsyncAPI and JSON Schema, as dicts."""
+
+from importlib.metadata import version
+from typing import Any, get_args
+
+from pydantic import BaseModel, TypeAdapter
+from pydantic.json_schema import models_json_schema
+
+from robots.link import messages as link
+from server.api import helper_messages
+from server.api.problems import Problem
+from server.app import described_app
+from server.journal.events import AnyEvent
+from server.runtime.requests import RunRequest
+from server.runtime.views import DialogueView, RobotView, RunView
+from tasks.intervention import Intervention
+from tasks.scenario import Scenario
+from tasks.scene import Scene
+
+Models = tuple[type[BaseModel], ...]
+
+DIALECT = "https://json-schema.org/draft/2020-12/schema"
+
+SCHEMAS: dict[str, Any] = {
+    "event": AnyEvent,
+    "helper_message": helper_messages.ClientMessage,
+    "robot_message": link.RobotMessage,
+    "service_message": link.ServiceMessage,
+    "run_request": RunRequest,
+    "run": RunView,
+    "dialogue": DialogueView,
+    "robot": RobotView,
+    "problem": Problem,
+    "intervention": Intervention,
+    "scene": Scene,
+    "scenario": Scenario,
+}
+
+
+def openapi() -> dict[str, Any]:
+    """The REST API as OpenAPI 3.1."""
+    return described_app().openapi()
+
+
+def json_schemas() -> dict[str, dict[str, Any]]:
+    """A JSON Schema (2020-12) of everything that goes over a wire, by name."""
+    return {
+        name: {"$schema": DIALECT, **TypeAdapter(shape).json_schema()}
+        for name, shape in SCHEMAS.items()
+    }
+
+
+def asyncapi() -> dict[str, Any]:
+    """The two WebSockets as AsyncAPI 3, from the service's point of view."""
+    to_helpers: Models = (
+        helper_messages.SnapshotMessage,
+        helper_messages.Result,
+        helper_messages.Error,
+        *_members(AnyEvent),
+    )
+    from_helpers = _members(helper_messages.ClientMessage)
+    to_robots = _members(link.ServiceMessage)
+    from_robots = _members(link.RobotMessage)
+    # A robot's messages and the events share class names, so each socket has its own prefix.
+    sockets: dict[str, Models] = {
+        "helper": (*to_helpers, *from_helpers),
+        "robot": (*to_robots, *from_robots),
+    }
+    schemas: dict[str, Any] = {}
+    for prefix, models in sockets.items():
+        schemas |= _component_schemas(prefix, models)
+    return {
+        "asyncapi": "3.0.0",
+        "info": {
+            "title": "Mend",
+            "version": version("mend"),
+            "description": "The WebSockets of helpers and robots. All messages are JSON text.",
+        },
+        "servers": {"local": {"host": "127.0.0.1:8080", "protocol": "ws"}},
+        "channels": {
+            "helper": {
+                "address": "/ws/helper",
+                "description": "A snapshot, then every event after it; answers and claims.",
+                "messages": _message_references("helper", sockets["helper"]),
+                "bindings": {"ws": {"query": HELPER_QUERY}},
+            },
+            "robot": {
+                "address": "/ws/robot",
+                "description": "Commands to a robot, and what it reports.",
+                "messages": _message_references("robot", sockets["robot"]),
+            },
+        },
+        "operations": {
+            "sendToHelper": _operation("send", "helper", to_helpers),
+            "receiveFromHelper": _operation("receive", "helper", from_helpers),
+            "sendToRobot": _operation("send", "robot", to_robots),
+            "receiveFromRobot": _operation("receive", "robot", from_robots),
+        },
+        "components": {
+            "schemas": schemas,
+            "messages": {
+                f"{prefix}.{model.__name__}": {
+                    "name": _type_of(model),
+                    "contentType": "application/json",
+                    "summary": (model.__doc__ or "").strip().split("\n")[0],
+                    "payload": {"$ref": f"#/components/schemas/{prefix}.{model.__name__}"},
+                }
+                for prefix, models in sockets.items()
+                for model in models
+            },
+        },
+    }
+
+
+HELPER_QUERY = {
+    "type": "object",
+    "required": ["helper"],
+    "properties": {
+        "helper": {"type": "string", "minLength": 1, "maxLength": 64},
+        "after": {"type": "integer", "minimum": 0, "description": "The last event seen."},
+    },
+}
+
+
+def _members(union: Any) -> Models:
+    """The models of a discriminated union."""
+    models: Models = get_args(get_args(union)[0])
+    return models
+
+
+def _type_of(model: type[BaseModel]) -> str:
+    """The value of a message's `type`."""
+    return str(get_args(model.model_fields["type"].annotation)[0])
+
+
+def _component_schemas(prefix: str, models: Models) -> dict[str, Any]:
+    _, definitions = models_json_schema(
+        [(model, "serialization") for model in models],
+        ref_template=f"#/components/schemas/{prefix}.{{model}}",
+    )
+    return {f"{prefix}.{name}": schema for name, schema in definitions["$defs"].items()}
+
+
+def _message_references(prefix: str, models: Models) -> dict[str, Any]:
+    return {
+        model.__name__: {"$ref": f"#/components/messages/{prefix}.{model.__name__}"}
+        for model in models
+    }
+
+
+def _operation(action: str, channel: str, models: Models) -> dict[str, Any]:
+    return {
+        "action": action,
+        "channel": {"$ref": f"#/channels/{channel}"},
+        "messages": [
+            {"$ref": f"#/channels/{channel}/messages/{model.__name__}"} for model in models
+        ],
+    }

@@ -1,0 +1,190 @@
+"""How a service is configured: `MEND_*` variables, a TOML file, and defaults."""
+
+import ipaddress
+import os
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import Field, SecretStr, ValidationError, model_validator
+from pydantic_settings import (
+    BaseSettings,
+    PydanticBaseSettingsSource,
+    SettingsConfigDict,
+    SettingsError,
+    TomlConfigSettingsSource,
+)
+
+from server.dialogues.mail import MailSettings
+
+Seconds = Annotated[float, Field(gt=0, le=86_400, allow_inf_nan=False)]
+HostName = Annotated[str, Field(min_length=1, max_length=253)]
+
+CONFIG_VARIABLE = "MEND_CONFIG"
+
+
+class WrongSettingsError(Exception):
+    """The service cannot start with these settings; one sentence per mistake."""
+
+    def __init__(self, problems: list[str]) -> None:
+        super().__init__("\n".join(problems))
+        self.problems = problems
+
+
+class Settings(BaseSettings):
+    """Everything that can be configured. Variables are `MEND_` and the upper-case name.
+
+    Nested ones are joined by two underscores: `MEND_MAIL__HOST`. Lists are JSON:
+    `MEND_HELPERS='["anna", "ben"]'`.
+    """
+
+    model_config = SettingsConfigDict(
+        env_prefix="MEND_",
+        env_nested_delimiter="__",
+        extra="forbid",
+        frozen=True,
+        hide_input_in_errors=True,
+    )
+
+    host: HostName = "127.0.0.1"
+    """The address to listen on; anything but loopback needs a token."""
+    port: Annotated[int, Field(ge=0, le=65_535)] = 8080
+    """The port to listen on; 0 takes a free one."""
+    token: SecretStr | None = None
+    """What clients and robots have to show; make it long and random."""
+    allowed_hosts: list[HostName] = []
+    """Names under which clients may reach the service, besides localhost and IP addresses."""
+    allowed_origins: list[str] = []
+    """Origins of web pages served elsewhere that may connect (`https://console.example.com`)."""
+    data_dir: Path = Field(default_factory=lambda: default_data_dir())
+    journal: Path | None = None
+    """The journal's file; `journal.db` in `data_dir` unless set."""
+    scenes: Path | None = None
+    """A folder of scene files (`NAME.yaml`) that task trees may name, besides the library's."""
+    helpers: list[Annotated[str, Field(min_length=1, max_length=64)]] = []
+    """Whom to ask, in this order; empty: everybody at once."""
+    mail: MailSettings | None = None
+    """The mail server and the operators to write to when no helper answers; None: nobody."""
+    ask_deadline_s: Seconds = 30.0
+    mail_deadline_s: Seconds = 600.0
+    """How long to wait for an answer after the operators were written to."""
+    ask_repeats: Annotated[int, Field(ge=0, le=100)] = 1
+    help_window_s: Seconds = 30.0
+    claim_lease_s: Seconds = 30.0
+    heartbeat_s: Seconds = 1.0
+    robot_hang_timeout_s: Seconds = 10.0
+    robot_lost_timeout_s: Seconds = 60.0
+    subscriber_queue: Annotated[int, Field(ge=1, le=1_000_000)] = 4096
+    """How many events may wait for one slow client before it is cut off."""
+    log_level: Literal["critical", "error", "warning", "info", "debug"] = "info"
+
+    @property
+    def journal_path(self) -> Path:
+        return self.journal or self.data_dir / "journal.db"
+
+    @model_validator(mode="after")
+    def _require_a_token(self) -> Self:
+        if self.token is not None and not self.token.get_secret_value().strip():
+            raise ValueError("'token' must not be empty")
+        if self.token is None and not is_loopback(self.host):
+            raise ValueError(
+                f"listening on {self.host} needs a token: set MEND_TOKEN, or listen on 127.0.0.1"
+            )
+        return self
+
+    @classmethod
+    def settings_customise_sources(
+        cls,
+        settings_cls: type[BaseSettings],
+        init_settings: PydanticBaseSettingsSource,
+        env_settings: PydanticBaseSettingsSource,
+        dotenv_settings: PydanticBaseSettingsSource,
+        file_secret_settings: PydanticBaseSettingsSource,
+    ) -> tuple[PydanticBaseSettingsSource, ...]:
+        """Arguments come first, then the environment; `load_settings` adds the file."""
+        del settings_cls, dotenv_settings, file_secret_settings
+        return init_settings, env_settings
+
+
+def load_settings(config: Path | None = None, **arguments: Any) -> Settings:
+    """The settings from arguments, environment and file, in this order of precedence.
+
+    The file is `config`, or the one that `MEND_CONFIG` names; none is looked for elsewhere.
+    Raises `WrongSettingsError`.
+    """
+    named = os.environ.get(CONFIG_VARIABLE)
+    path = config or (Path(named) if named else None)
+    given = {name: value for name, value in arguments.items() if value is not None}
+    try:
+        _refuse_unknown_variables(os.environ)
+        return _with_file(path)(**given)
+    except ValidationError as error:
+        raise WrongSettingsError([_sentence(each) for each in error.errors()]) from None
+    except SettingsError as error:
+        raise WrongSettingsError([f"A setting cannot be read: {error}."]) from None
+
+
+def _with_file(path: Path | None) -> type[Settings]:
+    """The settings class that also reads this file."""
+    if path is None:
+        return Settings
+    if not path.is_file():
+        raise WrongSettingsError([f"There is no settings file {path}."])
+
+    class SettingsFromFile(Settings):
+        @classmethod
+        def settings_customise_sources(
+            cls,
+            settings_cls: type[BaseSettings],
+            init_settings: PydanticBaseSettingsSource,
+            env_settings: PydanticBaseSettingsSource,
+            dotenv_settings: PydanticBaseSettingsSource,
+            file_secret_settings: PydanticBaseSettingsSource,
+        ) -> tuple[PydanticBaseSettingsSource, ...]:
+            del dotenv_settings, file_secret_settings
+            try:
+                file = TomlConfigSettingsSource(settings_cls, path)
+            except (ValueError, OSError) as error:
+                raise WrongSettingsError([f"{path} is not a TOML file: {error}."]) from error
+            return init_settings, env_settings, file
+
+    return SettingsFromFile
+
+
+def _refuse_unknown_variables(names: Iterable[str]) -> None:
+    known = {f"MEND_{field.upper()}" for field in Settings.model_fields} | {CONFIG_VARIABLE}
+    unknown = [
+        name for name in names if name.startswith("MEND_") and name.split("__")[0] not in known
+    ]
+    if unknown:
+        raise WrongSettingsError(
+            [f"There is no setting {name}; see the list in the documentation." for name in unknown]
+        )
+
+
+def _sentence(error: Any) -> str:
+    where = ".".join(str(part) for part in error["loc"])
+    message = str(error["msg"]).removeprefix("Value error, ")
+    if not where:
+        return f"The settings do not fit together: {message}."
+    if error["type"] == "extra_forbidden":
+        return f"There is no setting '{where}'."
+    return f"The setting '{where}' is wrong: {message[0].lower()}{message[1:]}."
+
+
+def is_loopback(host: str) -> bool:
+    """Whether only this machine can reach an address."""
+    if host == "localhost":
+        return True
+    try:
+        return ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        return False
+
+
+def default_data_dir() -> Path:
+    """Where the XDG base directory specification puts a program's data."""
+    base = os.environ.get("XDG_DATA_HOME", "")
+    # The specification says that a relative path is to be ignored.
+    root = Path(base) if Path(base).is_absolute() else Path.home() / ".local" / "share"
+    return root / "mend"

@@ -1,0 +1,312 @@
+"""The transcript of a run: each event as the lines that a person reads."""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from enum import StrEnum
+from functools import singledispatchmethod
+
+from dialogue.script import CloseReason, Help
+from server.journal import events as ev
+from tasks.intervention import Act, Intervention
+from tasks.resolution import Resolution
+
+
+class Tone(StrEnum):
+    """What kind of news a line brings; a terminal or a page gives each its own look."""
+
+    RUN = "run"
+    CHOICE = "choice"
+    STEP = "step"
+    FAULT = "fault"
+    SAID = "said"
+    ASKED = "asked"
+    ANSWERED = "answered"
+    WATCHED = "watched"
+    DEED = "deed"
+    RESOLVED = "resolved"
+    DONE = "done"
+    SETBACK = "setback"
+    FINISHED = "finished"
+    FAILED = "failed"
+
+
+SPOKEN = frozenset({Tone.SAID, Tone.ASKED, Tone.ANSWERED, Tone.STEP})
+"""The tones of lines that quote their speaker; a behavior speaks through its steps."""
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """One line: when (seconds of the run's clock), who acts or speaks (if anybody), what.
+
+    Lines that follow each other with the same `thread` may be joined to one; None is never joined.
+    """
+
+    time_s: float
+    speaker: str
+    text: str
+    tone: Tone
+    thread: str | None = None
+
+    @property
+    def opening(self) -> str:
+        """What stands before the text: `robot: ` before what is said, `robot ` before deeds."""
+        if not self.speaker:
+            return ""
+        return f"{self.speaker}: " if self.tone in SPOKEN else f"{self.speaker} "
+
+
+DEEDS: dict[Act, str] = {
+    Act.STEAL: "takes {object} away",
+    Act.PUT_BACK: "puts {object} back",
+    Act.PLACE: "puts {object} to its place",
+    Act.HAND_OVER: "hands {object} over",
+    Act.MOVE: "moves {object}",
+    Act.BLOCK: "stands in the arm's way",
+    Act.RELEASE: "gets out of the arm's way",
+}
+
+PROMISES: dict[Help, str] = {
+    Help.PLACE: "{object} at its place",
+    Help.PUT_BACK: "{object} back within reach",
+    Help.HAND_OVER: "{object} between the fingers",
+    Help.CLEAR_WAY: "the way clear",
+}
+
+RESOLUTIONS: dict[Resolution, str] = {
+    Resolution.HUMAN_FINISH: "the human finished {name}",
+    Resolution.ROBOT_FINISH: "the robot goes on with {name}",
+    Resolution.COLLAB_FINISH: "both finish {name} together",
+    Resolution.ROBOT_RETRY: "the robot will try {name} again",
+}
+
+CLOSINGS: dict[CloseReason, str] = {
+    CloseReason.WITHDRAWN: "the question is withdrawn: it was put right",
+    CloseReason.GAVE_UP: "the question is given up: nobody helped",
+    CloseReason.ABORTED: "the question lapses: it no longer matters",
+}
+
+DOERS = {"robot": " by the robot", "human": " by the human", "both": " by robot and human together"}
+
+
+def grouped(lines: Iterable[Line]) -> Iterator[list[Line]]:
+    """The lines in the groups in which they may be joined, most of them of one line."""
+    group: list[Line] = []
+    for line in lines:
+        if group and (line.thread is None or line.thread != group[-1].thread):
+            yield group
+            group = []
+        group.append(line)
+    if group:
+        yield group
+
+
+class Transcript:
+    """Turns the events of one run, in order, into lines.
+
+    It remembers one thing: whether the run has several robots, which are then called by their ids.
+    """
+
+    def __init__(self) -> None:
+        self._several_robots = False
+
+    @singledispatchmethod
+    def lines(self, event: ev.Event) -> list[Line]:
+        """The lines of an event; none for those that others already tell."""
+        raise TypeError(f"expected an event of the journal, got {type(event).__name__}")
+
+    def _robot(self, robot: str | None) -> str:
+        return robot if robot is not None and self._several_robots else "robot"
+
+    # --- The run ------------------------------------------------------------------------------
+
+    @lines.register
+    def _(self, event: ev.RunStarted) -> list[Line]:
+        self._several_robots = len(event.robots) > 1
+        scenario = f", scenario {event.scenario}" if event.scenario else ""
+        speed = event.speed if event.speed == "max" else f"{event.speed:g}"
+        text = (
+            f"run {event.run} of {event.tree_name} begins in {event.world} "
+            f"(seed {event.seed}, speed {speed}{scenario})"
+        )
+        return [_line(event, "", text, Tone.RUN)]
+
+    @lines.register
+    def _(self, event: ev.RunPaused) -> list[Line]:
+        return [_line(event, "", "the run is paused", Tone.RUN)]
+
+    @lines.register
+    def _(self, event: ev.RunResumed) -> list[Line]:
+        return [_line(event, "", "the run goes on", Tone.RUN)]
+
+    @lines.register
+    def _(self, event: ev.RunFinished) -> list[Line]:
+        lines = [
+            _line(event, "", f"the last look misses {each.object} at {each.place}", Tone.SETBACK)
+            for each in event.missing
+        ]
+        return [*lines, _line(event, "", "the run has finished: the task is done", Tone.FINISHED)]
+
+    @lines.register
+    def _(self, event: ev.RunFailed) -> list[Line]:
+        return [_line(event, "", f"the run has failed: {event.reason}", Tone.FAILED)]
+
+    @lines.register
+    def _(self, event: ev.RunAborted) -> list[Line]:
+        return [
+            _line(event, "", f"the run was aborted: {event.reason or 'by a person'}", Tone.FAILED)
+        ]
+
+    # --- The leaves ---------------------------------------------------------------------------
+
+    @lines.register
+    def _(self, event: ev.NodeStarted) -> list[Line]:
+        attempt = f", attempt {event.attempt}" if event.attempt > 1 else ""
+        text = f"starts {event.name}{attempt}{_comparison(event)}"
+        return [_line(event, self._robot(event.robot), text, Tone.CHOICE)]
+
+    @lines.register
+    def _(self, event: ev.StepStarted) -> list[Line]:
+        text = f"{event.step} {event.step_name.replace('_', ' ')}"
+        return [Line(event.time, event.name, text, Tone.STEP, thread=str(event.execution))]
+
+    @lines.register
+    def _(self, event: ev.NodeDone) -> list[Line]:
+        return [_line(event, "", f"{event.name} is done{DOERS[event.by]}", Tone.DONE)]
+
+    @lines.register
+    def _(self, event: ev.NodeReset) -> list[Line]:
+        failed = ", a failed attempt" if event.failed_attempt else ""
+        text = f"{event.name} is put back{failed}: {event.reason}"
+        return [_line(event, "", text, Tone.SETBACK)]
+
+    @lines.register
+    def _(self, event: ev.NodeAbandoned) -> list[Line]:
+        text = f"the alternative {event.name} is abandoned: {event.reason}"
+        return [_line(event, "", text, Tone.SETBACK)]
+
+    # --- Issues and dialogues -----------------------------------------------------------------
+
+    @lines.register
+    def _(self, event: ev.IssueRaised) -> list[Line]:
+        where = f"in step {event.step}" if event.step else "before the first step"
+        subject = event.object or event.name
+        explanation = event.detection.explanation if event.detection else ""
+        because = f" ({explanation})" if explanation else ""
+        text = f"issue: {event.issue} {subject} {where}{because}"
+        return [_line(event, "", text, Tone.FAULT)]
+
+    @lines.register
+    def _(self, _event: ev.DialogueOpened) -> list[Line]:
+        return []
+
+    @lines.register
+    def _(self, event: ev.Prompt) -> list[Line]:
+        again = " (asked again)" if event.version > 1 else ""
+        to = f" (to {event.to})" if event.to else ""
+        tone = Tone.ASKED if event.kind == "ask" else Tone.SAID
+        return [_line(event, self._robot(event.robot), f"{event.text}{again}{to}", tone)]
+
+    @lines.register
+    def _(self, event: ev.Claimed) -> list[Line]:
+        return [_line(event, f"helper ({event.helper})", "is on it", Tone.WATCHED)]
+
+    @lines.register
+    def _(self, event: ev.Released) -> list[Line]:
+        text = "has been silent too long, anybody may answer" if event.expired else "lets it go"
+        return [_line(event, f"helper ({event.helper})", text, Tone.WATCHED)]
+
+    @lines.register
+    def _(self, event: ev.Answered) -> list[Line]:
+        return [_line(event, f"helper ({event.helper})", event.answer, Tone.ANSWERED)]
+
+    @lines.register
+    def _(self, event: ev.Escalated) -> list[Line]:
+        how = "a mail goes to" if event.channel == "mail" else "the question goes to"
+        return [_line(event, "", f"nobody answered: {how} {event.to}", Tone.SETBACK)]
+
+    @lines.register
+    def _(self, event: ev.HelpAwaited) -> list[Line]:
+        text = f"looks for {_promised(event)} until {event.until:.1f} s"
+        return [_line(event, self._robot(event.robot), text, Tone.WATCHED)]
+
+    @lines.register
+    def _(self, event: ev.HelpVerified) -> list[Line]:
+        return [_line(event, self._robot(event.robot), f"sees {_promised(event)}", Tone.WATCHED)]
+
+    @lines.register
+    def _(self, event: ev.HelpNotSeen) -> list[Line]:
+        text = f"does not see {_promised(event)}"
+        return [_line(event, self._robot(event.robot), text, Tone.SETBACK)]
+
+    @lines.register
+    def _(self, event: ev.Resolved) -> list[Line]:
+        meaning = RESOLUTIONS[event.resolution].format(name=event.name)
+        text = f"resolved by {event.resolution}: {meaning}"
+        return [_line(event, "", text, Tone.RESOLVED)]
+
+    @lines.register
+    def _(self, event: ev.DialogueClosed) -> list[Line]:
+        if event.reason not in CLOSINGS:
+            return []
+        return [_line(event, "", CLOSINGS[event.reason], Tone.SETBACK)]
+
+    @lines.register
+    def _(self, event: ev.InterventionDone) -> list[Line]:
+        text = deed_text(event.intervention)
+        if not event.ok:
+            text = f"{text}: in vain, {event.detail}"
+        return [_line(event, f"person ({event.by})", text, Tone.DEED)]
+
+    # --- Robots -------------------------------------------------------------------------------
+
+    @lines.register
+    def _(self, event: ev.RobotLost) -> list[Line]:
+        return [_line(event, self._robot(event.robot), f"is lost: {event.reason}", Tone.SETBACK)]
+
+    @lines.register
+    def _(self, event: ev.RobotBack) -> list[Line]:
+        how = "goes on where it was" if event.continues else "begins anew"
+        return [_line(event, self._robot(event.robot), f"is back and {how}", Tone.RUN)]
+
+    @lines.register
+    def _(self, event: ev.RobotHolding) -> list[Line]:
+        where = {"in_place": "where it is", "hand_over": "where a person can reach it"}
+        text = f"stops and holds {where.get(event.at, f'at {event.at}')}"
+        return [_line(event, self._robot(event.robot), text, Tone.WATCHED)]
+
+    @lines.register
+    def _(self, event: ev.RobotResumed) -> list[Line]:
+        text = f"moves again, at step {event.step}"
+        return [_line(event, self._robot(event.robot), text, Tone.WATCHED)]
+
+
+def deed_text(intervention: Intervention) -> str:
+    """What a person does, as the end of a sentence that begins with who it is."""
+    text = DEEDS[intervention.act].format(object=intervention.object)
+    if intervention.act is Act.STEAL and intervention.manner == "pull":
+        text = f"pulls {intervention.object} out of the gripper"
+    return text
+
+
+def _line(event: ev.Event, speaker: str, text: str, tone: Tone) -> Line:
+    return Line(event.time, speaker, text, tone)
+
+
+def _comparison(event: ev.NodeStarted) -> str:
+    """The potential of the chosen leaf against the best of the others; nothing without a choice."""
+    chosen = next((each for each in event.candidates if each.node == event.node), None)
+    others = [each for each in event.candidates if each.node != event.node]
+    if chosen is None or not others:
+        return ""
+    rivals = ", ".join(_rival(each) for each in others[:3])
+    more = f" and {len(others) - 3} more" if len(others) > 3 else ""
+    return f" (potential {chosen.potential:.2f}, before {rivals}{more})"
+
+
+def _rival(candidate: ev.Candidate) -> str:
+    failed = f" after {candidate.attempts} failed" if candidate.attempts else ""
+    return f"{candidate.name} {candidate.potential:.2f}{failed}"
+
+
+def _promised(event: ev.HelpAwaited | ev.HelpVerified | ev.HelpNotSeen) -> str:
+    return PROMISES[event.help].format(object=event.object or event.name)

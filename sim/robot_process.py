@@ -1,0 +1,108 @@
+"""A simulated robot's process: `python -P -m sim.robot_process`, with its setup on stdin.
+
+The first line of stdin is a `RobotProcessSetup` in JSON; stdin then stays open for as long as the
+parent lives. Exits with 0 after a `shutdown` command or when the parent is gone, with 2 and one
+sentence on stderr when it cannot run.
+"""
+
+import asyncio
+import ctypes
+import logging
+import os
+import random
+import signal
+import sys
+import threading
+from functools import partial
+from uuid import uuid4
+
+from pydantic import ValidationError
+
+from robots.agent import AgentCore
+from robots.link.channel import LinkRefusedError
+from robots.link.client import run_agent
+from robots.link.clock import LoopClock
+from robots.link.outbox import IN_MEMORY, Outbox
+from robots.link.websocket import websocket_channel
+from sim.world import WorldAdapter, WorldSetup, WorldUnavailableError
+from tasks.plugins import PluginError, load_plugins
+from tasks.scene import StrictModel
+
+CANNOT_RUN = 2
+PR_SET_PDEATHSIG = 1
+
+
+class RobotProcessSetup(StrictModel):
+    """What the process is told: which world, which robot in it, and where the service is."""
+
+    world: str
+    setup: WorldSetup
+    url: str
+    token: str | None = None
+
+
+def find_world(name: str) -> WorldAdapter:
+    """The world adapter of that name.
+
+    Raises `WorldUnavailableError` if there is none or it cannot run on this machine.
+    """
+    worlds = load_plugins("mend.worlds")
+    if name not in worlds:
+        known = ", ".join(sorted(worlds)) or "none is installed"
+        raise WorldUnavailableError(f"there is no world '{name}' (there are: {known})")
+    adapter: WorldAdapter = worlds[name]
+    adapter.check_available()
+    return adapter
+
+
+def main() -> int:
+    """Run one simulated robot. Returns the exit code."""
+    logging.basicConfig(level=logging.WARNING, format="%(name)s: %(message)s")
+    _die_with_parent()
+    try:
+        told = RobotProcessSetup.model_validate_json(sys.stdin.buffer.readline())
+        # Before the world is built: an orphan that came to connect would displace its successor.
+        threading.Thread(target=_end_with_stdin, daemon=True).start()
+        agent = find_world(told.world).create_agent(told.setup)
+        asyncio.run(_run(agent, told))
+    except ValidationError as error:
+        first = error.errors(include_url=False, include_input=False)[0]
+        where = ".".join(str(each) for each in first["loc"]) or "stdin"
+        return _refuse(f"the setup of the robot is wrong at '{where}': {first['msg']}")
+    except (WorldUnavailableError, PluginError, LinkRefusedError) as error:
+        return _refuse(str(error))
+    return 0
+
+
+async def _run(agent: AgentCore, told: RobotProcessSetup) -> None:
+    await run_agent(
+        agent,
+        partial(websocket_channel, told.url, told.token),
+        Outbox(IN_MEMORY, told.setup.robot, uuid4().hex),
+        LoopClock(),
+        random.Random(told.setup.seed),
+    )
+
+
+def _end_with_stdin() -> None:
+    """End the program when the parent has closed stdin, as it does when it dies."""
+    # Not through sys.stdin: a thread that holds its lock would break the interpreter's exit.
+    while os.read(sys.stdin.fileno(), 4096):
+        pass
+    # At once, whatever is under way: what the service has not acknowledged never happened.
+    os._exit(0)
+
+
+def _die_with_parent() -> None:
+    """Have Linux kill this process when its parent dies, even by `kill -9`, even while it hangs."""
+    if sys.platform == "linux":
+        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+
+
+def _refuse(sentence: str) -> int:
+    sys.stderr.write(f"{sentence}\n")
+    return CANNOT_RUN
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,45 @@
+"""Scene files: reading and checking them."""
+
+from functools import cache
+from pathlib import Path
+
+from tasks.document import DocumentError, LinedMapping, read_document, read_text
+from tasks.library import SCENES
+from tasks.problem import InvalidFileError, Problem
+from tasks.scene import Scene
+from tasks.validation import show_kind, validate_part
+
+
+class SceneFileError(InvalidFileError):
+    """A scene file has mistakes; raised by every function that reads one."""
+
+
+def check_scene_file(path: Path) -> Scene:
+    """Read and check a scene file (YAML or JSON). Raises `SceneFileError`."""
+    try:
+        text = read_text(path)
+    except DocumentError as error:
+        raise SceneFileError(str(path), [error.problem]) from error
+    return check_scene_text(text, source=str(path))
+
+
+def check_scene_text(text: str, *, source: str = "scene") -> Scene:
+    """Check the text of a scene file; `source` names it in errors. Raises `SceneFileError`."""
+    try:
+        document, problems = read_document(text)
+    except DocumentError as error:
+        raise SceneFileError(source, [error.problem]) from error
+    if not isinstance(document, LinedMapping):
+        message = f"a scene file is a mapping, but this is {show_kind(document)}"
+        raise SceneFileError(source, [*problems, Problem(1, None, message)])
+    scene, mistakes = validate_part(Scene, document)
+    problems += mistakes
+    if scene is None or problems:
+        raise SceneFileError(source, problems)
+    return scene
+
+
+@cache
+def built_in_scene(name: str) -> Scene:
+    """A scene of the library. Raises `NotInLibraryError`."""
+    return check_scene_text(SCENES.read(name), source=f"scenes/{name}.yaml")

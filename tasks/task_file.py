@@ -1,0 +1,165 @@
+"""Task files: reading and checking them, in the nested or the published flat form."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from tasks.definition import BehaviorNode, GoalNode, TaskTreeDefinition
+from tasks.document import DocumentError, LinedMapping, read_document, read_text
+from tasks.draft import Draft, find_name_mistake, name_nodes
+from tasks.flat_form import FLAT_KEYS, draft_flat_tree
+from tasks.leaf_check import Behaviors, check_leaf
+from tasks.library import TREES, NotInLibraryError
+from tasks.nested_form import draft_nested_tree
+from tasks.problem import InvalidFileError, Problem
+from tasks.scene import Scene
+from tasks.scene_file import SceneFileError, built_in_scene, check_scene_file
+from tasks.validation import find_extra_keys, show_kind
+
+FindScene = Callable[[str], Scene]
+"""Finds a scene by name; raises `NotInLibraryError` or `SceneFileError`."""
+
+_HEAD_KEYS = ("name", "description", "scene")
+
+
+class TaskFileError(InvalidFileError):
+    """A task file has mistakes; raised by every function that reads one."""
+
+
+@dataclass(frozen=True, slots=True)
+class CheckedTask:
+    """A task file without mistakes. `scene` is None if it names none."""
+
+    definition: TaskTreeDefinition
+    scene: Scene | None
+
+
+def check_task_file(
+    path: Path, behaviors: Behaviors, find_scene: FindScene | None = None
+) -> CheckedTask:
+    """Read and check a task file (YAML or JSON). Raises `TaskFileError`.
+
+    Its scene is looked for in `scenes/` beside the file, then in the library, unless `find_scene`
+    is given.
+    """
+    try:
+        text = read_text(path)
+    except DocumentError as error:
+        raise TaskFileError(str(path), [error.problem]) from error
+
+    def find_beside(name: str) -> Scene:
+        beside = path.parent / "scenes" / f"{name}.yaml"
+        return check_scene_file(beside) if beside.is_file() else built_in_scene(name)
+
+    return check_task_text(
+        text, behaviors, find_scene or find_beside, source=str(path), default_name=path.stem
+    )
+
+
+def check_built_in_task(name: str, behaviors: Behaviors) -> CheckedTask:
+    """A task of the library. Raises `NotInLibraryError`."""
+    return check_task_text(TREES.read(name), behaviors, source=f"library/{name}.yaml")
+
+
+def check_task_text(
+    text: str,
+    behaviors: Behaviors,
+    find_scene: FindScene = built_in_scene,
+    *,
+    source: str = "task",
+    default_name: str = "task",
+) -> CheckedTask:
+    """Check the text of a task file; `source` names it in errors. Raises `TaskFileError`.
+
+    `default_name` is the name of a flat file, which need not have one of its own.
+    """
+    try:
+        document, problems = read_document(text)
+    except DocumentError as error:
+        raise TaskFileError(source, [error.problem]) from error
+    if not isinstance(document, LinedMapping):
+        message = f"a task file is a mapping, but this is {show_kind(document)}"
+        raise TaskFileError(source, [*problems, Problem(1, None, message)])
+    is_flat = any(key in document for key in FLAT_KEYS)
+    if is_flat and "name" not in document and find_name_mistake(default_name) is None:
+        document["name"] = default_name
+    head = _check_head(document, problems)
+    scene = _find_scene(document, find_scene, problems)
+    draft = _draft_tree(document, is_flat, problems)
+    nodes = _check_nodes(draft, behaviors, scene)
+    if draft.problems:
+        raise TaskFileError(source, draft.problems)
+    return CheckedTask(TaskTreeDefinition(nodes=nodes, **head), scene)
+
+
+def _check_head(document: LinedMapping, problems: list[Problem]) -> dict[str, Any]:
+    """Name, description and scene, with a problem for each that is wrong."""
+    head = {key: document[key] for key in _HEAD_KEYS if key in document}
+    if "name" not in document:
+        problems.append(Problem(document.line, None, "'name' is missing"))
+    elif mistake := find_name_mistake(document["name"]):
+        problems.append(Problem(document.line_of("name"), None, mistake))
+    for key in ("description", "scene"):
+        if key in head and not isinstance(head[key], str):
+            message = f"'{key}' must be text, but it is {show_kind(head[key])}"
+            problems.append(Problem(document.line_of(key), None, message))
+    return head
+
+
+def _find_scene(
+    document: LinedMapping, find_scene: FindScene, problems: list[Problem]
+) -> Scene | None:
+    """The scene that the file names; None, with a problem, if it cannot be had."""
+    name = document.get("scene")
+    if not isinstance(name, str):
+        return None
+    try:
+        return find_scene(name)
+    except NotInLibraryError as error:
+        message = str(error)
+    except SceneFileError as error:
+        first = error.problems[0].describe(error.source)
+        message = f"the scene '{name}' has mistakes, the first one: {first}"
+    problems.append(Problem(document.line_of("scene"), None, message))
+    return None
+
+
+def _draft_tree(document: LinedMapping, is_flat: bool, problems: list[Problem]) -> Draft:
+    if is_flat:
+        problems.extend(find_extra_keys(document, (*_HEAD_KEYS, *FLAT_KEYS), "a flat task file"))
+        return draft_flat_tree(document, problems)
+    problems.extend(find_extra_keys(document, (*_HEAD_KEYS, "tree"), "a task file"))
+    if "tree" not in document:
+        problems.append(Problem(document.line, None, "'tree' is missing"))
+        return Draft(problems=problems)
+    return draft_nested_tree(document["tree"], document.line_of("tree"), problems)
+
+
+def _check_nodes(
+    draft: Draft, behaviors: Behaviors, scene: Scene | None
+) -> list[GoalNode | BehaviorNode]:
+    """The nodes of the definition; useless where the draft has problems afterwards."""
+    parameters = {
+        index: check_leaf(draft, index, behaviors, scene)
+        for index, node in enumerate(draft.nodes)
+        if node.kind == "behavior"
+    }
+    names = name_nodes(draft)
+    if draft.problems:
+        return []
+    nodes: list[GoalNode | BehaviorNode] = []
+    for index, node in enumerate(draft.nodes):
+        if node.kind == "behavior":
+            nodes.append(
+                BehaviorNode(
+                    parent=node.parent,
+                    name=names[index],
+                    behavior=node.behavior or "",
+                    parameters=parameters[index],
+                )
+            )
+        else:
+            fields = {"kind": node.kind, "parent": node.parent, "name": names[index]}
+            nodes.append(GoalNode.model_validate(fields))
+    return nodes

@@ -1,0 +1,120 @@
+"""The state of a task tree: what became of each leaf, and what follows from it for goal nodes.
+
+Everything here is bookkeeping along one path to the root; whether a transition is legal is the
+task tree's concern.
+"""
+
+from enum import StrEnum
+
+from tasks.definition import NodeKind
+from tasks.tree_shape import NO_NODE, TreeShape
+
+_THEN = NodeKind.THEN
+_OR = NodeKind.OR
+
+
+class LeafStatus(StrEnum):
+    """What a leaf is doing."""
+
+    IDLE = "idle"
+    ACTIVE = "active"
+    DONE = "done"
+
+
+class TreeState:
+    """Leaf states and, per node, the counts from which the state of goal nodes is derived."""
+
+    def __init__(self, shape: TreeShape) -> None:
+        size = len(shape)
+        self._shape = shape
+        self.leaf_status: list[LeafStatus] = [LeafStatus.IDLE] * size
+        """Meaningful for leaves only."""
+        self.active_leaves: list[int] = [0] * size
+        """How many leaves under a node (or the leaf itself) are active."""
+        self.done_leaves: list[int] = [0] * size
+        """How many leaves under a node (or the leaf itself) are done."""
+        self.done_children: list[int] = [0] * size
+        self.done = bytearray(size)
+        self.abandoned = bytearray(size)
+        """Set for an abandoned alternative and every node under it."""
+        self.committed: list[int] = [NO_NODE] * size
+        """The child to which an OR is committed, else NO_NODE."""
+
+    def next_child(self, then: int) -> int:
+        """A THEN's first child that is not done, NO_NODE if all are."""
+        # Children of a THEN can only become done in order, so their number is the position.
+        children = self._shape.children[then]
+        position = self.done_children[then]
+        return children[position] if position < len(children) else NO_NODE
+
+    def touched(self, node: int) -> bool:
+        """Whether anything at or under a node is active or done."""
+        return self.active_leaves[node] > 0 or self.done_leaves[node] > 0
+
+    def open_to(self, child: int) -> bool:
+        """Whether its parent would pass a level above 0 on to a child that is not done."""
+        parent = self._shape.parents[child]
+        kind = self._shape.kinds[parent]
+        if kind is _THEN:
+            return self.next_child(parent) == child
+        if kind is _OR:
+            return self.committed[parent] in (NO_NODE, child) and not self.abandoned[child]
+        return True
+
+    def activate(self, leaf: int) -> int:
+        """Make an idle leaf active; returns the topmost node whose eligible leaves changed."""
+        parents, kinds, committed = self._shape.parents, self._shape.kinds, self.committed
+        self.leaf_status[leaf] = LeafStatus.ACTIVE
+        self.active_leaves[leaf] = 1
+        changed = leaf
+        child, node = leaf, parents[leaf]
+        while node != NO_NODE:
+            if kinds[node] is _OR and committed[node] == NO_NODE:
+                committed[node] = child
+                changed = node
+            self.active_leaves[node] += 1
+            child, node = node, parents[node]
+        return changed
+
+    def release(self, leaf: int) -> int:
+        """Make an active leaf idle; returns the topmost node whose eligible leaves changed."""
+        parents, kinds = self._shape.parents, self._shape.kinds
+        self.leaf_status[leaf] = LeafStatus.IDLE
+        self.active_leaves[leaf] = 0
+        changed = leaf
+        node = parents[leaf]
+        while node != NO_NODE:
+            self.active_leaves[node] -= 1
+            if kinds[node] is _OR and not self.touched(node):
+                self.committed[node] = NO_NODE
+                changed = node
+            node = parents[node]
+        return changed
+
+    def complete(self, leaf: int) -> int:
+        """Make an active leaf done; returns the node that this opened, NO_NODE if none."""
+        parents, kinds, children = self._shape.parents, self._shape.kinds, self._shape.children
+        self.leaf_status[leaf] = LeafStatus.DONE
+        self.active_leaves[leaf] = 0
+        self.done_leaves[leaf] = 1
+        self.done[leaf] = True
+        opened = NO_NODE
+        child_done = True
+        node = parents[leaf]
+        while node != NO_NODE:
+            self.active_leaves[node] -= 1
+            self.done_leaves[node] += 1
+            if child_done:
+                self.done_children[node] += 1
+                child_done = kinds[node] is _OR or self.done_children[node] == len(children[node])
+                if child_done:
+                    self.done[node] = True
+                elif kinds[node] is _THEN:
+                    opened = self.next_child(node)
+            node = parents[node]
+        return opened
+
+    def abandon(self, alternative: int) -> None:
+        """Mark an alternative and everything under it abandoned."""
+        end = self._shape.ends[alternative]
+        self.abandoned[alternative:end] = b"\x01" * (end - alternative)

@@ -1,0 +1,92 @@
+"""What pydantic finds wrong with a part of a document, as problems with lines and sentences."""
+
+import json
+from collections.abc import Iterable, Sequence
+from typing import Any, TypeVar
+
+from pydantic import BaseModel, ValidationError
+from pydantic_core import ErrorDetails
+
+from tasks.document import LinedMapping, LinedSequence
+from tasks.problem import Problem, list_names
+
+_MAX_VALUE_CHARACTERS = 60
+
+Model = TypeVar("Model", bound=BaseModel)
+
+
+def validate_part(model: type[Model], part: LinedMapping) -> tuple[Model | None, list[Problem]]:
+    """Check a part of a document against a model; None with at least one problem if it is wrong."""
+    try:
+        # As JSON, because a list may stand for a tuple there even in a strict model.
+        return model.model_validate_json(json.dumps(part)), []
+    except ValidationError as error:
+        found = error.errors(include_url=False)
+        return None, [
+            Problem(_find_line(part, each["loc"]), None, describe_mistake(each, model))
+            for each in found
+        ]
+    except (RecursionError, ValueError):
+        return None, [Problem(part.line, None, "values nest too deeply here")]
+
+
+def describe_mistake(mistake: ErrorDetails, model: type[BaseModel]) -> str:
+    """One sentence: which field is wrong and what would be right."""
+    where = ".".join(str(each) for each in mistake["loc"] if each != "[key]")
+    if mistake["type"] == "missing":
+        return f"'{where}' is missing"
+    if mistake["type"] == "extra_forbidden":
+        known = _known_keys(mistake, model)
+        return f"unknown key '{where}'" + (f"; known are {known}" if known else "")
+    message = mistake["msg"].removeprefix("Value error, ")
+    if mistake["type"] == "value_error":
+        return f"'{where}': {message}" if where else message
+    if mistake["type"] == "string_pattern_mismatch":
+        message = "must be a name: a letter, then at most 63 letters, digits, '_' or '-'"
+    message = message.replace("Input should be", "must be", 1)
+    return f"'{where}' {message}, but it is {_show(mistake['input'])}"
+
+
+def find_extra_keys(part: LinedMapping, known: Iterable[str], what: str) -> list[Problem]:
+    """A problem for each key of a mapping that `what` does not know."""
+    allowed = frozenset(known)
+    return [
+        Problem(
+            part.line_of(key), None, f"unknown key '{key}'; {what} may have {list_names(allowed)}"
+        )
+        for key in part
+        if key not in allowed
+    ]
+
+
+def show_kind(value: Any) -> str:
+    """What a value of a document is, for a sentence."""
+    if isinstance(value, LinedMapping):
+        return "a mapping"
+    if isinstance(value, LinedSequence):
+        return "a list"
+    return "empty" if value is None else _show(value)
+
+
+def _known_keys(mistake: ErrorDetails, model: type[BaseModel]) -> str:
+    return list_names(model.model_fields) if len(mistake["loc"]) == 1 else ""
+
+
+def _show(value: Any) -> str:
+    shown = json.dumps(value, default=str)
+    if len(shown) > _MAX_VALUE_CHARACTERS:
+        return shown[:_MAX_VALUE_CHARACTERS] + "..."
+    return shown
+
+
+def _find_line(part: LinedMapping, location: Sequence[int | str]) -> int:
+    """The line of the innermost value on the way to a location."""
+    line, value = part.line, part
+    for step in location:
+        if isinstance(value, LinedMapping) and isinstance(step, str) and step in value:
+            line, value = value.line_of(step), value[step]
+        elif isinstance(value, LinedSequence) and isinstance(step, int) and step < len(value):
+            line, value = value.item_lines[step], value[step]
+        else:
+            break
+    return line

@@ -1,0 +1,305 @@
+"""A runtime without robots: runs and dialogues in memory, their events in a real journal."""
+
+from collections.abc import Sequence
+from datetime import UTC, datetime, timedelta
+from typing import Any, Literal
+from uuid import UUID, uuid4
+
+from dialogue.script import CloseReason
+from server.errors import ConflictError, InvalidError, LostRaceError, NotFoundError
+from server.journal import events as ev
+from server.journal.journal import Entry, Journal
+from server.runtime.requests import RunRequest
+from server.runtime.views import (
+    DialogueView,
+    NodeView,
+    PromptView,
+    RobotView,
+    RunResult,
+    RunStatus,
+    RunSummary,
+    RunView,
+    Snapshot,
+)
+from server.trees import CheckedTree
+from tasks.intervention import Intervention
+from tasks.scenario import Scenario
+
+TREES = {"eket": "then: []", "tea_table": "and: []"}
+JPEG = b"\xff\xd8\xff\xd9"
+
+
+def check_tree(text: str) -> CheckedTree:
+    """Takes any text that has a `then` or `and`; a first line `name: x` names it."""
+    if "then" not in text and "and" not in text:
+        raise InvalidError("the task file has mistakes", ["line 1: there is no goal node"])
+    name = text.removeprefix("name: ").split("\n")[0].strip() if "name: " in text[:6] else None
+    return CheckedTree(name, {"text": text})
+
+
+class FakeScenarios:
+    """A `ScenarioLibrary` of one."""
+
+    def scenarios(self) -> list[Scenario]:
+        return [Scenario(name="eket_paper", tree="eket")]
+
+
+class FakeRuns:
+    """A `RunService`; `raise_issue` does what a robot would."""
+
+    def __init__(self, journal: Journal) -> None:
+        self._journal = journal
+        self._runs: dict[UUID, RunView] = {}
+        self._dialogues: dict[UUID, DialogueView] = {}
+        self._answers: dict[UUID, str] = {}
+
+    async def start_run(self, request: RunRequest) -> RunView:
+        if request.tree not in TREES:
+            raise NotFoundError(f"there is no tree '{request.tree}'")
+        if request.world not in ("workcell", "tabletop"):
+            raise InvalidError(f"there is no world '{request.world}'")
+        if request.scenario not in (None, "eket_paper"):
+            raise NotFoundError(f"there is no scenario '{request.scenario}'")
+        run = uuid4()
+        self._runs[run] = RunView(
+            id=run,
+            tree=request.tree,
+            world=request.world,
+            scenario=request.scenario,
+            seed=request.seed,
+            speed=request.speed,
+            status=RunStatus.RUNNING,
+            time=0.0,
+            started=datetime.now(UTC),
+            robots=["robot"],
+            result=None,
+            seq=0,
+            nodes=[leaf()],
+            dialogues=[],
+            options={},
+        )
+        await self.commit(
+            ev.RunStarted(
+                **_stamp(run),
+                tree_name=request.tree,
+                tree={},
+                scene={},
+                world=request.world,
+                robots=["robot"],
+                seed=request.seed,
+                speed=request.speed,
+                scenario=request.scenario,
+                options=request.model_dump(mode="json"),
+            )
+        )
+        return self.run(run)
+
+    async def commit(self, *events: ev.Event) -> Sequence[ev.Event]:
+        return await self._journal.append(Entry(events=events))
+
+    def runs(self) -> list[RunSummary]:
+        fields = set(RunSummary.model_fields)
+        return [
+            RunSummary(**run.model_dump(include=fields)) for run in reversed(self._runs.values())
+        ]
+
+    def run(self, run: UUID) -> RunView:
+        if run not in self._runs:
+            raise NotFoundError(f"there is no run {run}")
+        mine = [each for each in self._dialogues.values() if each.run == run]
+        return self._runs[run].model_copy(
+            update={
+                "seq": self._journal.head,
+                "dialogues": [each for each in mine if each.status == "open"],
+            }
+        )
+
+    async def pause(self, run: UUID) -> RunView:
+        self._expect(run, RunStatus.RUNNING)
+        return await self._become(run, RunStatus.PAUSED, ev.RunPaused(**_stamp(run)))
+
+    async def resume(self, run: UUID) -> RunView:
+        self._expect(run, RunStatus.PAUSED)
+        return await self._become(run, RunStatus.RUNNING, ev.RunResumed(**_stamp(run)))
+
+    async def abort(self, run: UUID) -> RunView:
+        self._expect(run, RunStatus.RUNNING, RunStatus.PAUSED)
+        return await self._become(run, RunStatus.ABORTED, ev.RunAborted(**_stamp(run)))
+
+    def _expect(self, run: UUID, *allowed: RunStatus) -> None:
+        status = self.run(run).status
+        if status not in allowed:
+            raise ConflictError(f"the run is {status}")
+
+    async def _become(self, run: UUID, status: RunStatus, event: ev.Event) -> RunView:
+        await self.commit(event)
+        result = RunResult(reason="aborted") if status.ended else None
+        self._runs[run] = self._runs[run].model_copy(update={"status": status, "result": result})
+        return self.run(run)
+
+    async def intervene(self, run: UUID, intervention: Intervention) -> None:
+        self._expect(run, RunStatus.RUNNING, RunStatus.PAUSED)
+        await self.commit(
+            ev.InterventionDone(
+                **_stamp(run),
+                act=intervention.act,
+                object=intervention.object,
+                intervention=intervention,
+                by="api",
+            )
+        )
+
+    async def picture(self, run: UUID, camera: str) -> bytes:
+        self.run(run)
+        if camera not in ("head", "forearm"):
+            raise NotFoundError(f"there is no camera '{camera}'")
+        return JPEG
+
+    async def raise_issue(self, run: UUID) -> DialogueView:
+        """Open a dialogue with one question and a picture."""
+        picture = uuid4()
+        raised = ev.IssueRaised(
+            **_stamp(run),
+            node="/0",
+            name="pink_bar",
+            robot="robot",
+            issue="dropped",
+            object="pink_bar",
+            place="pink_place",
+            execution=uuid4(),
+            step=4,
+            interrupts=True,
+            picture=picture,
+        )
+        await self._journal.append(Entry(events=[raised], pictures={picture: JPEG}))
+        prompt = PromptView(
+            prompt=uuid4(),
+            version=1,
+            kind="ask",
+            text="I dropped the pink bar. Shall I pick it up again?",
+            answers=[
+                ev.AnswerOption(value="yes", effect="The robot tries again."),
+                ev.AnswerOption(value="no", effect="You put the pink bar to its place."),
+            ],
+            deadline=30.0,
+            to=None,
+        )
+        view = DialogueView(
+            dialogue=uuid4(),
+            run=run,
+            status="open",
+            reason=None,
+            issue="dropped",
+            object="pink_bar",
+            robot="robot",
+            node="/0",
+            name="pink_bar",
+            prompt=prompt,
+            awaiting="answer",
+            answered_by=None,
+            claimed_by=None,
+            claimed_until=None,
+            picture=picture,
+        )
+        self._dialogues[view.dialogue] = view
+        await self.commit(
+            ev.DialogueOpened(**_of_dialogue(view)),
+            ev.Prompt(**_of_dialogue(view), **prompt.model_dump()),
+        )
+        return view
+
+    def dialogues(self, status: Literal["open", "closed"] | None) -> list[DialogueView]:
+        return [each for each in self._dialogues.values() if status in (None, each.status)]
+
+    def dialogue(self, dialogue: UUID) -> DialogueView:
+        if dialogue not in self._dialogues:
+            raise NotFoundError(f"there is no dialogue {dialogue}")
+        return self._dialogues[dialogue]
+
+    async def answer(
+        self, dialogue: UUID, prompt: UUID, answer: Literal["yes", "no"], helper: str
+    ) -> ev.Answered:
+        view = self.dialogue(dialogue)
+        if view.prompt is None or view.prompt.prompt != prompt:
+            raise NotFoundError(f"there is no prompt {prompt}")
+        if prompt in self._answers:
+            raise LostRaceError(prompt, self._answers[prompt])
+        self._answers[prompt] = helper
+        self._change(dialogue, status="closed", reason="resolved", answered_by=helper)
+        answered, _ = await self.commit(
+            ev.Answered(
+                **_of_dialogue(view), prompt=prompt, version=1, answer=answer, helper=helper
+            ),
+            ev.DialogueClosed(**_of_dialogue(view), reason=CloseReason.RESOLVED),
+        )
+        assert isinstance(answered, ev.Answered)
+        return answered
+
+    async def claim(self, dialogue: UUID, helper: str) -> DialogueView:
+        view = self.dialogue(dialogue)
+        if view.status == "closed":
+            raise ConflictError("the dialogue is closed")
+        if view.claimed_by not in (None, helper):
+            raise ConflictError(f"{view.claimed_by} is on it")
+        until = datetime.now(UTC) + timedelta(seconds=30)
+        await self.commit(ev.Claimed(**_of_dialogue(view), helper=helper, lease_until=until))
+        return self._change(dialogue, claimed_by=helper, claimed_until=until)
+
+    async def release(self, dialogue: UUID, helper: str) -> DialogueView:
+        view = self.dialogue(dialogue)
+        if view.claimed_by != helper:
+            raise ConflictError(f"{helper} has no claim on it")
+        await self.commit(ev.Released(**_of_dialogue(view), helper=helper))
+        return self._change(dialogue, claimed_by=None, claimed_until=None)
+
+    def _change(self, dialogue: UUID, **fields: Any) -> DialogueView:
+        self._dialogues[dialogue] = self._dialogues[dialogue].model_copy(update=fields)
+        return self._dialogues[dialogue]
+
+    def robots(self) -> list[RobotView]:
+        return [
+            RobotView(
+                robot="robot",
+                connected=True,
+                simulated=True,
+                behaviors=["pick_and_place"],
+                cameras=["head", "forearm"],
+                reach={"x": 0.0, "y": 0.0, "min_m": 0.3, "max_m": 0.9},
+                run=None,
+                state="idle",
+            )
+        ]
+
+    async def snapshot(self, seq: int | None) -> Snapshot:
+        return Snapshot(
+            seq=self._journal.head if seq is None else seq,
+            runs=[self.run(run) for run, view in self._runs.items() if not view.status.ended],
+            dialogues=self.dialogues("open"),
+        )
+
+
+def leaf() -> NodeView:
+    return NodeView(
+        node="/0",
+        name="pink_bar",
+        kind="behavior",
+        behavior="pick_and_place",
+        object="pink_bar",
+        place="pink_place",
+        activation_level=1.0,
+        activation_potential=0.5,
+        active=True,
+        done=False,
+        abandoned=False,
+        owner="robot",
+        attempts=0,
+    )
+
+
+def _stamp(run: UUID) -> dict[str, Any]:
+    return {"time": 1.0, "wall_time": datetime.now(UTC), "run": run}
+
+
+def _of_dialogue(view: DialogueView) -> dict[str, Any]:
+    fields = view.model_dump(include={"dialogue", "robot", "issue", "object", "node", "name"})
+    return {**_stamp(view.run), **fields}

@@ -1,0 +1,65 @@
+"""A runtime over the real robot link, with one task tree and no simulated worlds."""
+
+import time
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from dataclasses import dataclass
+from datetime import UTC, datetime
+
+from loopback import served
+from pretend_service import NoScenarios, PretendWorlds
+
+from dialogue.registry import load_scripts
+from server.dialogues.escalation import EscalationPolicy
+from server.journal.sqlite import SqliteJournal
+from server.robots.registry import RobotRegistry
+from server.runtime.context import RunSettings
+from server.runtime.ports import LoadedTree
+from server.runtime.runtime import Runtime
+
+
+@dataclass(frozen=True)
+class OneTree:
+    """Implements `server.runtime.runtime.TreeSource`."""
+
+    tree: LoadedTree
+
+    async def load(self, name: str) -> LoadedTree:  # noqa: ARG002
+        return self.tree
+
+
+@dataclass(frozen=True)
+class LiveService:
+    """What a test of live robots touches; robots connect to `url`."""
+
+    runtime: Runtime
+    registry: RobotRegistry
+    journal: SqliteJournal
+    url: str
+
+
+@asynccontextmanager
+async def live_service(
+    journal: SqliteJournal, tree: LoadedTree, *, token: str, port: int = 0
+) -> AsyncIterator[LiveService]:
+    registry = RobotRegistry(journal, time.monotonic)
+    runtime = Runtime(
+        journal=journal,
+        robots=registry,
+        worlds=PretendWorlds(),
+        trees=OneTree(tree),
+        scenarios=NoScenarios(),
+        scripts=load_scripts(),
+        policy=EscalationPolicy(),
+        send_mail=lambda *_: None,
+        settings=RunSettings(),
+        monotonic=time.monotonic,
+        utc_now=lambda: datetime.now(UTC),
+    )
+    async with served(registry, token, port) as url:
+        await runtime.recover()
+        try:
+            yield LiveService(runtime, registry, journal, url)
+        finally:
+            registry.close()
+            await runtime.close()

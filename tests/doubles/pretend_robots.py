@@ -1,0 +1,207 @@
+"""A robot link without robots: every command is carried out at once, faults come as scripted."""
+
+import asyncio
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Protocol
+
+from robots.link.messages import (
+    CommandBody,
+    Finished,
+    Held,
+    Hello,
+    Hold,
+    Holding,
+    Interrupt,
+    Intervene,
+    Intervened,
+    IssueDetected,
+    Look,
+    Looked,
+    Position,
+    ReachLimits,
+    Report,
+    ReportBody,
+    Resume,
+    Resumed,
+    Sighting,
+    Start,
+    StepStarted,
+)
+from server.journal.journal import Receipt
+from tasks.intervention import Act
+
+
+class Sink(Protocol):
+    async def robot_connected(self, robot: str, hello: Hello) -> None: ...
+    async def robot_reported(self, robot: str, report: Report, receipt: Receipt) -> None: ...
+    async def robot_lost(self, robot: str, reason: str) -> None: ...
+
+
+@dataclass
+class PretendRobot:
+    """One robot: `faults` maps an object to the issues that its next starts run into, in turn."""
+
+    name: str
+    faults: dict[str, list[tuple[str, int]]] = field(default_factory=dict)
+    behaviors: tuple[str, ...] = ("pick_and_place",)
+    boot: int = 1
+    time: float = 0.0
+    seq: int = 0
+    interrupting: tuple[str, ...] = ("missed", "dropped", "unreachable", "missing", "blocked")
+    commands: list[CommandBody] = field(default_factory=list)
+    right: set[str] = field(default_factory=set)
+    hidden: set[str] = field(default_factory=set)
+    deaf: bool = False
+
+    def hello(self) -> Hello:
+        return Hello(
+            protocol=1,
+            robot=self.name,
+            boot=str(self.boot),
+            behaviors=list(self.behaviors),
+            cameras=["head"],
+            reach=ReachLimits(x=0, y=0, min_m=0, max_m=1),
+            time=self.time,
+            simulated=True,
+        )
+
+
+class PretendRobots:
+    """Implements `server.runtime.runtime.Robots` for pretend robots."""
+
+    def __init__(self) -> None:
+        self.robots: dict[str, PretendRobot] = {}
+        self.make: Callable[[str], PretendRobot] = PretendRobot
+        self._sinks: dict[str, Sink] = {}
+        self._queues: dict[str, deque[tuple[str, CommandBody]]] = {}
+        self._tasks: set[asyncio.Task[None]] = set()
+        self._wake: dict[str, asyncio.Event] = {}
+        self._starts: dict[str, Start] = {}
+
+    def assign(self, robot: str, sink: Sink) -> None:
+        self.robots.setdefault(robot, self.make(robot))
+        self._sinks[robot] = sink
+        self._queues[robot] = deque()
+        self._wake[robot] = asyncio.Event()
+        task = asyncio.get_running_loop().create_task(self._live(robot))
+        self._tasks.add(task)
+        task.add_done_callback(self._tasks.discard)
+
+    def unassign(self, robot: str) -> None:
+        self._sinks.pop(robot, None)
+        if robot in self._wake:
+            self._wake[robot].set()
+
+    def send(self, robot: str, command_id: str, body: CommandBody) -> None:
+        if robot in self._sinks:
+            self.robots[robot].commands.append(body)
+            self._queues[robot].append((command_id, body))
+            self._wake[robot].set()
+
+    async def take_picture(self, robot: str, camera: str, timeout_s: float = 2.0) -> bytes:  # noqa: ARG002
+        return b"\xff\xd8picture"
+
+    def hello(self, robot: str) -> Hello | None:
+        return self.robots[robot].hello() if robot in self.robots else None
+
+    def connected(self, robot: str) -> bool:
+        return robot in self.robots
+
+    def known(self) -> list[str]:
+        return list(self.robots)
+
+    async def _live(self, name: str) -> None:
+        robot = self.robots[name]
+        await self._sinks[name].robot_connected(name, robot.hello())
+        while name in self._sinks:
+            await self._wake[name].wait()
+            self._wake[name].clear()
+            while self._queues[name] and name in self._sinks:
+                await self._carry_out(robot, *self._queues[name].popleft())
+
+    async def _report(self, robot: PretendRobot, body: ReportBody) -> None:
+        robot.seq += 1
+        report = Report(seq=robot.seq, time=robot.time, body=body, world={"time": robot.time})
+        receipt = Receipt(robot.name, str(robot.boot), robot.seq)
+        if (sink := self._sinks.get(robot.name)) is not None:
+            await sink.robot_reported(robot.name, report, receipt)
+
+    async def _carry_out(self, robot: PretendRobot, command: str, body: CommandBody) -> None:
+        if robot.deaf:
+            return
+        match body:
+            case Start():
+                self._starts[robot.name] = body
+                await self._work(robot, body)
+            case Look():
+                await self._look(robot, command, body)
+            case Hold(until=until):
+                robot.time = max(robot.time, until)
+                await self._report(robot, Held(command=command))
+            case Interrupt(retreat=retreat):
+                at = "neutral" if retreat else "in_place"
+                await self._report(robot, Holding.model_validate({"execution": None, "at": at}))
+            case Resume(execution=execution):
+                await self._report(robot, Resumed(execution=execution, step=5))
+                await self._work(robot, self._starts[robot.name], resumed=True)
+            case Intervene(intervention=deed, by=by):
+                if deed.act in (Act.PLACE, Act.PUT_BACK, Act.HAND_OVER):
+                    robot.right.add(deed.object or "")
+                await self._report(robot, Intervened(intervention=deed, by=by))
+
+    async def _work(self, robot: PretendRobot, start: Start, *, resumed: bool = False) -> None:
+        part = str(start.parameters.get("object"))
+        faults = robot.faults.get(part, [])
+        for step in range(5 if resumed else 1, 9):
+            due = [each for each in faults if each[1] == step and not resumed]
+            if due and due[0][0] in robot.interrupting:
+                faults.remove(due[0])
+                robot.right.discard(part)
+                await self._issue(robot, start, due[0][0], step)
+                at = "in_place" if due[0][0] in ("unreachable", "missing", "blocked") else "neutral"
+                holding = {"execution": start.execution, "at": at}
+                await self._report(robot, Holding.model_validate(holding))
+                return
+            robot.time += 1.0
+            await self._report(
+                robot, StepStarted(execution=start.execution, step=step, name=f"step {step}")
+            )
+            if due:
+                faults.remove(due[0])
+                await self._issue(robot, start, due[0][0], step)
+        await self._report(robot, Finished(execution=start.execution))
+
+    async def _issue(self, robot: PretendRobot, start: Start, kind: str, step: int) -> None:
+        await self._report(
+            robot,
+            IssueDetected(
+                execution=start.execution,
+                issue=kind,
+                step=step,
+                interrupts=kind in robot.interrupting,
+            ),
+        )
+
+    async def _look(self, robot: PretendRobot, command: str, look: Look) -> None:
+        fulfilled = None
+        if look.expect is not None:
+            fulfilled = (look.object or "") in robot.right or look.expect == "way_clear"
+            if not fulfilled:
+                # What is queued may be the deed that is being watched for.
+                robot.time += look.within_s
+        seen = {
+            f"part_{i}": Sighting(x=0.4, y=0.01 * i, z=0.7, yaw=0, time=robot.time)
+            for i in range(100)
+            if f"part_{i}" not in robot.hidden
+        }
+        await self._report(
+            robot,
+            Looked(
+                command=command,
+                objects=seen,
+                gripper=Position(x=0.4, y=0.0, z=1.0),
+                fulfilled=fulfilled,
+            ),
+        )

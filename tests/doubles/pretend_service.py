@@ -1,0 +1,133 @@
+"""A runtime over pretend robots and an in-memory journal, for tests of what runs do."""
+
+import time
+from collections.abc import AsyncIterator, Mapping
+from contextlib import asynccontextmanager
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+from pretend_robots import PretendRobot, PretendRobots
+
+from dialogue.registry import load_scripts
+from dialogue.script import Script
+from server.dialogues.escalation import EscalationPolicy
+from server.journal import events as ev
+from server.journal.sqlite import SqliteJournal
+from server.runtime.context import RunSettings
+from server.runtime.ports import LoadedTree
+from server.runtime.requests import RunRequest
+from server.runtime.run import Run
+from server.runtime.run_state import DialogueState, RunState
+from server.runtime.runtime import Runtime
+from server.runtime.views import RunView
+from tasks.definition import TaskTreeDefinition
+from tasks.scenario import Scenario
+from tasks.scene import Scene
+
+BARE = Scene(name="bare", objects={}, places={})
+
+
+class NoHardware:
+    simulated = True
+
+    def __init__(self, restarted: list[str]) -> None:
+        self._restarted = restarted
+
+    async def restart(self, robot: str) -> None:
+        self._restarted.append(robot)
+
+    async def release(self) -> None: ...
+
+
+@dataclass
+class PretendWorlds:
+    restarted: list[str] = field(default_factory=list)
+    scene: Scene = BARE
+
+    def check(self, world: str) -> None: ...
+
+    def lay_out(self, world: str, tree: LoadedTree, seed: int) -> Scene:  # noqa: ARG002
+        return self.scene
+
+    def open(self, state: RunState, run: Any) -> NoHardware:  # noqa: ARG002
+        return NoHardware(self.restarted)
+
+
+@dataclass
+class PretendTrees:
+    definition: TaskTreeDefinition
+
+    async def load(self, name: str) -> LoadedTree:
+        return LoadedTree(name, self.definition, None)
+
+
+class NoScenarios:
+    def load(self, name: str) -> Scenario:
+        raise AssertionError(f"no test asks for the scenario {name}")
+
+
+@dataclass
+class PretendService:
+    """Everything that a test of the runtime touches."""
+
+    runtime: Runtime
+    journal: SqliteJournal
+    robots: PretendRobots
+    worlds: PretendWorlds
+    mails: list[ev.Escalated]
+
+    async def run_to_end(self, **fields: Any) -> tuple[RunView, list[ev.Event]]:
+        """Start a run with as-fast-as-possible defaults and wait for its end."""
+        request = {"tree": "tree", "world": "tabletop", "speed": "max", **fields}
+        started = await self.runtime.start_run(RunRequest.model_validate(request))
+        ended = await self.runtime.wait_for_end(started.id)
+        return ended, await self.journal.read(0, 1_000_000, started.id)
+
+    def run_of(self, view: RunView) -> Run:
+        return self.runtime._runs[view.id]
+
+
+@asynccontextmanager
+async def pretend_service(
+    definition: TaskTreeDefinition,
+    faults: Mapping[str, list[tuple[str, int]]] | None = None,
+    *,
+    journal: Path | None = None,
+    policy: EscalationPolicy | None = None,
+    scripts: Mapping[str, Script] | None = None,
+    scene: Scene = BARE,
+    **robot: Any,
+) -> AsyncIterator[PretendService]:
+    """A runtime whose robots run into `faults` (object -> issue and step, in turn)."""
+    kept = SqliteJournal(journal or ":memory:")
+    robots = PretendRobots()
+    robots.make = lambda name: PretendRobot(
+        name, faults={part: list(each) for part, each in (faults or {}).items()}, **robot
+    )
+    mails: list[ev.Escalated] = []
+
+    def send_mail(_: RunState, escalated: ev.Escalated, __: DialogueState) -> None:
+        mails.append(escalated)
+
+    worlds = PretendWorlds(scene=scene)
+    runtime = Runtime(
+        journal=kept,
+        robots=robots,
+        worlds=worlds,
+        trees=PretendTrees(definition),
+        scenarios=NoScenarios(),
+        scripts=scripts if scripts is not None else load_scripts(),
+        policy=policy or EscalationPolicy(),
+        send_mail=send_mail,
+        settings=RunSettings(),
+        monotonic=time.monotonic,
+        utc_now=lambda: datetime.now(UTC),
+    )
+    try:
+        await runtime.recover()
+        yield PretendService(runtime, kept, robots, worlds, mails)
+    finally:
+        await runtime.close()
+        kept.close()

@@ -1,0 +1,125 @@
+"""The real service as a process of its own, to be killed and started again."""
+
+import asyncio
+import os
+import signal
+import socket
+import sys
+import time
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from pathlib import Path
+
+import psutil
+
+from server.client import MendClient
+from server.journal.reader import JournalReader
+
+START_S = 60.0
+"""Patience with a start, on a machine that is busy."""
+
+
+class ServiceProcess:
+    """`mend serve` on a port and a journal that stay the same over its lives."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._port = _free_port()
+        self._process: asyncio.subprocess.Process | None = None
+
+    @property
+    def url(self) -> str:
+        return f"http://127.0.0.1:{self._port}"
+
+    @property
+    def journal(self) -> Path:
+        return self._folder / "journal.db"
+
+    @property
+    def complaints(self) -> str:
+        """Everything that its lives wrote to stderr."""
+        return (self._folder / "stderr").read_text()
+
+    async def start(self) -> None:
+        """Start it; returns when it is ready."""
+        environment = {
+            **{name: value for name, value in os.environ.items() if not name.startswith("MEND_")},
+            "MEND_DATA_DIR": str(self._folder),
+            "MEND_PORT": str(self._port),
+            "MEND_LOG_LEVEL": "warning",
+        }
+        with (self._folder / "stderr").open("a") as complaints:
+            self._process = await asyncio.create_subprocess_exec(
+                str(Path(sys.executable).with_name("mend")), "serve",
+                env=environment, stdout=asyncio.subprocess.DEVNULL, stderr=complaints,
+            )  # fmt: skip
+        async with MendClient(self.url) as client:
+            await client.wait_until_ready(START_S)
+
+    async def kill(self) -> None:
+        """`kill -9`; returns when it is gone, and its robots with it."""
+        assert self._process is not None, "it was started"
+        robots = self.robots()
+        self._process.send_signal(signal.SIGKILL)
+        await self._process.wait()
+        orphans = await asyncio.to_thread(psutil.wait_procs, robots, timeout=10.0)
+        assert orphans[1] == [], "a simulated robot outlived its service"
+
+    async def stop(self) -> None:
+        """Let it end by itself, if it still runs."""
+        if self._process is not None and self._process.returncode is None:
+            self._process.terminate()
+            await self._process.wait()
+
+    def robots(self) -> list[psutil.Process]:
+        """The processes of its simulated robots."""
+        assert self._process is not None, "it was started"
+        return psutil.Process(self._process.pid).children()
+
+    async def kill_robot(self, *, again: bool = False) -> bool:
+        """`kill -9` its one robot, and with `again` the next one before it has connected.
+
+        Returns False if there is none.
+        """
+        robots = self.robots()
+        if not robots:
+            return False
+        robots[0].kill()
+        if again:
+            next_one = await self._next_robot(robots[0].pid)
+            if next_one is not None:
+                next_one.kill()
+        return True
+
+    async def _next_robot(self, last: int) -> psutil.Process | None:
+        until = time.monotonic() + START_S
+        while time.monotonic() < until:
+            for robot in self.robots():
+                if robot.pid != last:
+                    return robot
+            await asyncio.sleep(0.01)
+        return None
+
+    def head(self) -> int:
+        """The last event in the journal, read from its file."""
+        with JournalReader(self.journal) as reader:
+            return max(
+                (each.seq for run in reader.runs() for each in reader.events(run)), default=0
+            )
+
+
+@asynccontextmanager
+async def service_process(folder: Path) -> AsyncIterator[ServiceProcess]:
+    """A service that runs, until the end of the block."""
+    service = ServiceProcess(folder)
+    await service.start()
+    try:
+        yield service
+    finally:
+        await service.stop()
+
+
+def _free_port() -> int:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])

@@ -1,0 +1,66 @@
+"""The whole service around a fake runtime, in this process or behind real sockets."""
+
+import contextlib
+from collections.abc import AsyncIterator
+from dataclasses import dataclass
+from typing import Any
+
+import httpx
+import uvicorn
+from fake_runs import TREES, FakeRuns, FakeScenarios, check_tree
+from fastapi import FastAPI
+
+from server.app import create_app, serve_config
+from server.journal.sqlite import SqliteJournal
+from server.settings import Settings
+from server.trees import JournaledTrees
+
+TOKEN = "correct-horse-battery"
+
+
+@dataclass
+class ServiceUnderTest:
+    """A service and what is behind it; `url` once it is served."""
+
+    app: FastAPI
+    runs: FakeRuns
+    journal: SqliteJournal
+    settings: Settings
+    url: str = "http://localhost"
+
+    @property
+    def ws(self) -> str:
+        return self.url.replace("http", "ws", 1) + "/ws/helper"
+
+    def client(self, **arguments: Any) -> httpx.AsyncClient:
+        """A client that talks to the application without a socket."""
+        transport = httpx.ASGITransport(self.app, raise_app_exceptions=False)
+        return httpx.AsyncClient(transport=transport, base_url=self.url, **arguments)
+
+
+def build(**settings: Any) -> ServiceUnderTest:
+    """A service on an empty journal in memory."""
+    journal = SqliteJournal(":memory:")
+    runs = FakeRuns(journal)
+    chosen = Settings(port=0, **settings)
+    trees = JournaledTrees(journal, TREES, check_tree)
+    app = create_app(runs, journal, chosen, trees_library=trees, scenarios=FakeScenarios())
+    return ServiceUnderTest(app, runs, journal, chosen)
+
+
+@contextlib.asynccontextmanager
+async def serving(**settings: Any) -> AsyncIterator[ServiceUnderTest]:
+    """A service behind a real socket on a free port."""
+    service = build(**settings)
+    server = uvicorn.Server(serve_config(service.app, service.settings))
+    server.config.log_level = None
+    socket = server.config.bind_socket()
+    service.url = f"http://127.0.0.1:{socket.getsockname()[1]}"
+    server.config.load()
+    server.lifespan = server.config.lifespan_class(server.config)
+    await server.startup(sockets=[socket])
+    try:
+        yield service
+    finally:
+        await server.shutdown(sockets=[socket])
+        service.journal.close()

@@ -1,0 +1,91 @@
+"""`kill -9` of the real service and of simulated robots, and what is left of their runs."""
+
+import asyncio
+from collections.abc import AsyncIterator, Callable
+from pathlib import Path
+from uuid import UUID
+
+import pytest
+from kills import Ordeal
+from service_process import ServiceProcess, service_process
+
+from server.client import MendClient
+from server.runtime.requests import RunRequest
+from server.runtime.views import DialogueView, RunStatus
+from tasks.intervention import Act, Intervention
+
+pytestmark = pytest.mark.slow
+
+WILLING = {"answers": ["yes"] * 100, "max_attempts": 100, "speed": "max"}
+
+
+def eket(world: str, **fields: object) -> RunRequest:
+    return RunRequest.model_validate({"tree": "eket", "world": world, **fields})
+
+
+@pytest.fixture
+async def service(tmp_path: Path) -> AsyncIterator[ServiceProcess]:
+    async with service_process(tmp_path) as service:
+        yield service
+
+
+async def test_runs_live_through_kills_of_the_service(service: ServiceProcess) -> None:
+    requests = [
+        eket("tabletop", scenario="eket_paper", seed=7, **WILLING),
+        eket("tabletop", seed=8, **WILLING),
+    ]
+    found = await Ordeal(service, requests, seed=7).kill_service(3)
+    assert found.faults == []
+    assert found.finished == found.runs > 0
+    assert "Traceback" not in service.complaints
+
+
+async def test_a_run_lives_through_kills_of_its_robot_and_then_of_the_service(
+    service: ServiceProcess,
+) -> None:
+    pytest.importorskip("pybullet")
+    ordeal = Ordeal(service, [eket("workcell", seed=7, **WILLING)], seed=7)
+    found = await ordeal.kill_robots(2)
+    assert found.faults == []
+    assert found.finished == found.runs > 0
+    assert "Traceback" not in service.complaints
+
+
+async def test_a_question_outlives_the_service_and_can_be_answered_afterwards(
+    service: ServiceProcess,
+) -> None:
+    async with MendClient(service.url) as client:
+        run = await client.start_run(eket("tabletop", speed=20.0))
+        await client.intervene(run.id, Intervention(act=Act.STEAL, object="green_leg"))
+        before = await _wait_for(client, lambda each: each.awaiting == "answer")
+        await service.kill()
+        await service.start()
+        after = await client.dialogue(before.dialogue)
+        assert before.prompt is not None
+        assert after.prompt is not None
+        assert (after.status, after.awaiting) == ("open", "answer")
+        assert after.prompt.prompt == before.prompt.prompt
+        await client.answer(before.dialogue, before.prompt.prompt, "yes", "ann")
+        ended = await _answer_until_the_end(client, run.id)
+    assert ended is RunStatus.FINISHED
+
+
+async def _wait_for(client: MendClient, what: Callable[[DialogueView], bool]) -> DialogueView:
+    async with asyncio.timeout(60):
+        while True:
+            for dialogue in await client.dialogues("open"):
+                if what(dialogue):
+                    return dialogue
+            await asyncio.sleep(0.05)
+
+
+async def _answer_until_the_end(client: MendClient, run: UUID) -> RunStatus:
+    """Say yes to whatever else is asked."""
+    async with asyncio.timeout(60):
+        while not (view := await client.run(run)).status.ended:
+            for dialogue in view.dialogues:
+                if dialogue.awaiting == "answer" and dialogue.prompt is not None:
+                    prompt = dialogue.prompt.prompt
+                    await client.answer(dialogue.dialogue, prompt, "yes", "ann")
+            await asyncio.sleep(0.05)
+    return view.status

@@ -1,0 +1,169 @@
+"""Writes the sample journal of the newest schema version: one event of every type.
+
+Run it once when a version is added, from the root; what it wrote is never changed again.
+"""
+
+import asyncio
+import sqlite3
+import tempfile
+from datetime import UTC, datetime
+from itertools import count
+from pathlib import Path
+from typing import Any
+from uuid import UUID
+
+from dialogue.script import CloseReason, Help
+from robots.link.messages import Detection
+from server.journal import events as ev
+from server.journal.journal import Entry, Receipt
+from server.journal.migrations import MIGRATIONS
+from server.journal.sqlite import SqliteJournal
+from tasks.intervention import Act, Intervention
+from tasks.resolution import Resolution
+
+RUN = UUID("0b9f8a4e-5a52-4d5b-9a8e-3f1f7f0f5c11")
+EXECUTION = UUID("5d0f2c1e-0a44-4a0c-8a3e-9f6f3f2b1a01")
+DIALOGUE = UUID("c4e1b2a3-77aa-4b1e-9d2f-2a7f5b6c8d02")
+PROMPT = UUID("9a3b1c2d-1f2e-4d3c-8b4a-6e5f7a8b9c03")
+PICTURE = UUID("3e2d1c0b-9a8f-4e7d-8c6b-5a4f3e2d1c04")
+
+_ticks = count(1)
+
+
+def stamp() -> dict[str, Any]:
+    """What every event has, half a second after the one before."""
+    tick = next(_ticks)
+    return {"time": tick / 2, "wall_time": datetime(2026, 1, 2, 3, 4, tick, tzinfo=UTC), "run": RUN}
+
+
+def node() -> dict[str, Any]:
+    return {**stamp(), "node": "/1/0", "name": "pink_bar"}
+
+
+def robot() -> dict[str, Any]:
+    return {**stamp(), "robot": "robot"}
+
+
+def work() -> dict[str, Any]:
+    return {**node(), "robot": "robot", "execution": EXECUTION}
+
+
+def talk() -> dict[str, Any]:
+    return {
+        **node(),
+        "dialogue": DIALOGUE,
+        "robot": "robot",
+        "issue": "dropped",
+        "object": "pink_bar",
+    }
+
+
+def answers() -> list[ev.AnswerOption]:
+    return [
+        ev.AnswerOption(value="yes", effect="The robot tries again."),
+        ev.AnswerOption(value="no", effect="You put the pink bar to its place."),
+    ]
+
+
+def every_event() -> list[ev.Event]:
+    """One event of every type, in an order that could be."""
+    leaf = {"behavior": "pick_and_place", "object": "pink_bar", "place": "pink_place"}
+    candidate = ev.Candidate(node="/1/0", name="pink_bar", level=0.5, potential=1.7, attempts=0)
+    missing = ev.MissingPart(node="/1/0", name="pink_bar", object="pink_bar", place="pink_place")
+    detection = Detection(
+        camera="forearm", expected=(160.0, 120.0), tolerance_px=40.0, explanation="no blob is left"
+    )
+    return [
+        ev.RunStarted(
+            **stamp(),
+            tree_name="eket",
+            tree={"name": "eket", "scene": "eket", "then": [leaf]},
+            scene={"name": "eket", "objects": {}, "places": {}},
+            world="workcell",
+            robots=["robot"],
+            seed=7,
+            speed="max",
+            scenario="eket_paper",
+            options={"max_attempts": 3},
+        ),
+        ev.NodeStarted(**work(), boot="boot-1", attempt=1, candidates=[candidate]),
+        ev.StepStarted(**work(), step=4, step_name="above pick"),
+        ev.IssueRaised(
+            **work(),
+            issue="dropped",
+            object="pink_bar",
+            place="pink_place",
+            step=4,
+            interrupts=True,
+            detection=detection,
+            picture=PICTURE,
+        ),
+        ev.RobotHolding(**robot(), at="neutral"),
+        ev.DialogueOpened(**talk()),
+        ev.Prompt(
+            **talk(),
+            prompt=PROMPT,
+            version=1,
+            kind="ask",
+            text="I dropped the pink bar. Shall I try again?",
+            answers=answers(),
+            deadline=40.0,
+            to="anna",
+        ),
+        ev.Claimed(**talk(), helper="anna", lease_until=datetime(2026, 1, 2, 3, 5, tzinfo=UTC)),
+        ev.Released(**talk(), helper="anna", expired=True),
+        ev.Escalated(**talk(), channel="mail", to="operators@example.com"),
+        ev.Answered(**talk(), prompt=PROMPT, version=2, answer="yes", helper="ben"),
+        ev.HelpAwaited(**talk(), help=Help.PUT_BACK, helper="ben", until=90.0),
+        ev.HelpNotSeen(**talk(), help=Help.PUT_BACK),
+        ev.InterventionDone(
+            **stamp(),
+            act="put_back",
+            object="pink_bar",
+            intervention=Intervention(act=Act.PUT_BACK, object="pink_bar"),
+            by="helper",
+        ),
+        ev.HelpVerified(**talk(), help=Help.PUT_BACK),
+        ev.Resolved(**talk(), resolution=Resolution.ROBOT_RETRY, helped=True),
+        ev.DialogueClosed(**talk(), reason=CloseReason.RESOLVED),
+        ev.NodeReset(**node(), robot="robot", reason="robot_retry", failed_attempt=False),
+        ev.RobotLost(**robot(), reason="the process ended"),
+        ev.RobotBack(**robot(), boot="boot-2", continues=False),
+        ev.RobotResumed(**robot(), step=1),
+        ev.NodeDone(**node(), robot="robot", by="robot"),
+        ev.NodeAbandoned(**node(), leaf="/1/0", reason="no robot can reach it"),
+        ev.RunPaused(**stamp()),
+        ev.RunResumed(**stamp()),
+        ev.RunFinished(**stamp(), missing=[missing]),
+        ev.RunFailed(**stamp(), reason="the leaf /1/0 could not be done", node="/1/0"),
+        ev.RunAborted(**stamp(), reason="by the operator"),
+    ]
+
+
+async def record(path: Path) -> None:
+    journal = SqliteJournal(path)
+    for number, event in enumerate(every_event(), 1):
+        entry = Entry(
+            events=[event],
+            receipt=Receipt("robot", "boot-1", number),
+            world_run=RUN,
+            world={"clock": event.time},
+            pictures={PICTURE: b"\xff\xd8\xff\xd9"} if isinstance(event, ev.IssueRaised) else {},
+        )
+        await journal.append(entry)
+    await journal.save_tree("mine", "then:\n- {behavior: pick_and_place, object: pink_bar}\n")
+    journal.close()
+
+
+def main() -> None:
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "journal.db"
+        asyncio.run(record(path))
+        connection = sqlite3.connect(path)
+        sample = "\n".join(connection.iterdump()) + "\n"
+        connection.close()
+    (Path(__file__).parent / f"v{len(MIGRATIONS)}.sql").write_text(sample)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,454 @@
+"""The service's end of the link, talking to robots that the test plays."""
+
+import asyncio
+import base64
+import math
+from collections.abc import AsyncIterator
+
+import pytest
+from recording_sink import RecordingSink
+
+from robots.link.channel import Channel, ChannelClosedError, memory_channel
+from robots.link.messages import (
+    Ack,
+    Command,
+    Heartbeat,
+    Held,
+    Hello,
+    LinkError,
+    Look,
+    Picture,
+    ReachLimits,
+    Rejected,
+    Report,
+    Taken,
+    Welcome,
+    service_message,
+)
+from server.errors import ConflictError, NotFoundError
+from server.journal.journal import Receipt
+from server.journal.sqlite import SqliteJournal
+from server.robots.registry import RobotRegistry
+from server.robots.times import LinkTimes
+
+QUICK = LinkTimes(heartbeat_s=0.001, silence_s=10.0, absence_s=0.001, hello_s=5.0)
+
+
+def hello(robot: str = "arm", boot: str = "b1", simulated: bool = False) -> Hello:
+    return Hello(
+        protocol=1, robot=robot, boot=boot, behaviors=["pick_and_place"], cameras=["head"],
+        reach=ReachLimits(x=0.0, y=0.0, min_m=0.2, max_m=0.8), time=0.0, simulated=simulated,
+    )  # fmt: skip
+
+
+def report(seq: int, boot: str | None = None) -> Report:
+    return Report(boot=boot, seq=seq, time=float(seq), body=Held(command=f"c{seq}"))
+
+
+class PlayedRobot:
+    """One connection of a robot."""
+
+    def __init__(self, registry: RobotRegistry) -> None:
+        self.channel, service_end = memory_channel()
+        self.serving = asyncio.create_task(registry.serve(service_end))
+
+    async def say(self, message: Hello | Report | Heartbeat | Taken | Picture) -> None:
+        await self.channel.send(message.model_dump_json(exclude_none=True))
+
+    async def hear(self) -> Welcome | Ack | Command | LinkError:
+        async with asyncio.timeout(10):
+            return service_message.validate_json(await self.channel.receive())
+
+    async def greet(self, message: Hello) -> Welcome:
+        await self.say(message)
+        welcome = await self.hear()
+        assert isinstance(welcome, Welcome)
+        return welcome
+
+    async def deliver(self, message: Report) -> Ack:
+        await self.say(message)
+        ack = await self.hear()
+        assert isinstance(ack, Ack)
+        return ack
+
+    async def leave(self) -> None:
+        await self.channel.close()
+        await self.serving
+
+
+class FakeClock:
+    def __init__(self) -> None:
+        self.time_s = 0.0
+
+    def __call__(self) -> float:
+        return self.time_s
+
+
+@pytest.fixture
+async def journal() -> AsyncIterator[SqliteJournal]:
+    journal = SqliteJournal(":memory:")
+    yield journal
+    journal.close()
+
+
+@pytest.fixture
+def clock() -> FakeClock:
+    return FakeClock()
+
+
+@pytest.fixture
+async def registry(journal: SqliteJournal, clock: FakeClock) -> AsyncIterator[RobotRegistry]:
+    registry = RobotRegistry(journal, clock, QUICK)
+    yield registry
+    registry.close()
+
+
+@pytest.fixture
+async def sink(registry: RobotRegistry, journal: SqliteJournal) -> RecordingSink:
+    sink = RecordingSink(journal)
+    registry.assign("arm", sink)
+    return sink
+
+
+async def test_a_hello_is_welcomed_and_told_to_the_owner(
+    registry: RobotRegistry, sink: RecordingSink
+) -> None:
+    robot = PlayedRobot(registry)
+    welcome = await robot.greet(hello())
+    assert (welcome.protocol, welcome.received, welcome.heartbeat_s) == (1, 0, 0.001)
+    await sink.wait_until(lambda: sink.hellos == [hello()])
+    assert registry.connected("arm")
+    assert registry.hello("arm") == hello()
+    assert registry.known() == ["arm"]
+
+
+async def test_reports_are_committed_with_their_receipts_before_they_are_acknowledged(
+    registry: RobotRegistry, sink: RecordingSink, journal: SqliteJournal
+) -> None:
+    robot = PlayedRobot(registry)
+    await robot.greet(hello())
+    for seq in (1, 2, 3):
+        assert (await robot.deliver(report(seq))).seq == seq
+        assert await journal.received("arm", "b1") == seq
+    assert sink.receipts == [Receipt("arm", "b1", seq) for seq in (1, 2, 3)]
+
+
+async def test_a_report_that_comes_again_is_acknowledged_and_not_handed_on(
+    registry: RobotRegistry, sink: RecordingSink
+) -> None:
+    robot = PlayedRobot(registry)
+    await robot.greet(hello())
+    await robot.deliver(report(1))
+    assert (await robot.deliver(report(1))).seq == 1
+    assert len(sink.reports) == 1
+
+
+async def test_a_welcome_says_what_was_received_before(
+    registry: RobotRegistry, sink: RecordingSink
+) -> None:
+    first = PlayedRobot(registry)
+    await first.greet(hello())
+    await first.deliver(report(1))
+    await first.leave()
+    again = PlayedRobot(registry)
+    assert (await again.greet(hello())).received == 1
+    rebooted = PlayedRobot(registry)
+    assert (await rebooted.greet(hello(boot="b2"))).received == 0
+    await sink.wait_until(lambda: [each.boot for each in sink.hellos] == ["b1", "b1", "b2"])
+
+
+async def test_reports_of_a_robot_that_no_run_owns_are_committed_all_the_same(
+    registry: RobotRegistry, journal: SqliteJournal
+) -> None:
+    robot = PlayedRobot(registry)
+    await robot.greet(hello())
+    assert (await robot.deliver(report(1))).seq == 1
+    assert await journal.received("arm", "b1") == 1
+
+
+async def test_reports_of_an_earlier_boot_are_acknowledged_under_their_boot(
+    registry: RobotRegistry, sink: RecordingSink
+) -> None:
+    robot = PlayedRobot(registry)
+    await robot.greet(hello(boot="b2"))
+    assert await robot.deliver(report(4, boot="b1")) == Ack(boot="b1", seq=4)
+    assert await robot.deliver(report(1)) == Ack(seq=1)
+    assert sink.receipts == [Receipt("arm", "b1", 4), Receipt("arm", "b2", 1)]
+
+
+async def test_a_report_whose_predecessor_was_left_out_is_not_taken(
+    registry: RobotRegistry, sink: RecordingSink
+) -> None:
+    robot = PlayedRobot(registry)
+    await robot.greet(hello())
+    await robot.deliver(report(1))
+    await robot.say(report(3))
+    assert await robot.hear() == LinkError(
+        detail="report 3 came, but the last one was 1; send 2 first"
+    )
+    assert (await robot.deliver(report(2))).seq == 2
+    assert [each.seq for each in sink.reports] == [1, 2]
+
+
+async def test_a_command_is_sent_when_the_robot_connects_and_again_until_it_is_taken(
+    registry: RobotRegistry, sink: RecordingSink
+) -> None:
+    registry.send("arm", "c1", Look())
+    first = PlayedRobot(registry)
+    await first.greet(hello())
+    assert await first.hear() == Command(id="c1", body=Look())
+    await first.leave()
+    second = PlayedRobot(registry)
+    await second.greet(hello())
+    assert await second.hear() == Command(id="c1", body=Look())
+    registry.send("arm", "c2", Look())
+    assert await second.hear() == Command(id="c2", body=Look())
+    await second.say(Taken(command="c1"))
+    await second.deliver(report(1))
+    await second.leave()
+    third = PlayedRobot(registry)
+    await third.greet(hello())
+    assert await third.hear() == Command(id="c2", body=Look())
+    assert len(sink.hellos) == 3
+
+
+async def test_commands_for_an_earlier_boot_are_dropped(registry: RobotRegistry) -> None:
+    first = PlayedRobot(registry)
+    await first.greet(hello())
+    registry.send("arm", "c1", Look())
+    await first.leave()
+    second = PlayedRobot(registry)
+    await second.greet(hello(boot="b2"))
+    registry.send("arm", "c2", Look())
+    assert await second.hear() == Command(id="c2", body=Look())
+
+
+async def test_a_robot_that_takes_no_commands_is_not_sent_more_and_more(
+    registry: RobotRegistry,
+) -> None:
+    for n in range(1000):
+        registry.send("arm", f"c{n}", Look())
+    registry.send("arm", "c7", Look())
+    with pytest.raises(ConflictError, match="has not taken its last 1000 commands"):
+        registry.send("arm", "one more", Look())
+
+
+async def test_a_robot_has_one_owner(
+    registry: RobotRegistry, sink: RecordingSink, journal: SqliteJournal
+) -> None:
+    other = RecordingSink(journal)
+    registry.assign("arm", sink)
+    with pytest.raises(ConflictError, match="busy with another run"):
+        registry.assign("arm", other)
+    registry.unassign("arm")
+    registry.assign("arm", other)
+
+
+async def test_a_new_owner_of_a_connected_robot_is_told_at_once(
+    registry: RobotRegistry, journal: SqliteJournal
+) -> None:
+    robot = PlayedRobot(registry)
+    await robot.greet(hello())
+    await robot.deliver(report(1))
+    sink = RecordingSink(journal)
+    registry.assign("arm", sink)
+    await sink.wait_until(lambda: sink.hellos == [hello()])
+
+
+async def test_a_newer_connection_replaces_the_older_one(
+    registry: RobotRegistry, sink: RecordingSink
+) -> None:
+    older, newer = PlayedRobot(registry), PlayedRobot(registry)
+    await older.greet(hello())
+    await newer.greet(hello())
+    error = await older.hear()
+    assert isinstance(error, LinkError)
+    assert "replaced" in error.detail
+    with pytest.raises(ChannelClosedError):
+        await older.hear()
+    await newer.deliver(report(1))
+    assert registry.connected("arm")
+    assert sink.lost == []
+
+
+async def test_a_robot_whose_connection_ended_is_lost_after_a_while_and_only_once(
+    registry: RobotRegistry, sink: RecordingSink
+) -> None:
+    robot = PlayedRobot(registry)
+    await robot.greet(hello())
+    await robot.deliver(report(1))
+    await robot.leave()
+    assert not registry.connected("arm")
+    await sink.wait_until(lambda: sink.lost == ["its connection was closed"])
+    assert registry.known() == ["arm"]
+    await registry.end_connection("arm", "its program ended")
+    assert sink.lost == ["its connection was closed"]
+
+
+async def test_a_silent_robot_is_cut_off_and_lost(
+    registry: RobotRegistry, sink: RecordingSink, clock: FakeClock
+) -> None:
+    robot = PlayedRobot(registry)
+    await robot.greet(hello())
+    assert registry.silent_for_s("arm") == 0.0
+    clock.time_s = 10.5
+    await sink.wait_until(lambda: sink.lost == ["nothing was heard of it for 10.5 s"])
+    assert registry.silent_for_s("arm") is None
+
+
+async def test_a_robot_that_beats_is_not_cut_off(
+    registry: RobotRegistry, sink: RecordingSink, clock: FakeClock
+) -> None:
+    robot = PlayedRobot(registry)
+    await robot.greet(hello())
+    for _ in range(3):
+        clock.time_s += 9.0
+        await robot.say(Heartbeat(time=0.0))
+        await robot.deliver(report(len(sink.reports) + 1))
+    assert sink.lost == []
+
+
+@pytest.mark.parametrize(
+    ("text", "detail"),
+    [
+        ("not json", "the message was not understood: Invalid JSON"),
+        ("{}", "the message was not understood: Unable to extract tag"),
+        ('{"type": "dance"}', "Input tag 'dance'"),
+        ('{"type": "heartbeat"}', "at heartbeat.time: Field required"),
+        ('{"type": "heartbeat", "time": "1"}', "at heartbeat.time"),
+        ('{"type": "heartbeat", "time": NaN}', "at heartbeat.time"),
+        ('{"type": "report", "seq": 0, "time": 1, "body": {}}', "at report"),
+        ('{"type": "picture", "command": "c", "camera": "head", "jpeg": "!"}', "is not base64"),
+        ("[" * 100_000, "the message was not understood"),
+    ],
+)
+async def test_a_malformed_message_is_answered_and_the_connection_stays(
+    registry: RobotRegistry, text: str, detail: str
+) -> None:
+    robot = PlayedRobot(registry)
+    await robot.channel.send(text)
+    error = await robot.hear()
+    assert isinstance(error, LinkError)
+    await robot.greet(hello())
+    await robot.channel.send(text)
+    error = await robot.hear()
+    assert isinstance(error, LinkError)
+    assert detail in error.detail
+    assert "\n" not in error.detail
+    assert (await robot.deliver(report(1))).seq == 1
+
+
+async def test_a_world_with_a_number_that_is_none_is_refused(
+    registry: RobotRegistry, sink: RecordingSink
+) -> None:
+    robot = PlayedRobot(registry)
+    await robot.greet(hello())
+    bad = report(1).model_copy(update={"world": {"x": [{"y": math.nan}]}})
+    await robot.channel.send(bad.model_dump_json(exclude_none=True).replace("null", "NaN"))
+    assert isinstance(await robot.hear(), LinkError)
+    assert sink.reports == []
+
+
+async def test_a_hello_of_another_protocol_version_is_refused(registry: RobotRegistry) -> None:
+    robot = PlayedRobot(registry)
+    await robot.channel.send('{"type": "hello", "protocol": 2, "what": "is new"}')
+    assert await robot.hear() == LinkError(
+        detail="this service speaks protocol 1 and the robot speaks 2; they must be the same"
+    )
+    with pytest.raises(ChannelClosedError):
+        await robot.hear()
+
+
+async def test_a_second_hello_is_a_mistake(registry: RobotRegistry) -> None:
+    robot = PlayedRobot(registry)
+    await robot.greet(hello())
+    await robot.say(hello())
+    assert isinstance(await robot.hear(), LinkError)
+
+
+async def test_a_picture_is_asked_for_and_comes(registry: RobotRegistry) -> None:
+    robot = PlayedRobot(registry)
+    await robot.greet(hello())
+    asked = asyncio.create_task(registry.take_picture("arm", "head"))
+    command = await robot.hear()
+    assert isinstance(command, Command)
+    jpeg = base64.b64encode(b"a picture").decode()
+    await robot.say(Picture(command=command.id, camera="head", jpeg=jpeg))
+    assert await asked == b"a picture"
+
+
+async def test_a_picture_that_does_not_come_is_a_conflict(registry: RobotRegistry) -> None:
+    with pytest.raises(ConflictError, match="not connected"):
+        await registry.take_picture("arm", "head")
+    robot = PlayedRobot(registry)
+    await robot.greet(hello())
+    with pytest.raises(NotFoundError, match="no camera 'tail'"):
+        await registry.take_picture("arm", "tail")
+    with pytest.raises(ConflictError, match="sent no picture"):
+        await registry.take_picture("arm", "head", timeout_s=0.001)
+    await robot.hear()
+    refused = asyncio.create_task(registry.take_picture("arm", "head"))
+    command = await robot.hear()
+    assert isinstance(command, Command)
+    body = Rejected(command=command.id, reason="the lens cap is on")
+    await robot.deliver(Report(seq=1, time=0.0, body=body))
+    with pytest.raises(ConflictError, match="the lens cap is on"):
+        await refused
+    gone = asyncio.create_task(registry.take_picture("arm", "head"))
+    await robot.hear()
+    await robot.leave()
+    with pytest.raises(ConflictError, match="not connected"):
+        await gone
+
+
+class BrokenSink(RecordingSink):
+    """Fails once to commit."""
+
+    failures = 1
+
+    async def robot_reported(self, robot: str, report: Report, receipt: Receipt) -> None:
+        if self.failures:
+            self.failures -= 1
+            raise OSError("the disk is full")
+        await super().robot_reported(robot, report, receipt)
+
+
+async def test_a_report_that_could_not_be_committed_is_not_acknowledged(
+    registry: RobotRegistry, journal: SqliteJournal
+) -> None:
+    sink = BrokenSink(journal)
+    registry.assign("arm", sink)
+    robot = PlayedRobot(registry)
+    await robot.greet(hello())
+    await robot.say(report(1))
+    assert isinstance(await robot.hear(), LinkError)
+    with pytest.raises(ChannelClosedError):
+        await robot.hear()
+    again = PlayedRobot(registry)
+    assert (await again.greet(hello())).received == 0
+    assert (await again.deliver(report(1))).seq == 1
+    assert [each.seq for each in sink.reports] == [1]
+
+
+async def test_a_simulated_robot_is_forgotten_when_nobody_owns_it(
+    registry: RobotRegistry, sink: RecordingSink
+) -> None:
+    robot = PlayedRobot(registry)
+    await robot.greet(hello(simulated=True))
+    await sink.wait_until(lambda: len(sink.hellos) == 1)
+    registry.unassign("arm")
+    assert registry.known() == ["arm"]
+    await robot.leave()
+    assert registry.known() == []
+
+
+async def test_a_closed_registry_ends_every_connection(registry: RobotRegistry) -> None:
+    robot = PlayedRobot(registry)
+    await robot.greet(hello())
+    registry.close()
+    assert await robot.hear() == LinkError(detail="the service is shutting down")
+    await robot.serving
+    late: Channel = PlayedRobot(registry).channel
+    await late.send(hello().model_dump_json())
+    with pytest.raises(ChannelClosedError):
+        await late.receive()

@@ -1,0 +1,346 @@
+from collections.abc import AsyncIterator
+from typing import Any
+
+import httpx
+import pytest
+from service_under_test import ServiceUnderTest, build
+
+# Fixed, so that every worker collects the same tests.
+NOBODY = "2dc8e3f6-6479-4c12-9baf-d2534d0b7e34"
+
+EKET = {"tree": "eket", "world": "tabletop", "speed": "max", "seed": 7}
+
+
+@pytest.fixture
+async def service() -> AsyncIterator[ServiceUnderTest]:
+    service = build()
+    yield service
+    service.journal.close()
+
+
+@pytest.fixture
+async def client(service: ServiceUnderTest) -> AsyncIterator[httpx.AsyncClient]:
+    async with service.client() as client:
+        yield client
+
+
+def problem_in(response: httpx.Response) -> Any:
+    assert response.headers["content-type"] == "application/problem+json"
+    problem = response.json()
+    assert problem["status"] == response.status_code
+    assert problem["title"]
+    assert problem["detail"]
+    return problem
+
+
+async def start(client: httpx.AsyncClient) -> str:
+    response = await client.post("/api/runs", json=EKET)
+    assert response.status_code == 201
+    return str(response.json()["id"])
+
+
+async def test_run_is_started_listed_and_read(client: httpx.AsyncClient) -> None:
+    response = await client.post("/api/runs", json=EKET)
+    assert response.status_code == 201
+    run = response.json()
+    assert response.headers["location"] == f"/api/runs/{run['id']}"
+    assert run["status"] == "running"
+    assert [each["id"] for each in (await client.get("/api/runs")).json()] == [run["id"]]
+    assert (await client.get(f"/api/runs/{run['id']}")).json()["nodes"][0]["name"] == "pink_bar"
+
+
+async def test_lists_come_in_pages(client: httpx.AsyncClient) -> None:
+    runs = [await start(client) for _ in range(3)]
+    page = await client.get("/api/runs", params={"limit": 1, "offset": 1})
+    assert [each["id"] for each in page.json()] == [runs[1]]
+    assert (await client.get("/api/runs", params={"limit": 0})).status_code == 422
+    assert (await client.get("/api/runs", params={"limit": 1001})).status_code == 422
+
+
+async def test_run_is_paused_resumed_and_aborted(client: httpx.AsyncClient) -> None:
+    run = await start(client)
+    assert (await client.post(f"/api/runs/{run}/pause")).json()["status"] == "paused"
+    again = await client.post(f"/api/runs/{run}/pause")
+    assert again.status_code == 409
+    assert "paused" in problem_in(again)["detail"]
+    assert (await client.post(f"/api/runs/{run}/resume")).json()["status"] == "running"
+    assert (await client.post(f"/api/runs/{run}/abort")).json()["status"] == "aborted"
+    assert (await client.post(f"/api/runs/{run}/resume")).status_code == 409
+
+
+@pytest.mark.parametrize(
+    ("change", "status"),
+    [
+        ({"tree": "nowhere"}, 404),
+        ({"scenario": "nowhere"}, 404),
+        ({"world": "moon"}, 422),
+        ({"seed": True}, 422),
+        ({"seed": "7"}, 422),
+        ({"seed": -1}, 422),
+        ({"seed": 10**30}, 422),
+        ({"speed": 0}, 422),
+        ({"speed": "fast"}, 422),
+        ({"unknown": 1}, 422),
+        ({"tree": ""}, 422),
+        ({"answers": ["perhaps"]}, 422),
+    ],
+)
+async def test_wrong_run_request_starts_nothing(
+    client: httpx.AsyncClient, change: dict[str, Any], status: int
+) -> None:
+    response = await client.post("/api/runs", json={**EKET, **change})
+    assert response.status_code == status
+    problem = problem_in(response)
+    if status == 422:
+        assert problem["errors"]
+    assert (await client.get("/api/runs")).json() == []
+
+
+@pytest.mark.parametrize(
+    ("body", "status"),
+    [
+        (b"", 422),
+        (b"{", 422),
+        (b"[]", 422),
+        (b"null", 422),
+        (b"\xff\xfe{}", 400),
+        (b'{"tree": "\\u0000"}', 404),
+        (b'{"tree": "\\ud800"}', 422),
+        (b'{"\\ud800": 1}', 422),
+        (b'{"tree": "eket", "seed": 1' + b"0" * 6000 + b"}", 400),
+        (b'{"tree": "eket", "world_options": {"noise": NaN}}', 400),
+        (b'{"tree": "eket", "speed": 1e999}', 400),
+        (b'{"tree": "eket", "world_options": {"noise": 1e999}}', 400),
+        (b"[" * 100_000, 400),
+    ],
+)
+async def test_body_that_is_no_good_json_is_a_problem(
+    client: httpx.AsyncClient, body: bytes, status: int
+) -> None:
+    headers = {"content-type": "application/json"}
+    response = await client.post("/api/runs", content=body, headers=headers)
+    assert response.status_code == status
+    problem_in(response)
+    assert (await client.get("/api/runs")).json() == []
+
+
+@pytest.mark.parametrize(
+    ("method", "path", "status"),
+    [
+        ("GET", "/nowhere", 404),
+        ("GET", "/api/nowhere", 404),
+        ("DELETE", "/api/runs", 405),
+        ("PUT", "/healthz", 405),
+        ("GET", f"/api/runs/{NOBODY}", 404),
+        ("GET", "/api/runs/7", 422),
+        ("POST", f"/api/runs/{NOBODY}/pause", 404),
+        ("GET", f"/api/runs/{NOBODY}/events", 404),
+        ("GET", f"/api/runs/{NOBODY}/cameras/head", 404),
+        ("GET", f"/api/pictures/{NOBODY}", 404),
+        ("GET", f"/api/dialogues/{NOBODY}", 404),
+        ("GET", "/api/dialogues?status=ajar", 422),
+        ("GET", "/api/trees/nowhere", 404),
+        ("GET", "/page/../app.py", 404),
+    ],
+)
+async def test_every_refusal_is_a_problem_document(
+    client: httpx.AsyncClient, method: str, path: str, status: int
+) -> None:
+    response = await client.request(method, path)
+    assert response.status_code == status
+    problem_in(response)
+
+
+async def test_events_are_read_after_a_number(client: httpx.AsyncClient) -> None:
+    run = await start(client)
+    other = await start(client)
+    await client.post(f"/api/runs/{run}/pause")
+    events = (await client.get(f"/api/runs/{run}/events")).json()
+    assert [event["type"] for event in events] == ["run_started", "run_paused"]
+    assert [event["seq"] for event in events] == [1, 3]
+    after = await client.get(f"/api/runs/{run}/events", params={"after": 1, "limit": 5})
+    assert [event["seq"] for event in after.json()] == [3]
+    assert (await client.get(f"/api/runs/{other}/events", params={"after": 2})).json() == []
+    huge = await client.get(f"/api/runs/{run}/events", params={"after": 2**63})
+    assert huge.status_code == 422
+
+
+async def test_second_answer_is_told_who_was_first(
+    client: httpx.AsyncClient, service: ServiceUnderTest
+) -> None:
+    run = await start(client)
+    await service.runs.raise_issue((await service.runs.snapshot(None)).runs[0].id)
+    (dialogue,) = (await client.get("/api/dialogues", params={"status": "open"})).json()
+    assert dialogue["run"] == run
+    path = f"/api/dialogues/{dialogue['dialogue']}/answers"
+    answer = {"prompt": dialogue["prompt"]["prompt"], "answer": "yes", "helper": "anna"}
+    first = await client.post(path, json=answer)
+    assert first.status_code == 201
+    assert first.json()["helper"] == "anna"
+    second = await client.post(path, json={**answer, "helper": "ben"})
+    assert second.status_code == 409
+    assert problem_in(second)["answered_by"] == "anna"
+    assert (await client.get("/api/dialogues", params={"status": "open"})).json() == []
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"answer": "maybe"},
+        {"answer": True},
+        {"prompt": "7"},
+        {"prompt": 7},
+        {"helper": ""},
+        {"helper": "a\x00b"},
+        {"helper": "x" * 65},
+        {"helper": None},
+    ],
+)
+async def test_wrong_answer_changes_nothing(
+    client: httpx.AsyncClient, service: ServiceUnderTest, change: dict[str, Any]
+) -> None:
+    await start(client)
+    view = await service.runs.raise_issue((await service.runs.snapshot(None)).runs[0].id)
+    assert view.prompt is not None
+    answer = {"prompt": str(view.prompt.prompt), "answer": "yes", "helper": "anna", **change}
+    head = service.journal.head
+    response = await client.post(f"/api/dialogues/{view.dialogue}/answers", json=answer)
+    assert response.status_code == 422
+    assert problem_in(response)["errors"]
+    assert service.journal.head == head
+
+
+async def test_claim_is_exclusive_until_released(
+    client: httpx.AsyncClient, service: ServiceUnderTest
+) -> None:
+    await start(client)
+    view = await service.runs.raise_issue((await service.runs.snapshot(None)).runs[0].id)
+    path = f"/api/dialogues/{view.dialogue}"
+    claimed = await client.post(f"{path}/claim", json={"helper": "anna"})
+    assert claimed.json()["claimed_by"] == "anna"
+    assert (await client.post(f"{path}/claim", json={"helper": "ben"})).status_code == 409
+    assert (await client.post(f"{path}/release", json={"helper": "anna"})).status_code == 200
+    assert (await client.post(f"{path}/claim", json={"helper": "ben"})).status_code == 200
+
+
+async def test_intervention_is_checked_and_done(
+    client: httpx.AsyncClient, service: ServiceUnderTest
+) -> None:
+    run = await start(client)
+    path = f"/api/runs/{run}/interventions"
+    done = await client.post(path, json={"act": "steal", "object": "pink_bar"})
+    assert done.status_code == 201
+    for wrong in ({"act": "steal"}, {"act": "eat", "object": "x"}, {"act": "move", "object": "x"}):
+        assert (await client.post(path, json=wrong)).status_code == 422
+    assert service.journal.head == 2
+
+
+async def test_camera_picture_is_a_jpeg(client: httpx.AsyncClient) -> None:
+    run = await start(client)
+    picture = await client.get(f"/api/runs/{run}/cameras/head")
+    assert picture.headers["content-type"] == "image/jpeg"
+    assert picture.content.startswith(b"\xff\xd8")
+    assert (await client.get(f"/api/runs/{run}/cameras/foot")).status_code == 404
+
+
+async def test_tree_is_uploaded_read_and_deleted(client: httpx.AsyncClient) -> None:
+    upload = {"name": "mine", "text": "then: [a]"}
+    first = await client.post("/api/trees", json=upload)
+    assert first.status_code == 201
+    assert first.headers["location"] == "/api/trees/mine"
+    assert (await client.post("/api/trees", json=upload)).status_code == 200
+    listed = (await client.get("/api/trees")).json()
+    assert [each["name"] for each in listed] == ["eket", "mine", "tea_table"]
+    assert (await client.get("/api/trees/mine")).json()["text"] == "then: [a]"
+    assert (await client.delete("/api/trees/mine")).status_code == 204
+    assert (await client.delete("/api/trees/mine")).status_code == 404
+
+
+async def test_tree_is_uploaded_as_yaml(client: httpx.AsyncClient) -> None:
+    yaml = {"content-type": "application/yaml; charset=utf-8"}
+    named = await client.post("/api/trees", content=b"name: mine\nthen: []", headers=yaml)
+    assert named.json()["name"] == "mine"
+    unnamed = await client.post("/api/trees?name=other", content=b"then: []", headers=yaml)
+    assert unnamed.json()["name"] == "other"
+    assert (await client.post("/api/trees", content=b"then: []", headers=yaml)).status_code == 422
+
+
+@pytest.mark.parametrize(
+    ("content", "kind", "status"),
+    [
+        (b"nothing", "application/yaml", 422),
+        (b"then: \xff", "application/yaml", 400),
+        (b"then: []", "text/plain", 415),
+        (b"then: []", "", 415),
+        (b'{"name": "eket", "text": "then: []"}', "application/json", 409),
+        (b'{"name": "../etc", "text": "then: []"}', "application/json", 422),
+        (b'{"text": 7}', "application/json", 422),
+        (b'{"text": "\\ud800then"}', "application/json", 422),
+        (b"{", "application/json", 422),
+    ],
+)
+async def test_wrong_upload_keeps_nothing(
+    client: httpx.AsyncClient, content: bytes, kind: str, status: int
+) -> None:
+    response = await client.post("/api/trees", content=content, headers={"content-type": kind})
+    assert response.status_code == status
+    problem_in(response)
+    listed = (await client.get("/api/trees")).json()
+    assert [each["name"] for each in listed] == ["eket", "tea_table"]
+
+
+async def test_built_in_tree_cannot_be_deleted(client: httpx.AsyncClient) -> None:
+    response = await client.delete("/api/trees/eket")
+    assert response.status_code == 409
+    assert "built in" in problem_in(response)["detail"]
+
+
+async def test_body_above_the_limit_is_refused(client: httpx.AsyncClient) -> None:
+    yaml = {"content-type": "application/yaml"}
+    declared = await client.post("/api/trees", content=b"then" * (3 * 1024**2), headers=yaml)
+    assert declared.status_code == 413
+    problem_in(declared)
+
+    async def endless() -> AsyncIterator[bytes]:
+        for _ in range(12):
+            yield b"then" * (256 * 1024)
+
+    streamed = await client.post("/api/trees", content=endless(), headers=yaml)
+    assert streamed.status_code == 413
+    problem_in(streamed)
+
+
+async def test_health_scenarios_robots_and_metrics(client: httpx.AsyncClient) -> None:
+    await start(client)
+    assert (await client.get("/healthz")).json() == {"status": "ok"}
+    assert (await client.get("/readyz")).json() == {"status": "ok"}
+    assert (await client.get("/api/scenarios")).json()[0]["name"] == "eket_paper"
+    assert (await client.get("/api/robots")).json()[0]["robot"] == "robot"
+    metrics = (await client.get("/metrics")).text
+    assert 'mend_runs{status="running"} 1.0' in metrics
+    assert "mend_events_total 1.0" in metrics
+    assert "mend_journal_commit_seconds_count 1.0" in metrics
+
+
+async def test_readiness_is_a_problem_once_the_journal_is_closed(
+    client: httpx.AsyncClient, service: ServiceUnderTest
+) -> None:
+    service.journal.close()
+    response = await client.get("/readyz")
+    assert response.status_code == 503
+    problem_in(response)
+    assert (await client.get("/healthz")).status_code == 200
+
+
+async def test_openapi_names_every_operation_and_has_examples(client: httpx.AsyncClient) -> None:
+    schema = (await client.get("/openapi.json")).json()
+    operations = [operation for path in schema["paths"].values() for operation in path.values()]
+    names = [operation["operationId"] for operation in operations]
+    assert len(set(names)) == len(names)
+    assert all("description" in operation for operation in operations)
+    body = schema["paths"]["/api/runs"]["post"]["requestBody"]["content"]["application/json"]
+    assert body["schema"]["examples"] or body["examples"]
+    assert "Problem" in schema["components"]["schemas"]
+    references = {text.split('"')[0] for text in str(schema).split("#/components/schemas/")[1:]}
+    names_used = {each.split("'")[0] for each in references}
+    assert names_used <= set(schema["components"]["schemas"])

@@ -1,0 +1,144 @@
+from pathlib import Path
+
+import pytest
+
+from server.settings import Settings, WrongSettingsError, default_data_dir, load_settings
+
+TOKEN = "a-long-enough-token"
+
+MAIL = """\
+[mail]
+host = "mail"
+sender = "mend@example.org"
+operators = ["ops@example.org"]
+"""
+
+
+@pytest.fixture(autouse=True)
+def _clean_environment(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    import os
+
+    for name in os.environ:
+        if name.startswith("MEND_"):
+            monkeypatch.delenv(name)
+    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))
+
+
+def write(path: Path, text: str) -> Path:
+    path.write_text(text)
+    return path
+
+
+def test_defaults_listen_on_loopback_only(tmp_path: Path) -> None:
+    settings = load_settings()
+    assert settings.host == "127.0.0.1"
+    assert settings.token is None
+    assert settings.journal_path == tmp_path / "data" / "mend" / "journal.db"
+
+
+def test_arguments_win_over_environment_and_environment_over_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = write(
+        tmp_path / "mend.toml",
+        'port = 1\nask_deadline_s = 5.0\nhelpers = ["anna"]\n[mail]\nhost = "mail"\n'
+        'sender = "mend@example.org"\noperators = ["ops@example.org"]\n',
+    )
+    monkeypatch.setenv("MEND_PORT", "2")
+    monkeypatch.setenv("MEND_ASK_DEADLINE_S", "6")
+    monkeypatch.setenv("MEND_MAIL__PORT", "2525")
+    settings = load_settings(file, port=3, host=None)
+    assert settings.port == 3
+    assert settings.ask_deadline_s == 6.0
+    assert settings.helpers == ["anna"]
+    assert settings.mail is not None
+    assert (settings.mail.host, settings.mail.port) == ("mail", 2525)
+
+
+def test_file_is_read_only_when_it_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = write(tmp_path / "mend.toml", "port = 1234\n")
+    monkeypatch.chdir(tmp_path)
+    assert load_settings().port == 8080
+    monkeypatch.setenv("MEND_CONFIG", str(file))
+    assert load_settings().port == 1234
+
+
+@pytest.mark.parametrize("host", ["0.0.0.0", "::", "192.168.1.5", "robots.example"])
+def test_anything_but_loopback_needs_a_token(host: str) -> None:
+    with pytest.raises(WrongSettingsError, match=f"listening on {host} needs a token"):
+        load_settings(host=host)
+    assert load_settings(host=host, token=TOKEN).host == host
+
+
+@pytest.mark.parametrize("host", ["127.0.0.1", "127.1.2.3", "::1", "localhost"])
+def test_loopback_needs_no_token(host: str) -> None:
+    assert load_settings(host=host).token is None
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "sentence"),
+    [
+        ("MEND_PORT", "http", "The setting 'port' is wrong: "),
+        ("MEND_PORT", "70000", "The setting 'port' is wrong: "),
+        ("MEND_ASK_DEADLINE_S", "0", "The setting 'ask_deadline_s' is wrong: "),
+        ("MEND_ASK_DEADLINE_S", "inf", "The setting 'ask_deadline_s' is wrong: "),
+        ("MEND_TOKEN", " ", "'token' must not be empty"),
+        ("MEND_PROT", "1", "There is no setting MEND_PROT"),
+        ("MEND_HELPERS", "anna", "cannot be read"),
+        ("MEND_HELPERS", '[""]', "The setting 'helpers.0' is wrong: "),
+        ("MEND_CONFIG", "/nowhere.toml", "There is no settings file /nowhere.toml."),
+    ],
+)
+def test_wrong_variable_is_one_clear_sentence(
+    monkeypatch: pytest.MonkeyPatch, name: str, value: str, sentence: str
+) -> None:
+    monkeypatch.setenv(name, value)
+    with pytest.raises(WrongSettingsError) as wrong:
+        load_settings()
+    (problem,) = wrong.value.problems
+    assert sentence in problem
+    assert "\n" not in problem
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        ("port = ", "is not a TOML file"),
+        ("prot = 1", "There is no setting 'prot'."),
+        (MAIL + "port = 'x'", "The setting 'mail.port' is wrong: "),
+        (MAIL + "hail = 1", "There is no setting 'mail.hail'."),
+    ],
+)
+def test_wrong_file_is_one_clear_sentence(tmp_path: Path, text: str, sentence: str) -> None:
+    with pytest.raises(WrongSettingsError) as wrong:
+        load_settings(write(tmp_path / "mend.toml", text))
+    (problem,) = wrong.value.problems
+    assert sentence in problem
+
+
+def test_every_mistake_is_told_at_once() -> None:
+    with pytest.raises(WrongSettingsError) as wrong:
+        load_settings(port="x", ask_repeats=-1)
+    assert len(wrong.value.problems) == 2
+
+
+def test_secrets_are_not_shown(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert TOKEN not in repr(load_settings(token=TOKEN))
+    monkeypatch.setenv("MEND_TOKEN", TOKEN)
+    with pytest.raises(WrongSettingsError) as wrong:
+        load_settings(port="x")
+    assert TOKEN not in str(wrong.value)
+
+
+def test_relative_data_home_is_ignored(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv("XDG_DATA_HOME", "relative")
+    monkeypatch.setenv("HOME", str(tmp_path))
+    assert default_data_dir() == tmp_path / ".local" / "share" / "mend"
+
+
+def test_every_setting_is_in_the_documentation() -> None:
+    documented = (Path(__file__).parents[2] / "docs" / "settings.md").read_text()
+    for name in Settings.model_fields:
+        assert f"| `{name}` |" in documented

@@ -1,0 +1,247 @@
+"""The transcript tells every event so that a person can follow the run."""
+
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any, get_args
+from uuid import UUID
+
+import pytest
+
+from dialogue.script import CloseReason, Help
+from server.journal import events as ev
+from server.transcript import Line, Tone, Transcript, grouped
+from tasks.intervention import Act, Intervention
+from tasks.resolution import Resolution
+from tasks.scene import Pose
+
+RECORDED = Path(__file__).parent / "recorded" / "eket_paper.jsonl"
+RUN, OTHER = UUID(int=1), UUID(int=2)
+EVENT: dict[str, Any] = {"time": 12.34, "wall_time": datetime(2026, 1, 2, tzinfo=UTC), "run": RUN}
+NODE = {**EVENT, "node": "/1/0", "name": "pink_bar"}
+DIALOGUE = {**NODE, "dialogue": OTHER, "robot": "pr2", "issue": "dropped", "object": "pink_bar"}
+
+
+def started(robots: list[str]) -> ev.RunStarted:
+    return ev.RunStarted(
+        **EVENT,
+        tree_name="eket",
+        tree={},
+        scene={},
+        world="tabletop",
+        robots=robots,
+        seed=7,
+        speed="max",
+        scenario=None,
+        options={},
+    )
+
+
+def node_started(*potentials: float, attempt: int = 1) -> ev.NodeStarted:
+    names = ["pink_bar", "yellow_bar", "blue_leg", "green_leg", "top"]
+    return ev.NodeStarted(
+        **NODE,
+        robot="pr2",
+        boot="b",
+        execution=OTHER,
+        attempt=attempt,
+        candidates=[
+            ev.Candidate(node=f"/1/{i}", name=names[i], level=1, potential=each, attempts=0)
+            for i, each in enumerate(potentials)
+        ],
+    )
+
+
+def told(event: ev.Event, robots: list[str] | None = None) -> list[str]:
+    transcript = Transcript()
+    transcript.lines(started(robots or ["pr2"]))
+    return [line.opening + line.text for line in transcript.lines(event)]
+
+
+def test_robot_speaks_its_prompts_and_the_helper_the_answers() -> None:
+    ask = ev.Prompt(
+        **DIALOGUE, prompt=OTHER, version=1, kind="ask", text="Shall I try again?", deadline=42.0
+    )
+    answer = ev.Answered(**DIALOGUE, prompt=OTHER, version=1, answer="no", helper="script")
+    assert told(ask) == ["robot: Shall I try again?"]
+    assert told(answer) == ["helper (script): no"]
+
+
+def test_a_repeated_question_says_so_and_to_whom() -> None:
+    ask = ev.Prompt(
+        **DIALOGUE, prompt=OTHER, version=2, kind="ask", text="Shall I?", deadline=42.0, to="anna"
+    )
+    assert told(ask) == ["robot: Shall I? (asked again) (to anna)"]
+
+
+def test_several_robots_are_called_by_their_ids() -> None:
+    say = ev.Prompt(**DIALOGUE, prompt=OTHER, version=1, kind="say", text="Thank you.")
+    assert told(say, robots=["pr2", "arm"]) == ["pr2: Thank you."]
+
+
+def test_a_choice_names_the_best_rivals_and_counts_the_others() -> None:
+    assert told(node_started(3.0)) == ["robot starts pink_bar"]
+    assert told(node_started(3.0, 2.5, attempt=2)) == [
+        "robot starts pink_bar, attempt 2 (potential 3.00, before yellow_bar 2.50)"
+    ]
+    assert told(node_started(3.0, 2.5, 2.0, 1.5, 1.0))[0].endswith(
+        "before yellow_bar 2.50, blue_leg 2.00, green_leg 1.50 and 1 more)"
+    )
+
+
+def test_a_rival_with_failed_attempts_is_told_with_them() -> None:
+    started = node_started(1.0, 2.5)
+    tried = started.candidates[1].model_copy(update={"attempts": 2})
+    event = started.model_copy(update={"candidates": [started.candidates[0], tried]})
+    assert told(event) == [
+        "robot starts pink_bar (potential 1.00, before yellow_bar 2.50 after 2 failed)"
+    ]
+
+
+def test_steps_of_one_execution_share_a_thread_and_other_lines_have_none() -> None:
+    step = ev.StepStarted(**NODE, robot="pr2", execution=OTHER, step=3, step_name="close_gripper")
+    assert Transcript().lines(step) == [
+        Line(12.34, "pink_bar", "3 close gripper", Tone.STEP, thread=str(OTHER))
+    ]
+    assert Transcript().lines(node_started(1.0))[0].thread is None
+
+
+def test_only_neighbours_of_one_thread_are_joined() -> None:
+    def line(text: str, thread: str | None) -> Line:
+        return Line(1.0, "a", text, Tone.STEP, thread)
+
+    lines = [line("1", "x"), line("2", "x"), line("3", None), line("4", None), line("5", "x")]
+    assert [[each.text for each in group] for group in grouped(lines)] == [
+        ["1", "2"],
+        ["3"],
+        ["4"],
+        ["5"],
+    ]
+    assert list(grouped([])) == []
+
+
+def test_an_issue_says_where_and_why() -> None:
+    detection = ev.Detection(camera="forearm", explanation="no blob of pink_bar")
+    raised = ev.IssueRaised(
+        **NODE,
+        robot="pr2",
+        issue="dropped",
+        object="pink_bar",
+        place=None,
+        execution=OTHER,
+        step=5,
+        interrupts=True,
+        detection=detection,
+    )
+    assert told(raised) == ["issue: dropped pink_bar in step 5 (no blob of pink_bar)"]
+    before = raised.model_copy(update={"step": 0, "detection": None, "issue": "missing"})
+    assert told(before) == ["issue: missing pink_bar before the first step"]
+
+
+def test_a_vain_intervention_says_why() -> None:
+    steal = Intervention(act=Act.STEAL, object="pink_bar", manner="pull")
+    done = ev.InterventionDone(
+        **EVENT,
+        act="steal",
+        object="pink_bar",
+        intervention=steal,
+        by="api",
+        ok=False,
+        detail="the gripper is empty",
+    )
+    assert told(done) == [
+        "person (api) pulls pink_bar out of the gripper: in vain, the gripper is empty"
+    ]
+
+
+@pytest.mark.parametrize("act", Act)
+def test_every_act_has_words(act: Act) -> None:
+    object_name = None if act in (Act.BLOCK, Act.RELEASE) else "pink_bar"
+    to = Pose(x=0.5, y=0.0) if act is Act.MOVE else None
+    intervention = Intervention(act=act, object=object_name, to=to)
+    event = ev.InterventionDone(
+        **EVENT, act=str(act), object=object_name, intervention=intervention, by="scenario"
+    )
+    (text,) = told(event)
+    assert text.startswith("person (scenario) ")
+    assert (object_name or "arm") in text
+
+
+@pytest.mark.parametrize("help_", Help)
+def test_every_promise_is_looked_for_seen_or_not(help_: Help) -> None:
+    awaited = ev.HelpAwaited(**DIALOGUE, help=help_, helper="script", until=40.0)
+    (looks,), (sees,), (misses,) = (
+        told(event)
+        for event in (
+            awaited,
+            ev.HelpVerified(**DIALOGUE, help=help_),
+            ev.HelpNotSeen(**DIALOGUE, help=help_),
+        )
+    )
+    assert looks.startswith("robot looks for ")
+    assert looks.endswith(" until 40.0 s")
+    assert sees.startswith("robot sees ")
+    assert misses == sees.replace("sees", "does not see")
+
+
+@pytest.mark.parametrize("resolution", Resolution)
+def test_every_resolution_is_named_and_explained(resolution: Resolution) -> None:
+    (text,) = told(ev.Resolved(**DIALOGUE, resolution=resolution, helped=True))
+    assert text.startswith(f"resolved by {resolution}: ")
+    assert "pink_bar" in text
+
+
+def test_a_dialogue_that_closes_resolved_adds_nothing_to_its_resolution() -> None:
+    assert told(ev.DialogueClosed(**DIALOGUE, reason=CloseReason.RESOLVED)) == []
+
+
+@pytest.mark.parametrize("reason", [each for each in CloseReason if each != CloseReason.RESOLVED])
+def test_a_dialogue_that_ends_otherwise_says_so(reason: CloseReason) -> None:
+    assert len(told(ev.DialogueClosed(**DIALOGUE, reason=reason))) == 1
+
+
+def test_a_failed_attempt_is_told_apart_from_a_free_one() -> None:
+    free = ev.NodeReset(
+        **NODE, robot="pr2", reason="the robot will try again", failed_attempt=False
+    )
+    failed = free.model_copy(update={"reason": "nobody helped", "failed_attempt": True})
+    assert told(free) == ["pink_bar is put back: the robot will try again"]
+    assert told(failed) == ["pink_bar is put back, a failed attempt: nobody helped"]
+
+
+def test_what_the_last_look_misses_is_told_before_the_end() -> None:
+    part = ev.MissingPart(node="/0", name="top", object="top", place="top_place")
+    assert told(ev.RunFinished(**EVENT, missing=[part])) == [
+        "the last look misses top at top_place",
+        "the run has finished: the task is done",
+    ]
+
+
+def test_a_run_that_fails_or_is_aborted_says_why() -> None:
+    assert told(ev.RunFailed(**EVENT, reason="'top' could not be done")) == [
+        "the run has failed: 'top' could not be done"
+    ]
+    assert told(ev.RunAborted(**EVENT)) == ["the run was aborted: by a person"]
+
+
+def test_every_event_type_has_a_line_of_its_own_or_is_told_by_others() -> None:
+    union = get_args(ev.AnyEvent)[0]
+    registered = Transcript.__dict__["lines"].dispatcher.registry
+    assert set(get_args(union)) <= set(registered)
+
+
+def test_something_that_is_no_event_of_a_run_is_refused() -> None:
+    with pytest.raises(TypeError, match="expected an event of the journal, got Event"):
+        Transcript().lines(ev.Event(**EVENT))
+
+
+def test_a_recorded_run_reads_in_order_from_beginning_to_end() -> None:
+    transcript = Transcript()
+    lines = [
+        line
+        for text in RECORDED.read_text().splitlines()
+        for line in transcript.lines(ev.any_event.validate_json(text))
+    ]
+    assert [line.time_s for line in lines] == sorted(line.time_s for line in lines)
+    assert lines[0].tone is Tone.RUN
+    assert lines[-1].tone is Tone.FINISHED
+    assert {line.speaker for line in lines if line.tone is Tone.SAID} == {"robot"}

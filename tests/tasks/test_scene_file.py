@@ -1,0 +1,92 @@
+"""Scene files and the JSON Schemas of all files."""
+
+import json
+from pathlib import Path
+
+import jsonschema_rs
+import pytest
+from trees import BEHAVIORS
+
+from tasks.document import read_document
+from tasks.json_schema import scenario_schema, scene_schema, task_schema
+from tasks.library import SCENES, TREES
+from tasks.scene_file import (
+    SceneFileError,
+    built_in_scene,
+    check_scene_file,
+    check_scene_text,
+)
+
+SCENE = """\
+name: s
+objects:
+  cup:
+    color: [1, 0.5, 0]
+    size: [0.03, 0.05, 0.05]
+    pose: {x: 0.5, y: 0.1}
+places:
+  shelf: {pose: {x: 0.6, y: 0.2, z: 0.9}}
+"""
+
+
+def told(text: str) -> list[str]:
+    with pytest.raises(SceneFileError) as caught:
+        check_scene_text(text, source="s")
+    return str(caught.value).splitlines()
+
+
+def test_a_scene_is_read() -> None:
+    scene = check_scene_text(SCENE)
+    assert scene.objects["cup"].color == (1.0, 0.5, 0.0)
+    assert scene.places["shelf"].pose.z == 0.9
+
+
+def test_every_mistake_is_told_with_its_line() -> None:
+    text = SCENE.replace("0.5, 0]", "2, 0]").replace("x: 0.5,", "x: left,")
+    text = text.replace("shelf:", "7th:").replace("name: s", "name: s\nlight: on")
+    lines = told(text)
+    assert lines == [
+        "s:2: unknown key 'light'; known are 'name', 'objects', 'places', 'scatter', 'table'",
+        "s:5: 'objects.cup.color.1' must be less than or equal to 1, but it is 2",
+        "s:7: 'objects.cup.pose.x' must be a valid number, but it is \"left\"",
+        "s:9: 'places.7th' must be a name: a letter, then at most 63 letters, digits, '_' or '-', "
+        'but it is "7th"',
+    ]
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", "s:1: a scene file is a mapping, but this is empty"),
+        ("name: s\nplaces: {}", "s:1: 'objects' is missing"),
+        ("a: [", "not valid YAML or JSON"),
+    ],
+)
+def test_what_is_no_scene_is_told_so(text: str, message: str) -> None:
+    assert any(message in line for line in told(text))
+
+
+def test_a_scene_file_that_is_not_there_is_told_so(tmp_path: Path) -> None:
+    with pytest.raises(SceneFileError, match="cannot be read"):
+        check_scene_file(tmp_path / "none.yaml")
+
+
+@pytest.mark.parametrize("name", SCENES.names())
+def test_every_scene_of_the_library_is_right(name: str) -> None:
+    scene = built_in_scene(name)
+    assert scene.name == name
+    colors = [each.color for each in scene.objects.values()]
+    assert len(set(colors)) == len(colors)
+
+
+def test_the_schemas_take_the_library_and_refuse_mistakes() -> None:
+    scene_check = jsonschema_rs.validator_for(scene_schema())
+    task_check = jsonschema_rs.validator_for(task_schema(BEHAVIORS))
+    for name in SCENES.names():
+        assert scene_check.is_valid(json.loads(json.dumps(read_document(SCENES.read(name))[0])))
+    for name in TREES.names():
+        assert task_check.is_valid(json.loads(json.dumps(read_document(TREES.read(name))[0])))
+    assert not task_check.is_valid({"name": "t", "tree": {"and": []}})
+    assert not task_check.is_valid({"name": "t", "tree": {"behavior": "jump"}})
+    assert not scene_check.is_valid({"name": "s", "objects": {}})
+    jsonschema_rs.validator_for(scenario_schema())

@@ -1,0 +1,226 @@
+"""Reading task files: both forms, and every mistake told with its line and node."""
+
+import json
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from trees import BEHAVIORS
+
+from tasks.library import SCENES, TREES, NotInLibraryError, Shelf
+from tasks.scene_file import built_in_scene
+from tasks.task_file import (
+    CheckedTask,
+    TaskFileError,
+    check_built_in_task,
+    check_task_file,
+    check_task_text,
+)
+from tasks.task_tree import TaskTree
+
+LEAF = "{behavior: pick_and_place, object: a, place: b}"
+
+
+def check(text: str) -> CheckedTask:
+    return check_task_text(text, BEHAVIORS)
+
+
+def problems(text: str) -> list[tuple[int | None, str | None, str]]:
+    with pytest.raises(TaskFileError) as caught:
+        check(text)
+    return [(each.line, each.node_path, each.message) for each in caught.value.problems]
+
+
+def test_the_nested_form_becomes_a_tree() -> None:
+    definition = check(TREES.read("eket")).definition
+    tree = TaskTree(definition)
+    assert [tree.kind_of(i) for i in range(len(tree))] == [
+        "then", "behavior", "and", "behavior", "behavior", "behavior", "or", "behavior", "behavior",
+    ]  # fmt: skip
+    assert [tree.name_of(i) for i in tree.leaves] == [
+        "green_leg", "pink_bar", "yellow_bar", "blue_leg", "purple_top", "orange_top",
+    ]  # fmt: skip
+    assert definition.scene == "eket"
+
+
+def test_a_leaf_needs_help_where_it_or_else_its_object_says_so() -> None:
+    text = """
+name: t
+scene: eket
+tree:
+  and:
+    - {behavior: pick_and_place, object: blue_leg, place: blue_leg}
+    - {behavior: pick_and_place, object: yellow_bar, place: yellow_bar, needs_help: false}
+    - {behavior: pick_and_place, object: green_leg, place: green_leg, needs_help: true}
+    - {behavior: pick_and_place, object: pink_bar, place: pink_bar}
+"""
+    tree = TaskTree(check(text).definition)
+    helped = [tree.leaf_definition(i).needs_help for i in tree.leaves]
+    assert helped == [True, False, True, False]
+
+
+def test_json_is_read_as_well() -> None:
+    leaf = {"behavior": "pick_and_place", "object": "a", "place": "b"}
+    text = json.dumps({"name": "t", "description": "\U0001f916 \\ud83d", "tree": {"or": [leaf]}})
+    assert check(text).definition.description == "\U0001f916 \\ud83d"
+
+
+def test_names_that_would_be_equal_get_a_number() -> None:
+    text = f"{{name: t, tree: {{and: [{LEAF}, {LEAF}, {{and: [{LEAF}]}}]}}}}"
+    names = [node.name for node in check(text).definition.nodes]
+    assert names == ["and", "a", "a_2", "and_2", "a_3"]
+
+
+def test_every_mistake_is_told_at_once_in_the_order_of_lines() -> None:
+    text = """\
+name: t
+scene: eket
+tree:
+  then:
+    - and: []
+    - or: green_leg
+    - {then: [], or: []}
+    - green_leg
+    - behavior: pick_and_place
+      object: 5
+      plce: blue_leg
+    - {behavior: jump, name: high}
+    - behavior: pick_and_place
+      object: red_leg
+      place: nowhere
+      name: high
+    - {behavior: [], extra: 1}
+    -
+    - name: 7th
+      and:
+        - {object: green_leg}
+      colour: red
+author: me
+"""
+    assert [(line, path) for line, path, _ in problems(text)] == [
+        (5, "/0"), (6, "/1"), (7, "/2"), (8, "/3"), (9, "/4"), (10, "/4"), (11, "/4"), (12, "/5"),
+        (14, "/6"), (15, "/6"), (16, "/6"), (17, "/7"), (18, "/8"), (19, "/9"), (21, "/9/0"),
+        (22, "/9"), (23, None),
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("tree", "message"),
+    [
+        ("{and: []}", "'and' is empty; a goal node needs a child"),
+        ("{or: 5}", "'or' must be a list of nodes, but it is 5"),
+        ("{then: [], or: []}", "this one has 'then' and 'or'"),
+        ("{name: a}", "a node needs one of 'then', 'and', 'or' or 'behavior'"),
+        ("5", "a node is a mapping with one of"),
+        ("{behavior: jump}", "unknown behavior 'jump'; there are 'pick_and_place'"),
+        ("{behavior: pick_and_place, object: a}", "'place' is missing"),
+        ("{behavior: pick_and_place, object: 5, place: b}", "'object' must be a valid string"),
+        (
+            "{behavior: pick_and_place, object: a, place: b, spee: 1}",
+            "unknown key 'spee'; 'pick_and_place' may have 'needs_help', 'object', 'place'",
+        ),
+        (f"{{and: [{LEAF}], speed: 1}}", "unknown key 'speed'; a goal node has 'and'"),
+        (f"{{name: 7, and: [{LEAF}]}}", "'name' must be a letter, then"),
+        (f"{{name: x, name: y, and: [{LEAF}]}}", "the key 'name' is given twice, first in line 2"),
+    ],
+)
+def test_one_mistake_is_one_sentence(tree: str, message: str) -> None:
+    ((_, _, told),) = problems(f"name: t\ntree: {tree}")
+    assert message in told
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", "a task file is a mapping, but this is empty"),
+        ("- a", "a task file is a mapping, but this is a list"),
+        (f"tree: {LEAF}", "'name' is missing"),
+        ("name: t", "'tree' is missing"),
+        (f"name: t\nscene: moon\ntree: {LEAF}", "there is no scene 'moon' in the library"),
+        (f"name: t\nscene: 5\ntree: {LEAF}", "'scene' must be text, but it is 5"),
+        ("a: b: c", "the text is not valid YAML or JSON"),
+        ('{"name": ', "the text is not valid YAML or JSON"),
+        ("\x00", "the text is not valid YAML or JSON"),
+    ],
+)
+def test_a_file_without_a_tree_is_told_so(text: str, message: str) -> None:
+    ((_, _, told),) = problems(text)
+    assert message in told
+
+
+def test_an_error_reads_as_file_line_node_and_sentence(tmp_path: Path) -> None:
+    path = tmp_path / "bad.yaml"
+    path.write_text("name: t\ntree:\n  and:\n    - or: []\n")
+    with pytest.raises(TaskFileError) as caught:
+        check_task_file(path, BEHAVIORS)
+    assert str(caught.value) == f"{path}:4: /0: 'or' is empty; a goal node needs a child"
+
+
+def test_a_file_that_cannot_be_read_is_told_so(tmp_path: Path) -> None:
+    with pytest.raises(TaskFileError, match="cannot be read: No such file"):
+        check_task_file(tmp_path / "none.yaml", BEHAVIORS)
+    (tmp_path / "binary.yaml").write_bytes(b"name: \xff")
+    with pytest.raises(TaskFileError, match="not UTF-8 text \\(byte 6\\)"):
+        check_task_file(tmp_path / "binary.yaml", BEHAVIORS)
+
+
+def test_a_scene_beside_the_file_comes_before_the_library(tmp_path: Path) -> None:
+    (tmp_path / "scenes").mkdir()
+    scene = "name: eket\nobjects: {}\nplaces: {}\n"
+    (tmp_path / "scenes" / "eket.yaml").write_text(scene)
+    (tmp_path / "t.yaml").write_text(TREES.read("eket"))
+    with pytest.raises(TaskFileError, match="the scene 'eket' has no object 'green_leg'"):
+        check_task_file(tmp_path / "t.yaml", BEHAVIORS)
+    (tmp_path / "scenes" / "eket.yaml").write_text("name: 5\nobjects: {}\nplaces: {}\n")
+    with pytest.raises(TaskFileError, match="the scene 'eket' has mistakes, the first one"):
+        check_task_file(tmp_path / "t.yaml", BEHAVIORS)
+
+
+def test_a_deep_tree_is_read_without_recursion() -> None:
+    depth = 5_000
+    text = "{name: t, tree: " + "{then: [" * depth + LEAF + "]}" * depth + "}"
+    assert len(check(text).definition.nodes) == depth + 1
+
+
+@pytest.mark.slow
+def test_a_hundred_thousand_nodes_are_read_and_beyond_the_limit_refused() -> None:
+    leaf = {"behavior": "pick_and_place", "object": "a", "place": "b"}
+    text = json.dumps({"name": "t", "tree": {"and": [leaf] * 100_000}})
+    assert len(check(text).definition.nodes) == 100_001
+    text = "{name: t, tree: {and: [" + "{and: []}," * 200_000 + "]}}"
+    assert (1, None, "the tree has more than 200000 nodes") in problems(text)
+
+
+@settings(max_examples=100, deadline=None)
+@given(st.text(alphabet="abnt:-[]{}\n ,&*!|>'\"#%@`?0.~", max_size=60))
+def test_no_text_ever_breaks_the_reader(text: str) -> None:
+    with pytest.raises(TaskFileError):
+        check(text)
+
+
+@pytest.mark.parametrize("name", TREES.names())
+def test_every_tree_of_the_library_is_right(name: str) -> None:
+    task = check_built_in_task(name, BEHAVIORS)
+    assert task.definition.name == task.definition.scene == name
+    assert task.scene == built_in_scene(name)
+
+
+def test_the_workshop_holds_every_nesting_and_over_forty_leaves() -> None:
+    tree = TaskTree(check_built_in_task("workshop", BEHAVIORS).definition)
+    pairs = {
+        (tree.kind_of(parent), tree.kind_of(node))
+        for node in range(1, len(tree))
+        if (parent := tree.parent_of(node)) is not None
+    }
+    goals = ("then", "and", "or")
+    assert {(outer, inner) for outer in goals for inner in goals} <= pairs
+    assert len(tree.leaves) >= 40
+
+
+def test_the_library_tells_what_it_has() -> None:
+    with pytest.raises(NotInLibraryError, match="no scene 'moon' in the library; it has 'eket'"):
+        SCENES.read("moon")
+    with pytest.raises(NotInLibraryError):
+        TREES.read("../scenes/eket")
+    assert Shelf("nowhere", "nothing").names() == []
