@@ -12,13 +12,18 @@ help:  ## Say what there is
 
 setup: $(READY)  ## Make .venv with everything (the other targets do this first)
 
+# An environment that was moved here, or whose Python has gone since, is made anew.
+ifneq ($(shell [ "$$(cat $(READY) 2>/dev/null)" = "$(CURDIR)" ] && $(BIN)/python -c '' && echo good),good)
+.PHONY: $(READY)
+endif
+
 $(READY): requirements.lock pyproject.toml scripts/setup
 	scripts/setup
 
 demo: $(READY)  ## A PR2 builds a table base, is robbed, asks for help, and finishes
 	$(BIN)/mend run eket --world workcell --scenario eket_paper --speed max --seed 7 --report out/eket_paper.html
 
-serve: $(READY)  ## The service with the helper's page on http://127.0.0.1:8000
+serve: $(READY)  ## The service with the helper's page on http://127.0.0.1:8080
 	$(BIN)/mend serve
 
 test: $(READY)  ## Every test, in random order

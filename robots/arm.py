@@ -89,13 +89,13 @@ class Arm:
         """Leave upwards, then move to where the arm hides nothing from the head camera."""
         if self.at_neutral:
             return
-        yield from self._lift()
+        yield from self.lift()
         yield from self.follow(self.body.plan_neutral(), _RETREAT_SPEED)
         self.at_neutral = True
 
     def go_to_hand_over(self) -> Routine[None]:
         """Move to where a person hands something to the robot."""
-        yield from self._lift()
+        yield from self.lift()
         yield from self.follow(self.body.plan_hand_over(), _RETREAT_SPEED)
 
     def tool_pose(self) -> ToolPose | None:
@@ -106,7 +106,8 @@ class Arm:
         yaw = math.atan2(tool[1, 1], tool[0, 1])
         return ToolPose(float(tool[0, 3]), float(tool[1, 3]), float(tool[2, 3]), yaw)
 
-    def _lift(self) -> Routine[None]:
+    def lift(self) -> Routine[None]:
+        """Raise the tool point straight up before it leaves sideways, where that is possible."""
         pose = None if self.at_neutral else self.tool_pose()
         if pose is None:
             return

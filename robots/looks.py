@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from robots.arm import Arm, Routine
-from robots.behaviors.execution import is_at
+from robots.behaviors.preparation import is_at
 from robots.body import ToolPose
 from robots.catalogue import Part
 from robots.link.messages import Holding, Location, Looked, ReportBody
@@ -20,7 +20,7 @@ _RESTS_WITHIN_M = 0.006
 """An object rests if it is this near to where the look before saw it."""
 _STEADY_S = 0.3
 _STEADY_SPREAD_PX = 4.0
-_CLEAR_FORCE_N = 8.0
+_CLEAR_FORCE_N = 40.0
 _MOST_READINGS = 6
 
 

@@ -9,7 +9,9 @@ from pydantic import ValidationError
 from robots.agent import Emit, EmitPicture
 from robots.arm import Arm, Routine
 from robots.behaviors.behavior import Behavior
-from robots.behaviors.execution import Assignment, Execution, ExecutionState
+from robots.behaviors.execution import Execution
+from robots.behaviors.execution_state import ExecutionState
+from robots.behaviors.preparation import Assignment
 from robots.body import Body
 from robots.catalogue import Catalogue, Part
 from robots.link.messages import (

@@ -38,7 +38,8 @@ class RefusedError(Exception):
     """The service refused a request; `problem` says why."""
 
     def __init__(self, refusal: Problem) -> None:
-        super().__init__(refusal.detail)
+        more = [each for each in refusal.errors or [] if each != refusal.detail]
+        super().__init__("\n".join([refusal.detail, *more]))
         self.problem = refusal
 
 

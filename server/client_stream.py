@@ -10,6 +10,7 @@ from typing import Any, Literal, Self
 from urllib.parse import quote
 from uuid import UUID
 
+from pydantic import ValidationError
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidStatus
 
@@ -97,6 +98,14 @@ class EventStream:
             before = self._seen
             try:
                 await self._read_connection()
+            except ValidationError as error:
+                # Without this, whoever iterates would wait for ever.
+                unreadable = StreamRefusedError(
+                    "the service sent what this client cannot read; is it of another version? "
+                    f"({error})"
+                )
+                self._queue.put_nowait(unreadable)
+                return
             except Exception as error:
                 # Also one that is no refusal: whoever follows must not wait for ever.
                 self._queue.put_nowait(error)
@@ -139,9 +148,10 @@ class EventStream:
                 elif message["type"] in ("result", "error"):
                     self._settle(message)
                 else:
-                    self._seen = message["seq"]
-                    # As JSON: an event's strict parts take a list for a tuple only there.
-                    yield any_event.validate_json(text)
+                    # From the text: strict models take a list for a tuple in JSON only.
+                    event: Event = any_event.validate_json(text)
+                    self._seen = event.seq
+                    yield event
         if socket.close_code == POLICY_VIOLATION:
             raise StreamRefusedError(f"the service closed the connection: {socket.close_reason}")
 
@@ -151,7 +161,7 @@ class EventStream:
         self._snapshot_wanted = False
         self._seen = message["seq"]
         del message["type"]
-        return Snapshot.model_validate(message) if wanted else None
+        return Snapshot.model_validate_json(json.dumps(message)) if wanted else None
 
     # --- commands -----------------------------------------------------------------------------
 

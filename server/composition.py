@@ -16,7 +16,13 @@ from server.app import create_app, drop_stuck_clients, serve_config
 from server.dialogues.escalation import EscalationPolicy
 from server.dialogues.mail import Mailer
 from server.journal.sqlite import SqliteJournal
-from server.library import BuiltInScenarios, TaskLibrary, built_in_trees, check_uploaded_tree
+from server.library import (
+    BuiltInScenarios,
+    Scenes,
+    TaskLibrary,
+    built_in_trees,
+    check_uploaded_tree,
+)
 from server.robots.endpoint import ROBOT_PATH, add_robot_route
 from server.robots.process import launch
 from server.robots.registry import RobotRegistry
@@ -69,7 +75,8 @@ async def _open(
     )
     config_socket = _bind(settings)
     url = f"http://{_reachable(settings.host)}:{config_socket.getsockname()[1]}"
-    trees = JournaledTrees(journal, built_in_trees(), check_uploaded_tree)
+    scenes = Scenes(settings.scenes)
+    trees = JournaledTrees(journal, built_in_trees(), partial(check_uploaded_tree, scenes=scenes))
     scenarios = BuiltInScenarios()
     worlds = SimulatedWorlds(
         load_plugins("mend.worlds"),
@@ -89,7 +96,7 @@ async def _open(
         journal=journal,
         robots=registry,
         worlds=worlds,
-        trees=TaskLibrary(trees),
+        trees=TaskLibrary(trees, scenes),
         scenarios=scenarios,
         scripts=load_scripts(),
         policy=_policy(settings),
@@ -114,9 +121,10 @@ async def _open(
         await server.wait_until_started(serving)
         yield Service(runtime, journal, registry, trees, url, settings)
     finally:
+        # First: a report that no run takes any more must not be acknowledged.
+        registry.close()
         await runtime.close()
         await mail.close()
-        registry.close()
         if serving is not None:
             server.should_exit = True
             with suppress(asyncio.CancelledError):

@@ -1,16 +1,19 @@
 """Task trees and scenarios as the runtime takes them: checked, with their scenes."""
 
+from pathlib import Path
+
 from pydantic import BaseModel
 
 from server.errors import InvalidError, NotFoundError
-from server.runtime.runtime import LoadedTree
+from server.runtime.ports import LoadedTree
 from server.trees import CheckedTree, TreeLibrary
 from tasks.definition import TaskTreeDefinition
 from tasks.library import SCENARIOS, TREES, NotInLibraryError
 from tasks.plugins import load_plugins
 from tasks.scenario import Scenario
 from tasks.scenario_file import built_in_scenario
-from tasks.scene_file import built_in_scene
+from tasks.scene import Scene
+from tasks.scene_file import SceneFileError, built_in_scene, check_scene_file
 from tasks.task_file import TaskFileError, check_task_text
 
 
@@ -19,17 +22,36 @@ def built_in_trees() -> dict[str, str]:
     return {name: TREES.read(name) for name in TREES.names()}
 
 
+class Scenes:
+    """The scenes that trees may name: those of a folder, then those of the library."""
+
+    def __init__(self, folder: Path | None) -> None:
+        self._folder = folder
+
+    def find(self, name: str) -> Scene:
+        """One scene. Raises `NotInLibraryError` or `SceneFileError`."""
+        # Only a listed name is opened, so that a name is never taken for a path.
+        for path in sorted(self._folder.glob("*.yaml")) if self._folder else ():
+            if path.stem == name:
+                return check_scene_file(path)
+        return built_in_scene(name)
+
+
 class TaskLibrary:
     """Implements `server.runtime.runtime.TreeSource`."""
 
-    def __init__(self, trees: TreeLibrary) -> None:
+    def __init__(self, trees: TreeLibrary, scenes: Scenes) -> None:
         self._trees = trees
+        self._scenes = scenes
 
     async def load(self, name: str) -> LoadedTree:
         """A tree and the scene that it names. Raises `NotFoundError` or `InvalidError`."""
         view = await self._trees.tree(name)
         definition = TaskTreeDefinition.model_validate(view.definition)
-        scene = built_in_scene(definition.scene) if definition.scene else None
+        try:
+            scene = self._scenes.find(definition.scene) if definition.scene else None
+        except (NotInLibraryError, SceneFileError) as error:
+            raise InvalidError(f"the scene of tree '{name}' cannot be used: {error}") from error
         return LoadedTree(name, definition, scene)
 
 
@@ -52,10 +74,10 @@ def behavior_parameters() -> dict[str, type[BaseModel]]:
     return {name: each.parameters for name, each in load_plugins("mend.behaviors").items()}
 
 
-def check_uploaded_tree(text: str) -> CheckedTree:
+def check_uploaded_tree(text: str, scenes: Scenes) -> CheckedTree:
     """Read a task file. Raises `InvalidError` with one sentence per mistake."""
     try:
-        definition = check_task_text(text, behavior_parameters()).definition
+        definition = check_task_text(text, behavior_parameters(), scenes.find).definition
     except TaskFileError as error:
         problems = [each.describe("line") for each in error.problems]
         count = "a mistake" if len(problems) == 1 else f"{len(problems)} mistakes"

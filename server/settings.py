@@ -59,6 +59,8 @@ class Settings(BaseSettings):
     data_dir: Path = Field(default_factory=lambda: default_data_dir())
     journal: Path | None = None
     """The journal's file; `journal.db` in `data_dir` unless set."""
+    scenes: Path | None = None
+    """A folder of scene files (`NAME.yaml`) that task trees may name, besides the library's."""
     helpers: list[Annotated[str, Field(min_length=1, max_length=64)]] = []
     """Whom to ask, in this order; empty: everybody at once."""
     mail: MailSettings | None = None

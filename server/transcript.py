@@ -298,9 +298,14 @@ def _comparison(event: ev.NodeStarted) -> str:
     others = [each for each in event.candidates if each.node != event.node]
     if chosen is None or not others:
         return ""
-    rivals = ", ".join(f"{each.name} {each.potential:.2f}" for each in others[:3])
+    rivals = ", ".join(_rival(each) for each in others[:3])
     more = f" and {len(others) - 3} more" if len(others) > 3 else ""
     return f" (potential {chosen.potential:.2f}, before {rivals}{more})"
+
+
+def _rival(candidate: ev.Candidate) -> str:
+    failed = f" after {candidate.attempts} failed" if candidate.attempts else ""
+    return f"{candidate.name} {candidate.potential:.2f}{failed}"
 
 
 def _promised(event: ev.HelpAwaited | ev.HelpVerified | ev.HelpNotSeen) -> str:

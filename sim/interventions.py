@@ -53,6 +53,10 @@ class PendingInterventions:
         queued = Queued(command=command_id, do=command.intervention, by=command.by, at_s=at_s)
         self._queued.append(queued)
 
+    def withdraw(self, handled: str | None) -> None:
+        """Nobody needs to do any more what was queued for an object, or to clear the way."""
+        self._queued = [each for each in self._queued if each.do.object not in (None, handled)]
+
     def take_due(
         self, time_s: float, progress: TaskProgress | None
     ) -> list[tuple[Intervention, str]]:

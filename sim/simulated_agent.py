@@ -218,6 +218,9 @@ class SimulatedAgent:
         if isinstance(body, _SEEN_AT_ONCE):
             self._reported = True
         if isinstance(body, Looked):
+            if body.fulfilled and self._look is not None:
+                # Nobody still does what the robot has just said that it sees done.
+                self._pending.withdraw(self._look.object)
             self._look = None
         if isinstance(body, Finished) and not body.found_in_place and self._progress is not None:
             # The last moments of the last step are over before anybody can ask for them.

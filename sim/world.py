@@ -92,12 +92,13 @@ class WorldAdapter(Protocol):
 
 
 @runtime_checkable
-class ColorTeacher(WorldAdapter, Protocol):
-    """A kind of world whose pictures a colour model can be trained from."""
+class ColorTeacher(Protocol):
+    """A world adapter whose pictures a colour model can be trained from."""
 
     def train_colors(self, scene: Scene) -> ColorModel:
         """Learn the colours of a scene's objects from rendered pictures of them.
 
-        Raises `ColorModelError` for an object without a colour of its own.
+        Raises `ColorModelError` for an object without a colour of its own, and
+        `WorldUnavailableError`.
         """
         ...

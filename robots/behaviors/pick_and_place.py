@@ -1,11 +1,12 @@
 """Pick and place, in eight steps (Blankenburg et al. 2020, Section 3.4)."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import ClassVar
 
 from robots.behaviors.behavior import Behavior, Move, SetGripper, Situation, Step
 from robots.body import ToolPose
-from robots.grasp import RELEASE_CLEARANCE_M, Grasp, grasp_of
+from robots.grasp import RELEASE_CLEARANCE_M, Grasp, grasp_of, half_turn
 from robots.link.messages import Location
 from tasks.scene import Name, StrictModel
 
@@ -38,6 +39,8 @@ class PickAndPlace(Behavior):
         pick = place
         if situation.found is not None:
             pick = _tool_pose(grasp, situation.found, situation.table_z, 0.0)
+            # Parts look the same after half a turn: never carry one round by more than a quarter.
+            place = replace(place, yaw=pick.yaw + half_turn(place.yaw - pick.yaw))
         return (
             Step("above pick", Move(_above(pick), speed=1.0)),
             Step("pick", Move(pick, speed=0.5)),

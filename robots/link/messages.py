@@ -263,7 +263,10 @@ class Hold(Message):
 
 
 class Intervene(Message):
-    """Simulated worlds: a person does this, now or when the clock reaches `at`."""
+    """Simulated worlds: a person does this, now or when the clock reaches `at`.
+
+    Nobody does what is still to come for an object once a look saw what it expected of it.
+    """
 
     type: Literal["intervene"] = "intervene"
     intervention: Intervention

@@ -13,7 +13,7 @@ from tasks.scene import StrictModel
 class BlockedParameters(StrictModel):
     """A force above `limit_n` against the arm for `cycles` control cycles on end is a contact."""
 
-    limit_n: float = Field(default=20.0, gt=0.0)
+    limit_n: float = Field(default=60.0, gt=0.0)
     cycles: int = Field(default=4, ge=1)
 
 

@@ -66,6 +66,8 @@ class PathPlanner:
     def __init__(self, chain: KinematicChain, preferred: Joints) -> None:
         self._chain = chain
         self._preferred = preferred
+        # The first solution on a machine compiles for seconds: now, while nobody waits for it.
+        chain.solve(chain.pose(preferred), preferred, preferred)
 
     def plan(
         self, start: Joints, waypoints: Sequence[ToolPose], rng: np.random.Generator

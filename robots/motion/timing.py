@@ -11,6 +11,9 @@ from robots.motion.limits import MotionLimits
 
 _LEAST_SLOPE = 1e-9
 
+_TURN_BACK = 1e-6
+"""A motion that is slowed down at once would otherwise swing back; the generator wants a bound."""
+
 _SLOWEST = 1e-3
 """Slower than this fraction of full speed a motion would never end."""
 
@@ -46,6 +49,7 @@ class TimedMotion:
         self._output = OutputParameter(1)
         self._full_velocity = _bound_velocity(curve, limits, straight)
         self._input.target_position = [curve.length]
+        self._input.min_velocity = [-_TURN_BACK]
         self._bound_acceleration(limits)
         self.set_speed(speed)
         self._parameter = 0.0

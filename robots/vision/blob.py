@@ -67,7 +67,9 @@ def _blob_of(
     corner, far = starts.min(axis=0), ends.max(axis=0)
     mask = np.zeros(shape, np.uint8)
     rows, columns = labels.shape
-    mask[top : top + rows, left : left + columns] = np.isin(labels, chosen).astype(np.uint8) * 255
+    is_chosen = np.zeros(len(stats), np.uint8)
+    is_chosen[chosen] = 255
+    mask[top : top + rows, left : left + columns] = is_chosen[labels]
     return Blob(
         center=(float(center[0] + left), float(center[1] + top)),
         area_px=int(areas.sum()),

@@ -60,6 +60,7 @@ class Segmentation:
     def __init__(self, labels: Mask, names: Sequence[str]) -> None:
         self._labels = labels
         self._names = {name: index + 1 for index, name in enumerate(names)}
+        self._of_any: Mask | None = None
 
     def mask(self, name: str) -> Mask:
         """Where the colours of one object are: 255 there, 0 elsewhere.
@@ -70,11 +71,13 @@ class Segmentation:
         if label is None:
             known = ", ".join(sorted(self._names))
             raise ColorModelError(f"the colour model does not know '{name}'; it knows {known}")
-        return np.where(self._labels == label, 255, 0).astype(np.uint8)
+        return np.asarray(cv2.inRange(self._labels, label, label), np.uint8)
 
     def of_any(self) -> Mask:
-        """Where the colours of any object are."""
-        return np.where(self._labels > 0, 255, 0).astype(np.uint8)
+        """Where the colours of any object are; not to be written to."""
+        if self._of_any is None:
+            self._of_any = np.where(self._labels > 0, 255, 0).astype(np.uint8)
+        return self._of_any
 
 
 class ColorModel:
@@ -110,7 +113,7 @@ class ColorModel:
         Raises `ColorModelError` for an object of which no pixel is coloured enough.
         """
         chosen = settings or ColorSettings()
-        return cls({name: _learn(name, each, chosen) for name, each in samples.items()}, chosen)
+        return cls({name: learn(name, each, chosen) for name, each in samples.items()}, chosen)
 
     def segment(self, bgr: NDArray[np.uint8]) -> Segmentation:
         """Label every pixel of a picture with the object that owns its colour."""
@@ -184,7 +187,8 @@ class ColorModel:
         return cls(dict(zip(names, histograms, strict=True)), settings)
 
 
-def _learn(name: str, samples: Sequence[Sample], settings: ColorSettings) -> Histogram:
+def learn(name: str, samples: Sequence[Sample], settings: ColorSettings) -> Histogram:
+    """One object's histogram. Raises `ColorModelError` where no pixel is coloured enough."""
     bins = [settings.hue_bins, settings.saturation_bins]
     lowest = (0, settings.min_training_saturation, settings.min_training_value)
     total = np.zeros(bins, np.float32)
@@ -196,9 +200,13 @@ def _learn(name: str, samples: Sequence[Sample], settings: ColorSettings) -> His
             )
         # Masks and rims are a pixel off now and then.
         inside = cv2.erode(np.where(sample.mask > 0, 255, 0).astype(np.uint8), _KERNEL)
+        left, top, width, height = cv2.boundingRect(inside)
+        # With the rim that the median filter reaches over.
+        patch = np.s_[max(top - 1, 0) : top + height + 1, max(left - 1, 0) : left + width + 1]
+        inside, clean = inside[patch], sample.bgr[patch]
         for gain in settings.gains:
-            noise = rng.normal(0.0, settings.noise, sample.bgr.shape)
-            bgr = np.clip(sample.bgr * gain + noise, 0, 255).astype(np.uint8)
+            noise = rng.normal(0.0, settings.noise, clean.shape)
+            bgr = np.clip(clean * gain + noise, 0, 255).astype(np.uint8)
             hsv = _hue_saturation_value(bgr)
             usable = cv2.bitwise_and(cv2.inRange(hsv, lowest, (180, 255, 255)), inside)
             total += cv2.calcHist([hsv], [0, 1], usable, bins, _RANGES)

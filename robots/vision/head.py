@@ -5,12 +5,13 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from robots.body import CameraImage
 from robots.catalogue import Part
 from robots.grasp import half_turn
 from robots.link.messages import Sighting
-from robots.vision.blob import Blob, find_blob
+from robots.vision.blob import Blob, Mask, find_blob
 from robots.vision.color_model import Segmentation
 from robots.vision.projection import Points, unproject
 from robots.vision.rectangle import TOP_TOLERANCE_M, measure_rectangle
@@ -21,7 +22,8 @@ _TOP_SHARE = 0.35
 """The top surface is the highest layer with this share of the fullest layer's points."""
 _FEWEST_POINTS = 12
 _TOPPLED_M = 0.012
-_RIM = np.ones((5, 5), np.uint8)
+_RIM_PX = 2
+_RIM = np.ones((2 * _RIM_PX + 1, 2 * _RIM_PX + 1), np.uint8)
 _COMPLETE_SHARE = 0.8
 """A part is seen whole if each extent of its top is at least this share of what it should be."""
 
@@ -64,9 +66,7 @@ def locate(image: CameraImage, segmentation: Segmentation, part: Part) -> HeadSi
     blob = find_blob(mask)
     if blob is None or image.depth_m is None:
         return None
-    # At the rim colours mix, so depth tells where the part ends; other parts stay out of it.
-    grown = np.asarray(cv2.dilate(blob.mask, _RIM))
-    vs, us = np.nonzero((grown > 0) & ((mask > 0) | (segmentation.of_any() == 0)))
+    us, vs = _pixels_of(blob, mask, segmentation.of_any())
     points = unproject(image, us, vs)
     top_z = _top_of(points)
     if top_z is None:
@@ -87,6 +87,20 @@ def locate(image: CameraImage, segmentation: Segmentation, part: Part) -> HeadSi
         blob=blob,
         time=image.time,
     )
+
+
+def _pixels_of(blob: Blob, mask: Mask, of_any: Mask) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """The pixels (us, vs) of a blob and of its rim, but for those of other parts.
+
+    At the rim colours mix, so depth tells where the part ends.
+    """
+    left, top = max(blob.box[0] - _RIM_PX, 0), max(blob.box[1] - _RIM_PX, 0)
+    patch = np.s_[
+        top : blob.box[1] + blob.box[3] + _RIM_PX, left : blob.box[0] + blob.box[2] + _RIM_PX
+    ]
+    grown = np.asarray(cv2.dilate(blob.mask[patch], _RIM))
+    vs, us = np.nonzero((grown > 0) & ((mask[patch] > 0) | (of_any[patch] == 0)))
+    return us + left, vs + top
 
 
 def _top_of(points: Points) -> float | None:

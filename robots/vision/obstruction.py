@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from robots.body import CameraImage, ToolPose
 from robots.vision.color_model import Segmentation
-from robots.vision.projection import Points, unproject
+from robots.vision.projection import Points, heights, unproject
 
 Segment = tuple[NDArray[np.float64], NDArray[np.float64]]
 """Two ends in the base frame."""
@@ -59,11 +59,10 @@ def find_obstruction(
         return None
     # A rim of a part mixes its colour with what is behind; widening the parts covers the rims.
     known = cv2.dilate(segmentation.of_any(), np.ones((5, 5), np.uint8))
-    vs, us = np.nonzero(np.asarray(known) == 0)
-    points = unproject(image, us, vs)
     # Most of a picture is table and floor: only what stands out is compared with the way.
-    high = points[:, 2] > table_z + clearance.above_table_m
-    us, vs, points = us[high], vs[high], points[high]
+    high = heights(image) > table_z + clearance.above_table_m
+    vs, us = np.nonzero(high & (np.asarray(known) == 0))
+    points = unproject(image, us, vs)
     inside = _near(points, way, clearance.radius_m)
     if arm:
         inside &= ~_near(points, arm, clearance.arm_radius_m)

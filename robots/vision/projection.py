@@ -30,6 +30,22 @@ def unproject(image: CameraImage, us: NDArray[np.intp], vs: NDArray[np.intp]) ->
     return points
 
 
+def heights(image: CameraImage) -> NDArray[np.float64]:
+    """How high (metres, base frame) lies what each pixel of an RGB-D picture shows.
+
+    Raises `ValueError` for a picture without depth.
+    """
+    if image.depth_m is None:
+        raise ValueError("expected a picture with depth, got one without")
+    rows, columns = image.depth_m.shape
+    cx, cy = image.center_px
+    x, y, z, origin = image.pose[2]
+    across = (np.arange(columns) - cx) * (x / image.focal_px)
+    down = (np.arange(rows) - cy) * (y / image.focal_px) + z
+    found: NDArray[np.float64] = image.depth_m * (across[None, :] + down[:, None]) + origin
+    return found
+
+
 def project(image: CameraImage, points: Points) -> Points:
     """The pixels (n, 2) at which points (n, 3) of the base frame appear."""
     optical = (points - image.pose[:3, 3]) @ image.pose[:3, :3]

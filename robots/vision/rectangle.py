@@ -47,10 +47,12 @@ def measure_rectangle(
     # top: it draws the rectangle out by this much towards the camera.
     to_eye = image.pose[:3, 3] - np.append(_near_side(offsets, middle, image), top_z)
     rim = to_eye[:2] * (min(TOP_TOLERANCE_M, size[2]) / to_eye[2])
-    center = middle - rim / 2
     pixel_m = float(np.linalg.norm(to_eye)) / image.focal_px
-    grown = np.abs(_turned(rim[None], yaw)[0])
-    extents = np.ptp(_turned(offsets, yaw), axis=0) + pixel_m - grown
+    local, local_rim = _turned(offsets - rim / 2, yaw), _turned(rim[None], yaw)[0]
+    extents = np.ptp(local, axis=0) + pixel_m - np.abs(local_rim)
+    cut = _on_border(image, us, vs)
+    beyond = _beyond_border(local, np.abs(local_rim) - pixel_m, cut, np.array(size[:2]))
+    center = middle - rim / 2 + _turned(beyond[None], -yaw)[0]
     return Rectangle(
         (float(center[0]), float(center[1])), yaw, (float(extents[0]), float(extents[1]))
     )
@@ -65,6 +67,38 @@ def _fill(us: NDArray[np.intp], vs: NDArray[np.intp]) -> tuple[NDArray[np.intp],
     cv2.drawContours(canvas, outlines, -1, 1, cv2.FILLED)
     filled_vs, filled_us = np.nonzero(canvas)
     return filled_us + left, filled_vs + top
+
+
+def _on_border(image: CameraImage, us: NDArray[np.intp], vs: NDArray[np.intp]) -> NDArray[np.bool_]:
+    """Which pixels are the picture's last ones, so that what they show may go on beyond."""
+    height, width = image.bgr.shape[:2]
+    border: NDArray[np.bool_] = (us == 0) | (us == width - 1) | (vs == 0) | (vs == height - 1)
+    return border
+
+
+def _beyond_border(
+    local: NDArray[np.float64],
+    grown: NDArray[np.float64],
+    cut: NDArray[np.bool_],
+    size: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """How far the true centre is from that of what is seen, if the picture's border cuts it.
+
+    `local` are the points around the centre in the rectangle's frame, `grown` by how much they
+    reach over it, both ends together. What is beyond the border is known from the part's size,
+    measured from its other end.
+    """
+    beyond = np.zeros(2)
+    if not cut.any():
+        return beyond
+    for axis in range(2):
+        low, high = local[:, axis].min(), local[:, axis].max()
+        if size[axis] <= high - low - grown[axis]:
+            continue
+        end_is_cut = local[cut, axis].mean() > 0
+        half = (size[axis] + grown[axis]) / 2
+        beyond[axis] = low + half if end_is_cut else high - half
+    return beyond
 
 
 def _on_plane(

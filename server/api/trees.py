@@ -17,11 +17,11 @@ router = APIRouter(prefix="/api", tags=["trees"])
 YAML_TYPES = ("application/yaml", "application/x-yaml", "text/yaml", "text/x-yaml")
 
 EXAMPLE = """\
-name: two_legs
-scene: eket
-then:
-  - {behavior: pick_and_place, object: green_leg, place: green_place}
-  - {behavior: pick_and_place, object: blue_leg, place: blue_place}
+name: two_boxes
+tree:
+  then:
+    - {behavior: pick_and_place, object: red_box, place: left}
+    - {behavior: pick_and_place, object: blue_box, place: right}
 """
 
 
@@ -40,7 +40,7 @@ UPLOAD_BODY: dict[str, Any] = {
         "content": {
             "application/json": {
                 "schema": TreeUpload.model_json_schema(),
-                "example": {"name": "two_legs", "text": EXAMPLE},
+                "example": {"name": "two_boxes", "text": EXAMPLE},
             },
             "application/yaml": {"schema": {"type": "string"}, "example": EXAMPLE},
         },

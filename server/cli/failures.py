@@ -10,9 +10,9 @@ from server.journal.migrations import JournalSchemaError
 from server.journal.upgrades import UnknownEventVersionError
 from server.settings import WrongSettingsError
 from sim.world import WorldUnavailableError
+from tasks.library import NotInLibraryError
 from tasks.plugins import PluginError
 from tasks.problem import InvalidFileError
-from tasks.scenario_file import ScenarioFileError
 
 NOT_FINISHED = 1
 """Exit code: the task did not finish, or a checked file is wrong."""
@@ -26,8 +26,8 @@ KNOWN_ERRORS = (
     InvalidFileError,
     JournalLockedError,
     JournalSchemaError,
+    NotInLibraryError,
     PluginError,
-    ScenarioFileError,
     ServiceError,
     UnknownEventVersionError,
     WorldUnavailableError,

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Protocol
 from uuid import UUID
 
 from server.cli.failures import INTERRUPTED, NOT_FINISHED, CommandLineError
-from server.cli.output import EventOutput
+from server.cli.output import EventOutput, JsonLines
 from server.cli.reports import write_run_report
 from server.cli.terminal_helper import TerminalHelper
 from server.cli.tree_argument import TreeArgument
@@ -20,6 +20,7 @@ from server.journal.subscriptions import SubscriptionOverflowError
 from server.runtime.requests import RunRequest
 from server.runtime.views import RunStatus
 from server.settings import Settings
+from server.transcript import Transcript
 
 if TYPE_CHECKING:
     from server.composition import Service
@@ -57,6 +58,7 @@ class LiveRun:
         self._report = report
         self._asks_at_terminal = asks_at_terminal
         self._interrupted = False
+        self._last_words = ""
 
     async def carry_out(self) -> int:
         """Run it to its end and return the exit code.
@@ -69,6 +71,8 @@ class LiveRun:
             run = (await service.runtime.start_run(self._request)).id
             status = await self._watch(service, run, before)
         self._output.close()
+        if status is not RunStatus.FINISHED and isinstance(self._output, JsonLines):
+            self._output.note(f"mend: {self._last_words}")
         self._write_report(run)
         if self._interrupted:
             return INTERRUPTED
@@ -115,6 +119,8 @@ class LiveRun:
                 self._output.show(event)
                 if helper is not None:
                     helper.take(event)
+                if isinstance(event, ENDS):
+                    self._last_words = Transcript().lines(event)[-1].text
 
     def _write_report(self, run: UUID) -> None:
         if self._report is None:

@@ -88,6 +88,9 @@ def run(
             max_attempts=max_attempts,
             person=None if person is None else Person(acts=person),
         )
+        if report is not None:
+            # A report that cannot be written is told before the run, not after it.
+            report.parent.mkdir(parents=True, exist_ok=True)
         settings = _settings(journal, argument)
         output = JsonLines() if json else LiveTranscript()
         live_run = LiveRun(
@@ -112,7 +115,7 @@ def _settings(journal: Path | None, tree: TreeArgument) -> Settings:
         log_level="warning",
     )
     chosen = journal or new_run_journal(own, tree.name)
-    return own.model_copy(update={"journal": chosen})
+    return own.model_copy(update={"journal": chosen, "scenes": tree.scenes or own.scenes})
 
 
 def _answers(text: str | None, scenario: str | None) -> Answers | None:

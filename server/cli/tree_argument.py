@@ -12,10 +12,11 @@ SUFFIXES = (".yaml", ".yml", ".json")
 
 @dataclass(frozen=True, slots=True)
 class TreeArgument:
-    """The tree's name and, where it is not built in, its file's text."""
+    """The tree's name and, where it is not built in, its file's text and scenes folder."""
 
     name: str
     text: str | None = None
+    scenes: Path | None = None
 
 
 def read_tree_argument(argument: str) -> TreeArgument:
@@ -30,7 +31,8 @@ def read_tree_argument(argument: str) -> TreeArgument:
     text = read_text(path)
     name = read_task(path).definition.name
     if name not in TREES.names():
-        return TreeArgument(name, text)
+        scenes = path.parent / "scenes"
+        return TreeArgument(name, text, scenes if scenes.is_dir() else None)
     if text == TREES.read(name):
         return TreeArgument(name)
     raise CommandLineError(

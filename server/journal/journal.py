@@ -1,6 +1,6 @@
 """The journal: the append-only record of every event of every run, behind one narrow interface."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 from uuid import UUID
@@ -32,6 +32,10 @@ class Entry:
     pictures: Mapping[UUID, bytes] = field(default_factory=dict)
 
 
+Fold = Callable[[list[Event]], None]
+"""Changes the state as committed events say."""
+
+
 class Journal(Protocol):
     """Committed before it is published: `append` returns when the entry is durable."""
 
@@ -40,9 +44,11 @@ class Journal(Protocol):
         """The `seq` of the last committed event; 0 when there is none."""
         ...
 
-    async def append(self, entry: Entry) -> list[Event]:
+    async def append(self, entry: Entry, fold: Fold | None = None) -> list[Event]:
         """Commit an entry and return its events with their numbers, which have no gaps.
 
+        `fold` is called with them once they are committed, in the same step in which they are
+        published: whoever hears of an event finds the state already changed. It must not raise.
         Published to subscribers in the order of `seq`, after the commit. Raises
         `JournalClosedError` after `close`, `DuplicateReceiptError` if the receipt is there already
         (nothing of the entry is then committed), `JournalWriteError` if it could not be written.

@@ -14,7 +14,7 @@ from uuid import UUID
 
 from server.journal.events import Event, any_event
 from server.journal.file_lock import FileLock
-from server.journal.journal import DuplicateReceiptError, Entry, JournalClosedError, Receipt
+from server.journal.journal import DuplicateReceiptError, Entry, Fold, JournalClosedError, Receipt
 from server.journal.migrations import migrate
 from server.journal.subscriptions import DEFAULT_CAPACITY, Record, Subscribers, Subscription
 from server.journal.upgrades import current_version, upgrade_text
@@ -33,6 +33,7 @@ class _Committed:
 
     events: list[Event]
     records: list[Record]
+    fold: Fold | None
 
 
 class SqliteJournal:
@@ -100,8 +101,9 @@ class SqliteJournal:
 
     # --- writing ------------------------------------------------------------------------------
 
-    async def append(self, entry: Entry) -> list[Event]:
-        committed: _Committed = await self._writer.submit(partial(self._write_entry, entry))
+    async def append(self, entry: Entry, fold: Fold | None = None) -> list[Event]:
+        work = partial(self._write_entry, entry, fold)
+        committed: _Committed = await self._writer.submit(work)
         return committed.events
 
     async def save_tree(self, name: str, text: str) -> None:
@@ -121,10 +123,12 @@ class SqliteJournal:
         )
         return deleted > 0
 
-    def _write_entry(self, entry: Entry, connection: sqlite3.Connection) -> _Committed:
+    def _write_entry(
+        self, entry: Entry, fold: Fold | None, connection: sqlite3.Connection
+    ) -> _Committed:
         if entry.receipt is not None:
             _refuse_duplicate(entry.receipt, connection)
-        committed = self._number(entry.events)
+        committed = self._number(entry.events, fold)
         connection.executemany(
             INSERT_EVENT,
             [
@@ -149,12 +153,12 @@ class SqliteJournal:
         self._next += len(committed.events)
         return committed
 
-    def _number(self, events: Any) -> _Committed:
+    def _number(self, events: Any, fold: Fold | None) -> _Committed:
         numbered = [
             event.model_copy(update={"seq": seq}) for seq, event in enumerate(events, self._next)
         ]
         return _Committed(
-            numbered, [Record(event.seq, event.model_dump_json()) for event in numbered]
+            numbered, [Record(event.seq, event.model_dump_json()) for event in numbered], fold
         )
 
     def _begin(self) -> None:
@@ -164,12 +168,11 @@ class SqliteJournal:
         self._next = self._batch_start
 
     def _publish(self, done: list[Done]) -> None:
-        records = [
-            record
-            for each in done
-            if isinstance(each.result, _Committed)
-            for record in each.result.records
-        ]
+        entries = [each.result for each in done if isinstance(each.result, _Committed)]
+        for entry in entries:
+            if entry.fold is not None:
+                entry.fold(entry.events)
+        records = [record for entry in entries for record in entry.records]
         if records:
             self._head = records[-1].seq
             self._subscribers.publish(records)

@@ -2,6 +2,7 @@
 
 import asyncio
 import logging
+import os
 import random
 import signal
 import sys
@@ -24,6 +25,9 @@ from tasks.plugins import PluginError
 log = logging.getLogger(__name__)
 
 CHECK_S = 0.5
+
+ONE_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+"""A robot's matrices are small: more threads would only wait for each other."""
 
 
 Ended = Callable[[str], None]
@@ -112,7 +116,14 @@ class RobotProcess:
         """Start the process, after ending the one there may be."""
         await self.stop()
         process = await asyncio.create_subprocess_exec(
-            sys.executable, "-P", "-m", "sim.robot_process", stdin=PIPE, stdout=DEVNULL, stderr=PIPE
+            sys.executable,
+            "-P",
+            "-m",
+            "sim.robot_process",
+            stdin=PIPE,
+            stdout=DEVNULL,
+            stderr=PIPE,
+            env=ONE_THREAD | os.environ,
         )
         self._process = process
         self._watcher = asyncio.create_task(self._watch(process, setup.robot))
@@ -203,7 +214,8 @@ class InProcessRobot:
         outbox = Outbox(IN_MEMORY, setup.robot, uuid4().hex)
         reason = "it was shut down"
         try:
-            agent = self._adapter.create_agent(setup)
+            # A world takes a while to build, for which nobody else should have to wait.
+            agent = await asyncio.to_thread(self._adapter.create_agent, setup)
             await run_agent(agent, self._connect, outbox, LoopClock(), random.Random(setup.seed))
         except Exception as error:
             log.exception("the simulated robot %s failed", setup.robot)

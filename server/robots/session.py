@@ -21,6 +21,7 @@ from robots.link.messages import (
     Welcome,
     robot_message,
 )
+from server.errors import ServiceError
 from server.journal.journal import JournalClosedError
 from server.robots.times import LinkTimes
 
@@ -138,6 +139,8 @@ class RobotSession:
             await worker
         except JournalClosedError:
             self._last_word = "the service is shutting down"
+        except ServiceError as error:
+            self._last_word = f"the report could not be committed: {error}"
         except Exception:
             log.exception("a robot's report could not be committed")
             self._last_word = "the service could not commit a report; send it again"

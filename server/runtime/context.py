@@ -62,7 +62,16 @@ class RunContext:
             world=world,
             pictures=pictures or {},
         )
-        numbered = await self._journal.append(entry)
-        for event in numbered:
-            self.state.fold(event)
-        return numbered
+        failures: list[Exception] = []
+
+        def fold(numbered: list[Event]) -> None:
+            try:
+                for event in numbered:
+                    self.state.fold(event)
+            except Exception as error:
+                failures.append(error)
+
+        committed = await self._journal.append(entry, fold)
+        if failures:
+            raise failures[0]
+        return committed

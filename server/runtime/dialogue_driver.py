@@ -19,6 +19,7 @@ from server.dialogues.escalation import (
 )
 from server.errors import ConflictError, LostRaceError, NotFoundError
 from server.journal import events as ev
+from server.runtime.at_place import is_at_place
 from server.runtime.context import RunContext
 from server.runtime.dialogue_events import DialogueEvents
 from server.runtime.robot_side import Purpose, RobotSide
@@ -257,12 +258,12 @@ class DialogueDriver:
         return Expectation.IN_REACH if Expectation.IN_REACH in watched else watched[0]
 
     def _seen_at_place(self, dialogue: DialogueState, side: RobotSide) -> bool:
-        place = self._context.state.scene.places.get(dialogue.raised.place or "")
+        scene = self._context.state.scene
+        place = scene.places.get(dialogue.raised.place or "")
         seen = side.seen.get(dialogue.raised.object or "")
-        if place is None or seen is None:
+        if seen is None or place is None:
             return False
-        distance_m = float(np.hypot(seen.x - place.pose.x, seen.y - place.pose.y))
-        return distance_m <= AT_PLACE_TOLERANCE_M
+        return is_at_place(seen, place, scene, AT_PLACE_TOLERANCE_M)
 
     def _watch_for_help(
         self, dialogue: DialogueState, awaiting: ev.HelpAwaited, side: RobotSide
@@ -291,7 +292,13 @@ class DialogueDriver:
         rng = np.random.default_rng([state.started.seed, state.helps])
         raised = dialogue.raised
         promise = Promise(str(awaiting.help), raised.object, raised.place)
-        others = [name for name in state.scene.objects if name != raised.object]
+        finished = {
+            state.tree.leaf_definition(leaf).object
+            for leaf in state.tree.leaves
+            if state.tree.done(leaf)
+        }
+        # Nobody takes for the promised object what stands finished at its place.
+        others = [name for name in state.scene.objects if name not in {raised.object, *finished}]
         done = deed(promise, self._person, state.scene, others, rng)
         if done is not None:
             promised = awaiting.until - self._context.settings.help_window_s

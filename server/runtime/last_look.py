@@ -5,8 +5,9 @@ from collections.abc import Mapping
 
 from robots.link.messages import Sighting
 from server.journal.events import MissingPart
+from server.runtime.at_place import is_at_place
 from server.runtime.run_state import RunState
-from tasks.scene import Place, SceneObject
+from tasks.scene import Place, Scene, SceneObject
 
 TOLERANCE_M = 0.05
 
@@ -30,7 +31,7 @@ def missing_parts(state: RunState, seen: Mapping[str, Sighting]) -> list[Missing
         if part is None or place is None:
             continue
         covers = [(p, q) for _, other, _, p, q in done if other != name]
-        if not _at_its_place(seen.get(name), place, _hidden(part, place, covers)):
+        if not _at_its_place(seen.get(name), place, scene, _hidden(part, place, covers)):
             missing.append(
                 MissingPart(
                     node=tree.path_of(leaf),
@@ -42,12 +43,14 @@ def missing_parts(state: RunState, seen: Mapping[str, Sighting]) -> list[Missing
     return missing
 
 
-def _at_its_place(sighting: Sighting | None, place: Place, hidden: bool) -> bool:
+def _at_its_place(sighting: Sighting | None, place: Place, scene: Scene, hidden: bool) -> bool:
     if sighting is None:
         return hidden
-    distance_m = math.hypot(sighting.x - place.pose.x, sighting.y - place.pose.y)
+    if not hidden:
+        return is_at_place(sighting, place, scene, TOLERANCE_M)
     # Of a part that is half covered only a piece is seen, whose centre is off.
-    return distance_m <= (4 * TOLERANCE_M if hidden else TOLERANCE_M)
+    distance_m = math.hypot(sighting.x - place.pose.x, sighting.y - place.pose.y)
+    return distance_m <= 4 * TOLERANCE_M
 
 
 def _hidden(

@@ -3,16 +3,15 @@
 import asyncio
 import logging
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from datetime import datetime
 from functools import partial
-from typing import Any, Literal, Protocol, cast
+from typing import Any, Literal, cast
 from uuid import UUID, uuid4
 
 import numpy as np
 
 from dialogue.script import Script
-from robots.link.messages import CommandBody, Hello
+from robots.link.messages import Hello
 from server.dialogues.answers import answer_source
 from server.dialogues.escalation import EscalationPolicy
 from server.errors import ConflictError, InvalidError, NotFoundError
@@ -23,80 +22,18 @@ from server.runtime.clock import RunClock, SimulatedClock, WallClock
 from server.runtime.context import RunContext, RunSettings
 from server.runtime.dialogue_driver import DialogueDriver
 from server.runtime.failure import fail_run, why_it_stopped
+from server.runtime.ports import LIVE, RealRobots, Robots, ScenarioSource, TreeSource, Worlds
 from server.runtime.requests import RunRequest
 from server.runtime.robot_side import RobotSide
-from server.runtime.run import Hardware, Run
+from server.runtime.run import Run
 from server.runtime.run_state import DialogueState, RunState
 from server.runtime.run_views import dialogue_view, summary, view
 from server.runtime.views import DialogueView, RobotView, RunSummary, RunView, Snapshot
-from tasks.definition import TaskTreeDefinition
 from tasks.intervention import Intervention
 from tasks.scenario import Person, Scenario
 from tasks.scene import Scene
 
 log = logging.getLogger(__name__)
-
-LIVE = "live"
-"""The world of real robots."""
-
-
-@dataclass(frozen=True, slots=True)
-class LoadedTree:
-    """A checked task tree; `scene` None where the file names none."""
-
-    name: str
-    definition: TaskTreeDefinition
-    scene: Scene | None
-
-
-class TreeSource(Protocol):
-    """Where task trees come from."""
-
-    async def load(self, name: str) -> LoadedTree:
-        """Raises `NotFoundError` or `InvalidError`."""
-        ...
-
-
-class ScenarioSource(Protocol):
-    """Where scenarios come from."""
-
-    def load(self, name: str) -> Scenario:
-        """Raises `NotFoundError`."""
-        ...
-
-
-class Robots(Protocol):
-    """The service's end of the robot link."""
-
-    def assign(self, robot: str, sink: Run) -> None: ...
-
-    def unassign(self, robot: str) -> None: ...
-
-    def send(self, robot: str, command_id: str, body: CommandBody) -> None: ...
-
-    async def take_picture(self, robot: str, camera: str, timeout_s: float = 2.0) -> bytes: ...
-
-    def hello(self, robot: str) -> Hello | None: ...
-
-    def connected(self, robot: str) -> bool: ...
-
-    def known(self) -> list[str]: ...
-
-
-class Worlds(Protocol):
-    """The worlds that a run can be in, apart from `live`."""
-
-    def check(self, world: str) -> None:
-        """Raises `InvalidError` when there is no such world, or it cannot run here."""
-        ...
-
-    def lay_out(self, world: str, tree: LoadedTree, seed: int) -> Scene:
-        """A scene for a tree that has none. Raises `InvalidError` where the world cannot."""
-        ...
-
-    def open(self, state: RunState, run: "Callable[[], Run]") -> Hardware:
-        """The hardware of a run, which starts it; `run` is asked for only then."""
-        ...
 
 
 class Runtime:
@@ -168,9 +105,12 @@ class Runtime:
         started = await self._started(request)
         if request.world == LIVE:
             self._check_robots(request.robots)
-        numbered = await self._journal.append(Entry(events=[started]))
-        state = RunState(cast(ev.RunStarted, numbered[0]), self._scripts)
-        self._states[state.id] = state
+
+        def fold(numbered: list[ev.Event]) -> None:
+            self._states[started.run] = RunState(cast(ev.RunStarted, numbered[0]), self._scripts)
+
+        await self._journal.append(Entry(events=[started]), fold)
+        state = self._states[started.run]
         await self._take_up_or_fail(state)
         return self.run(state.id)
 
@@ -245,11 +185,7 @@ class Runtime:
             None if live else _person_of(state, scenario),
             partial(self._send_mail, state),
         )
-        hardware = (
-            RealRobots(self._robots, list(sides))
-            if live
-            else self._worlds.open(state, lambda: self._runs[state.id])
-        )
+        hardware = RealRobots() if live else self._worlds.open(state, lambda: self._runs[state.id])
         run = Run(context, sides, dialogues, hardware)
         self._runs[state.id] = run
         for robot in sides:
@@ -441,22 +377,6 @@ class Runtime:
             )
             for robot in self._robots.known()
         ]
-
-
-class RealRobots:
-    """The robots of a `live` run: nothing to start again, only to let go of."""
-
-    simulated = False
-
-    def __init__(self, robots: Robots, assigned: list[str]) -> None:
-        self._robots = robots
-        self._assigned = assigned
-
-    async def restart(self, robot: str) -> None:
-        """A real robot comes back by itself."""
-
-    async def release(self) -> None:
-        """The runtime unassigns them."""
 
 
 def _person_of(state: RunState, scenario: Scenario | None) -> Person:

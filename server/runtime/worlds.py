@@ -8,9 +8,9 @@ import numpy as np
 
 from server.errors import InvalidError
 from server.journal.journal import Journal
+from server.runtime.ports import LoadedTree
 from server.runtime.run import Run
 from server.runtime.run_state import RunState
-from server.runtime.runtime import LoadedTree
 from sim.mischief import random_interventions
 from sim.world import WorldAdapter, WorldSetup, WorldUnavailableError
 from tasks.definition import BehaviorNode

@@ -3,7 +3,7 @@
 from functools import lru_cache
 
 from robots.body import ToolPose
-from robots.vision.color_model import ColorModel, Sample
+from robots.vision.color_model import ColorModel, ColorSettings, Histogram, Sample, learn
 from sim.raster import Light
 from sim.tabletop.world import TabletopOptions, TabletopWorld
 from tasks.scene import Pose, Scene, SceneObject
@@ -16,15 +16,21 @@ _ABOVE_M = 0.10
 
 def learn_colors(scene: Scene, options: TabletopOptions) -> ColorModel:
     """Learn the colours of all objects of a scene from pictures like the robot's own."""
-    return ColorModel.train(
+    return ColorModel(
         {
-            name: _take_samples(each.color, options.camera_noise)
+            name: _learn_color(each.color, options.camera_noise)
             for name, each in scene.objects.items()
-        }
+        },
+        ColorSettings(),
     )
 
 
-@lru_cache(maxsize=512)
+@lru_cache(maxsize=4096)
+def _learn_color(color: tuple[float, float, float], noise: float) -> Histogram:
+    """Scenes that are laid out share their colours, so one is learned but once."""
+    return learn(f"a box of the colour {color}", _take_samples(color, noise), ColorSettings())
+
+
 def _take_samples(color: tuple[float, float, float], noise: float) -> tuple[Sample, ...]:
     """Forearm pictures of a box of one colour on an empty table."""
     box = SceneObject(color=color, size=_SIZE, pose=Pose(x=0.5, y=0.0))

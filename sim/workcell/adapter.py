@@ -2,11 +2,13 @@
 
 from robots.catalogue import Catalogue
 from robots.robot import Robot
+from robots.vision.color_model import ColorModel
 from sim.simulated_agent import SimulatedAgent
 from sim.workcell.options import read_options
 from sim.workcell.robot_model import check_installed
 from sim.world import WorldSetup
 from tasks.plugins import load_plugins
+from tasks.scene import Scene
 
 
 class WorkcellAdapter:
@@ -46,6 +48,13 @@ class WorkcellAdapter:
             interventions=setup.interventions,
             snapshot=setup.snapshot,
         )
+
+    def train_colors(self, scene: Scene) -> ColorModel:
+        """Learn the colours of a scene's objects from rendered pictures of them."""
+        check_installed()
+        from sim.workcell.colors import learn_colors
+
+        return learn_colors(scene, camera_noise=0.0)
 
 
 adapter = WorkcellAdapter()

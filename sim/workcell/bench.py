@@ -1,6 +1,6 @@
 """The table and the parts on it, as a scene says."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 
 import numpy as np
 
@@ -69,10 +69,12 @@ class Bench:
                 return part
         return None
 
-    def remember_rests(self, pr2: Pr2) -> None:
-        """Where parts lie still, untouched by the gripper, is where they last rested."""
+    def remember_rests(self, pr2: Pr2, in_hand: Callable[[Part], bool]) -> None:
+        """Where parts lie still, touched by nobody, is where they last rested."""
         for part in self.parts.values():
-            if not part.stolen and part.at_rest() and not any(pr2.touched_by(part.body_id)):
+            if part.stolen or in_hand(part) or any(pr2.touched_by(part.body_id)):
+                continue
+            if part.at_rest():
                 part.last_rest = part.pose()
 
     def is_on_table(self, x: float, y: float) -> bool:

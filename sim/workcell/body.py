@@ -56,6 +56,7 @@ class WorkcellBody:
         self._motion: TimedMotion | None = None
         self._way_ahead: Sequence[PathSegment] = ()
         self._settling_cycles = 0
+        self._braking = False
         self._gripper = FingerMotion()
 
     @property
@@ -72,7 +73,8 @@ class WorkcellBody:
     def advance_cycle(self) -> None:
         velocities = self._advance_arm()
         self._gripper.advance()
-        self._pr2.drive(self._target, velocities, self._gripper.target_rad)
+        self._pr2.drive(self._target, velocities, self._gripper.target_rad, self._braking)
+        self._braking = False
         self._step()
         self.cycle += 1
 
@@ -113,6 +115,7 @@ class WorkcellBody:
             self._motion.set_speed(speed)
 
     def stop(self) -> None:
+        self._braking = self._motion is not None
         self._motion = None
         self._target = self._pr2.arm_joints()
         self._gripper.stop()
@@ -146,6 +149,11 @@ class WorkcellBody:
     def gripper_closing(self) -> bool:
         """Whether the fingers are closed or on their way together."""
         return self._gripper.closing
+
+    @property
+    def gripper_in_use(self) -> bool:
+        """Whether the gripper is closed or its fingers move."""
+        return self._gripper.closing or self._gripper.moving
 
     @property
     def ready_to_take(self) -> bool:

@@ -10,7 +10,6 @@ from tasks.scene import Pose, SceneObject
 
 _FRICTION = 0.8
 _SPIN_FRICTION = 0.01
-_ROLL_FRICTION = 0.0002
 
 _AWAY_X_M = -3.0
 _AWAY_SPACING_M = 0.5
@@ -126,7 +125,7 @@ def _create_body(client: Client, definition: SceneObject) -> int:
         -1,
         lateralFriction=_FRICTION,
         spinningFriction=_SPIN_FRICTION,
-        rollingFriction=_ROLL_FRICTION,
+        rollingFriction=0,
     )
     return body_id
 

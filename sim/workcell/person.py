@@ -5,6 +5,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from robots.catalogue import Part as CataloguePart
 from robots.grasp import grasp_of
@@ -19,7 +20,9 @@ from tasks.intervention import Act, Intervention
 
 PULL_M_S = 0.4
 PULLED_OUT_M = 0.5
-_PULL_RISE = 0.4
+_CLEAR_M = 0.15
+"""So far a part is pulled out from between the fingers, or lifted off the table, before it turns
+up or sideways."""
 
 HAND_OVER_S = 15.0
 """How long somebody holds a part out to the robot."""
@@ -27,9 +30,14 @@ HAND_OVER_S = 15.0
 _GRIPPED_CYCLES = 24
 """So long both fingers press on a part before the person trusts the grip."""
 
+_LEVEL = 0.3
 _DROP_M = 0.001
 _DEFAULT_TOOL_HEIGHT_M = 0.20
 """Above the table: where the tool passes on most ways."""
+
+
+Direction = NDArray[np.float64]
+_UP: Direction = np.array([0.0, 0.0, 1.0])
 
 
 class _Impossible(Exception):  # noqa: N818 - an answer to the one who asked, not a failure
@@ -38,11 +46,18 @@ class _Impossible(Exception):  # noqa: N818 - an answer to the one who asked, no
 
 @dataclass(slots=True)
 class _Pull:
-    """A part on its way out of the robot's reach."""
+    """A part on its way out of the robot's reach, `first` one way and `then` another."""
 
     hand: Hand
-    direction: Point
+    first: Direction
+    then: Direction
     pulled_m: float = 0.0
+
+    def go_on(self, way_m: float) -> None:
+        self.pulled_m += way_m
+        clear_m = min(self.pulled_m, _CLEAR_M)
+        x, y, z = self.first * clear_m + self.then * (self.pulled_m - clear_m)
+        self.hand.move_by((float(x), float(y), float(z)))
 
 
 @dataclass(slots=True)
@@ -58,14 +73,11 @@ class HandOver:
 class Person:
     """Everybody who is not the robot."""
 
-    def __init__(
-        self, client: Client, bench: Bench, pr2: Pr2, body: WorkcellBody, rng: np.random.Generator
-    ) -> None:
+    def __init__(self, client: Client, bench: Bench, pr2: Pr2, body: WorkcellBody) -> None:
         self._client = client
         self._bench = bench
         self._pr2 = pr2
         self._body = body
-        self._rng = rng
         self._pulls: list[_Pull] = []
         self.hand_over: HandOver | None = None
         self.obstacle = Obstacle(client)
@@ -128,7 +140,11 @@ class Person:
             return
         self._take(part)
         hand = Hand.take_hold(self._client, part, PULL_FORCE_N)
-        self._pulls.append(_Pull(hand, self._way_out()))
+        sideways = self._way_out(part)
+        if self._bench.held(self._pr2) is part:
+            self._pulls.append(_Pull(hand, first=sideways, then=_UP))
+        else:
+            self._pulls.append(_Pull(hand, first=_UP, then=sideways))
 
     def _put_back(self, intervention: Intervention) -> None:
         part = self._part(intervention)
@@ -202,17 +218,15 @@ class Person:
 
     def _put(self, part: Part, pose: PartPose, where: str) -> None:
         """Put a part down, out of the robot's fingers if need be, unless something is there."""
-        before, was_away = part.pose(), part.stolen or self._is_waiting_to_hand_over(part)
+        before, was_stolen = part.pose(), part.stolen
         x, y, z = pose.position
         part.put(PartPose((x, y, z + _DROP_M), pose.quaternion))
         problem = self._conflict(part)
         if problem is None:
             self._take(part)
             return
-        if was_away:
-            part.hide()
-        else:
-            part.put(before)
+        part.put(before)
+        part.stolen = was_stolen
         raise _Impossible(f"{problem} is {where}, so '{part.name}' cannot be put there")
 
     def _conflict(self, part: Part) -> str | None:
@@ -223,13 +237,21 @@ class Person:
             return "the robot's arm"
         return None
 
-    def _way_out(self) -> Point:
-        """Sideways between the fingers and a little up."""
+    def _way_out(self, part: Part) -> Direction:
+        """Level, along the fingers' sides, away from the other parts."""
         tool = self._pr2.tool.pose(self._pr2.arm_joints())
-        sideways = tool[:3, 2] * self._rng.choice([-1.0, 1.0])
-        direction = np.array([sideways[0], sideways[1], _PULL_RISE])
-        x, y, z = direction / np.linalg.norm(direction)
-        return float(x), float(y), float(z)
+        level = np.array([tool[0, 2], tool[1, 2], 0.0])
+        if np.linalg.norm(level) < _LEVEL:
+            level = np.array([0.0, -1.0, 0.0])
+        level /= np.linalg.norm(level)
+        others = [
+            other.pose().position
+            for other in self._bench.parts.values()
+            if other is not part and not other.stolen
+        ]
+        here = np.array(part.pose().position)
+        towards = np.mean(others, axis=0) - here if others else np.zeros(3)
+        return np.asarray(-level if np.dot(level, towards) > 0.0 else level)
 
     def _between_starts_and_places(self) -> Point:
         scene = self._bench.scene
@@ -246,9 +268,7 @@ class Person:
     # --- What goes on over cycles -------------------------------------------------------------
 
     def _go_on_pulling(self, pull: _Pull) -> None:
-        pull.pulled_m += PULL_M_S * PERIOD_S
-        x, y, z = pull.direction
-        pull.hand.move_by((x * pull.pulled_m, y * pull.pulled_m, z * pull.pulled_m))
+        pull.go_on(PULL_M_S * PERIOD_S)
         if pull.pulled_m >= PULLED_OUT_M:
             self._pulls.remove(pull)
             pull.hand.let_go()

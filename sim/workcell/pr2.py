@@ -1,6 +1,7 @@
 """The PR2 in the physics engine: joints, motors, finger coupling and what its sensors feel."""
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -24,6 +25,9 @@ from sim.workcell.robot_model import (
 _FOREARM_JOINTS = ARM_JOINTS[:5]
 
 _ARM_TORQUE_NM = 150.0
+_BRAKE_TORQUE_NM = 2000.0
+"""Stops the arm from full speed in one control cycle."""
+
 _ARM_POSITION_GAIN = 0.3
 _ARM_VELOCITY_GAIN = 1.0
 _JOINT_DAMPING = 0.1
@@ -37,14 +41,13 @@ _TIP_TORQUE_NM = 100.0
 _FINGER_GAINS = (0.1, 0.1, 0.5, 0.5)
 _FINGER_FRICTION = 1.2
 _FINGER_SPIN_FRICTION = 0.02
-_FINGER_ROLL_FRICTION = 0.0005
 
 _FINGER_LENGTH_M = 0.09137
 _FINGER_OFFSET_M = 0.00495
 """From a finger's joint to its tip's joint, along and across the closed finger."""
 
-_PRESSES_OUTWARDS = 0.5
-"""The least cosine to the opening direction of a force from between the fingers."""
+_PAD_M = 0.005
+"""Contacts this near to the inner side of a finger are with what is between the fingers."""
 
 _ARM_COLOR = (0.80, 0.80, 0.82, 1.0)
 _GRIPPER_COLOR = (0.35, 0.36, 0.38, 1.0)
@@ -83,8 +86,10 @@ class Pr2:
         for link in self._fingers:
             self._client.resetJointState(self.body_id, link, FINGERS_OPEN_RAD)
 
-    def drive(self, joints: Joints, velocities: Joints, fingers_rad: float) -> None:
-        """Set every motor's target for the next physics step."""
+    def drive(
+        self, joints: Joints, velocities: Joints, fingers_rad: float, brake: bool = False
+    ) -> None:
+        """Set every motor's target for the next physics step; `brake` helps the motors stop."""
         client = self._client
         client.setJointMotorControlArray(
             self.body_id,
@@ -92,7 +97,7 @@ class Pr2:
             client.POSITION_CONTROL,
             joints.tolist(),
             velocities.tolist(),
-            [_ARM_TORQUE_NM] * len(self._arm),
+            [_BRAKE_TORQUE_NM if brake else _ARM_TORQUE_NM] * len(self._arm),
             [_ARM_POSITION_GAIN] * len(self._arm),
             [_ARM_VELOCITY_GAIN] * len(self._arm),
         )
@@ -133,10 +138,7 @@ class Pr2:
 
     def gripper_opening_m(self) -> float:
         """The distance between the finger tips, which stay parallel."""
-        return sum(
-            _FINGER_LENGTH_M * math.sin(angle) + _FINGER_OFFSET_M * (math.cos(angle) - 1.0)
-            for angle in self.finger_angles()
-        )
+        return sum(_inner_side_m(angle) for angle in self.finger_angles())
 
     def touched_by(self, body_id: int) -> tuple[bool, bool]:
         """Whether the left and the right finger touch a body."""
@@ -146,21 +148,28 @@ class Pr2:
 
     def contact_force_n(self) -> float:
         """The net force of all contacts but of what the fingers close on."""
+        contacts = self._client.getContactPoints(self.body_id)
+        if not contacts:
+            return 0.0
+        tool = self.tool.pose(self.arm_joints())
+        inner = [_inner_side_m(angle) for angle in self.finger_angles()]
         total = np.zeros(3)
-        for contact in self._client.getContactPoints(self.body_id):
-            if contact[1] == contact[2] or self._is_between_fingers(contact):
+        for contact in contacts:
+            if contact[1] == contact[2] or self._is_between_fingers(contact, tool, inner):
                 continue
             total += contact[9] * np.array(contact[7])
             total += contact[10] * np.array(contact[11]) + contact[12] * np.array(contact[13])
         return float(np.linalg.norm(total))
 
-    def _is_between_fingers(self, contact: tuple[Any, ...]) -> bool:
-        """Whether a contact presses a finger outwards, as only what is between them can."""
-        outwards = 1.0 if contact[3] in self._sides[0] else -1.0
-        if outwards < 0.0 and contact[3] not in self._sides[1]:
-            return False
-        opening = self.tool.pose(self.arm_joints())[:3, 1]
-        return bool(outwards * np.dot(contact[7], opening) > _PRESSES_OUTWARDS)
+    def _is_between_fingers(
+        self, contact: tuple[Any, ...], tool: Matrix4, inner_m: Sequence[float]
+    ) -> bool:
+        """Whether a contact is at the inner side of a finger."""
+        for links, side, inner in zip(self._sides, (1.0, -1.0), inner_m, strict=True):
+            if contact[3] in links:
+                sideways = np.dot(contact[5] - tool[:3, 3], tool[:3, 1])
+                return bool(side * sideways < inner + _PAD_M)
+        return False
 
     def _links_by_joint(self) -> dict[str, int]:
         count = self._client.getNumJoints(self.body_id)
@@ -182,7 +191,7 @@ class Pr2:
                     link,
                     lateralFriction=_FINGER_FRICTION,
                     spinningFriction=_FINGER_SPIN_FRICTION,
-                    rollingFriction=_FINGER_ROLL_FRICTION,
+                    rollingFriction=0,
                 )
 
     def _paint(self, link_of: dict[str, int]) -> None:
@@ -190,3 +199,8 @@ class Pr2:
         for name, link in (("base", -1), *link_of.items()):
             color = _GRIPPER_COLOR if "gripper" in name else _ARM_COLOR
             self._client.changeVisualShape(self.body_id, link, rgbaColor=color)
+
+
+def _inner_side_m(angle_rad: float) -> float:
+    """How far the inner side of a finger's tip is from the middle of the gripper."""
+    return _FINGER_LENGTH_M * math.sin(angle_rad) + _FINGER_OFFSET_M * (math.cos(angle_rad) - 1.0)

@@ -45,7 +45,7 @@ NEUTRAL_RAD = (-1.9, -0.25, -1.0, -1.9, -1.0, -1.0, 0.0)
 PREFERRED_RAD = (-0.5, 0.3, -1.2, -1.6, -1.2, -1.2, 0.0)
 """Arm joint angles in the middle of the work, elbow out to the right."""
 
-HEAD_FOV_RAD = math.radians(49.0)
+HEAD_FOV_RAD = math.radians(55.0)
 """Vertical field of view of the head camera."""
 
 FOREARM_FOV_RAD = math.radians(90.0)
@@ -53,7 +53,7 @@ FOREARM_FOV_RAD = math.radians(90.0)
 
 _TORSO_LIFT_M = 0.3
 _FIXED_ANGLES_RAD = {
-    "head_pan_joint": (0.0, 0.0, -0.33),
+    "head_pan_joint": (0.0, 0.0, -0.345),
     "head_tilt_joint": (0.0, 0.98, 0.0),
     "l_shoulder_pan_joint": (0.0, 0.0, 1.2),
 }
@@ -61,7 +61,7 @@ _KEPT_VISUALS = re.compile(r"r_|torso|base_link")
 _KEPT_COLLISIONS = re.compile(r"r_(gripper|wrist|forearm)")
 _MESH_PREFIX = "package://example-robot-data/robots/pr2_description/meshes/"
 
-_LAYOUT = 1
+_LAYOUT = 2
 """Raised whenever this module makes different files from the same package."""
 
 

@@ -2,13 +2,13 @@
 
 import json
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
 from sim.workcell.bench import Bench
 from sim.workcell.body import PERIOD_S, WorkcellBody
-from sim.workcell.cameras import WorkcellCamera, forearm_optics, head_optics
+from sim.workcell.cameras import Optics, WorkcellCamera, forearm_optics, head_optics
 from sim.workcell.lighting import Lighting
 from sim.workcell.options import WorkcellOptions
 from sim.workcell.parts import Part
@@ -26,7 +26,10 @@ from tasks.intervention import Intervention
 from tasks.scene import Scene
 
 _GRAVITY_M_S2 = -9.81
-_SOLVER_ITERATIONS = 50
+_GRASP_ITERATIONS = 100
+_REST_ITERATIONS = 20
+"""Solver iterations per step: what is grasped sags with few, what lies does not."""
+
 _SETTLE_CYCLES = 120
 _REMEMBER_RESTS_CYCLES = 24
 _FOREARM_HZ = {"bullet": 10, "fast": 30}
@@ -48,28 +51,32 @@ class WorkcellWorld:
     def _build(self, options: WorkcellOptions, lighting: Lighting) -> None:
         client = connect()
         client.setPhysicsEngineParameter(
-            fixedTimeStep=PERIOD_S, numSolverIterations=_SOLVER_ITERATIONS, enableFileCaching=0
+            fixedTimeStep=PERIOD_S, numSolverIterations=_REST_ITERATIONS, enableFileCaching=0
         )
         client.setGravity(0.0, 0.0, _GRAVITY_M_S2)
         self._client = client
+        self._iterations = _REST_ITERATIONS
         self._bench = Bench(client, self._scene)
         self._pr2 = Pr2(client)
         self._body = WorkcellBody(self._pr2, self._rng, self._step)
-        self._person = Person(client, self._bench, self._pr2, self._body, self._rng)
-        renderer: Renderer = (
+        self._person = Person(client, self._bench, self._pr2, self._body)
+        self._lighting = lighting
+        self._renderer: Renderer = (
             BulletRenderer(client) if options.renderer == "bullet" else FastRenderer(client)
         )
-        self.head = WorkcellCamera(
-            head_optics(), renderer, lighting, lambda: self._pr2.head_camera_pose, self._body.time_s
-        )
-        self.forearm = WorkcellCamera(
-            forearm_optics(1.0 / _FOREARM_HZ[options.renderer]),
-            renderer,
-            lighting,
-            self._pr2.forearm_camera_pose,
-            self._body.time_s,
-        )
+        self.head = self.camera("head", head_optics())
+        self.forearm = self.camera("forearm", forearm_optics(1.0 / _FOREARM_HZ[options.renderer]))
         self._body.cameras = {"head": self.head, "forearm": self.forearm}
+
+    def camera(self, name: Literal["head", "forearm"], optics: Optics) -> WorkcellCamera:
+        """Another camera where one of the robot's is."""
+        poses = {
+            "head": lambda: self._pr2.head_camera_pose,
+            "forearm": self._pr2.forearm_camera_pose,
+        }
+        return WorkcellCamera(
+            optics, self._renderer, self._lighting, poses[name], self._body.time_s
+        )
 
     @property
     def body(self) -> WorkcellBody:
@@ -132,9 +139,16 @@ class WorkcellWorld:
 
     def _step(self) -> None:
         self._person.act()
+        self._choose_iterations()
         self._client.stepSimulation()
         if self._body.cycle % _REMEMBER_RESTS_CYCLES == 0:
-            self._bench.remember_rests(self._pr2)
+            self._bench.remember_rests(self._pr2, self._person.has_in_hand)
+
+    def _choose_iterations(self) -> None:
+        wanted = _GRASP_ITERATIONS if self._body.gripper_in_use else _REST_ITERATIONS
+        if wanted != self._iterations:
+            self._iterations = wanted
+            self._client.setPhysicsEngineParameter(numSolverIterations=wanted)
 
     def _settle(self) -> None:
         """Let everything come to rest before the clock runs."""

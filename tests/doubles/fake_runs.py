@@ -156,7 +156,22 @@ class FakeRuns:
         return JPEG
 
     async def raise_issue(self, run: UUID) -> DialogueView:
-        """Open a dialogue with one question."""
+        """Open a dialogue with one question and a picture."""
+        picture = uuid4()
+        raised = ev.IssueRaised(
+            **_stamp(run),
+            node="/0",
+            name="pink_bar",
+            robot="robot",
+            issue="dropped",
+            object="pink_bar",
+            place="pink_place",
+            execution=uuid4(),
+            step=4,
+            interrupts=True,
+            picture=picture,
+        )
+        await self._journal.append(Entry(events=[raised], pictures={picture: JPEG}))
         prompt = PromptView(
             prompt=uuid4(),
             version=1,
@@ -184,7 +199,7 @@ class FakeRuns:
             answered_by=None,
             claimed_by=None,
             claimed_until=None,
-            picture=None,
+            picture=picture,
         )
         self._dialogues[view.dialogue] = view
         await self.commit(

@@ -14,7 +14,8 @@ from server.dialogues.escalation import EscalationPolicy
 from server.journal.sqlite import SqliteJournal
 from server.robots.registry import RobotRegistry
 from server.runtime.context import RunSettings
-from server.runtime.runtime import LoadedTree, Runtime
+from server.runtime.ports import LoadedTree
+from server.runtime.runtime import Runtime
 
 
 @dataclass(frozen=True)
@@ -60,4 +61,5 @@ async def live_service(
         try:
             yield LiveService(runtime, registry, journal, url)
         finally:
+            registry.close()
             await runtime.close()

@@ -2,8 +2,8 @@
 
 import asyncio
 import socket
-from collections.abc import AsyncIterator
-from contextlib import asynccontextmanager
+from collections.abc import AsyncIterator, Iterator
+from contextlib import asynccontextmanager, contextmanager
 
 import uvicorn
 from fastapi import FastAPI
@@ -12,16 +12,28 @@ from server.robots.endpoint import ROBOT_PATH, add_robot_route
 from server.robots.registry import RobotRegistry
 
 
+class _Server(uvicorn.Server):
+    """A uvicorn that leaves signals to pytest, which has to end a test that hangs."""
+
+    @contextmanager
+    def capture_signals(self) -> Iterator[None]:
+        yield
+
+
 @asynccontextmanager
 async def served(
-    registry: RobotRegistry, token: str | None = None, port: int = 0
+    registry: RobotRegistry,
+    token: str | None = None,
+    port: int = 0,
+    *,
+    allowed_origins: tuple[str, ...] = (),
 ) -> AsyncIterator[str]:
     """Serve robots; gives the URL that they connect to."""
     app = FastAPI()
-    add_robot_route(app, registry, token)
+    add_robot_route(app, registry, token, allowed_origins=allowed_origins)
     listener = socket.create_server(("127.0.0.1", port))
     config = uvicorn.Config(app, log_level="warning", ws="websockets-sansio", lifespan="off")
-    server = uvicorn.Server(config)
+    server = _Server(config)
     task = asyncio.create_task(server.serve(sockets=[listener]))
     try:
         yield f"ws://127.0.0.1:{listener.getsockname()[1]}{ROBOT_PATH}"

@@ -16,14 +16,17 @@ from server.dialogues.escalation import EscalationPolicy
 from server.journal import events as ev
 from server.journal.sqlite import SqliteJournal
 from server.runtime.context import RunSettings
+from server.runtime.ports import LoadedTree
 from server.runtime.requests import RunRequest
 from server.runtime.run import Run
 from server.runtime.run_state import DialogueState, RunState
-from server.runtime.runtime import LoadedTree, Runtime
+from server.runtime.runtime import Runtime
 from server.runtime.views import RunView
 from tasks.definition import TaskTreeDefinition
 from tasks.scenario import Scenario
 from tasks.scene import Scene
+
+BARE = Scene(name="bare", objects={}, places={})
 
 
 class NoHardware:
@@ -41,11 +44,12 @@ class NoHardware:
 @dataclass
 class PretendWorlds:
     restarted: list[str] = field(default_factory=list)
+    scene: Scene = BARE
 
     def check(self, world: str) -> None: ...
 
     def lay_out(self, world: str, tree: LoadedTree, seed: int) -> Scene:  # noqa: ARG002
-        return Scene(name="bare", objects={}, places={})
+        return self.scene
 
     def open(self, state: RunState, run: Any) -> NoHardware:  # noqa: ARG002
         return NoHardware(self.restarted)
@@ -93,6 +97,7 @@ async def pretend_service(
     journal: Path | None = None,
     policy: EscalationPolicy | None = None,
     scripts: Mapping[str, Script] | None = None,
+    scene: Scene = BARE,
     **robot: Any,
 ) -> AsyncIterator[PretendService]:
     """A runtime whose robots run into `faults` (object -> issue and step, in turn)."""
@@ -106,7 +111,7 @@ async def pretend_service(
     def send_mail(_: RunState, escalated: ev.Escalated, __: DialogueState) -> None:
         mails.append(escalated)
 
-    worlds = PretendWorlds()
+    worlds = PretendWorlds(scene=scene)
     runtime = Runtime(
         journal=kept,
         robots=robots,

@@ -1,10 +1,12 @@
 import asyncio
 import socket as sockets
 from collections.abc import AsyncIterator
+from typing import Any
 from uuid import uuid4
 
 import pytest
-from pydantic import TypeAdapter, ValidationError
+from pydantic import TypeAdapter
+from recorded_service import recorded_events
 from sample_events import detected, paused
 from service_under_test import TOKEN, ServiceUnderTest, build, serving
 
@@ -135,15 +137,32 @@ async def test_an_event_with_a_detection_comes_as_it_was_committed(
             assert await anext(messages) == raised
 
 
-async def test_a_message_that_cannot_be_read_ends_the_stream_instead_of_hanging_it(
-    client: MendClient, service: ServiceUnderTest, monkeypatch: pytest.MonkeyPatch
+async def test_stream_gives_every_event_of_a_real_run(
+    client: MendClient, service: ServiceUnderTest
 ) -> None:
-    monkeypatch.setattr("server.client_stream.any_event", TypeAdapter(RunStarted))
+    recorded = recorded_events()
     async with client.follow("anna") as stream:
         messages = aiter(stream)
-        assert isinstance(await anext(messages), Snapshot)
-        await service.journal.append(Entry(events=[paused()]))
-        with pytest.raises(ValidationError):
+        await anext(messages)
+        await service.runs.commit(*recorded)
+        async with asyncio.timeout(20):
+            came = [await anext(messages) for _ in recorded]
+    assert [told(each) for each in came] == [told(each) for each in recorded]
+
+
+def told(event: Snapshot | Event) -> dict[str, Any]:
+    return event.model_dump(exclude={"seq"})
+
+
+async def test_stream_ends_with_a_sentence_at_what_it_cannot_read(
+    client: MendClient, service: ServiceUnderTest, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("server.client_stream.any_event", TypeAdapter(RunAborted))
+    async with client.follow("anna") as stream:
+        messages = aiter(stream)
+        await anext(messages)
+        await service.runs.commit(paused())
+        with pytest.raises(StreamRefusedError, match="is it of another version"):
             async with asyncio.timeout(20):
                 await anext(messages)
 

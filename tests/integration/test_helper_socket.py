@@ -46,8 +46,9 @@ async def test_snapshot_comes_first_then_every_event_after_it(service: ServiceUn
         assert snapshot["seq"] == 1
         assert [each["id"] for each in snapshot["runs"]] == [str(run.id)]
         view = await service.runs.raise_issue(run.id)
-        opened, prompt = await receive(socket), await receive(socket)
-        assert [opened["seq"], prompt["seq"]] == [2, 3]
+        raised, opened, prompt = [await receive(socket) for _ in range(3)]
+        assert [raised["seq"], opened["seq"], prompt["seq"]] == [2, 3, 4]
+        assert raised["type"] == "issue_raised"
         assert opened["type"] == "dialogue_opened"
         assert prompt["type"] == "prompt"
         assert prompt["dialogue"] == str(view.dialogue)

@@ -17,9 +17,11 @@ from recording_sink import RecordingSink
 from task_documents import definition_of
 
 import tasks
+from robots.link.channel import memory_channel
+from robots.link.messages import Hello, Holding, ReachLimits, Report
 from server.journal.sqlite import SqliteJournal
+from server.runtime.ports import LoadedTree
 from server.runtime.requests import RunRequest
-from server.runtime.runtime import LoadedTree
 from server.runtime.views import RunStatus, RunView
 from tasks.scene import Scene
 
@@ -126,3 +128,29 @@ async def test_a_run_goes_on_when_the_service_was_started_again(journal: SqliteJ
             ended = await asyncio.wait_for(again.runtime.wait_for_end(run.id), 60)
     assert ended.status is RunStatus.FINISHED
     assert sum((await done_by_name(journal, run.id)).values()) == 5
+
+
+async def test_what_an_earlier_boot_left_is_recorded_and_is_no_news(
+    journal: SqliteJournal,
+) -> None:
+    async with live_service(journal, eket(), token=TOKEN) as service:
+        robot, service_end = memory_channel()
+        serving = asyncio.create_task(service.registry.serve(service_end))
+        hello = Hello(
+            protocol=1, robot="demo", boot="b2", behaviors=["pick_and_place"], cameras=[],
+            reach=ReachLimits(x=0.0, y=0.0, min_m=0.2, max_m=1.2), time=0.0,
+        )  # fmt: skip
+        await robot.send(hello.model_dump_json())
+        run = await start_when_connected(service, "demo")
+        stale = Report(
+            boot="b1", seq=3, time=9.0, body=Holding(execution="an old one", at="in_place")
+        )
+        await robot.send(stale.model_dump_json())
+        async with asyncio.timeout(10):
+            while '"ack"' not in await robot.receive():
+                pass
+        events = await journal.read(0, 100, run.id)
+        await robot.close()
+        await serving
+    assert [each.type for each in events] == ["run_started"]
+    assert await journal.received("demo", "b1") == 3

@@ -73,6 +73,9 @@ async def test_question_is_answered_with_a_click(page: Page, service: ServiceUnd
     await expect(page.locator("#asked-text")).to_have_text(view.prompt.text)
     await expect(page.locator("#yes-effect")).to_have_text(view.prompt.answers[0].effect)
     await expect(page.locator("#no-effect")).to_have_text(view.prompt.answers[1].effect)
+    await expect(page.locator("#asked-picture")).to_have_attribute(
+        "src", f"/api/pictures/{view.picture}"
+    )
     box = await page.locator("#yes").bounding_box()
     assert box is not None
     assert min(box["width"], box["height"]) >= 96

@@ -264,7 +264,7 @@ def test_a_push_against_the_arm_holds_it_in_place() -> None:
     bench = RobotBench()
     bench.start("pink_bar")
     bench.run_to(5, 0.5)
-    bench.body.force_n = 60.0
+    bench.body.force_n = 200.0
     issue = bench.run_until(IssueDetected)
     assert (issue.issue, issue.step) == ("blocked", 5)
     where = bench.body.tool
@@ -363,6 +363,18 @@ def test_a_retreat_puts_back_what_is_carried_and_ends_the_execution() -> None:
     assert bench.robot.task_progress is None
     bench.send(Resume(execution="e1"))
     assert "is not held" in bench.of(Rejected)[0].reason
+
+
+def test_a_start_right_after_a_retreat_command_waits_for_it() -> None:
+    bench = RobotBench()
+    bench.start("pink_bar")
+    bench.run_to(5, 0.5)
+    bench.send(Interrupt(retreat=True))
+    bench.start("green_leg", "right")
+    bench.run()
+    assert bench.of(Rejected) == []
+    assert bench.of(Holding) == [Holding(execution="e1", at="neutral")]
+    assert bench.of(Finished) == [Finished(execution="e3")]
 
 
 def test_an_interrupt_of_a_retreat_holds_and_resumes() -> None:

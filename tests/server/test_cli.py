@@ -12,6 +12,7 @@ from typing import Any
 from uuid import UUID
 
 import cv2
+import httpx
 import numpy as np
 import pytest
 from recorded_service import RecordedService, recorded_events
@@ -147,6 +148,8 @@ def test_help_names_every_command(mend: Mend) -> None:
         ["run", "./eket"],
         ["run", ""],
         ["run", "x" * 65],
+        ["run", "eket", "--report", "/dev/null/report.html"],
+        ["run", "eket", "--journal", "/dev/null/journal.sqlite"],
         ["check", "no_such_file.yaml"],
         ["check", "."],
         ["schema", "pictures"],
@@ -225,9 +228,11 @@ def test_a_task_that_does_not_finish_exits_with_1(
 ) -> None:
     kind, fields = end
     service(ended_by(kind, **fields))
-    outcome = mend("run", "eket")
-    assert outcome.code == 1
-    assert sentence in outcome.out
+    told, as_json = mend("run", "eket"), mend("run", "eket", "--json")
+    assert (told.code, as_json.code) == (1, 1)
+    assert told.err == ""
+    assert sentence in told.out
+    assert sentence in as_json.err
 
 
 def test_a_run_that_stops_for_a_fault_of_ours_is_told_with_its_journal(
@@ -476,10 +481,13 @@ def test_a_reader_changes_nothing(
 # --- train-colors -----------------------------------------------------------------------------
 
 
-def test_colors_are_learned_from_a_rendered_scene(mend: Mend, tmp_path: Path) -> None:
+@pytest.mark.parametrize("world", ["tabletop", "workcell"])
+def test_colors_are_learned_from_a_rendered_scene(mend: Mend, tmp_path: Path, world: str) -> None:
+    if world == "workcell":
+        pytest.importorskip("pybullet")
     scene, model = tmp_path / "scene.yaml", tmp_path / "made" / "colors.npz"
     scene.write_text(SCENE)
-    outcome = mend("train-colors", str(model), "--scene", str(scene))
+    outcome = mend("train-colors", str(model), "--scene", str(scene), "--world", world)
     assert (outcome.code, outcome.out) == (0, f"{model}: the colours of cup\n")
     assert model.is_file()
 
@@ -498,39 +506,81 @@ def test_colors_are_learned_from_supplied_pictures(mend: Mend, tmp_path: Path) -
 # --- As a process -----------------------------------------------------------------------------
 
 
-@pytest.mark.slow
-def test_the_installed_command_stays_quiet_when_its_reader_goes_away(data_dir: Path) -> None:
-    command = [sys.executable, "-c", "from server.cli import main; main()"]
-    environment = {**os.environ, "XDG_DATA_HOME": str(data_dir.parent)}
-    process = subprocess.Popen(
-        [*command, "schema", "events"],
+COMMAND = [sys.executable, "-c", "from server.cli import main; main()"]
+
+
+def begin(data_dir: Path, *arguments: str) -> subprocess.Popen[str]:
+    """Start the command as a process of its own."""
+    return subprocess.Popen(
+        [*COMMAND, *arguments],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
-        env=environment,
+        text=True,
+        env={**os.environ, "XDG_DATA_HOME": str(data_dir.parent)},
     )
-    assert process.stdout is not None
-    assert process.stderr is not None
-    process.stdout.close()
-    errors = process.stderr.read()
-    process.stderr.close()
-    assert process.wait() != 0
-    assert errors == b""
+
+
+@pytest.mark.slow
+def test_the_command_stays_quiet_when_its_reader_goes_away(data_dir: Path) -> None:
+    with begin(data_dir, "schema", "events") as process:
+        assert process.stdout is not None
+        assert process.stderr is not None
+        process.stdout.close()
+        assert process.stderr.read() == ""
+        assert process.wait() != 0
 
 
 @pytest.mark.slow
 def test_the_papers_scenario_is_run_for_real_and_finishes(data_dir: Path) -> None:
-    command = [sys.executable, "-c", "from server.cli import main; main()"]
     arguments = "run eket --world tabletop --scenario eket_paper --speed max --seed 7 --json"
-    done = subprocess.run(
-        [*command, *arguments.split()],
-        capture_output=True,
-        env={**os.environ, "XDG_DATA_HOME": str(data_dir.parent)},
-        check=False,
-        timeout=120,
-    )
-    assert (done.returncode, done.stderr) == (0, b"")
-    events = [ev.any_event.validate_json(line) for line in done.stdout.splitlines()]
-    resolutions = [str(each.resolution) for each in events if isinstance(each, ev.Resolved)]
-    assert resolutions[0] == "human_finish"
-    assert resolutions[-1] == "robot_finish"
+    with begin(data_dir, *arguments.split()) as process:
+        out, err = process.communicate(timeout=120)
+    assert (process.returncode, err) == (0, "")
+    events = [ev.any_event.validate_json(line) for line in out.splitlines()]
+    assert [(each.issue, each.object) for each in events if isinstance(each, ev.IssueRaised)] == [
+        ("dropped", "pink_bar"),
+        ("dropped", "yellow_bar"),
+        ("positioning", "yellow_bar"),
+        ("missed", "blue_leg"),
+        ("positioning", "blue_leg"),
+        ("unreachable", "purple_top"),
+    ]
+    assert [str(each.resolution) for each in events if isinstance(each, ev.Resolved)] == [
+        "human_finish",
+        "robot_retry",
+        "collab_finish",
+        "robot_retry",
+        "collab_finish",
+        "robot_finish",
+    ]
     assert isinstance(events[-1], ev.RunFinished)
+
+
+@pytest.mark.slow
+def test_ctrl_c_aborts_a_real_run_which_its_journal_then_tells(data_dir: Path) -> None:
+    arguments = "run eket --world tabletop --answers none --json"
+    with begin(data_dir, *arguments.split()) as process:
+        assert process.stdout is not None
+        first = ev.any_event.validate_json(process.stdout.readline())
+        process.send_signal(signal.SIGINT)
+        out, err = process.communicate(timeout=60)
+    assert (process.returncode, err) == (130, "mend: the run was aborted: by a person\n")
+    assert isinstance(ev.any_event.validate_json(out.splitlines()[-1]), ev.RunAborted)
+    (journal,) = (data_dir / "runs").glob("*.sqlite")
+    with JournalReader(journal) as reader:
+        assert isinstance(reader.events(first.run)[-1], ev.RunAborted)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_serve_says_where_it_listens_and_stops_when_told(
+    data_dir: Path, number: signal.Signals
+) -> None:
+    with begin(data_dir, "serve", "--port", "0") as process:
+        assert process.stdout is not None
+        url = process.stdout.readline().split()[3].rstrip(";")
+        assert httpx.get(f"{url}/healthz").status_code == 200
+        process.send_signal(number)
+        _, err = process.communicate(timeout=60)
+    assert process.returncode == 0
+    assert "Traceback" not in err

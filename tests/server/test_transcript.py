@@ -88,6 +88,15 @@ def test_a_choice_names_the_best_rivals_and_counts_the_others() -> None:
     )
 
 
+def test_a_rival_with_failed_attempts_is_told_with_them() -> None:
+    started = node_started(1.0, 2.5)
+    tried = started.candidates[1].model_copy(update={"attempts": 2})
+    event = started.model_copy(update={"candidates": [started.candidates[0], tried]})
+    assert told(event) == [
+        "robot starts pink_bar (potential 1.00, before yellow_bar 2.50 after 2 failed)"
+    ]
+
+
 def test_steps_of_one_execution_share_a_thread_and_other_lines_have_none() -> None:
     step = ev.StepStarted(**NODE, robot="pr2", execution=OTHER, step=3, step_name="close_gripper")
     assert Transcript().lines(step) == [

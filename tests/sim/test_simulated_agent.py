@@ -336,3 +336,14 @@ def transcript(chunk_s: Callable[[int], float]) -> list[str]:
 
 def test_the_same_seed_gives_the_same_reports_however_time_is_cut() -> None:
     assert transcript(lambda _: 1.0) == transcript(lambda index: 0.37 + index)
+
+
+def test_nobody_does_later_what_the_robot_has_seen_done_already() -> None:
+    driver = Driver(make_agent())
+    driver.send(Intervene(intervention=PUT_BACK_A, by="helper", at=3.0))
+    driver.send(Look(object="a", expect="in_reach", within_s=10.0))
+    driver.run()
+    assert [each.body.fulfilled for each in driver.of(Looked)] == [True]
+    driver.send(Hold(until=5.0))
+    driver.run()
+    assert driver.of(Intervened) == []

@@ -37,7 +37,7 @@ VIEW = MonitorView(
 def grip(state: GripState) -> GripReading:
     image = DrawnScene().picture(with_depth=False)
     return GripReading(
-        "pink_bar", state, False, BLOB, (80.0, 60.0), 5.0, 30.0, (80.0, 60.0), 300.0, image
+        "pink_bar", state, False, BLOB, (80.0, 60.0), 3.0, 30.0, (30.0, 0.0), 0.7, image
     )
 
 

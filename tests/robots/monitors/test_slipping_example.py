@@ -46,7 +46,7 @@ def slip(bench: RobotBench, speed_m_s: float, longest_m: float) -> None:
         if carrying and bench.body.in_hand is not None and slid_m[0] < longest_m:
             name, relative = bench.body.in_hand
             moved = relative.copy()
-            moved[0, 3] += speed_m_s * bench.body.control_period_s
+            moved[2, 3] -= speed_m_s * bench.body.control_period_s
             slid_m[0] += speed_m_s * bench.body.control_period_s
             bench.body.in_hand = (name, moved)
 
@@ -74,8 +74,8 @@ def test_its_dialogue_is_sound() -> None:
 
 def test_a_slow_slide_is_slipping_and_interrupts_nothing() -> None:
     bench = bench_with_slipping()
-    slip(bench, speed_m_s=0.06, longest_m=0.016)
-    bench.start("green_leg")
+    slip(bench, speed_m_s=0.06, longest_m=0.024)
+    bench.start("pink_bar")
     bench.run()
     (issue,) = bench.of(IssueDetected)
     assert (issue.issue, issue.interrupts) == ("slipping", False)

@@ -62,6 +62,13 @@ def test_fingers_that_met_hold_nothing_whatever_is_seen() -> None:
     assert hand.read(opening_m=0.0).state is GripState.ABSENT
 
 
+def test_fingers_that_spread_have_let_go() -> None:
+    hand = Hand("pink_bar")
+    for opening_m in (0.03, 0.03, 0.04, 0.04):
+        state = hand.read(opening_m=opening_m).state
+    assert state is GripState.LOST
+
+
 def test_a_part_that_vanishes_is_lost_after_two_pictures() -> None:
     hand = Hand("pink_bar")
     hand.read()
@@ -119,13 +126,13 @@ def test_a_held_part_is_never_lost_wherever_the_arm_goes(name, poses, light, sli
 
 def test_what_it_learned_of_a_grasp_is_expected_afterwards() -> None:
     hand = Hand("pink_bar")
-    uneven = (0.0, 0.0, 0.012)
+    uneven = (0.0, 0.03, 0.0)
     first = hand.read(shift=uneven)
     hand.read(shift=uneven)
     later = hand.read(shift=uneven)
-    assert first.drift_px is not None
-    assert later.drift_px is not None
-    assert later.drift_px < 0.5 < first.drift_px
+    assert first.overhang_px is not None
+    assert later.overhang_px is not None
+    assert later.overhang_px < 1.0 < 3.0 < first.overhang_px
 
 
 def test_measuring_comes_to_no_verdict() -> None:

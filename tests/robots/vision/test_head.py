@@ -86,6 +86,16 @@ def test_a_half_hidden_part_is_not_called_complete() -> None:
     assert not half.complete
 
 
+@pytest.mark.parametrize("yaw", [0.0, 0.15, -0.2])
+def test_a_part_that_the_border_cuts_is_measured_from_its_other_end(yaw: float) -> None:
+    leg = Resting(0.5, 0.33, yaw=yaw)
+    image = DrawnScene({"green_leg": leg}).picture()
+    assert MODEL.segment(image.bgr).mask("green_leg")[:, 0].any()
+    seen = see("green_leg", DrawnScene({"green_leg": leg}))
+    assert seen is not None
+    assert math.hypot(seen.x - leg.x, seen.y - leg.y) < 0.004
+
+
 def test_a_toppled_leg_is_not_upright() -> None:
     toppled = Resting(0.5, -0.2).matrix() @ np.array(
         [[0, 0, 1, 0], [0, 1, 0, 0], [-1, 0, 0, 0.015], [0, 0, 0, 1.0]]

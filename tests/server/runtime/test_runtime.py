@@ -20,8 +20,10 @@ from server.runtime.context import RunSettings
 from server.runtime.requests import RunRequest
 from server.runtime.run_state import RunState
 from server.runtime.views import DialogueView, RunStatus, RunView
+from sim.tabletop.layout import lay_out
 from tasks.random_task import random_task
 from tasks.resolution import Resolution
+from tasks.scenario import Person
 
 TWO_PARTS = definition_of(
     {
@@ -81,6 +83,16 @@ async def test_an_issue_is_resolved_as_it_was_answered(
     done = next(each for each in of_type(events, ev.NodeDone) if each.name == "part_1")
     assert done.by == done_by
     check(view, events)
+
+
+async def test_nobody_takes_a_finished_part_for_the_promised_one() -> None:
+    faults = {"part_2": [("missed", 4)]}
+    clumsy = Person(wrong_object=1.0)
+    scene = lay_out([("part_1", "spot_1"), ("part_2", "spot_2")], seed=1)
+    async with pretend_service(TWO_PARTS, faults, scene=scene) as service:
+        _, events = await service.run_to_end(answers=["yes"], person=clumsy)
+    deeds = of_type(events, ev.InterventionDone)
+    assert [each.object for each in deeds if each.by == "helper"] == ["part_2"]
 
 
 async def test_silence_fails_the_run_after_three_attempts_and_says_why() -> None:

@@ -16,6 +16,7 @@ const STATUS_OF = {
 
 const runs = new Map(); // id -> RunView or RunSummary
 const dialogues = new Map(); // id -> DialogueView, the open ones
+const pictures = new Map(); // run and node -> what the robot saw at the last fault there
 let shownRun = null;
 let socket = null;
 let seen = null;
@@ -108,6 +109,7 @@ function takeEvent(event) {
     addLine(event);
     if (event.type.startsWith("node_") || STATUS_OF[event.type]) refreshTree();
   }
+  if (event.type === "issue_raised") pictures.set(event.run + event.node, event.picture);
   if (event.dialogue) takeDialogueEvent(event);
 }
 
@@ -119,6 +121,7 @@ function takeDialogueEvent(event) {
     object: event.object,
     robot: event.robot,
     name: event.name,
+    picture: pictures.get(event.run + event.node) || null,
     prompt: null,
   };
   if (event.type === "dialogue_closed") dialogues.delete(event.dialogue);

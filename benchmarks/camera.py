@@ -1,0 +1,70 @@
+"""What a picture costs with PyBullet's renderer and with the fast one, of the same moment.
+
+    python benchmarks/camera.py [--quick]
+
+The ratio is that of CPU time per picture; beside it, how far the two pictures differ.
+"""
+
+# ruff: noqa: T201
+
+import argparse
+import time
+from typing import Literal
+
+import numpy as np
+
+from sim.workcell.cameras import Optics, WorkcellCamera, forearm_optics, head_optics
+from sim.workcell.options import read_options
+from sim.workcell.world import WorkcellWorld
+from tasks.scene_file import built_in_scene
+
+CAMERAS: tuple[tuple[Literal["head", "forearm"], Optics], ...] = (
+    ("forearm", forearm_optics(0.1)),
+    ("head", head_optics()),
+)
+SCALES = (0.5, 1.0, 2.0)
+
+
+def scaled(optics: Optics, scale: float) -> Optics:
+    """The same camera with more or fewer pixels."""
+    width, height = (round(side * scale) for side in optics.size)
+    return Optics(
+        (width, height), optics.focal_px * scale, optics.near_m, optics.period_s, optics.has_depth
+    )
+
+
+def cost_ms(camera: WorkcellCamera, pictures: int) -> float:
+    """Mean CPU time per picture, after one that warms up."""
+    camera.capture()
+    begin = time.process_time()
+    for _ in range(pictures):
+        camera.capture()
+    return (time.process_time() - begin) / pictures * 1e3
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--quick", action="store_true", help="five pictures each")
+    pictures = 5 if parser.parse_args().quick else 100
+    scene = built_in_scene("eket")
+    worlds = {
+        renderer: WorkcellWorld(scene, 1, read_options({"renderer": renderer}))
+        for renderer in ("bullet", "fast")
+    }
+    print("| camera | size | PyBullet, ms | fast, ms | ratio | depth differs, mm (median) |")
+    print("|---|---|---:|---:|---:|---:|")
+    for name, optics in CAMERAS:
+        for scale in SCALES:
+            size = scaled(optics, scale)
+            cameras = {renderer: world.camera(name, size) for renderer, world in worlds.items()}
+            bullet, fast = (cost_ms(camera, pictures) for camera in cameras.values())
+            (_, one), (_, other) = (each.capture_with_bodies() for each in cameras.values())
+            apart = np.median(np.abs(one.depth_m - other.depth_m)) * 1e3
+            print(
+                f"| {name} | {size.size[0]} x {size.size[1]} | {bullet:.2f} | {fast:.2f} "
+                f"| {bullet / fast:.1f} x | {apart:.3f} |"
+            )
+
+
+if __name__ == "__main__":
+    main()

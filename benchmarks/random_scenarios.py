@@ -1,0 +1,303 @@
+"""Random scenarios: does every run end, and is what it says at the end true?
+
+    python benchmarks/random_scenarios.py [--runs 1000] [--world tabletop|workcell] [--seed 0]
+        [--jobs 2] [--quick] [--replay SEED]
+
+Random trees, random interventions, and helpers that answer at random, never, or always yes. Every
+run's events are audited, and its end is compared with its events and with where the simulated
+world's parts really are. The exit code is 1 if any run broke a constraint, hung or told an
+untruth, or if one with a willing helper did not finish. `--replay` prints one run's events.
+"""
+
+# ruff: noqa: T201
+
+import argparse
+import asyncio
+import faulthandler
+import json
+import logging
+import os
+import sys
+import time
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import dataclass, field
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+
+from server.journal import events as ev
+from server.journal.audit import audit
+from server.journal.sqlite import IN_MEMORY
+from server.journal.untruths import Rest, find_untruths, kinds_of
+from server.runtime.requests import RunRequest
+from server.runtime.views import RunStatus
+from server.settings import Settings
+from tasks.random_task import random_nesting, random_task
+from tasks.scenario import Person
+
+Answers = Literal["random", "unreliable", "none", "willing"]
+
+KINDS: tuple[Answers, ...] = ("random", "unreliable", "none", "willing")
+"""Who helps: somebody who answers at random, the same who keeps promises badly, nobody, and
+somebody who always says yes and does it."""
+
+MOST_LEAVES = {"tabletop": 60, "workcell": 6}
+GUARD_S = {"tabletop": 120.0, "workcell": 400.0}
+"""Wall seconds after which a run counts as hung."""
+
+UNRELIABLE = Person(late=0.2, wrong_object=0.15, wrong_place=0.15, never=0.15)
+MOST_ASKS = 2000
+
+THREAD_LIMITS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What came of one run; every list has one sentence per thing that is wrong."""
+
+    seed: int
+    answers: Answers
+    leaves: int
+    status: RunStatus | Literal["hung"]
+    reason: str
+    wall_s: float
+    simulated_s: float
+    missing: int = 0
+    violations: list[str] = field(default_factory=list)
+    untruths: list[str] = field(default_factory=list)
+
+    @property
+    def wrong(self) -> list[str]:
+        """Everything that must not be."""
+        wrong = [*self.violations, *self.untruths]
+        if self.status not in (RunStatus.FINISHED, RunStatus.FAILED):
+            wrong.append(f"the run is {self.status}")
+        elif self.answers == "willing" and self.status is not RunStatus.FINISHED:
+            wrong.append(f"a willing helper could not make it finish: {self.reason}")
+        return wrong
+
+
+# --- One run -----------------------------------------------------------------------------------
+
+
+def random_tree(world: str, rng: np.random.Generator, most_leaves: int) -> tuple[str, int]:
+    """A task file and how many leaves its tree has."""
+    if world == "workcell":
+        return _random_base(rng)
+    leaves = int(rng.integers(1, most_leaves + 1))
+    return json.dumps(random_task(rng, leaves)), leaves
+
+
+def _random_base(rng: np.random.Generator) -> tuple[str, int]:
+    """Legs and bars of the EKET base in any nesting; a top only where both legs carry it."""
+    frame = [_leaf(each) for each in rng.permutation(["green_leg", "blue_leg"])]
+    bars = [_leaf(each) for each in rng.permutation(["pink_bar", "yellow_bar"])]
+    bars = bars[: int(rng.integers(0, 3))]
+    tops = [_leaf(each) for each in rng.permutation(["purple_top", "orange_top"])]
+    tops = tops[: int(rng.integers(0, 3))]
+    if not tops:
+        parts = _shuffled(rng, [*frame, *bars])
+        tree = random_nesting(rng, parts)
+        return json.dumps({"name": "random_base", "scene": "eket", "tree": tree}), len(parts)
+    below = [random_nesting(rng, frame, ("then", "and"))]
+    if bars:
+        below.append(random_nesting(rng, bars))
+    stages = [{"and" if rng.random() < 0.5 else "then": _shuffled(rng, below)}, {"or": tops}]
+    document = {"name": "random_base", "scene": "eket", "tree": {"then": stages}}
+    return json.dumps(document), len(frame) + len(bars) + len(tops)
+
+
+def _shuffled(rng: np.random.Generator, nodes: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    return [nodes[int(index)] for index in rng.permutation(len(nodes))]
+
+
+def _leaf(part: str) -> dict[str, Any]:
+    return {"behavior": "pick_and_place", "object": str(part), "place": str(part)}
+
+
+def request(world: str, seed: int, answers: Answers) -> RunRequest:
+    """A run with random interventions and the given kind of help."""
+    said: Any = {"willing": ["yes"] * MOST_ASKS, "none": "none"}.get(answers, "random")
+    return RunRequest(
+        tree="random",
+        world=world,
+        speed="max",
+        seed=seed,
+        answers=said,
+        interventions="random",
+        person=UNRELIABLE if answers == "unreliable" else Person(),
+    )
+
+
+async def run_once(
+    world: str, seed: int, *, most_leaves: int | None = None, show: bool = False
+) -> Outcome:
+    """One random scenario on a service of its own, judged."""
+    # Only here, so that a worker's limits on threads come before the libraries that heed them.
+    from server.composition import open_service
+
+    answers = KINDS[seed % len(KINDS)]
+    rng = np.random.default_rng(seed)
+    text, leaves = random_tree(world, rng, most_leaves or MOST_LEAVES[world])
+    settings = Settings(port=0, journal=Path(IN_MEMORY), log_level="error")
+    began = time.perf_counter()
+    async with open_service(settings) as service:
+        await service.trees.save("random", text)
+        run = (await service.runtime.start_run(request(world, seed, answers))).id
+        try:
+            async with asyncio.timeout(GUARD_S[world]):
+                view = await service.runtime.wait_for_end(run)
+        except TimeoutError:
+            view = service.runtime.run(run)
+        wall_s = time.perf_counter() - began
+        events = await service.journal.read(0, 1_000_000, run)
+        snapshot = await service.journal.world(run)
+    if show:
+        _print_events(events)
+    started = events[0]
+    assert isinstance(started, ev.RunStarted)
+    return Outcome(
+        seed=seed,
+        answers=answers,
+        leaves=leaves,
+        status=view.status if view.status.ended else "hung",
+        reason=view.result.reason if view.result else "",
+        wall_s=wall_s,
+        simulated_s=view.time,
+        missing=len(view.result.missing) if view.result else 0,
+        violations=audit(events, kinds_of(started)),
+        untruths=find_untruths(events, where_parts_rest(started, snapshot))
+        if view.status.ended
+        else [],
+    )
+
+
+def where_parts_rest(
+    started: ev.RunStarted, snapshot: dict[str, Any] | None
+) -> dict[str, Rest | None]:
+    """Where a simulated world's parts really are, from its last snapshot; None for gone ones."""
+    objects = started.scene["objects"]
+    world = {} if snapshot is None else snapshot["world"]
+    if "parts" in world:
+        return {
+            name: None if part["stolen"] else tuple(part["rest"]["position"])
+            for name, part in world["parts"].items()
+        }
+    height_m = started.scene["table"]["height"]
+    resting: dict[str, Rest | None] = {}
+    for name, each in objects.items():
+        pose = each["pose"]
+        start = (pose["x"], pose["y"], height_m if pose["z"] is None else pose["z"])
+        x, y, z = world.get("moved", {}).get(name, start)[:3]
+        resting[name] = None if name in world.get("gone", []) else (x, y, z)
+    return resting
+
+
+def _print_events(events: Iterable[ev.Event]) -> None:
+    shown = ("node", "name", "issue", "step", "text", "answer", "resolution", "reason", "act")
+    shown += ("object", "ok", "detail", "at", "help", "failed_attempt", "missing", "by")
+    for event in events:
+        fields = event.model_dump(mode="json")
+        told = " ".join(
+            f"{key}={fields[key]}" for key in shown if fields.get(key) not in (None, "")
+        )
+        print(f"{event.seq:5} {event.time:8.2f} {fields['type']:18} {told}")
+
+
+# --- Many runs ---------------------------------------------------------------------------------
+
+
+def _work(world: str, seed: int) -> Outcome:
+    """One run in a worker; a run that blocks its process for good takes the process with it."""
+    logging.basicConfig(level=logging.ERROR)
+    faulthandler.dump_traceback_later(2 * GUARD_S[world], exit=True)
+    try:
+        return asyncio.run(run_once(world, seed))
+    finally:
+        faulthandler.cancel_dump_traceback_later()
+
+
+def run_all(world: str, seeds: list[int], jobs: int) -> Iterator[Outcome]:
+    """The outcomes of all runs as they come in."""
+    for name in THREAD_LIMITS:
+        os.environ[name] = "1"
+    with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
+        futures = {pool.submit(_work, world, seed): seed for seed in seeds}
+        for future in as_completed(futures):
+            try:
+                yield future.result()
+            except BrokenProcessPool:
+                seed = futures[future]
+                yield Outcome(seed, KINDS[seed % len(KINDS)], 0, "hung", "", 0.0, 0.0)
+
+
+def print_table(outcomes: list[Outcome]) -> None:
+    """What came of the runs, for each kind of help."""
+    heads = ("answers", "runs", "finished", "failed", "hung", "violations", "untruths", "missing")
+    print("".join(f"{head:>12}" for head in heads))
+    for kind in (*KINDS, "all"):
+        some = [each for each in outcomes if kind in (each.answers, "all")]
+        count = Counter(str(each.status) for each in some)
+        figures = (
+            len(some),
+            count["finished"],
+            count["failed"],
+            len(some) - count["finished"] - count["failed"],
+            sum(len(each.violations) for each in some),
+            sum(len(each.untruths) for each in some),
+            sum(each.missing for each in some),
+        )
+        print(f"{kind:>12}" + "".join(f"{each:>12}" for each in figures))
+    reasons = Counter(
+        "a leaf could not be done" if "could not be done" in each.reason else each.reason
+        for each in outcomes
+        if each.status is RunStatus.FAILED
+    )
+    for reason, count_of in reasons.most_common():
+        print(f"failed {count_of} times: {reason}")
+    walls = np.array([each.wall_s for each in outcomes])
+    simulated_s = sum(each.simulated_s for each in outcomes)
+    print(
+        f"wall seconds of a run: median {np.median(walls):.2f}, p95 {np.percentile(walls, 95):.2f},"
+        f" most {walls.max():.2f}; simulated {simulated_s / walls.sum():.0f} x real time"
+    )
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--runs", type=int, help="how many (1,000 in tabletop, 50 in workcell)")
+    parser.add_argument("--world", choices=sorted(MOST_LEAVES), default="tabletop")
+    parser.add_argument("--seed", type=int, default=0, help="the first run's seed")
+    parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--quick", action="store_true", help="a few runs, as a smoke test")
+    parser.add_argument("--replay", type=int, metavar="SEED", help="print one run's events")
+    arguments = parser.parse_args()
+    if arguments.replay is not None:
+        outcome = asyncio.run(run_once(arguments.world, arguments.replay, show=True))
+        print(outcome)
+        return 1 if outcome.wrong else 0
+    runs = arguments.runs or (1000 if arguments.world == "tabletop" else 50)
+    if arguments.quick:
+        runs = 8 if arguments.world == "tabletop" else 2
+    began = time.perf_counter()
+    outcomes: list[Outcome] = []
+    for outcome in run_all(
+        arguments.world, list(range(arguments.seed, arguments.seed + runs)), arguments.jobs
+    ):
+        outcomes.append(outcome)
+        for sentence in outcome.wrong:
+            print(f"seed {outcome.seed} ({outcome.answers}): {sentence}", flush=True)
+        if sys.stdout.isatty():
+            print(f"\r{len(outcomes)}/{runs}", end="\r", flush=True)
+    print_table(outcomes)
+    print(f"{runs} runs in {time.perf_counter() - began:.0f} s")
+    return 1 if any(each.wrong for each in outcomes) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,111 @@
+"""How long a robot stands still once it was answered: from the answer to its next step.
+
+A person moves the part away again and again while the robot reaches for it, and a live helper
+answers "no" twice, so that no physical help is awaited. The naive way, in the same run, is what the
+published systems do: poll the state every 50 ms and act on what is found.
+
+    python benchmarks/recovery.py [--world workcell] [--answers 100] [--quick]
+"""
+
+# ruff: noqa: T201
+import argparse
+import asyncio
+import json
+import tempfile
+import time
+from pathlib import Path
+from uuid import UUID
+
+import numpy as np
+
+from server.composition import Service, open_service
+from server.runtime.requests import RunRequest
+from server.settings import Settings
+from tasks.intervention import Act, Intervention
+from tasks.scene import Pose
+
+POLL_PERIOD_S = 0.05
+PART = "green_leg"
+SPOTS = (Pose(x=0.45, y=-0.52), Pose(x=0.42, y=-0.60))
+
+
+async def measure(world: str, renderer: str | None, answers: int) -> list[float]:
+    """Seconds from each last answer received to the robot's next step committed."""
+    with tempfile.TemporaryDirectory() as folder:
+        async with open_service(Settings(port=0, data_dir=Path(folder))) as service:
+            request = RunRequest(
+                tree="eket",
+                world=world,
+                speed="max",
+                seed=1,
+                max_attempts=100,
+                world_options={"renderer": renderer} if renderer else {},
+            )
+            run = (await service.runtime.start_run(request)).id
+            waits = await _answer_no(service, run, answers)
+            await service.runtime.abort(run)
+            await service.runtime.wait_for_end(run)
+    return waits
+
+
+async def _answer_no(service: Service, run: UUID, answers: int) -> list[float]:
+    """Move the part away, wait until the robot stands still, answer no, and see it go on."""
+    waits: list[float] = []
+    answered_at: float | None = None
+    asked: tuple[UUID, UUID] | None = None
+    still = False
+    moves = 0
+    with service.journal.subscribe(0) as subscription:
+        async for record in subscription:
+            event = json.loads(record.text)
+            match event["type"]:
+                case "step_started":
+                    still = False
+                    if answered_at is not None:
+                        waits.append(time.perf_counter() - answered_at)
+                        answered_at = None
+                    if event["step"] == 2:
+                        deed = Intervention(act=Act.MOVE, object=PART, to=SPOTS[moves % 2])
+                        moves += 1
+                        await service.runtime.intervene(run, deed)
+                case "robot_holding":
+                    still = True
+                case "prompt" if event["kind"] == "ask":
+                    asked = UUID(event["dialogue"]), UUID(event["prompt"])
+                case "run_failed" | "run_finished":
+                    raise RuntimeError(f"the run ended early: {event}")
+            if len(waits) >= answers:
+                break
+            if still and asked is not None:
+                dialogue, prompt = asked
+                asked = None
+                answered_at = time.perf_counter()
+                await service.runtime.answer(dialogue, prompt, "no", "benchmark")
+    return waits
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("--world", choices=["tabletop", "workcell"], default="workcell")
+    parser.add_argument("--answers", type=int, default=100)
+    parser.add_argument("--quick", action="store_true")
+    arguments = parser.parse_args()
+    answers = 5 if arguments.quick else min(arguments.answers, 99)
+    renderers = ("fast", "bullet") if arguments.world == "workcell" else (None,)
+    rng = np.random.default_rng(0)
+    print("answer received -> next step of the robot, ms    p50    p95    p99    max")
+    for renderer in renderers:
+        waits = np.array(asyncio.run(measure(arguments.world, renderer, answers))) * 1e3
+        _row(f"{arguments.world} {renderer or ''}", waits)
+        polled = waits + sum(rng.uniform(0, POLL_PERIOD_S * 1e3, len(waits)) for _ in range(3))
+        _row("  polled at 20 Hz in answer, choice and start", polled)
+        print(f"  ratio at p99: {np.percentile(polled, 99) / np.percentile(waits, 99):.1f}")
+
+
+def _row(name: str, waits_ms: np.ndarray) -> None:
+    figures = [*np.percentile(waits_ms, [50, 95, 99]), waits_ms.max()]
+    print(f"{name:<46}" + "".join(f"{each:7.1f}" for each in figures))
+
+
+if __name__ == "__main__":
+    main()

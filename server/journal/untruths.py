@@ -1,0 +1,163 @@
+"""Untruths: what a run's last event says that its other events, or the world, contradict.
+
+Like the audit it knows nothing of the runtime's code: it works from the events alone. Where things
+really are it is told by somebody who may know, the judge of a simulated world.
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+
+from server.journal import events as ev
+from tasks.definition import BehaviorNode, TaskTreeDefinition
+from tasks.scene import Place, Scene
+
+Rest = tuple[float, float, float]
+"""Where the bottom centre of a part rests, in the base frame, metres."""
+
+AT_PLACE_M = 0.05
+"""A part this near to its place is there; the same holds for its height."""
+
+
+def find_untruths(events: Sequence[ev.Event], resting: Mapping[str, Rest | None]) -> list[str]:
+    """One sentence per untrue thing that an ended run says.
+
+    `resting` has where every part really rests at the end, None if it is gone.
+    """
+    started, end = events[0], events[-1]
+    assert isinstance(started, ev.RunStarted), "a run begins with run_started"
+    match end:
+        case ev.RunFinished():
+            return _untrue_missing(started, events, end, resting)
+        case ev.RunFailed():
+            return _untrue_reason(started, events, end)
+        case _:
+            return ["the run ended neither finished nor failed"]
+
+
+def _untrue_missing(
+    started: ev.RunStarted,
+    events: Sequence[ev.Event],
+    end: ev.RunFinished,
+    resting: Mapping[str, Rest | None],
+) -> list[str]:
+    leaves = _leaves(started)
+    scene = Scene.model_validate(started.scene, strict=False)
+    told = {each.node for each in end.missing}
+    blocked = _somebody_stands_there(events)
+    wrong = []
+    for done in (each for each in events if isinstance(each, ev.NodeDone)):
+        leaf = leaves[done.node]
+        if leaf.object is None or leaf.place is None:
+            continue
+        there = _is_there(resting[leaf.object], scene, scene.places[leaf.place])
+        if there and done.node in told and not blocked:
+            wrong.append(f"'{leaf.object}' is told to be missing, but is at its place")
+        if not there and done.node not in told:
+            wrong.append(f"'{leaf.object}' is not at its place, but is not told to be missing")
+        if not there and not _disturbed_since(events, done.node, leaf.object):
+            wrong.append(f"'{done.node}' is done, but '{leaf.object}' never was at its place")
+    return wrong
+
+
+def _is_there(rest: Rest | None, scene: Scene, place: Place) -> bool:
+    if rest is None:
+        return False
+    height_m = scene.table.height if place.pose.z is None else place.pose.z
+    near = math.hypot(rest[0] - place.pose.x, rest[1] - place.pose.y) <= AT_PLACE_M
+    return near and abs(rest[2] - height_m) <= AT_PLACE_M
+
+
+def _somebody_stands_there(events: Sequence[ev.Event]) -> bool:
+    """Whether somebody still stands in the way at the end: what they hide cannot be found."""
+    acts = [
+        each.act
+        for each in events
+        if isinstance(each, ev.InterventionDone) and each.ok and each.act in ("block", "release")
+    ]
+    return acts[-1:] == ["block"]
+
+
+def _disturbed_since(events: Sequence[ev.Event], node: str, handled: str) -> bool:
+    """Whether a person has touched a part since its leaf was last started."""
+    begun = max(
+        index
+        for index, each in enumerate(events)
+        if isinstance(each, ev.NodeStarted) and each.node == node
+    )
+    return any(
+        isinstance(each, ev.InterventionDone) and each.object == handled and each.ok
+        for each in events[begun:]
+    )
+
+
+def _untrue_reason(
+    started: ev.RunStarted, events: Sequence[ev.Event], end: ev.RunFailed
+) -> list[str]:
+    if end.node is None:
+        lost = any(isinstance(each, ev.RobotLost) for each in events)
+        return [] if lost else [f"it failed because {end.reason}, but no robot was lost"]
+    if end.node not in _leaves(started):
+        return [f"it failed because of '{end.node}', which is no leaf"]
+    wrong = []
+    most = int(started.options.get("max_attempts", 3))
+    failed = sum(
+        isinstance(each, ev.NodeReset) and each.node == end.node and each.failed_attempt
+        for each in events
+    )
+    if f"it failed {most} times" not in end.reason or failed < most:
+        wrong.append(f"it says '{end.reason}', but {failed} attempts at '{end.node}' failed")
+    if way_out := _way_out(started, events, end.node):
+        wrong.append(f"it failed because of '{end.node}', but could have abandoned '{way_out}'")
+    return wrong
+
+
+def _way_out(started: ev.RunStarted, events: Sequence[ev.Event], node: str) -> str | None:
+    """An alternative above (or at) a leaf that could still have been given up."""
+    definition = TaskTreeDefinition.model_validate(started.tree)
+    paths = _paths(definition)
+    kinds = {path: each.kind for path, each in zip(paths, definition.nodes, strict=True)}
+    done = [each.node for each in events if isinstance(each, ev.NodeDone)]
+    abandoned = {each.node for each in events if isinstance(each, ev.NodeAbandoned)}
+    child = node
+    while child != "/":
+        parent = _parent(child)
+        touched = any(each == child or each.startswith(child + "/") for each in done)
+        others = [
+            each
+            for each in paths
+            if each not in ("/", child) and _parent(each) == parent and each not in abandoned
+        ]
+        if kinds[parent] == "or" and not touched and others:
+            return child
+        child = parent
+    return None
+
+
+def _leaves(started: ev.RunStarted) -> dict[str, BehaviorNode]:
+    definition = TaskTreeDefinition.model_validate(started.tree)
+    pairs = zip(_paths(definition), definition.nodes, strict=True)
+    return {path: each for path, each in pairs if isinstance(each, BehaviorNode)}
+
+
+def kinds_of(started: ev.RunStarted) -> dict[str, str]:
+    """Every node's kind by its path, as the audit wants them."""
+    definition = TaskTreeDefinition.model_validate(started.tree)
+    pairs = zip(_paths(definition), definition.nodes, strict=True)
+    return {path: str(each.kind) for path, each in pairs}
+
+
+def _paths(definition: TaskTreeDefinition) -> list[str]:
+    """The path of every node, in the definition's order."""
+    paths: list[str] = []
+    children = [0] * len(definition.nodes)
+    for node in definition.nodes:
+        if node.parent is None:
+            paths.append("/")
+            continue
+        paths.append(f"{paths[node.parent].rstrip('/')}/{children[node.parent]}")
+        children[node.parent] += 1
+    return paths
+
+
+def _parent(path: str) -> str:
+    return path.rsplit("/", 1)[0] or "/"

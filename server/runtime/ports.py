@@ -1,0 +1,86 @@
+"""What the runtime needs of its surroundings, as it sees them: trees, robots and worlds."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+from robots.link.messages import CommandBody, Hello
+from server.runtime.run import Hardware, Run
+from server.runtime.run_state import RunState
+from tasks.definition import TaskTreeDefinition
+from tasks.scenario import Scenario
+from tasks.scene import Scene
+
+LIVE = "live"
+"""The world of real robots."""
+
+
+@dataclass(frozen=True, slots=True)
+class LoadedTree:
+    """A checked task tree; `scene` None where the file names none."""
+
+    name: str
+    definition: TaskTreeDefinition
+    scene: Scene | None
+
+
+class TreeSource(Protocol):
+    """Where task trees come from."""
+
+    async def load(self, name: str) -> LoadedTree:
+        """Raises `NotFoundError` or `InvalidError`."""
+        ...
+
+
+class ScenarioSource(Protocol):
+    """Where scenarios come from."""
+
+    def load(self, name: str) -> Scenario:
+        """Raises `NotFoundError`."""
+        ...
+
+
+class Robots(Protocol):
+    """The service's end of the robot link."""
+
+    def assign(self, robot: str, sink: Run) -> None: ...
+
+    def unassign(self, robot: str) -> None: ...
+
+    def send(self, robot: str, command_id: str, body: CommandBody) -> None: ...
+
+    async def take_picture(self, robot: str, camera: str, timeout_s: float = 2.0) -> bytes: ...
+
+    def hello(self, robot: str) -> Hello | None: ...
+
+    def connected(self, robot: str) -> bool: ...
+
+    def known(self) -> list[str]: ...
+
+
+class Worlds(Protocol):
+    """The worlds that a run can be in, apart from `live`."""
+
+    def check(self, world: str) -> None:
+        """Raises `InvalidError` when there is no such world, or it cannot run here."""
+        ...
+
+    def lay_out(self, world: str, tree: LoadedTree, seed: int) -> Scene:
+        """A scene for a tree that has none. Raises `InvalidError` where the world cannot."""
+        ...
+
+    def open(self, state: RunState, run: Callable[[], Run]) -> Hardware:
+        """The hardware of a run, which starts it; `run` is asked for only then."""
+        ...
+
+
+class RealRobots:
+    """The robots of a `live` run: nothing to start again, only to let go of."""
+
+    simulated = False
+
+    async def restart(self, robot: str) -> None:
+        """A real robot comes back by itself."""
+
+    async def release(self) -> None:
+        """The runtime unassigns them."""

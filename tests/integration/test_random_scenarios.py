@@ -1,0 +1,15 @@
+"""Random scenarios end, keep every constraint, and say nothing untrue at their end."""
+
+import pytest
+from random_scenarios import KINDS, run_once
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(40, 46))
+async def test_a_random_scenario_ends_and_what_it_says_is_true(seed: int) -> None:
+    outcome = await run_once("tabletop", seed, most_leaves=20)
+    assert outcome.wrong == []
+
+
+def test_the_sample_has_every_kind_of_helper() -> None:
+    assert {KINDS[seed % len(KINDS)] for seed in range(40, 46)} == set(KINDS)

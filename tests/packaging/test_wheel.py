@@ -1,0 +1,90 @@
+"""The wheel: everything that Mend reads at run time is in it, and nothing else is."""
+
+import os
+import subprocess
+import sys
+import zipfile
+from email.parser import Parser
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+PACKAGES = ("tasks", "dialogue", "robots", "sim", "server")
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture(scope="module")
+def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The wheel of the sources as they are, built without network."""
+    folder = tmp_path_factory.mktemp("dist")
+    subprocess.run(
+        [sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", str(folder)],
+        cwd=ROOT,
+        check=True,
+        capture_output=True,
+    )
+    (built,) = folder.glob("mend-*.whl")
+    return built
+
+
+def package_files() -> set[str]:
+    """Every file of the packages, code or not."""
+    return {
+        path.relative_to(ROOT).as_posix()
+        for package in PACKAGES
+        for path in (ROOT / package).rglob("*")
+        if path.is_file() and "__pycache__" not in path.parts
+    }
+
+
+def test_every_file_of_the_packages_is_in_the_wheel_and_no_other(wheel: Path) -> None:
+    with zipfile.ZipFile(wheel) as archive:
+        names = {name for name in archive.namelist() if ".dist-info/" not in name}
+    assert names == package_files()
+    assert {f"{package}/py.typed" for package in PACKAGES} <= names
+    assert {
+        "tasks/library/eket.yaml",
+        "tasks/scenes/eket.yaml",
+        "tasks/scenarios/eket_paper.yaml",
+        "server/api/page/files/index.html",
+        "server/dialogues/mail_request.txt.j2",
+        "server/report/templates/report.html",
+    } <= names
+
+
+def test_wheel_says_its_licence_and_keeps_pybullet_an_extra(wheel: Path) -> None:
+    with zipfile.ZipFile(wheel) as archive:
+        (metadata,) = (name for name in archive.namelist() if name.endswith("/METADATA"))
+        fields = Parser().parsestr(archive.read(metadata).decode())
+        assert any(name.endswith("/licenses/LICENSE") for name in archive.namelist())
+    assert fields["License-Expression"] == "MIT"
+    (pybullet,) = (each for each in fields.get_all("Requires-Dist", []) if "pybullet" in each)
+    assert "extra == 'workcell'" in pybullet
+
+
+def test_unpacked_wheel_runs_anywhere_and_takes_nothing_from_the_working_folder(
+    wheel: Path, tmp_path: Path
+) -> None:
+    installed, elsewhere = tmp_path / "installed", tmp_path / "some where"
+    with zipfile.ZipFile(wheel) as archive:
+        archive.extractall(installed)
+    elsewhere.mkdir()
+    for module in (*PACKAGES, "yaml", "numpy", "typing"):
+        (elsewhere / f"{module}.py").write_text("raise RuntimeError('the wrong module')\n")
+    arguments = ["run", "eket", "--world", "tabletop", "--scenario", "eket_paper", "--speed", "max"]
+    start = (
+        "import sys; sys.path.insert(0, sys.argv.pop(1)); from server.cli import main, __file__; "
+        "assert __file__.startswith(sys.path[0]); main()"
+    )
+    environment = {name: value for name, value in os.environ.items() if name[:5] != "MEND_"}
+    done = subprocess.run(
+        [sys.executable, "-P", "-c", start, str(installed), *arguments],
+        cwd=elsewhere,
+        env=environment | {"XDG_DATA_HOME": str(tmp_path)},
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stderr
+    assert "the run has finished" in done.stdout

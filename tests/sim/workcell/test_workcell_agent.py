@@ -1,0 +1,123 @@
+"""The robot works in a workcell with its own eyes."""
+
+import math
+from collections.abc import Sequence
+
+import pytest
+from workcell_hands import TABLE_M, distance_m
+
+from robots.link.messages import Finished, IssueDetected, Location, ReportBody, Start
+from sim.simulated_agent import SimulatedAgent
+from sim.workcell.adapter import adapter
+from sim.workcell.parts import PartPose
+from sim.workcell.world import WorkcellWorld
+from sim.world import WorldSetup
+from tasks.intervention import Act, Intervention
+from tasks.plugins import load_plugins
+from tasks.scenario import ScriptedIntervention, Trigger
+from tasks.scene import Scene
+
+pytestmark = pytest.mark.slow
+
+PLACE = PartPose.upright(0.55, 0.0, TABLE_M, 0.0)
+
+
+def place_bar(
+    scene: Scene, options: dict[str, object], interventions: Sequence[ScriptedIntervention] = ()
+) -> tuple[SimulatedAgent, list[ReportBody]]:
+    """Let a robot place the bar; what it reported."""
+    setup = WorldSetup(
+        robot="r1",
+        scene=scene,
+        seed=2,
+        speed=None,
+        options=options,
+        interventions=list(interventions),
+    )
+    agent = adapter.create_agent(setup)
+    reports: list[ReportBody] = []
+    agent.attach(lambda body, _time, _world: reports.append(body), lambda _picture: None)
+    agent.handle(
+        "1",
+        Start(
+            execution="e",
+            node="/",
+            behavior="pick_and_place",
+            parameters={"object": "bar", "place": "left"},
+            target=Location(x=0.55, y=0.0),
+        ),
+    )
+    while agent.advance(1.0):
+        pass
+    return agent, reports
+
+
+def world_of(agent: SimulatedAgent) -> WorkcellWorld:
+    world = agent._world
+    assert isinstance(world, WorkcellWorld)
+    return world
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"renderer": "bullet"},
+        {"renderer": "fast"},
+        {"renderer": "fast", "camera_noise": 3.0, "light": 1.0},
+    ],
+)
+def test_a_part_found_by_camera_is_placed_within_3_mm(
+    scene: Scene, options: dict[str, object]
+) -> None:
+    agent, reports = place_bar(scene, options)
+    assert not [each for each in reports if isinstance(each, IssueDetected)]
+    assert isinstance(reports[-1], Finished)
+    assert distance_m(world_of(agent).parts["bar"].pose(), PLACE) < 0.003
+
+
+@pytest.mark.parametrize(
+    ("step", "fraction", "manner", "issue"),
+    [
+        (2, 0.9, "vanish", "missed"),
+        (4, 0.8, "vanish", "dropped"),
+        (5, 0.3, "pull", "dropped"),
+    ],
+)
+def test_a_stolen_part_is_noticed(
+    scene: Scene, step: int, fraction: float, manner: str, issue: str
+) -> None:
+    stolen = ScriptedIntervention(
+        when=Trigger(object="bar", step=step, fraction=fraction),
+        do=Intervention.model_validate({"act": Act.STEAL, "object": "bar", "manner": manner}),
+    )
+    _, reports = place_bar(scene, {}, [stolen])
+    assert [each.issue for each in reports if isinstance(each, IssueDetected)] == [issue]
+
+
+def test_somebody_in_the_way_is_noticed(scene: Scene) -> None:
+    blocked = ScriptedIntervention(
+        when=Trigger(object="bar", step=5, fraction=0.2), do=Intervention(act=Act.BLOCK)
+    )
+    agent, reports = place_bar(scene, {}, [blocked])
+    assert [each.issue for each in reports if isinstance(each, IssueDetected)] == ["blocked"]
+    assert world_of(agent).held == "bar"
+
+
+def test_the_robot_declares_the_range_that_it_grasps_in(scene: Scene) -> None:
+    agent = adapter.create_agent(WorldSetup(robot="r1", scene=scene, seed=0, speed=None))
+    reach = agent.hello("boot").reach
+    assert math.dist((reach.x, reach.y), (-0.05, -0.188)) < 1e-6
+    assert (reach.min_m, reach.max_m) == (0.40, 0.79)
+
+
+def test_a_wrong_option_stops_the_robot_from_being_made(scene: Scene) -> None:
+    setup = WorldSetup(robot="r1", scene=scene, seed=0, speed=None, options={"renderer": "laser"})
+    with pytest.raises(ValueError, match="world option 'renderer' of the workcell"):
+        adapter.create_agent(setup)
+
+
+def test_the_workcell_is_offered_to_runs() -> None:
+    found = load_plugins("mend.worlds")["workcell"]
+    assert found.own_process
+    assert not found.lays_out_anything
+    found.check_available()

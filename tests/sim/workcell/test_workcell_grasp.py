@@ -1,0 +1,77 @@
+"""Parts are carried by friction alone and end up where they belong."""
+
+import math
+
+import pytest
+from workcell_hands import TABLE_M, Hands, distance_m
+
+from robots.body import ToolPose
+from sim.workcell.parts import PartPose
+from sim.workcell.world import WorkcellWorld
+from tasks.scene import Scene
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.mark.parametrize("name", ["leg", "bar", "plate"])
+def test_a_part_is_placed_within_3_mm(hands: Hands, name: str) -> None:
+    hands.pick(name)
+    assert hands.world.held == name
+    place = PartPose.upright(0.55, 0.0, TABLE_M, 0.0)
+    hands.place(name, place)
+    part = hands.world.parts[name].pose()
+    assert hands.world.held is None
+    assert distance_m(part, place) < 0.003
+    assert abs(math.remainder(part.yaw, math.pi)) < math.radians(2.5)
+    assert part.tilt_rad < 0.01
+
+
+def test_closing_the_gripper_on_nothing_holds_nothing(hands: Hands) -> None:
+    hands.body.close_gripper()
+    hands.settle()
+    assert hands.world.held is None
+    assert hands.body.gripper_opening_m() < 0.002
+
+
+def test_the_opening_is_the_width_of_what_is_held(hands: Hands) -> None:
+    hands.pick("bar")
+    assert hands.body.gripper_opening_m() == pytest.approx(0.03, abs=0.006)
+
+
+def test_an_opened_gripper_drops_the_part(hands: Hands) -> None:
+    hands.pick("bar")
+    hands.body.open_gripper()
+    hands.settle()
+    hands.wait(0.3)
+    assert hands.world.held is None
+    assert hands.world.parts["bar"].pose().position[2] < TABLE_M + 0.02
+
+
+def test_grasping_and_carrying_feels_like_no_contact(hands: Hands) -> None:
+    forces = []
+
+    def feel() -> bool:
+        forces.append(hands.body.contact_force_n())
+        return False
+
+    pose = hands.world.parts["leg"].pose()
+    pick = ToolPose(pose.position[0], pose.position[1], TABLE_M + 0.055, pose.yaw)
+    path = hands.plan(ToolPose(pick.x, pick.y, pick.z + 0.14, pick.yaw), pick)
+    hands.follow(path, 0, 1.0, feel)
+    hands.follow(path, 1, 0.5, feel)
+    hands.body.close_gripper()
+    hands.settle(feel)
+    assert hands.world.held == "leg"
+    assert max(forces) < 10.0
+
+
+def test_the_same_seed_and_motions_give_the_same_world(scene: Scene) -> None:
+    poses = []
+    for _ in range(2):
+        world = WorkcellWorld(scene, seed=3)
+        hands = Hands(world)
+        hands.pick("bar")
+        hands.place("bar", PartPose.upright(0.55, 0.0, TABLE_M, 0.0))
+        poses.append([(part.pose(), world.body.time_s()) for part in world.parts.values()])
+        world.close()
+    assert poses[0] == poses[1]

@@ -1,0 +1,127 @@
+"""The arm goes where it is told, as fast as it is told, and stops at once."""
+
+import math
+
+import numpy as np
+import pytest
+from workcell_hands import TABLE_M, Hands
+
+from robots.body import ToolPose
+from sim.workcell.world import WorkcellWorld
+
+HIGH = ToolPose(0.50, -0.35, TABLE_M + 0.25, 0.3)
+LOW = ToolPose(0.50, -0.35, TABLE_M + 0.15, 0.3)
+FAR_LEFT = ToolPose(0.50, 0.10, TABLE_M + 0.25, -0.3)
+
+
+def test_the_tool_reaches_every_waypoint(hands: Hands) -> None:
+    path = hands.plan(HIGH, LOW, HIGH, FAR_LEFT)
+    for segment, waypoint in enumerate((HIGH, LOW, HIGH, FAR_LEFT)):
+        hands.follow(path, segment, 1.0)
+        tool = hands.body.tool_pose()
+        assert np.allclose(tool[:3, 3], (waypoint.x, waypoint.y, waypoint.z), atol=5e-4)
+        assert np.allclose(tool[:3, 0], (0, 0, -1), atol=2e-3)
+        yaw = math.atan2(tool[1, 1], tool[0, 1])
+        assert abs(math.remainder(yaw - waypoint.yaw, math.pi)) < 5e-3
+
+
+def test_waypoints_above_each_other_are_joined_by_a_straight_line(hands: Hands) -> None:
+    path = hands.plan(HIGH, LOW)
+    hands.follow(path, 0, 1.0)
+    strays = []
+
+    def measure() -> bool:
+        tool = hands.body.tool_pose()
+        strays.append(math.hypot(tool[0, 3] - HIGH.x, tool[1, 3] - HIGH.y))
+        return False
+
+    hands.follow(path, 1, 1.0, measure)
+    assert len(strays) > 50
+    assert max(strays) < 0.0015
+
+
+def test_what_is_too_far_away_has_no_path(hands: Hands) -> None:
+    assert hands.body.plan_path([HIGH, ToolPose(1.1, 0.2, TABLE_M + 0.1, 0.0)]) is None
+
+
+def test_the_graspable_range_can_be_grasped(hands: Hands) -> None:
+    reach = hands.body.reach
+    for angle in (-0.5, 0.0, 0.35):
+        for distance in (reach.min_m + 0.01, reach.max_m - 0.01):
+            x = reach.origin[0] + distance * math.cos(angle)
+            y = reach.origin[1] + distance * math.sin(angle)
+            up, down = (ToolPose(x, y, TABLE_M + z, 0.0) for z in (0.195, 0.055))
+            assert hands.body.plan_path([up, down, up]) is not None, (angle, distance)
+
+
+def test_the_arm_stops_within_one_control_cycle(hands: Hands) -> None:
+    path = hands.plan(HIGH)
+    hands.follow(path, 0, 1.0, lambda: hands.body.progress > 0.5)
+    before = hands.body.tool_pose()[:3, 3]
+    hands.body.advance_cycle()
+    speed_m_s = np.linalg.norm(hands.body.tool_pose()[:3, 3] - before) * 240
+    assert speed_m_s > 0.3
+    at_stop = hands.body.tool_pose()[:3, 3]
+    hands.body.stop()
+    assert not hands.body.moving
+    for _ in range(20):
+        hands.body.advance_cycle()
+        assert np.linalg.norm(hands.body.tool_pose()[:3, 3] - at_stop) < 2e-4
+
+
+def test_a_stopped_segment_can_be_followed_to_its_end(hands: Hands) -> None:
+    path = hands.plan(HIGH, LOW)
+    hands.follow(path, 0, 1.0)
+    hands.follow(path, 1, 1.0, lambda: hands.body.progress > 0.5)
+    hands.body.stop()
+    hands.wait(0.1)
+    hands.follow(path, 1, 1.0)
+    assert np.allclose(hands.body.tool_pose()[:3, 3], (LOW.x, LOW.y, LOW.z), atol=5e-4)
+
+
+def test_half_speed_takes_about_twice_as_long(hands: Hands) -> None:
+    path = hands.plan(HIGH, FAR_LEFT, HIGH)
+    hands.follow(path, 0, 1.0)
+    durations = []
+    for segment, speed in ((1, 1.0), (2, 0.5)):
+        begin = hands.body.time_s()
+        hands.follow(path, segment, speed)
+        durations.append(hands.body.time_s() - begin)
+    assert 1.4 < durations[1] / durations[0] < 2.1
+
+
+def test_a_motion_is_slowed_down_while_it_is_under_way(hands: Hands) -> None:
+    path = hands.plan(HIGH)
+    hands.follow(path, 0, 1.0, lambda: hands.body.progress > 0.4)
+    hands.body.set_speed(0.1)
+    hands.wait(0.5)
+    before = hands.body.progress
+    hands.wait(0.2)
+    assert hands.body.moving
+    assert 0.0 < hands.body.progress - before < 0.05
+
+
+def test_progress_rises_from_0_to_1(hands: Hands) -> None:
+    assert hands.body.progress == 1.0
+    hands.body.follow(hands.plan(HIGH), 0, 1.0)
+    seen = [hands.body.progress]
+    while hands.body.moving:
+        hands.body.advance_cycle()
+        seen.append(hands.body.progress)
+    assert seen[0] == 0.0
+    assert seen == sorted(seen)
+    assert seen[-1] == 1.0
+
+
+def test_an_arm_at_neutral_hides_no_part_from_the_head(world: WorkcellWorld) -> None:
+    _, rendering = world.head.capture_with_bodies()
+    for part in world.parts.values():
+        assert (rendering.bodies == part.body_id).sum() > 100
+
+
+def test_another_bodys_path_is_refused(hands: Hands) -> None:
+    class Foreign:
+        segments = 1
+
+    with pytest.raises(TypeError, match="planned itself"):
+        hands.body.follow(Foreign(), 0, 1.0)
