@@ -9,7 +9,7 @@ import numpy as np
 from robots.body import ToolPose
 from sim.tabletop.arm import MAX_OPENING_M, Arm, Gripper
 from sim.tabletop.part import PartPose, TablePart, Whereabouts
-from sim.tabletop.resting import settle
+from sim.tabletop.resting import on_top, settle
 from tasks.scene import Scene
 
 CONTROL_PERIOD_S = 0.1
@@ -123,6 +123,7 @@ class TabletopState:
             return
         part, self.held = self.held, None
         part.give_to(Whereabouts.RESTING)
+        part.pose = on_top(part, self.parts.values(), self.scene.table)
         self.settle()
         part.last_rest = part.pose
 
