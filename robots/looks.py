@@ -20,7 +20,7 @@ _RESTS_WITHIN_M = 0.006
 """An object rests if it is this near to where the look before saw it."""
 _STEADY_S = 0.3
 _STEADY_SPREAD_PX = 4.0
-_CLEAR_FORCE_N = 40.0
+_CLEAR_FORCE_N = 20.0
 _MOST_READINGS = 6
 
 
