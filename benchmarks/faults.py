@@ -33,14 +33,6 @@ from tasks.intervention import Act, Intervention
 from tasks.plugins import load_plugins
 from tasks.scene import Scene
 
-PLACES = {
-    "green_leg": "green_leg_place",
-    "pink_bar": "pink_bar_place",
-    "yellow_bar": "yellow_bar_place",
-    "blue_leg": "blue_leg_place",
-    "purple_top": "top_place",
-    "orange_top": "top_place",
-}
 LIMITS_MS = {"vanish": 150.0, "pull": 800.0, "drop": 300.0, "stolen before": float("nan")}
 EXPECTED = {"vanish": "dropped", "pull": "dropped", "drop": "dropped", "stolen before": "missed"}
 LONGEST_PICK_S = 60.0
@@ -138,7 +130,7 @@ class Bench:
         """One pick and place, with `fault` at that step and fraction."""
         self._reports.clear()
         self.plain.reset()
-        parameters = {"object": pick.name, "place": PLACES[pick.name]}
+        parameters = {"object": pick.name, "place": pick.name}
         start = Start(
             execution=pick.name, node="/0", behavior="pick_and_place", parameters=parameters
         )
