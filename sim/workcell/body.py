@@ -26,6 +26,13 @@ LIMITS = MotionLimits(
 _SETTLE_CYCLES = 24
 """The arm lags behind its target by some cycles; this long after it, it is at rest."""
 
+_MOST_LAG_RAD = 0.06
+"""A motion waits for an arm that lags further behind, so that it never pushes harder than this
+makes it, nor jumps when what held it up gives way."""
+
+_GIVE_UP_CYCLES = 240
+"""An arm that was held up for so long stays where it is."""
+
 _GRIPPER_CYCLES = 120
 _GRIPPER_RAMP_CYCLES = 60
 """The fingers' target moves during the ramp; the rest of the time lets the grasp settle."""
@@ -56,6 +63,7 @@ class WorkcellBody:
         self._motion: TimedMotion | None = None
         self._way_ahead: Sequence[PathSegment] = ()
         self._settling_cycles = 0
+        self._held_up_cycles = 0
         self._braking = False
         self._gripper = FingerMotion()
 
@@ -107,6 +115,7 @@ class WorkcellBody:
         curve = way.curve.joined_from(self._target)
         self._motion = TimedMotion(curve, LIMITS, PERIOD_S, speed, way.straight)
         self._settling_cycles = _SETTLE_CYCLES
+        self._held_up_cycles = 0
         self._way_ahead = path.ways[segment + 1 :]
 
     def set_speed(self, speed: float) -> None:
@@ -161,21 +170,34 @@ class WorkcellBody:
         return not self.moving and not self._gripper.closing
 
     def ways_ahead(self) -> list[JointCurve]:
-        """What is left of the segment under way and the path's segments after it."""
-        if self._motion is None:
-            return []
-        return [self._motion.rest(), *(way.curve for way in self._way_ahead)]
+        """The rest of the segment under way, the path's segments after it, the way to neutral."""
+        ways = []
+        if self._motion is not None:
+            ways = [self._motion.rest(), *(way.curve for way in self._way_ahead)]
+        end = ways[-1].end if ways else self._target
+        return [*ways, JointCurve([end, np.array(NEUTRAL_RAD)])]
 
     def _advance_arm(self) -> Joints:
         """The joint velocities to command in this cycle, with the target moved on."""
         if self._motion is None:
             return np.zeros(len(self._target))
+        if self._is_held_up():
+            self._held_up_cycles += 1
+            if self._held_up_cycles >= _GIVE_UP_CYCLES:
+                self.stop()
+            return np.zeros(len(self._target))
+        self._held_up_cycles = 0
         self._target, velocities = self._motion.advance()
         if self._motion.finished:
             self._settling_cycles -= 1
             if self._settling_cycles <= 0:
                 self._motion = None
         return velocities
+
+    def _is_held_up(self) -> bool:
+        """Whether something keeps the arm from following its target."""
+        lag = np.abs(self._target - self._pr2.arm_joints()).max()
+        return bool(lag > _MOST_LAG_RAD)
 
 
 class FingerMotion:

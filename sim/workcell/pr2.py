@@ -46,6 +46,9 @@ _FINGER_LENGTH_M = 0.09137
 _FINGER_OFFSET_M = 0.00495
 """From a finger's joint to its tip's joint, along and across the closed finger."""
 
+_END_ON = 0.7
+"""The least cosine to the approach direction of a force against the end of a finger tip."""
+
 _PAD_M = 0.005
 """Contacts this near to the inner side of a finger are with what is between the fingers."""
 
@@ -164,7 +167,9 @@ class Pr2:
     def _is_between_fingers(
         self, contact: tuple[Any, ...], tool: Matrix4, inner_m: Sequence[float]
     ) -> bool:
-        """Whether a contact is at the inner side of a finger."""
+        """Whether a contact is at the inner side of a finger, and not at its tip's end."""
+        if abs(np.dot(contact[7], tool[:3, 0])) > _END_ON:
+            return False
         for links, side, inner in zip(self._sides, (1.0, -1.0), inner_m, strict=True):
             if contact[3] in links:
                 sideways = np.dot(contact[5] - tool[:3, 3], tool[:3, 1])

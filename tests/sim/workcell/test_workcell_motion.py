@@ -1,6 +1,7 @@
 """The arm goes where it is told, as fast as it is told, and stops at once."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -117,6 +118,22 @@ def test_an_arm_at_neutral_hides_no_part_from_the_head(world: WorkcellWorld) -> 
     _, rendering = world.head.capture_with_bodies()
     for part in world.parts.values():
         assert (rendering.bodies == part.body_id).sum() > 100
+
+
+@pytest.mark.slow
+def test_an_arm_that_is_held_up_gives_up_after_a_while_and_stays(hands: Hands) -> None:
+    into_the_table = replace(FAR_LEFT, z=TABLE_M - 0.10)
+    path = hands.plan(FAR_LEFT, into_the_table)
+    hands.follow(path, 0, 1.0)
+    hands.follow(path, 1, 0.3, lambda: hands.body.contact_force_n() > 100.0)
+    assert hands.body.moving
+    hands.settle()
+    stuck = hands.body.tool_pose()[:3, 3]
+    assert stuck[2] == pytest.approx(TABLE_M, abs=0.03)
+    hands.wait(0.5)
+    assert np.linalg.norm(hands.body.tool_pose()[:3, 3] - stuck) < 0.01
+    hands.follow(hands.plan(FAR_LEFT), 0, 0.5)
+    assert hands.body.tool_pose()[2, 3] == pytest.approx(FAR_LEFT.z, abs=1e-3)
 
 
 def test_another_bodys_path_is_refused(hands: Hands) -> None:

@@ -205,3 +205,21 @@ def test_only_one_stands_in_the_way(world: WorkcellWorld) -> None:
     assert do(world, Act.BLOCK) == ""
     assert do(world, Act.BLOCK) == "somebody stands in the way already"
     assert do(world, Act.RELEASE) == ""
+
+
+@pytest.mark.slow
+def test_who_stands_in_the_way_gives_way_to_an_arm_that_does_not_stop(hands: Hands) -> None:
+    path = hands.plan(ToolPose(0.5, 0.05, TABLE_M + 0.25, 0.0))
+    hands.body.follow(path, 0, 0.5)
+    hands.wait(0.2)
+    assert do(hands.world, Act.BLOCK) == ""
+    forces = []
+
+    def feel() -> bool:
+        forces.append(hands.body.contact_force_n())
+        return False
+
+    hands.settle(feel)
+    assert sum(force > 20.0 for force in forces) > 20
+    assert np.median([force for force in forces if force > 20.0]) < 150.0
+    assert hands.body.tool_pose()[1, 3] == pytest.approx(0.05, abs=0.005)
