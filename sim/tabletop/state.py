@@ -14,7 +14,7 @@ from tasks.scene import Scene
 
 CONTROL_PERIOD_S = 0.1
 
-PUSH_N = 120.0
+PUSH_N = 250.0
 """How hard the arm pushes against somebody in its way."""
 
 _FINGER_M = 0.005
