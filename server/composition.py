@@ -86,6 +86,7 @@ async def _open(
             registry=registry,
             url=f"ws{url.removeprefix('http')}{ROBOT_PATH}",
             token=token,
+            hang_s=settings.robot_hang_timeout_s,
         ),
         scenarios.load,
     )
@@ -112,20 +113,23 @@ async def _open(
     app = create_app(runtime, journal, settings, trees_library=trees, scenarios=scenarios)
     add_robot_route(app, registry, token)
     server = _Server(serve_config(app, settings))
-    serving = asyncio.create_task(server.serve(sockets=[config_socket]), name="server")
+    serving: asyncio.Task[None] | None = None
     try:
-        await server.wait_until_started(serving)
         if recover:
+            # Before it listens: a run that is not read yet would be unknown to whoever asks.
             await runtime.recover()
+        serving = asyncio.create_task(server.serve(sockets=[config_socket]), name="server")
+        await server.wait_until_started(serving)
         yield Service(runtime, journal, registry, trees, url, settings)
     finally:
         # First: a report that no run takes any more must not be acknowledged.
         registry.close()
         await runtime.close()
         await mail.close()
-        server.should_exit = True
-        with suppress(asyncio.CancelledError):
-            await serving
+        if serving is not None:
+            server.should_exit = True
+            with suppress(asyncio.CancelledError):
+                await serving
         config_socket.close()
 
 

@@ -41,6 +41,9 @@ from robots.vision.forearm import GripReading
 
 _CAREFUL = 0.5
 """While a person's hands are near, motion is scaled by this."""
+_TUG_N = 40.0
+"""Carrying alone never pushes so hard against the arm."""
+_LONGEST_TUG_S = 2.0
 
 
 class Interruption(Exception):  # noqa: N818 - control flow, not an error
@@ -236,8 +239,14 @@ class Execution:
         grip = self._senses.grip
         if grip is None or not self._judges_grip(self._step):
             return False
-        unseen = self._read_s < arrived_s and not self._judges_grip(self._step + 1)
-        return grip.in_doubt or unseen
+        if self._judges_grip(self._step + 1):
+            return grip.in_doubt
+        return grip.in_doubt or self._read_s < arrived_s or self._is_tugged_at(arrived_s)
+
+    def _is_tugged_at(self, arrived_s: float) -> bool:
+        """Whether somebody seems to pull at what the gripper holds: soon it will be seen."""
+        waited_s = self._arm.body.time_s() - arrived_s
+        return waited_s < _LONGEST_TUG_S and self._arm.body.contact_force_n() > _TUG_N
 
     def _judges_grip(self, step: int) -> bool:
         return any(each.camera == FOREARM for each in self._monitors if each.watches(step))

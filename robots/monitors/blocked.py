@@ -13,8 +13,8 @@ from tasks.scene import StrictModel
 class BlockedParameters(StrictModel):
     """A force above `limit_n` against the arm for `cycles` control cycles on end is a contact."""
 
-    limit_n: float = Field(default=60.0, gt=0.0)
-    cycles: int = Field(default=4, ge=1)
+    limit_n: float = Field(default=150.0, gt=0.0)
+    cycles: int = Field(default=6, ge=1)
 
 
 class Blocked(Monitor[BlockedParameters]):

@@ -14,8 +14,11 @@ from tasks.scene import Place, Scene
 Rest = tuple[float, float, float]
 """Where the bottom centre of a part rests, in the base frame, metres."""
 
-AT_PLACE_M = 0.05
-"""A part this near to its place is there; the same holds for its height."""
+AT_PLACE_M = 0.02
+AWAY_M = 0.06
+TOO_HIGH_M = 0.04
+"""A part within `AT_PLACE_M` of its place is there. Farther from it than `AWAY_M` in the plane, or
+`TOO_HIGH_M` in height, it is not; in between (it lies askew on something) both may be said."""
 
 
 def find_untruths(events: Sequence[ev.Event], resting: Mapping[str, Rest | None]) -> list[str]:
@@ -49,22 +52,28 @@ def _untrue_missing(
         leaf = leaves[done.node]
         if leaf.object is None or leaf.place is None:
             continue
-        there = _is_there(resting[leaf.object], scene, scene.places[leaf.place])
+        aside_m, above_m = _offset(resting[leaf.object], scene, scene.places[leaf.place])
+        there = aside_m <= AT_PLACE_M and above_m <= AT_PLACE_M
+        away = aside_m > AWAY_M or above_m > TOO_HIGH_M
         if there and done.node in told and not blocked:
             wrong.append(f"'{leaf.object}' is told to be missing, but is at its place")
-        if not there and done.node not in told:
+        if away and done.node not in told:
             wrong.append(f"'{leaf.object}' is not at its place, but is not told to be missing")
-        if not there and not _disturbed_since(events, done.node, leaf.object):
+        others = [rest for name, rest in resting.items() if name != leaf.object]
+        taken = any(_offset(rest, scene, scene.places[leaf.place])[0] <= AWAY_M for rest in others)
+        # A part put where another one lies is no untruth: nobody looks before the last look.
+        if away and not taken and not _disturbed_since(events, done.node, leaf.object):
             wrong.append(f"'{done.node}' is done, but '{leaf.object}' never was at its place")
     return wrong
 
 
-def _is_there(rest: Rest | None, scene: Scene, place: Place) -> bool:
+def _offset(rest: Rest | None, scene: Scene, place: Place) -> tuple[float, float]:
+    """How far a part is from its place: in the plane, and in height."""
     if rest is None:
-        return False
+        return math.inf, math.inf
     height_m = scene.table.height if place.pose.z is None else place.pose.z
-    near = math.hypot(rest[0] - place.pose.x, rest[1] - place.pose.y) <= AT_PLACE_M
-    return near and abs(rest[2] - height_m) <= AT_PLACE_M
+    in_plane_m = math.hypot(rest[0] - place.pose.x, rest[1] - place.pose.y)
+    return in_plane_m, abs(rest[2] - height_m)
 
 
 def _somebody_stands_there(events: Sequence[ev.Event]) -> bool:

@@ -36,6 +36,20 @@ def settle(parts: Iterable[TablePart], table: Table) -> None:
             part.rest_at(replace(part.pose, z=height))
 
 
+def on_top(part: TablePart, parts: Iterable[TablePart], table: Table) -> PartPose:
+    """Where a part is that is let go: not inside of others, but on top of them."""
+    pose = part.pose
+    inside = [
+        other
+        for other in parts
+        if other is not part
+        and other.whereabouts is Whereabouts.RESTING
+        and other.pose.z < pose.z + part.height
+    ]
+    height = support_height(part, replace(pose, z=math.inf), inside, table)
+    return replace(pose, z=max(pose.z, height))
+
+
 def support_height(
     part: TablePart, pose: PartPose, others: Sequence[TablePart], table: Table
 ) -> float:

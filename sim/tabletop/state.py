@@ -9,12 +9,12 @@ import numpy as np
 from robots.body import ToolPose
 from sim.tabletop.arm import MAX_OPENING_M, Arm, Gripper
 from sim.tabletop.part import PartPose, TablePart, Whereabouts
-from sim.tabletop.resting import settle
+from sim.tabletop.resting import on_top, settle
 from tasks.scene import Scene
 
 CONTROL_PERIOD_S = 0.1
 
-PUSH_N = 120.0
+PUSH_N = 250.0
 """How hard the arm pushes against somebody in its way."""
 
 _FINGER_M = 0.005
@@ -123,6 +123,7 @@ class TabletopState:
             return
         part, self.held = self.held, None
         part.give_to(Whereabouts.RESTING)
+        part.pose = on_top(part, self.parts.values(), self.scene.table)
         self.settle()
         part.last_rest = part.pose
 

@@ -23,7 +23,7 @@ PATIENCE_S = 60.0
 
 
 class HangsError(Exception):
-    """Nothing happens any more; holds the last events."""
+    """Nothing happens any more; holds the runs that have not ended, and the last events."""
 
 
 @dataclass
@@ -83,7 +83,7 @@ class Watcher:
                 async with asyncio.timeout(PATIENCE_S):
                     await self._news.wait()
             except TimeoutError:
-                raise HangsError(self.events[-5:]) from None
+                raise HangsError(self.open_runs, self.events[-5:]) from None
 
     def first_after(self, seq: int, kinds: Any = ev.Event) -> ev.Event | None:
         return next((e for e in self.events if e.seq > seq and isinstance(e, kinds)), None)

@@ -171,7 +171,7 @@ def test_the_way_is_clear_once_nothing_pushes_or_stands_in_it() -> None:
     bench = RobotBench()
     bench.start("pink_bar")
     bench.run_to(5, 0.5)
-    bench.body.force_n = 200.0
+    bench.body.force_n = 250.0
     bench.run_until(IssueDetected)
     where = bench.body.tool
     bench.look(expect="way_clear", within_s=1.0)

@@ -260,11 +260,27 @@ def test_an_object_that_the_catalogue_says_needs_help_raises_positioning() -> No
     assert bench.kinds()[-1] == "finished"
 
 
+def test_nothing_is_placed_while_somebody_tugs_at_it() -> None:
+    bench = RobotBench()
+
+    def tug() -> None:
+        bench.body.force_n = 80.0
+
+    bench.at(5, 0.95, tug)
+    bench.start("pink_bar")
+    bench.run_to(5, 0.97)
+    bench.robot.advance(1.0)
+    assert steps(bench)[-1] == 5
+    bench.body.vanish("pink_bar")
+    bench.run()
+    assert only_issue(bench).issue == "dropped"
+
+
 def test_a_push_against_the_arm_holds_it_in_place() -> None:
     bench = RobotBench()
     bench.start("pink_bar")
     bench.run_to(5, 0.5)
-    bench.body.force_n = 200.0
+    bench.body.force_n = 250.0
     issue = bench.run_until(IssueDetected)
     assert (issue.issue, issue.step) == ("blocked", 5)
     where = bench.body.tool

@@ -44,7 +44,7 @@ async def test_a_part_that_is_not_at_its_place_must_be_told_to_be_missing(rest: 
     resting = at_places()
     if rest == "on_top":
         x, y, z = resting["part_2"] or (0.0, 0.0, 0.0)
-        rest = (x, y, z + 0.06)
+        rest = (x, y, z + 0.05)
     untruths = find_untruths(events, {**resting, "part_2": rest})
     assert "'part_2' is not at its place, but is not told to be missing" in untruths
     assert not any("part_1" in each for each in untruths)

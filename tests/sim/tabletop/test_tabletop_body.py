@@ -156,6 +156,15 @@ def test_a_part_that_is_let_go_falls_onto_another(hands: Hands) -> None:
     assert pose.z == pytest.approx(TABLE_M + 0.08)
 
 
+def test_a_part_that_is_let_go_inside_another_comes_to_rest_on_top_of_it(hands: Hands) -> None:
+    hands.pick("red")
+    hands.go(0.6, -0.1, TABLE_M + 0.03, 0.0)
+    hands.open()
+    pose = hands.world.pose_of("red")
+    assert pose is not None
+    assert pose.z == pytest.approx(TABLE_M + 0.08)
+
+
 def test_what_rests_on_a_part_falls_when_it_is_taken_away(hands: Hands) -> None:
     hands.pick("red")
     hands.go(0.6, -0.1, 1.0, 0.0)
