@@ -10,6 +10,7 @@ from robots.motion.kinematics import Joints
 from robots.motion.limits import MotionLimits
 from robots.motion.planner import JointPath, PathPlanner, PathSegment
 from robots.motion.timing import TimedMotion
+from sim.workcell.finger_motion import FingerMotion
 from sim.workcell.physics import CONTROL_HZ
 from sim.workcell.pr2 import Pr2
 from sim.workcell.robot_model import FINGERS_OPEN_RAD, NEUTRAL_RAD, PREFERRED_RAD
@@ -32,10 +33,6 @@ makes it, nor jumps when what held it up gives way."""
 
 _GIVE_UP_CYCLES = 240
 """An arm that was held up for so long stays where it is."""
-
-_GRIPPER_CYCLES = 120
-_GRIPPER_RAMP_CYCLES = 60
-"""The fingers' target moves during the ramp; the rest of the time lets the grasp settle."""
 
 HAND_OVER_POSE = ToolPose(0.50, -0.30, 0.98, 0.0)
 
@@ -198,40 +195,3 @@ class WorkcellBody:
         """Whether something keeps the arm from following its target."""
         lag = np.abs(self._target - self._pr2.arm_joints()).max()
         return bool(lag > _MOST_LAG_RAD)
-
-
-class FingerMotion:
-    """Where the fingers are commanded to: a ramp, then a while to let the grasp settle."""
-
-    def __init__(self) -> None:
-        self.target_rad = FINGERS_OPEN_RAD
-        self._from_rad = FINGERS_OPEN_RAD
-        self._to_rad = FINGERS_OPEN_RAD
-        self._cycle = _GRIPPER_CYCLES
-
-    @property
-    def moving(self) -> bool:
-        return self._cycle < _GRIPPER_CYCLES
-
-    @property
-    def progress(self) -> float:
-        return self._cycle / _GRIPPER_CYCLES
-
-    @property
-    def closing(self) -> bool:
-        return self._to_rad < FINGERS_OPEN_RAD
-
-    def move_to(self, angle_rad: float) -> None:
-        self._from_rad, self._to_rad = self.target_rad, angle_rad
-        self._cycle = 0
-
-    def stop(self) -> None:
-        """Hold the fingers where they are commanded to now; a grasp keeps its force."""
-        self._to_rad = self.target_rad
-        self._cycle = _GRIPPER_CYCLES
-
-    def advance(self) -> None:
-        if self.moving:
-            self._cycle += 1
-            done = min(1.0, self._cycle / _GRIPPER_RAMP_CYCLES)
-            self.target_rad = self._from_rad + (self._to_rad - self._from_rad) * done
