@@ -1,6 +1,6 @@
 """How long a robot stands still once it was answered: from the answer to its next step.
 
-A person moves the part away again and again while the robot reaches for it, and a live helper
+A person steals the part again and again while the robot reaches for it, and a live helper
 answers "no" twice, so that no physical help is awaited. The naive way, in the same run, is what the
 published systems do: poll the state every 50 ms and act on what is found.
 
@@ -22,11 +22,11 @@ from server.composition import Service, open_service
 from server.runtime.requests import RunRequest
 from server.settings import Settings
 from tasks.intervention import Act, Intervention
-from tasks.scene import Pose
 
 POLL_PERIOD_S = 0.05
 PART = "green_leg"
-SPOTS = (Pose(x=0.45, y=-0.52), Pose(x=0.42, y=-0.60))
+STEAL = Intervention(act=Act.STEAL, object=PART)
+PUT_BACK = Intervention(act=Act.PUT_BACK, object=PART)
 
 
 async def measure(world: str, renderer: str | None, answers: int) -> list[float]:
@@ -36,7 +36,7 @@ async def measure(world: str, renderer: str | None, answers: int) -> list[float]
             request = RunRequest(
                 tree="eket",
                 world=world,
-                speed="max",
+                speed=5.0,
                 seed=1,
                 max_attempts=100,
                 world_options={"renderer": renderer} if renderer else {},
@@ -49,12 +49,11 @@ async def measure(world: str, renderer: str | None, answers: int) -> list[float]
 
 
 async def _answer_no(service: Service, run: UUID, answers: int) -> list[float]:
-    """Move the part away, wait until the robot stands still, answer no, and see it go on."""
+    """Steal the part, wait until the robot stands still, put it back, answer no, see it go on."""
     waits: list[float] = []
     answered_at: float | None = None
     asked: tuple[UUID, UUID] | None = None
     still = False
-    moves = 0
     with service.journal.subscribe(0) as subscription:
         async for record in subscription:
             event = json.loads(record.text)
@@ -65,11 +64,10 @@ async def _answer_no(service: Service, run: UUID, answers: int) -> list[float]:
                         waits.append(time.perf_counter() - answered_at)
                         answered_at = None
                     if event["step"] == 2:
-                        deed = Intervention(act=Act.MOVE, object=PART, to=SPOTS[moves % 2])
-                        moves += 1
-                        await service.runtime.intervene(run, deed)
+                        await service.runtime.intervene(run, STEAL)
                 case "robot_holding":
                     still = True
+                    await service.runtime.intervene(run, PUT_BACK)
                 case "prompt" if event["kind"] == "ask":
                     asked = UUID(event["dialogue"]), UUID(event["prompt"])
                 case "run_failed" | "run_finished":

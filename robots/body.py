@@ -106,7 +106,8 @@ class Body(Protocol):
     def plan_path(self, waypoints: Sequence[ToolPose]) -> ArmPath | None:
         """Plan through all waypoints from where the arm is; None if any part cannot be reached.
 
-        Waypoints that differ in z only are joined by a straight vertical line.
+        Waypoints that differ in z only are joined by a straight vertical line. Fingers are alike:
+        a body may turn all waypoints together by half a turn, to yaw + pi.
         """
         ...
 

@@ -86,6 +86,7 @@ async def _open(
             registry=registry,
             url=f"ws{url.removeprefix('http')}{ROBOT_PATH}",
             token=token,
+            hang_s=settings.robot_hang_timeout_s,
         ),
         scenarios.load,
     )

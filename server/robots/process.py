@@ -59,11 +59,13 @@ async def launch(
     registry: RobotRegistry,
     url: str,
     token: str | None,
+    hang_s: float = 6.0,
 ) -> SimulatedRobot:
     """Start a simulated robot in a world of the entry points.
 
-    `url` is this service's `/ws/robot`, as seen from this machine. Raises `InvalidError` if there
-    is no such world or it cannot run here.
+    A robot in a process of its own that is silent for `hang_s` is killed. `url` is this service's
+    `/ws/robot`, as seen from this machine. Raises `InvalidError` if there is no such world or it
+    cannot run here.
     """
     try:
         adapter = find_world(world_name)
@@ -71,7 +73,7 @@ async def launch(
         raise InvalidError(str(error)) from error
     robot: SimulatedRobot
     if adapter.own_process:
-        robot = RobotProcess(world_name, ended, registry, url, token)
+        robot = RobotProcess(world_name, ended, registry, url, token, hang_s=hang_s)
     else:
         robot = InProcessRobot(adapter, ended, registry)
     await robot.start(setup)

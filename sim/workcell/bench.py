@@ -97,24 +97,27 @@ class Bench:
 
 def _create_floor(client: Client) -> None:
     half = [_FLOOR_HALF_M, _FLOOR_HALF_M, _SLAB_M / 2]
-    _create_slab(client, half, [0.0, 0.0, -_SLAB_M / 2], _FLOOR_COLOR)
+    client.createMultiBody(
+        0.0,
+        client.createCollisionShape(client.GEOM_BOX, halfExtents=half),
+        client.createVisualShape(client.GEOM_BOX, halfExtents=half, rgbaColor=_FLOOR_COLOR),
+        [0.0, 0.0, -_SLAB_M / 2],
+    )
 
 
 def _create_table(client: Client, table: Table) -> int:
-    half = [table.size[0] / 2, table.size[1] / 2, _SLAB_M / 2]
-    center = [*table.center, table.height - _SLAB_M / 2]
-    table_id = _create_slab(client, half, center, _TABLE_COLOR)
+    """It looks like a slab but is solid down to the floor: nothing is ever pushed through it."""
+    half_x, half_y, half_z = table.size[0] / 2, table.size[1] / 2, table.height / 2
+    table_id: int = client.createMultiBody(
+        0.0,
+        client.createCollisionShape(client.GEOM_BOX, halfExtents=[half_x, half_y, half_z]),
+        client.createVisualShape(
+            client.GEOM_BOX,
+            halfExtents=[half_x, half_y, _SLAB_M / 2],
+            rgbaColor=_TABLE_COLOR,
+            visualFramePosition=[0.0, 0.0, half_z - _SLAB_M / 2],
+        ),
+        [*table.center, half_z],
+    )
     client.changeDynamics(table_id, -1, lateralFriction=_TABLE_FRICTION)
     return table_id
-
-
-def _create_slab(
-    client: Client, half: list[float], center: list[float], color: tuple[float, ...]
-) -> int:
-    body_id: int = client.createMultiBody(
-        0.0,
-        client.createCollisionShape(client.GEOM_BOX, halfExtents=half),
-        client.createVisualShape(client.GEOM_BOX, halfExtents=half, rgbaColor=color),
-        center,
-    )
-    return body_id

@@ -10,6 +10,7 @@ from robots.motion.kinematics import Joints
 from robots.motion.limits import MotionLimits
 from robots.motion.planner import JointPath, PathPlanner, PathSegment
 from robots.motion.timing import TimedMotion
+from sim.workcell.finger_motion import FingerMotion
 from sim.workcell.physics import CONTROL_HZ
 from sim.workcell.pr2 import Pr2
 from sim.workcell.robot_model import FINGERS_OPEN_RAD, NEUTRAL_RAD, PREFERRED_RAD
@@ -26,9 +27,12 @@ LIMITS = MotionLimits(
 _SETTLE_CYCLES = 24
 """The arm lags behind its target by some cycles; this long after it, it is at rest."""
 
-_GRIPPER_CYCLES = 120
-_GRIPPER_RAMP_CYCLES = 60
-"""The fingers' target moves during the ramp; the rest of the time lets the grasp settle."""
+_MOST_LAG_RAD = 0.06
+"""A motion waits for an arm that lags further behind, so that it never pushes harder than this
+makes it, nor jumps when what held it up gives way."""
+
+_GIVE_UP_CYCLES = 240
+"""An arm that was held up for so long stays where it is."""
 
 HAND_OVER_POSE = ToolPose(0.50, -0.30, 0.98, 0.0)
 
@@ -56,6 +60,7 @@ class WorkcellBody:
         self._motion: TimedMotion | None = None
         self._way_ahead: Sequence[PathSegment] = ()
         self._settling_cycles = 0
+        self._held_up_cycles = 0
         self._braking = False
         self._gripper = FingerMotion()
 
@@ -107,6 +112,7 @@ class WorkcellBody:
         curve = way.curve.joined_from(self._target)
         self._motion = TimedMotion(curve, LIMITS, PERIOD_S, speed, way.straight)
         self._settling_cycles = _SETTLE_CYCLES
+        self._held_up_cycles = 0
         self._way_ahead = path.ways[segment + 1 :]
 
     def set_speed(self, speed: float) -> None:
@@ -161,15 +167,23 @@ class WorkcellBody:
         return not self.moving and not self._gripper.closing
 
     def ways_ahead(self) -> list[JointCurve]:
-        """What is left of the segment under way and the path's segments after it."""
-        if self._motion is None:
-            return []
-        return [self._motion.rest(), *(way.curve for way in self._way_ahead)]
+        """The rest of the segment under way, the path's segments after it, the way to neutral."""
+        ways = []
+        if self._motion is not None:
+            ways = [self._motion.rest(), *(way.curve for way in self._way_ahead)]
+        end = ways[-1].end if ways else self._target
+        return [*ways, JointCurve([end, np.array(NEUTRAL_RAD)])]
 
     def _advance_arm(self) -> Joints:
         """The joint velocities to command in this cycle, with the target moved on."""
         if self._motion is None:
             return np.zeros(len(self._target))
+        if self._is_held_up():
+            self._held_up_cycles += 1
+            if self._held_up_cycles >= _GIVE_UP_CYCLES:
+                self.stop()
+            return np.zeros(len(self._target))
+        self._held_up_cycles = 0
         self._target, velocities = self._motion.advance()
         if self._motion.finished:
             self._settling_cycles -= 1
@@ -177,39 +191,7 @@ class WorkcellBody:
                 self._motion = None
         return velocities
 
-
-class FingerMotion:
-    """Where the fingers are commanded to: a ramp, then a while to let the grasp settle."""
-
-    def __init__(self) -> None:
-        self.target_rad = FINGERS_OPEN_RAD
-        self._from_rad = FINGERS_OPEN_RAD
-        self._to_rad = FINGERS_OPEN_RAD
-        self._cycle = _GRIPPER_CYCLES
-
-    @property
-    def moving(self) -> bool:
-        return self._cycle < _GRIPPER_CYCLES
-
-    @property
-    def progress(self) -> float:
-        return self._cycle / _GRIPPER_CYCLES
-
-    @property
-    def closing(self) -> bool:
-        return self._to_rad < FINGERS_OPEN_RAD
-
-    def move_to(self, angle_rad: float) -> None:
-        self._from_rad, self._to_rad = self.target_rad, angle_rad
-        self._cycle = 0
-
-    def stop(self) -> None:
-        """Hold the fingers where they are commanded to now; a grasp keeps its force."""
-        self._to_rad = self.target_rad
-        self._cycle = _GRIPPER_CYCLES
-
-    def advance(self) -> None:
-        if self.moving:
-            self._cycle += 1
-            done = min(1.0, self._cycle / _GRIPPER_RAMP_CYCLES)
-            self.target_rad = self._from_rad + (self._to_rad - self._from_rad) * done
+    def _is_held_up(self) -> bool:
+        """Whether something keeps the arm from following its target."""
+        lag = np.abs(self._target - self._pr2.arm_joints()).max()
+        return bool(lag > _MOST_LAG_RAD)

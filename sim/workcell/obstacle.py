@@ -13,6 +13,10 @@ _COLOR = (0.25, 0.27, 0.30, 1.0)
 _AWAY: Point = (-3.0, -2.0, 1.0)
 _UPRIGHT = (0.0, 0.0, 0.0, 1.0)
 
+_MASS_KG = 1.0
+_HOLD_FORCE_N = 80.0
+"""A person gives way to whatever pushes harder."""
+
 _ABOVE_TOOL_M = 0.045
 """Higher than what hangs between the fingers reaches, low enough to meet the fingers."""
 
@@ -21,27 +25,37 @@ _SAMPLES = 40
 
 
 class Obstacle:
-    """A box that a person holds still in the air, or has taken away."""
+    """A box that a person holds in the air, or has taken away."""
 
     def __init__(self, client: Client) -> None:
         self._client = client
         self.center: Point | None = None
         self._body_id: int = client.createMultiBody(
-            0.0,
+            _MASS_KG,
             client.createCollisionShape(client.GEOM_BOX, halfExtents=_HALF_M),
             client.createVisualShape(client.GEOM_BOX, halfExtents=_HALF_M, rgbaColor=_COLOR),
             _AWAY,
         )
+        self._hold: int = client.createConstraint(
+            self._body_id, -1, -1, -1, client.JOINT_FIXED, [0, 0, 0], [0, 0, 0], _AWAY
+        )
+        self._move_to(_AWAY)
 
     def stand_at(self, center: Point) -> None:
         """Be in the air around a point."""
         self.center = center
-        self._client.resetBasePositionAndOrientation(self._body_id, center, _UPRIGHT)
+        self._move_to(center)
 
     def withdraw(self) -> None:
         """Be out of the way."""
         self.center = None
-        self._client.resetBasePositionAndOrientation(self._body_id, _AWAY, _UPRIGHT)
+        self._move_to(_AWAY)
+
+    def _move_to(self, center: Point) -> None:
+        client = self._client
+        client.resetBasePositionAndOrientation(self._body_id, center, _UPRIGHT)
+        client.resetBaseVelocity(self._body_id, [0.0] * 3, [0.0] * 3)
+        client.changeConstraint(self._hold, center, maxForce=_HOLD_FORCE_N)
 
     def is_clear_of(self, bodies: Iterable[int]) -> bool:
         """Whether there is room between it and every one of some bodies."""

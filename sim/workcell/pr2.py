@@ -126,11 +126,6 @@ class Pr2:
         """The forearm camera's optical frame, from the measured joint angles."""
         return self._forearm_camera.pose(self.arm_joints()[: len(_FOREARM_JOINTS)])
 
-    def arm_velocities(self) -> Joints:
-        """The measured joint velocities of the arm in rad/s."""
-        states = self._client.getJointStates(self.body_id, self._arm)
-        return np.array([state[1] for state in states])
-
     def finger_angles(self) -> tuple[float, float]:
         """The measured angles of the left and the right finger."""
         left, right = self._client.getJointStates(self.body_id, self._fingers[:2])
@@ -164,7 +159,10 @@ class Pr2:
     def _is_between_fingers(
         self, contact: tuple[Any, ...], tool: Matrix4, inner_m: Sequence[float]
     ) -> bool:
-        """Whether a contact is at the inner side of a finger."""
+        """Whether a contact is at the inner side of a finger.
+
+        That includes the ends of the tips: closing on nothing, they brush over the table.
+        """
         for links, side, inner in zip(self._sides, (1.0, -1.0), inner_m, strict=True):
             if contact[3] in links:
                 sideways = np.dot(contact[5] - tool[:3, 3], tool[:3, 1])
