@@ -110,7 +110,7 @@ class Holding(Message):
     """The robot has stopped and holds: after an interrupt, or of itself after a fault."""
 
     type: Literal["holding"] = "holding"
-    execution: str | None
+    execution: str | None = None
     at: Literal["neutral", "in_place", "hand_over"]
 
 

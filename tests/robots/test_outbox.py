@@ -1,10 +1,14 @@
 from pathlib import Path
+from types import NoneType
+from typing import get_args
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from pydantic import BaseModel
 
-from robots.link.messages import Held, robot_message
+from robots.link import messages
+from robots.link.messages import Held, Holding, Report, robot_message
 from robots.link.outbox import IN_MEMORY, Outbox, OutboxError, OutboxFullError
 
 
@@ -118,3 +122,25 @@ def test_exactly_what_was_not_acknowledged_is_left(actions: list[str | int]) -> 
     assert [seq for _, seq in undelivered(outbox)] == expected
     assert len(outbox) == len(expected)
     outbox.close()
+
+
+def test_every_optional_part_may_be_left_out_on_the_wire() -> None:
+    """What is None is not sent, so a field that may be None must not be required."""
+    required = [
+        f"{name}.{field}"
+        for name, kind in vars(messages).items()
+        if isinstance(kind, type) and issubclass(kind, BaseModel)
+        for field, about in kind.model_fields.items()
+        if about.is_required() and NoneType in get_args(about.annotation)
+    ]
+    assert required == []
+
+
+def test_a_hold_without_an_execution_can_be_read_by_the_service() -> None:
+    outbox = Outbox(IN_MEMORY, "r", "b")
+    outbox.add(Holding(execution=None, at="hand_over"), 1.0, None)
+    [stored] = outbox.after(0, 1)
+    outbox.close()
+    report = robot_message.validate_json(stored.text)
+    assert isinstance(report, Report)
+    assert report.body == Holding(execution=None, at="hand_over")
