@@ -14,7 +14,7 @@ _AWAY: Point = (-3.0, -2.0, 1.0)
 _UPRIGHT = (0.0, 0.0, 0.0, 1.0)
 
 _MASS_KG = 1.0
-_HOLD_FORCE_N = 80.0
+_HOLD_FORCE_N = 250.0
 """A person gives way to whatever pushes harder."""
 
 _ABOVE_TOOL_M = 0.045
