@@ -1,8 +1,8 @@
 """How long a robot stands still once it was answered: from the answer to its next step.
 
 A person steals the part again and again while the robot reaches for it, and a live helper
-answers "no" twice, so that no physical help is awaited. The naive way, in the same run, is what the
-published systems do: poll the state every 50 ms and act on what is found.
+answers "no" twice, so that no physical help is awaited. In the workcell the
+fast camera is compared with PyBullet's renderer in the same run.
 
     python benchmarks/recovery.py [--world workcell] [--answers 100] [--quick]
 """
@@ -23,7 +23,6 @@ from server.runtime.requests import RunRequest
 from server.settings import Settings
 from tasks.intervention import Act, Intervention
 
-POLL_PERIOD_S = 0.05
 PART = "green_leg"
 STEAL = Intervention(act=Act.STEAL, object=PART)
 PUT_BACK = Intervention(act=Act.PUT_BACK, object=PART)
@@ -90,14 +89,16 @@ def main() -> None:
     arguments = parser.parse_args()
     answers = 5 if arguments.quick else min(arguments.answers, 99)
     renderers = ("fast", "bullet") if arguments.world == "workcell" else (None,)
-    rng = np.random.default_rng(0)
     print("answer received -> next step of the robot, ms    p50    p95    p99    max")
+    p99s_ms = []
     for renderer in renderers:
-        waits = np.array(asyncio.run(measure(arguments.world, renderer, answers))) * 1e3
-        _row(f"{arguments.world} {renderer or ''}", waits)
-        polled = waits + sum(rng.uniform(0, POLL_PERIOD_S * 1e3, len(waits)) for _ in range(3))
-        _row("  polled at 20 Hz in answer, choice and start", polled)
-        print(f"  ratio at p99: {np.percentile(polled, 99) / np.percentile(waits, 99):.1f}")
+        waits_ms = np.array(asyncio.run(measure(arguments.world, renderer, answers))) * 1e3
+        _row(f"{arguments.world} {renderer or ''}", waits_ms)
+        p99s_ms.append(float(np.percentile(waits_ms, 99)))
+    if len(p99s_ms) > 1:
+        print(
+            f"ratio at p99, PyBullet's renderer to the fast camera: {p99s_ms[1] / p99s_ms[0]:.1f}"
+        )
 
 
 def _row(name: str, waits_ms: np.ndarray) -> None:
