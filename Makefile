@@ -5,7 +5,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 
-.PHONY: help setup demo serve test lint bench lock clean
+.PHONY: help setup demo console serve test lint bench lock clean
 
 help:  ## Say what there is
 	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 10
@@ -23,10 +23,21 @@ $(READY): requirements.lock pyproject.toml scripts/setup
 demo: $(READY)  ## A PR2 builds a table base, is robbed, asks for help, and finishes
 	$(BIN)/mend run eket --world workcell --scenario eket_paper --speed max --seed 7 --report out/eket_paper.html
 
-serve: $(READY)  ## The service with the helper's page on http://127.0.0.1:8080
+# Node comes from a wheel in .venv, so that no system Node is needed.
+web/node_modules/.ready: web/package-lock.json $(READY)
+	cd web && PATH="$(CURDIR)/$(BIN):$$PATH" npm ci --silent
+	touch $@
+
+console: web/node_modules/.ready  ## Build the helper console into the service
+	$(BIN)/mend schema console >web/node_modules/.wire.json
+	cd web && PATH="$(CURDIR)/$(BIN):$$PATH" npm run --silent types <node_modules/.wire.json
+	cd web && PATH="$(CURDIR)/$(BIN):$$PATH" npm run --silent build
+
+serve: console  ## The service with the helper console on http://127.0.0.1:8080
 	$(BIN)/mend serve
 
-test: $(READY)  ## Every test, in random order
+test: console  ## Every test, in random order
+	cd web && PATH="$(CURDIR)/$(BIN):$$PATH" npm test --silent
 	$(BIN)/pytest -n 2 --dist worksteal
 
 lint: $(READY)  ## Formatting, lint, types and the floors
@@ -43,4 +54,4 @@ lock: $(READY)  ## Pin the newest versions that pyproject.toml allows
 	    --custom-compile-command 'make lock' --upgrade pyproject.toml requirements-build.in -o requirements.lock
 
 clean:  ## Remove everything that was made
-	rm -rf $(VENV) out build dist .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	rm -rf $(VENV) web/node_modules server/api/console/built out build dist .mypy_cache .ruff_cache .pytest_cache .hypothesis

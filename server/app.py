@@ -11,11 +11,11 @@ import uvicorn
 from fastapi import FastAPI
 
 from server.api import (
+    console,
     dialogues,
     health,
     helper_socket,
     metrics,
-    page,
     pictures,
     robots,
     runs,
@@ -43,7 +43,7 @@ ROUTES = (
     health,
     metrics,
     helper_socket,
-    page,
+    console,
 )
 
 STUCK_CLIENT_S = 30

@@ -1,5 +1,8 @@
 """The wire, described for machines: OpenAPI, AsyncAPI and JSON Schema, as dicts."""
 
+import json
+import re
+from collections.abc import Mapping
 from importlib.metadata import version
 from typing import Any, get_args
 
@@ -52,12 +55,7 @@ def json_schemas() -> dict[str, dict[str, Any]]:
 
 def asyncapi() -> dict[str, Any]:
     """The two WebSockets as AsyncAPI 3, from the service's point of view."""
-    to_helpers: Models = (
-        helper_messages.SnapshotMessage,
-        helper_messages.Result,
-        helper_messages.Error,
-        *_members(AnyEvent),
-    )
+    to_helpers = TO_HELPERS
     from_helpers = _members(helper_messages.ClientMessage)
     to_robots = _members(link.ServiceMessage)
     from_robots = _members(link.RobotMessage)
@@ -112,6 +110,64 @@ def asyncapi() -> dict[str, Any]:
     }
 
 
+def console() -> dict[str, Any]:
+    """All that goes between the service and the console, as one JSON Schema of definitions."""
+    rest = openapi()
+    definitions = dict(rest["components"]["schemas"])
+    for name, schema in asyncapi()["components"]["schemas"].items():
+        prefix, _, model = name.partition(".")
+        if prefix == "helper":
+            definitions[model] = schema
+    definitions["Event"] = _one_of(_members(AnyEvent))
+    definitions["FromHelper"] = _one_of(_members(helper_messages.ClientMessage))
+    definitions["ToHelper"] = _one_of(TO_HELPERS)
+    bodies = [
+        operation["requestBody"]
+        for methods in rest["paths"].values()
+        for operation in methods.values()
+        if "requestBody" in operation
+    ]
+    received = _reachable([definitions["FromHelper"], bodies], definitions)
+    for name in definitions.keys() - received:
+        _require_all_fields(definitions[name])
+    described = json.dumps({"$schema": DIALECT, "$defs": definitions})
+    rooted = REFERENCE.sub('"#/$defs/', described)
+    untitled: dict[str, Any] = json.loads(rooted, object_hook=_without_title)
+    return untitled
+
+
+REFERENCE = re.compile(r'"#/(?:components/schemas|[$]defs)/(?:helper\.)?')
+
+
+def _reachable(roots: Any, definitions: Mapping[str, Any]) -> set[str]:
+    """The names of all definitions that `roots` refer to, directly or through others."""
+    found: set[str] = set()
+    waiting = [json.dumps(roots)]
+    while waiting:
+        for name in re.findall(REFERENCE.pattern + r'(\w+)"', waiting.pop()):
+            if name not in found:
+                found.add(name)
+                waiting.append(json.dumps(definitions[name]))
+    return found
+
+
+def _require_all_fields(schema: dict[str, Any]) -> None:
+    """What the service sends has every field, also those that have a default."""
+    if "properties" in schema:
+        schema["required"] = list(schema["properties"])
+
+
+def _one_of(models: Models) -> dict[str, Any]:
+    return {"oneOf": [{"$ref": f"#/$defs/{model.__name__}"} for model in models]}
+
+
+def _without_title(schema: dict[str, Any]) -> dict[str, Any]:
+    """A schema without the titles that would give each field a type of its own."""
+    if isinstance(schema.get("title"), str):
+        schema.pop("title")
+    return schema
+
+
 HELPER_QUERY = {
     "type": "object",
     "required": ["helper"],
@@ -126,6 +182,14 @@ def _members(union: Any) -> Models:
     """The models of a discriminated union."""
     models: Models = get_args(get_args(union)[0])
     return models
+
+
+TO_HELPERS: Models = (
+    helper_messages.SnapshotMessage,
+    helper_messages.Result,
+    helper_messages.Error,
+    *_members(AnyEvent),
+)
 
 
 def _type_of(model: type[BaseModel]) -> str:

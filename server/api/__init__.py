@@ -1,1 +1,1 @@
-"""The service's doors: REST, the helpers' WebSocket, metrics and the built-in page."""
+"""The service's doors: REST, the helpers' WebSocket, metrics and the helper console."""

@@ -49,7 +49,7 @@ def common_options(
 
 COMMANDS: dict[str, tuple[Callable[..., None], str]] = {
     "run": (run, "Run a task tree and print what happens."),
-    "serve": (serve, "Serve the API, the helpers' page, the robots."),
+    "serve": (serve, "Serve the API, the helper console, the robots."),
     "check": (check, "Find the mistakes of a file."),
     "trees": (trees, "List the task trees that there are."),
     "scenarios": (scenarios, "List the scenarios that there are."),

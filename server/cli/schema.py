@@ -17,6 +17,7 @@ class SchemaName(StrEnum):
 
     OPENAPI = "openapi"
     ASYNCAPI = "asyncapi"
+    CONSOLE = "console"
     EVENTS = "events"
     TASK = "task"
     SCENE = "scene"
@@ -27,9 +28,9 @@ def schema(
     name: Annotated[
         SchemaName,
         typer.Argument(
-            metavar="[openapi|asyncapi|events|task|scene|scenario]",
-            help="openapi: REST; asyncapi: WebSockets; events: the journal; "
-            "task, scene, scenario: files.",
+            metavar="[openapi|asyncapi|console|events|task|scene|scenario]",
+            help="openapi: REST; asyncapi: WebSockets; console: both, as the console uses them; "
+            "events: the journal; task, scene, scenario: files.",
         ),
     ] = SchemaName.OPENAPI,
 ) -> None:
@@ -54,6 +55,12 @@ def _asyncapi() -> dict[str, Any]:
     return asyncapi()
 
 
+def _console() -> dict[str, Any]:
+    from server.schemas import console
+
+    return console()
+
+
 def _events() -> dict[str, Any]:
     from server.schemas import json_schemas
 
@@ -63,6 +70,7 @@ def _events() -> dict[str, Any]:
 SCHEMAS: Mapping[SchemaName, Callable[[], dict[str, Any]]] = {
     SchemaName.OPENAPI: _openapi,
     SchemaName.ASYNCAPI: _asyncapi,
+    SchemaName.CONSOLE: _console,
     SchemaName.EVENTS: _events,
     SchemaName.TASK: lambda: task_schema(behavior_parameters()),
     SchemaName.SCENE: scene_schema,

@@ -20,7 +20,7 @@ def serve(
     journal: Annotated[Path | None, typer.Option(help="The journal's file.")] = None,
     config: Annotated[Path | None, typer.Option(help="Settings in a TOML file.")] = None,
 ) -> None:
-    """Serve the API, the helpers' page and the robots' socket.
+    """Serve the API, the helper console and the robots' socket.
 
     Settings come from these options, then from MEND_* variables, then from the file. Runs that had
     not ended when the service stopped go on. Ctrl-C stops it.

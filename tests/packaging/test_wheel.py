@@ -48,7 +48,7 @@ def test_every_file_of_the_packages_is_in_the_wheel_and_no_other(wheel: Path) ->
         "tasks/library/eket.yaml",
         "tasks/scenes/eket.yaml",
         "tasks/scenarios/eket_paper.yaml",
-        "server/api/page/files/index.html",
+        "server/api/console/built/index.html",
         "server/dialogues/mail_request.txt.j2",
         "server/report/templates/report.html",
     } <= names

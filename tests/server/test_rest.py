@@ -140,7 +140,7 @@ async def test_body_that_is_no_good_json_is_a_problem(
         ("GET", f"/api/dialogues/{NOBODY}", 404),
         ("GET", "/api/dialogues?status=ajar", 422),
         ("GET", "/api/trees/nowhere", 404),
-        ("GET", "/page/../app.py", 404),
+        ("GET", "/assets/../app.py", 404),
     ],
 )
 async def test_every_refusal_is_a_problem_document(

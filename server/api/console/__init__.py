@@ -1,0 +1,79 @@
+"""The helper console: the page that `web/` is built into, served with every view's address."""
+
+from pathlib import Path
+from typing import Annotated
+
+from fastapi import APIRouter, Header
+from starlette.responses import FileResponse, HTMLResponse, Response
+
+from server.errors import NotFoundError
+
+router = APIRouter(include_in_schema=False)
+
+BUILT = Path(__file__).parent / "built"
+
+TYPES = {
+    ".css": "text/css",
+    ".html": "text/html",
+    ".js": "text/javascript",
+    ".svg": "image/svg+xml",
+}
+
+HEADERS = {
+    "Content-Security-Policy": (
+        "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:;"
+        " media-src 'self' blob:; worker-src 'self'; connect-src 'self'; base-uri 'none';"
+        " form-action 'self'; frame-ancestors 'none'"
+    ),
+    "X-Content-Type-Options": "nosniff",
+    "Referrer-Policy": "no-referrer",
+    "Vary": "Accept-Encoding",
+}
+
+CHECK_AGAIN = {"Cache-Control": "no-cache"}
+# The names of assets carry a hash of what is in them.
+KEEP = {"Cache-Control": "public, max-age=31536000, immutable"}
+
+NOT_BUILT = (
+    "<!doctype html><title>Mend</title><p>The console is not built here. Run <code>make console"
+    "</code> in the project's folder; the service itself works without it.</p>"
+)
+
+Accepted = Annotated[str, Header(alias="accept-encoding")]
+
+
+@router.get("/")
+@router.get("/runs")
+@router.get("/runs/{run}")
+@router.get("/trees")
+@router.get("/trees/{tree}")
+@router.get("/settings")
+async def view(accept_encoding: Accepted = "") -> Response:
+    """The page; which view it shows is its own business."""
+    if not (BUILT / "index.html").is_file():
+        return HTMLResponse(NOT_BUILT, 503, HEADERS | CHECK_AGAIN)
+    return _file("index.html", accept_encoding, CHECK_AGAIN)
+
+
+@router.get("/assets/{name}")
+async def asset(name: str, accept_encoding: Accepted = "") -> Response:
+    """A part of the page."""
+    return _file(f"assets/{name}", accept_encoding, KEEP)
+
+
+@router.get("/icon.svg")
+async def icon(accept_encoding: Accepted = "") -> Response:
+    """The icon."""
+    return _file("icon.svg", accept_encoding, CHECK_AGAIN)
+
+
+def _file(name: str, accept_encoding: str, caching: dict[str, str]) -> Response:
+    path = BUILT / name
+    media_type = TYPES.get(path.suffix)
+    if media_type is None or not path.is_file():
+        raise NotFoundError(f"the console has no file '{name}'")
+    headers = HEADERS | caching
+    compressed = path.with_name(f"{path.name}.gz")
+    if "gzip" in accept_encoding and compressed.is_file():
+        path, headers = compressed, headers | {"Content-Encoding": "gzip"}
+    return FileResponse(path, media_type=media_type, headers=headers)

@@ -1,0 +1,78 @@
+"""A real browser on a real service: what every test of the console starts from."""
+
+import shutil
+from collections.abc import AsyncIterator
+from pathlib import Path
+
+import pytest
+import pytest_asyncio
+from console_in_browser import TOKEN, OpenPage
+from playwright.async_api import Browser, BrowserContext, ConsoleMessage, Page, async_playwright
+
+from server.api.console import BUILT
+from server.composition import Service, open_service
+from server.settings import Settings
+
+CHROMIUM = shutil.which("chromium") or shutil.which("google-chrome")
+HERE = Path(__file__).parent
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Each test of the console is a slow one, and needs a browser and the built page."""
+    missing = "there is no Chromium on this machine" if CHROMIUM is None else None
+    if missing is None and not (BUILT / "index.html").is_file():
+        missing = "the console is not built (make console)"
+    for item in items:
+        if HERE not in item.path.parents:
+            continue
+        item.add_marker(pytest.mark.browser)
+        item.add_marker(pytest.mark.slow)
+        if missing is not None:
+            item.add_marker(pytest.mark.skip(reason=missing))
+
+
+@pytest_asyncio.fixture(scope="session", loop_scope="session")
+async def browser() -> AsyncIterator[Browser]:
+    async with async_playwright() as playwright:
+        browser = await playwright.chromium.launch(
+            executable_path=CHROMIUM, headless=True, args=["--no-sandbox"]
+        )
+        yield browser
+        await browser.close()
+
+
+@pytest_asyncio.fixture(loop_scope="session")
+async def service(tmp_path: Path) -> AsyncIterator[Service]:
+    """The whole service, on a journal of its own."""
+    async with open_service(Settings(data_dir=tmp_path, port=0, token=TOKEN)) as service:
+        yield service
+
+
+@pytest_asyncio.fixture(loop_scope="session")
+async def open_page(browser: Browser, service: Service) -> AsyncIterator[OpenPage]:
+    """Opens the console as a helper who is signed in; nothing may go wrong in its scripts."""
+    mistakes: list[str] = []
+    contexts: list[BrowserContext] = []
+
+    async def open_page(path: str = "/", helper: str = "anna", **options: object) -> Page:
+        context = await browser.new_context(base_url=service.url, **options)
+        contexts.append(context)
+        signed_in = await context.request.post("/api/session", data={"token": TOKEN})
+        assert signed_in.status == 204
+        await context.add_init_script(f"localStorage.setItem('mend.helper', '\"{helper}\"')")
+        page = await context.new_page()
+        page.on("pageerror", lambda error: mistakes.append(str(error)))
+        page.on("console", lambda message: _note(message, mistakes))
+        await page.goto(path)
+        await page.get_by_role("status").filter(has_text="Connected").wait_for()
+        return page
+
+    yield open_page
+    for context in contexts:
+        await context.close()
+    assert mistakes == []
+
+
+def _note(message: ConsoleMessage, mistakes: list[str]) -> None:
+    if message.type == "error" and "Content Security Policy" in message.text:
+        mistakes.append(message.text)

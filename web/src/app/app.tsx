@@ -1,0 +1,56 @@
+// The frame of every view: who is signed in decides what is shown, the address which view.
+import { QuestionsView } from "../question/questions_view";
+import { SignIn } from "../sign_in/sign_in";
+import { session } from "../state/service";
+import { Header } from "./header";
+import { later } from "./later";
+import { route } from "./router";
+import "./app.css";
+
+const RunView = later(() => import("../run/run_view").then((module) => module.RunView));
+const RunsView = later(() => import("../run/runs_view").then((module) => module.RunsView));
+const TreesView = later(() => import("../trees/trees_view").then((module) => module.TreesView));
+const SettingsView = later(() => import("../settings/settings_view").then((module) => module.SettingsView));
+
+export function App() {
+  if (session.value === "unknown") return <p class="app-waiting">Looking for the service …</p>;
+  if (session.value !== "in") return <SignIn />;
+  return (
+    <>
+      <a class="skip" href="#main">
+        Skip to content
+      </a>
+      <Header />
+      <main id="main" tabIndex={-1}>
+        <View />
+      </main>
+    </>
+  );
+}
+
+function View() {
+  const shown = route.value;
+  switch (shown.view) {
+    case "questions":
+      return <QuestionsView />;
+    case "runs":
+      return <RunsView />;
+    case "run":
+      return <RunView key={shown.run} run={shown.run} />;
+    case "trees":
+      return <TreesView tree={null} />;
+    case "tree":
+      return <TreesView tree={shown.tree} />;
+    case "settings":
+      return <SettingsView />;
+    case "unknown":
+      return (
+        <section class="page">
+          <h1>There is nothing at {shown.path}</h1>
+          <p>
+            <a href="/">To the questions</a>
+          </p>
+        </section>
+      );
+  }
+}

@@ -1,0 +1,52 @@
+// The bar on top: where to go, whether the service is there, who one is.
+import type { ConnectionState } from "../wire/helper_socket";
+import { questions } from "../state/questions";
+import { helperName } from "../state/preferences";
+import { connection } from "../state/service";
+import { route } from "./router";
+
+const CONNECTION: Readonly<Record<ConnectionState, string>> = {
+  connecting: "Connecting …",
+  connected: "Connected",
+  lost: "Connection lost, trying again …",
+  closed: "Not connected",
+};
+
+export function Header() {
+  const view = route.value.view;
+  const count = questions.value.length;
+  return (
+    <header class="header">
+      <a class="brand" href="/" aria-label="Mend, to the questions">
+        <img src="/icon.svg" alt="" width="28" height="28" />
+        <span>Mend</span>
+      </a>
+      <nav aria-label="Main">
+        <Place href="/" current={view === "questions"}>
+          Questions
+          {count > 0 && <span class="count">{count}</span>}
+        </Place>
+        <Place href="/runs" current={view === "runs" || view === "run"}>
+          Runs
+        </Place>
+        <Place href="/trees" current={view === "trees" || view === "tree"}>
+          Task trees
+        </Place>
+      </nav>
+      <p class={`connection ${connection.value}`} role="status">
+        {CONNECTION[connection.value]}
+      </p>
+      <a class="who" href="/settings" aria-current={view === "settings" ? "page" : undefined}>
+        {helperName.value}
+      </a>
+    </header>
+  );
+}
+
+function Place(props: { href: string; current: boolean; children: preact.ComponentChildren }) {
+  return (
+    <a href={props.href} aria-current={props.current ? "page" : undefined}>
+      {props.children}
+    </a>
+  );
+}

@@ -1,0 +1,33 @@
+// What this helper has set on this device.
+import { effect, type Signal, signal } from "@preact/signals";
+
+export type Theme = "system" | "light" | "dark";
+
+/** The single keys that do something while a question is open; empty switches one off. */
+export interface Keys {
+  yes: string;
+  no: string;
+  repeat: string;
+}
+
+export const DEFAULT_KEYS: Keys = { yes: "y", no: "n", repeat: "r" };
+
+function kept<T>(name: string, value: T): Signal<T> {
+  const found = localStorage.getItem(`mend.${name}`);
+  const held = signal(found === null ? value : (JSON.parse(found) as T));
+  effect(() => localStorage.setItem(`mend.${name}`, JSON.stringify(held.value)));
+  return held;
+}
+
+export const helperName = kept("helper", "");
+export const theme = kept<Theme>("theme", "system");
+export const keys = kept<Keys>("keys", DEFAULT_KEYS);
+export const keysOn = kept("keys_on", true);
+export const soundOn = kept("sound_on", true);
+export const notificationsOn = kept("notifications_on", false);
+
+effect(() => {
+  const chosen = theme.value;
+  if (chosen === "system") delete document.documentElement.dataset.theme;
+  else document.documentElement.dataset.theme = chosen;
+});

@@ -1,0 +1,128 @@
+// The one connection to the service: who is signed in, the runs, and every event as it comes.
+import { signal } from "@preact/signals";
+import { type ConnectionState, HelperSocket } from "../wire/helper_socket";
+import * as rest from "../wire/rest";
+import type { Event, RunStatus, RunSummary, SnapshotMessage } from "../wire/types";
+import { helperName } from "./preferences";
+import { takeDialogueEvent, takeDialogues } from "./questions";
+
+export type Session = "unknown" | "needs_token" | "needs_name" | "in";
+
+export const session = signal<Session>("unknown");
+export const tokenRequired = signal(false);
+export const connection = signal<ConnectionState>("connecting");
+export const runs = signal<ReadonlyMap<string, RunSummary>>(new Map());
+
+const STATUS_AFTER: Readonly<Partial<Record<Event["type"], RunStatus>>> = {
+  run_paused: "paused",
+  run_resumed: "running",
+  run_finished: "finished",
+  run_failed: "failed",
+  run_aborted: "aborted",
+};
+
+const listeners = new Set<(event: Event) => void>();
+const snapshotListeners = new Set<() => void>();
+let socket: HelperSocket | null = null;
+
+/** Hear every event as it comes; returns how to stop. */
+export function onEvent(listener: (event: Event) => void): () => void {
+  listeners.add(listener);
+  return () => listeners.delete(listener);
+}
+
+/** Hear of every snapshot: what was folded from events before may lack some. */
+export function onSnapshot(listener: () => void): () => void {
+  snapshotListeners.add(listener);
+  return () => snapshotListeners.delete(listener);
+}
+
+/** Find out who this is, and connect when that is known. */
+export async function begin(): Promise<void> {
+  try {
+    const { required, signed_in } = await rest.session();
+    tokenRequired.value = required;
+    session.value = required && !signed_in ? "needs_token" : helperName.value === "" ? "needs_name" : "in";
+  } catch {
+    connection.value = "lost";
+    window.setTimeout(() => void begin(), 1000);
+    return;
+  }
+  if (session.value === "in") connect();
+}
+
+export async function signIn(token: string): Promise<void> {
+  await rest.signIn(token);
+  await begin();
+}
+
+export async function signOut(): Promise<void> {
+  socket?.close();
+  socket = null;
+  await rest.signOut();
+  await begin();
+}
+
+/** Be called `name` from now on. */
+export async function call(name: string): Promise<void> {
+  helperName.value = name;
+  await begin();
+}
+
+/** Send a command over the helper's socket. */
+export function command(message: Parameters<HelperSocket["send"]>[0]): ReturnType<HelperSocket["send"]> {
+  return socket === null ? Promise.reject(new rest.Unreachable()) : socket.send(message);
+}
+
+function connect(): void {
+  socket?.close();
+  socket = new HelperSocket(helperName.value, {
+    snapshot: takeSnapshot,
+    event: takeEvent,
+    state: (state) => {
+      connection.value = state;
+    },
+    mayReconnect,
+  });
+  socket.connect();
+}
+
+async function mayReconnect(): Promise<boolean> {
+  const found = await rest.session().catch(() => null);
+  if (found === null || !found.required || found.signed_in) return true;
+  session.value = "needs_token";
+  return false;
+}
+
+function takeSnapshot(snapshot: SnapshotMessage): void {
+  const next = new Map(runs.value);
+  for (const run of snapshot.runs) next.set(run.id, run);
+  runs.value = next;
+  takeDialogues(snapshot.dialogues, new Map(snapshot.runs.map((run) => [run.id, run.time])));
+  void refreshRuns();
+  for (const listener of snapshotListeners) listener();
+}
+
+function takeEvent(event: Event): void {
+  takeDialogueEvent(event, helperName.value);
+  const run = runs.value.get(event.run);
+  const status = STATUS_AFTER[event.type];
+  if (run !== undefined && status !== undefined) {
+    runs.value = new Map(runs.value).set(run.id, { ...run, status, time: event.time });
+  }
+  if (event.type === "run_started" || event.type === "run_finished" || event.type === "run_failed") {
+    void refreshRuns();
+  }
+  for (const listener of listeners) listener(event);
+}
+
+/** Read the list of runs anew. */
+export async function refreshRuns(): Promise<void> {
+  const read = await rest.runs().catch(() => []);
+  const next = new Map(runs.value);
+  for (const run of read) next.set(run.id, run);
+  runs.value = next;
+}
+
+window.addEventListener("online", () => socket?.hurry());
+window.addEventListener("offline", () => socket?.drop());

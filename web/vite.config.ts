@@ -1,0 +1,23 @@
+import preact from "@preact/preset-vite";
+import { defineConfig } from "vite";
+
+const SERVICE = "http://127.0.0.1:8080";
+
+export default defineConfig({
+  plugins: [preact({ devToolsEnabled: false })],
+  build: {
+    // Inside the Python package, so that the wheel and an editable install both serve it.
+    outDir: "../server/api/console/built",
+    emptyOutDir: true,
+    assetsInlineLimit: 0,
+    sourcemap: false,
+    // Three.js is big and comes only when the robot is looked at.
+    chunkSizeWarningLimit: 1200,
+  },
+  server: {
+    proxy: {
+      "/api": { target: SERVICE },
+      "/ws": { target: SERVICE, ws: true },
+    },
+  },
+});
