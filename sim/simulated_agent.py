@@ -30,7 +30,7 @@ from tasks.intervention import Intervention
 from tasks.scenario import ScriptedIntervention
 from tasks.scene import StrictModel
 
-_SEEN_AT_ONCE = (IssueDetected, Finished, Looked, Rejected, Held)
+_SEEN_AT_ONCE = (StepStarted, IssueDetected, Finished, Looked, Rejected, Held)
 """Reports that the service must see before more time passes."""
 
 _WITH_WORLD = (StepStarted, Finished, Holding, Intervened)

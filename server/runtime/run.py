@@ -168,6 +168,7 @@ class Run:
             # Before anybody hears of it: a simulated robot that knows its report was taken lets
             # time pass, and what follows from the report is to reach it before that.
             await self._go_on()
+            await self._context.noted()
         except asyncio.CancelledError:
             # Whoever waits for it must not wait for ever when the service shuts down.
             if not item.done.done():
@@ -309,7 +310,12 @@ class Run:
         if isinstance(body, StepStarted):
             side.restarts = 0
         events, pictures = self._reports.read(side, body)
-        await self._context.commit(events, receipt=receipt, world=report.world, pictures=pictures)
+        if events or report.world is not None:
+            await self._context.commit(
+                events, receipt=receipt, world=report.world, pictures=pictures
+            )
+        else:
+            self._context.note(receipt)
         await self._after_report(side, body)
 
     async def _after_report(self, side: RobotSide, body: object) -> None:
