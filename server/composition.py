@@ -104,6 +104,7 @@ async def _open(
         send_mail=mail.send_later,
         settings=RunSettings(
             help_window_s=settings.help_window_s,
+            max_helped_retries=settings.max_helped_retries,
             robot_lost_timeout_s=settings.robot_lost_timeout_s,
             claim_lease_s=settings.claim_lease_s,
         ),

@@ -18,11 +18,13 @@ class RunSettings:
     """How patient a run is. Seconds of the run's clock, but for `robot_lost_timeout_s` (wall).
 
     `max_restarts`: so often a simulated robot is started again without having begun a step since.
+    `max_helped_retries`: so often a robot tries one leaf again because somebody has helped.
     """
 
     help_window_s: float = 30.0
     robot_lost_timeout_s: float = 60.0
     max_restarts: int = 20
+    max_helped_retries: int = 20
     claim_lease_s: float = 30.0
 
 

@@ -27,26 +27,39 @@ class GivingUp:
 
     async def give_up_what_cannot_be_done(self) -> bool:
         """Give up one leaf that cannot be done; True if there was one."""
+        for leaf, reason in (*self._failed_too_often(), *self._helped_too_often()):
+            await self._give_up(leaf, reason)
+            return True
+        for leaf in self._for_nobody():
+            await self._give_up(leaf, "no robot can do it")
+            return True
+        return False
+
+    def _failed_too_often(self) -> list[tuple[int, str]]:
         state = self._context.state
-        tree = state.tree
-        hopeless = sorted(each for each in state.exhausted if tree.eligible(each))
         reason = f"it failed {state.request.max_attempts} times"
-        if not hopeless and all(
-            side.hello is not None or side.gone_for_good for side in self._sides.values()
-        ):
-            hopeless = [
-                leaf
-                for leaf in (int(each) for each in tree.eligible_leaves())
-                if not any(
-                    side.suitability(tree.leaf_definition(leaf).behavior) > 0
-                    for side in self._sides.values()
-                )
-            ][:1]
-            reason = "no robot can do it"
-        if not hopeless:
-            return False
-        await self._give_up(hopeless[0], reason)
-        return True
+        return [(leaf, reason) for leaf in sorted(state.exhausted) if state.tree.eligible(leaf)]
+
+    def _helped_too_often(self) -> list[tuple[int, str]]:
+        """What fails each time is not done for ever, however willing the helper is."""
+        state, most = self._context.state, self._context.settings.max_helped_retries
+        reason = f"it failed again after {most} helped retries"
+        return [
+            (leaf, reason)
+            for leaf, retries in sorted(state.helped_retries.items())
+            if retries > most and state.tree.eligible(leaf)
+        ]
+
+    def _for_nobody(self) -> list[int]:
+        """The first leaf that none of the robots can do, once all of them are known."""
+        tree, sides = self._context.state.tree, self._sides.values()
+        if not all(side.hello is not None or side.gone_for_good for side in sides):
+            return []
+        return [
+            leaf
+            for leaf in (int(each) for each in tree.eligible_leaves())
+            if not any(side.suitability(tree.leaf_definition(leaf).behavior) > 0 for side in sides)
+        ][:1]
 
     async def _give_up(self, leaf: int, reason: str) -> None:
         """Abandon the nearest alternative that holds a leaf, or fail the run."""
