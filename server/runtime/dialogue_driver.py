@@ -54,7 +54,7 @@ class DialogueDriver:
         self._person = person
         self._send_mail = send_mail
         self._was_right: dict[UUID, bool] = {}
-        self._deeds_sent: set[tuple[UUID, int]] = set()
+        self._deeds_sent: set[str] = set()
 
     # --- What the run calls -------------------------------------------------------------------
 
@@ -294,11 +294,11 @@ class DialogueDriver:
         self, dialogue: DialogueState, awaiting: ev.HelpAwaited, side: RobotSide
     ) -> None:
         """Let the simulated person keep the promise, as reliably as they are."""
-        key = (dialogue.id, dialogue.helps)
-        if self._person is None or not self._person.acts or key in self._deeds_sent:
+        state, command = self._context.state, f"{dialogue.id}:{dialogue.helps}"
+        known = command in self._deeds_sent or command in state.intervened
+        if self._person is None or not self._person.acts or known:
             return
-        self._deeds_sent.add(key)
-        state = self._context.state
+        self._deeds_sent.add(command)
         rng = np.random.default_rng([state.started.seed, state.helps])
         raised = dialogue.raised
         promise = Promise(str(awaiting.help), raised.object, raised.place)
@@ -313,7 +313,7 @@ class DialogueDriver:
         if done is not None:
             promised = awaiting.until - self._context.settings.help_window_s
             at = self._context.clock.to_robot(promised + done.delay_s)
-            side.intervene(f"{dialogue.id}:{dialogue.helps}", done.intervention, "helper", at)
+            side.intervene(command, done.intervention, "helper", at)
 
     async def _help_looked_for(
         self,

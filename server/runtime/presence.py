@@ -10,6 +10,7 @@ from server.runtime.dialogue_driver import DialogueDriver
 from server.runtime.failure import fail_run
 from server.runtime.hardware import Hardware
 from server.runtime.inbox import Task
+from server.runtime.interventions import Interventions
 from server.runtime.report_events import ReportEvents
 from server.runtime.robot_side import Doing, RobotSide
 from server.runtime.run_state import Execution
@@ -28,6 +29,7 @@ class Presence:
         hardware: Hardware,
         dialogues: DialogueDriver,
         reports: ReportEvents,
+        interventions: Interventions,
         *,
         tell: Callable[[Task], None],
         start: Callable[[RobotSide, Execution], None],
@@ -37,6 +39,7 @@ class Presence:
         self._hardware = hardware
         self._dialogues = dialogues
         self._reports = reports
+        self._interventions = interventions
         self._tell = tell
         self._start = start
         self._timers: dict[str, asyncio.TimerHandle] = {}
@@ -78,6 +81,8 @@ class Presence:
                 self._reports.reset(execution.leaf, robot, "its robot was lost", failed=False)
             )
         await self._context.commit(events)
+        if rebooted:
+            self._interventions.tell_again(side)
         if continues and execution is not None and side.doing is Doing.IDLE and not execution.held:
             # The start may never have arrived; a robot that carried it out ignores it.
             self._start(side, execution)

@@ -34,12 +34,14 @@ from server.runtime.failure import fail_run, why_it_stopped
 from server.runtime.giving_up import GivingUp
 from server.runtime.hardware import Hardware
 from server.runtime.inbox import Inbox, Item, Task
+from server.runtime.interventions import Interventions
 from server.runtime.last_look import missing_parts
 from server.runtime.presence import Presence
 from server.runtime.report_events import ReportEvents
 from server.runtime.robot_side import Doing, Purpose, RobotSide
 from server.runtime.run_state import DialogueState, Execution
 from server.runtime.views import RunStatus
+from tasks.intervention import Intervention
 
 log = logging.getLogger(__name__)
 
@@ -63,6 +65,7 @@ class Run:
         self._hardware = hardware
         self._reports = ReportEvents(context, dialogues)
         self._claims = Claims(context)
+        self._interventions = Interventions(context)
         self._inbox = Inbox()
         self._presence = Presence(
             context,
@@ -70,6 +73,7 @@ class Run:
             hardware,
             dialogues,
             self._reports,
+            self._interventions,
             tell=self._inbox.tell,
             start=self._start,
         )
@@ -357,6 +361,11 @@ class Run:
         """End the run because it cannot go on."""
         if not self._context.state.status.ended:
             await fail_run(self._context, reason)
+
+    async def intervene(self, deed: Intervention) -> None:
+        """Have a person do something in the simulated world."""
+        side = next(iter(self._sides.values()))
+        await self._interventions.accept(deed, "api", side)
 
     def _require(self, status: RunStatus, what: str) -> None:
         now = self._context.state.status

@@ -137,6 +137,8 @@ class RunState:
         self.executions: dict[str, Execution] = {}
         self.dialogues: dict[UUID, DialogueState] = {}
         self.lost: set[str] = set()
+        self.accepted: dict[str, ev.InterventionAccepted] = {}
+        self.intervened: set[str] = set()
         self.exhausted: set[int] = set()
         self.helped_retries: Counter[int] = Counter()
         self.asks = 0
@@ -265,6 +267,16 @@ class RunState:
         dialogue.closed = event.reason
         dialogue.awaiting = None
         dialogue.claim = None
+
+    @_apply.register
+    def _(self, event: ev.InterventionAccepted) -> None:
+        self.accepted[event.command] = event
+
+    @_apply.register
+    def _(self, event: ev.InterventionDone) -> None:
+        if event.command is not None:
+            self.accepted.pop(event.command, None)
+            self.intervened.add(event.command)
 
     @_apply.register
     def _(self, event: ev.NodeDone) -> None:

@@ -303,8 +303,7 @@ class Runtime:
         if state.started.world == LIVE:
             raise ConflictError("a run in the world 'live' has no simulated person")
         _check_intervention(state.scene, intervention)
-        for side in running.sides.values():
-            side.intervene(str(uuid4()), intervention, "api", None)
+        await running.request(lambda: running.intervene(intervention))
 
     async def picture(self, run: UUID, camera: str) -> bytes:
         """A camera's picture now, as JPEG. Raises `NotFoundError` or `ConflictError`."""
