@@ -9,8 +9,9 @@ from robots.arm import Arm, Routine
 from robots.behaviors.preparation import is_at
 from robots.body import ToolPose
 from robots.catalogue import Part
-from robots.link.messages import Holding, Location, Looked, ReportBody
+from robots.link.messages import Holding, Location, Look, Looked, ReportBody
 from robots.senses import Senses
+from robots.understanding import Understanding
 from robots.vision.forearm import GripReading, GripState, steady
 from robots.vision.head import HeadSighting
 
@@ -108,6 +109,25 @@ class WayClear:
         if here is not None and not self._looker.arm.at_neutral:
             way = [here, *way]
         return senses.obstruction(senses.look(), way, self._looker.arm.at_neutral) is None
+
+
+def look_as_told(
+    looker: Looker, command: str, look: Look, understanding: Understanding
+) -> Routine[Looked]:
+    """The routine of a `look` command. Raises `CommandError`."""
+    if look.expect is None:
+        return look_once(looker, command)
+    if look.expect == "in_gripper":
+        part = understanding.object_of(look)
+        return take_from_person(looker, command, part, look.within_s)
+    make: dict[str, Callable[[], Expectation]] = {
+        "at_place": lambda: AtPlace(
+            looker, understanding.object_of(look), understanding.place_of(look)
+        ),
+        "in_reach": lambda: InReach(looker, understanding.object_of(look)),
+        "way_clear": lambda: WayClear(looker),
+    }
+    return look_until(looker, command, make[look.expect](), look.within_s)
 
 
 def look_once(looker: Looker, command: str) -> Routine[Looked]:

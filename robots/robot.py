@@ -1,19 +1,16 @@
 """One robot: takes commands, walks behaviors, looks, and reports, over any body."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
-
-from pydantic import ValidationError
 
 from robots.agent import Emit, EmitPicture
 from robots.arm import Arm, Routine
 from robots.behaviors.behavior import Behavior
 from robots.behaviors.execution import Execution
 from robots.behaviors.execution_state import ExecutionState
-from robots.behaviors.preparation import Assignment
 from robots.body import Body
-from robots.catalogue import Catalogue, Part
+from robots.catalogue import Catalogue
 from robots.link.messages import (
     PROTOCOL_VERSION,
     ActiveExecution,
@@ -23,7 +20,6 @@ from robots.link.messages import (
     Holding,
     Interrupt,
     IssueDetected,
-    Location,
     Look,
     Looked,
     Picture,
@@ -36,18 +32,10 @@ from robots.link.messages import (
     Start,
     TakePicture,
 )
-from robots.looks import (
-    AtPlace,
-    Expectation,
-    InReach,
-    Looker,
-    WayClear,
-    look_once,
-    look_until,
-    take_from_person,
-)
+from robots.looks import Looker, look_as_told
 from robots.monitors.monitor import Monitor
 from robots.senses import Senses
+from robots.understanding import CommandError, Understanding
 from robots.vision.color_model import ColorModel
 from robots.vision.drawing import encode_jpeg
 
@@ -56,10 +44,6 @@ _SEEN_AT_ONCE = (IssueDetected, Finished, Looked, Rejected)
 
 _EXPLAINING = frozenset({"missing", "unreachable"})
 """Without these monitors an object that is not there would leave the service without a word."""
-
-
-class CommandError(Exception):
-    """A command cannot be carried out; the message says why."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,12 +82,12 @@ class Robot:
             raise ValueError(f"expected monitors for {sorted(_EXPLAINING)}, got {sorted(monitors)}")
         self._name = name
         self._body = body
-        self._catalogue = catalogue
         self._behaviors = dict(behaviors)
         self._monitors = dict(monitors)
         self._monitor_parameters = dict(monitor_parameters or {})
         self._arm = Arm(body)
         self._senses = senses or Senses(body, model, catalogue)
+        self._understanding = Understanding(behaviors, catalogue, self._senses.known_colors)
         self._emit: Emit | None = None
         self._emit_picture: EmitPicture | None = None
         self._activity: Routine[None] | None = None
@@ -233,7 +217,7 @@ class Robot:
             raise CommandError(
                 f"a behavior is still under way; interrupt it before starting '{start.behavior}'"
             )
-        assignment = self._assign(start)
+        assignment = self._understanding.assign(start)
         self._drop_look()
         if self._execution is not None and not self._execution.over:
             self._execution.end()
@@ -246,49 +230,6 @@ class Robot:
         ]
         self._execution = Execution(assignment, monitors, self._arm, self._senses, self._report)
         self._activity = self._execution.run()
-
-    def _assign(self, start: Start) -> Assignment:
-        behavior = self._behaviors.get(start.behavior)
-        if behavior is None:
-            known = ", ".join(sorted(self._behaviors))
-            raise CommandError(f"behavior '{start.behavior}' is unknown; this robot has {known}")
-        try:
-            parameters = behavior.parameters.model_validate(start.parameters)
-        except ValidationError as error:
-            first = error.errors()[0]
-            where = ".".join(str(each) for each in first["loc"]) or "parameters"
-            raise CommandError(f"{start.behavior}: {where}: {first['msg']}") from error
-        part = self._part(getattr(parameters, "object", None), start.size)
-        target = start.target or self._target(getattr(parameters, "place", None))
-        needs_help = bool(getattr(parameters, "needs_help", False))
-        return Assignment(
-            execution=start.execution,
-            behavior=behavior(),
-            parameters=parameters,
-            part=part,
-            target=target,
-            needs_help=needs_help or (part is not None and part.needs_help),
-        )
-
-    def _part(self, name: str | None, size: tuple[float, float, float] | None) -> Part | None:
-        if name is None:
-            return None
-        part = self._catalogue.parts.get(name)
-        if part is None:
-            if size is None:
-                raise CommandError(f"object '{name}' is unknown, and the command gives no size")
-            part = Part(name, size)
-        if name not in self._senses.known_colors:
-            raise CommandError(f"the colour model was not trained for object '{name}'")
-        return part
-
-    def _target(self, name: str | None) -> Location | None:
-        if name is None:
-            return None
-        target = self._catalogue.places.get(name)
-        if target is None:
-            raise CommandError(f"place '{name}' is unknown, and the command gives no target")
-        return target
 
     def _interrupt(self, interrupt: Interrupt) -> None:
         self._waiting.clear()
@@ -329,34 +270,9 @@ class Robot:
                 raise CommandError(f"cannot look for '{look.expect}' while a behavior is under way")
             self._report(self._looker().answer(command_id, None))
             return
-        routine = self._look_routine(command_id, look)
+        routine = look_as_told(self._looker(), command_id, look, self._understanding)
         self._drop_look()
         self._activity, self._looking = self._report_look(routine), True
-
-    def _look_routine(self, command_id: str, look: Look) -> Routine[Looked]:
-        looker = self._looker()
-        if look.expect is None:
-            return look_once(looker, command_id)
-        if look.expect == "in_gripper":
-            return take_from_person(looker, command_id, self._object_of(look), look.within_s)
-        make: dict[str, Callable[[], Expectation]] = {
-            "at_place": lambda: AtPlace(looker, self._object_of(look), self._place_of(look)),
-            "in_reach": lambda: InReach(looker, self._object_of(look)),
-            "way_clear": lambda: WayClear(looker),
-        }
-        return look_until(looker, command_id, make[look.expect](), look.within_s)
-
-    def _object_of(self, look: Look) -> Part:
-        part = self._part(look.object, None)
-        if part is None:
-            raise CommandError(f"a look for '{look.expect}' needs an object")
-        return part
-
-    def _place_of(self, look: Look) -> Location:
-        target = self._target(look.place)
-        if target is None:
-            raise CommandError(f"a look for '{look.expect}' needs a place")
-        return target
 
     def _report_look(self, routine: Routine[Looked]) -> Routine[None]:
         looked = yield from routine

@@ -1,6 +1,7 @@
 """What one robot perceives: its cameras' pictures, and what they show."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -26,6 +27,15 @@ _ARM_LENGTH_M = 0.7
 """How far the arm reaches back from the tool point, for telling it from an obstacle."""
 
 
+@dataclass(slots=True)
+class _Seen:
+    """The last head picture, and what was found in it so far."""
+
+    image: CameraImage
+    segmentation: Segmentation
+    sightings: dict[Part, HeadSighting | None] = field(default_factory=dict)
+
+
 class Senses:
     """A body's cameras with the colour model that understands their pictures.
 
@@ -44,7 +54,7 @@ class Senses:
         self._model = model
         self._tolerances = tolerances
         self._clearance = clearance or Clearance()
-        self._segmented: tuple[CameraImage, Segmentation] | None = None
+        self._seen: _Seen | None = None
         self.catalogue = catalogue
         self.grip: GripWatch | None = None
 
@@ -63,7 +73,10 @@ class Senses:
 
     def sight(self, part: Part, image: CameraImage) -> HeadSighting | None:
         """Where a part is in a head picture."""
-        return locate(image, self._segment(image), part)
+        seen = self._understand(image)
+        if part not in seen.sightings:
+            seen.sightings[part] = locate(image, seen.segmentation, part)
+        return seen.sightings[part]
 
     def sight_all(self, image: CameraImage) -> dict[str, Sighting]:
         """Where every part of the catalogue is that a head picture shows."""
@@ -117,7 +130,7 @@ class Senses:
         """What stands in the way through `waypoints` that is no known part."""
         return find_obstruction(
             image,
-            self._segment(image),
+            self._understand(image).segmentation,
             corridor(waypoints),
             () if arm_is_away else (self._own_arm(),),
             self.catalogue.table.height,
@@ -130,7 +143,7 @@ class Senses:
         along = self._body.cameras[FOREARM].capture().pose[:3, 3] - tool
         return tool, tool + along / max(float(np.linalg.norm(along)), 1e-6) * _ARM_LENGTH_M
 
-    def _segment(self, image: CameraImage) -> Segmentation:
-        if self._segmented is None or self._segmented[0] is not image:
-            self._segmented = (image, self._model.segment(image.bgr))
-        return self._segmented[1]
+    def _understand(self, image: CameraImage) -> _Seen:
+        if self._seen is None or self._seen.image is not image:
+            self._seen = _Seen(image, self._model.segment(image.bgr))
+        return self._seen

@@ -1,7 +1,6 @@
 """The whole service put together: journal, robots, worlds, runtime and API, in one process."""
 
 import asyncio
-import socket
 import time
 from collections.abc import AsyncIterator, Iterator
 from contextlib import asynccontextmanager, contextmanager, suppress
@@ -12,7 +11,7 @@ from functools import partial
 import uvicorn
 
 from dialogue.registry import load_scripts
-from server.app import create_app, drop_stuck_clients, serve_config
+from server.app import create_app, serve_config
 from server.dialogues.escalation import EscalationPolicy
 from server.dialogues.mail import Mailer
 from server.journal.sqlite import SqliteJournal
@@ -23,6 +22,7 @@ from server.library import (
     built_in_trees,
     check_uploaded_tree,
 )
+from server.listening import listen, reachable_host
 from server.robots.endpoint import ROBOT_PATH, add_robot_route
 from server.robots.process import launch
 from server.robots.registry import RobotRegistry
@@ -73,8 +73,8 @@ async def _open(
         time.monotonic,
         LinkTimes(heartbeat_s=settings.heartbeat_s, silence_s=settings.robot_hang_timeout_s),
     )
-    config_socket = _bind(settings)
-    url = f"http://{_reachable(settings.host)}:{config_socket.getsockname()[1]}"
+    config_socket = listen(settings)
+    url = f"http://{reachable_host(settings.host)}:{config_socket.getsockname()[1]}"
     scenes = Scenes(settings.scenes)
     trees = JournaledTrees(journal, built_in_trees(), partial(check_uploaded_tree, scenes=scenes))
     scenarios = BuiltInScenarios()
@@ -104,6 +104,7 @@ async def _open(
         send_mail=mail.send_later,
         settings=RunSettings(
             help_window_s=settings.help_window_s,
+            max_helped_retries=settings.max_helped_retries,
             robot_lost_timeout_s=settings.robot_lost_timeout_s,
             claim_lease_s=settings.claim_lease_s,
         ),
@@ -148,31 +149,6 @@ class _Server(uvicorn.Server):
                 serving.result()
                 raise OSError("the server ended before it listened")
             await asyncio.sleep(0.005)
-
-
-def _bind(settings: Settings) -> socket.socket:
-    """The listening socket. Raises `OSError` with a sentence if the port is taken."""
-    family = socket.AF_INET6 if ":" in settings.host else socket.AF_INET
-    listening = socket.socket(family)
-    listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-    drop_stuck_clients(listening)
-    try:
-        listening.bind((settings.host, settings.port))
-    except OSError as error:
-        listening.close()
-        raise OSError(
-            f"cannot listen on {settings.host}:{settings.port}: {error.strerror}"
-        ) from error
-    return listening
-
-
-def _reachable(host: str) -> str:
-    """The host under which this machine reaches its own service."""
-    if host in ("0.0.0.0", ""):
-        return "127.0.0.1"
-    if host == "::":
-        return "[::1]"
-    return f"[{host}]" if ":" in host else host
 
 
 def _policy(settings: Settings) -> EscalationPolicy:

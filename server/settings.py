@@ -70,6 +70,8 @@ class Settings(BaseSettings):
     """How long to wait for an answer after the operators were written to."""
     ask_repeats: Annotated[int, Field(ge=0, le=100)] = 1
     help_window_s: Seconds = 30.0
+    max_helped_retries: Annotated[int, Field(ge=0, le=1000)] = 20
+    """How often a robot tries one leaf again because somebody has helped, before it gives up."""
     claim_lease_s: Seconds = 30.0
     heartbeat_s: Seconds = 1.0
     robot_hang_timeout_s: Seconds = 10.0

@@ -251,6 +251,10 @@ class Transcript:
         return [_line(event, "", CLOSINGS[event.reason], Tone.SETBACK)]
 
     @lines.register
+    def _(self, _event: ev.InterventionAccepted) -> list[Line]:
+        return []
+
+    @lines.register
     def _(self, event: ev.InterventionDone) -> list[Line]:
         text = deed_text(event.intervention)
         if not event.ok:

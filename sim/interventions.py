@@ -1,6 +1,7 @@
 """Which interventions are still to come in a run, and when each is due."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 from robots.link.messages import Intervene
 from robots.robot import TaskProgress
@@ -21,6 +22,15 @@ class Queued(StrictModel):
     do: Intervention
     by: str
     at_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class Deed:
+    """Something that a person does now; `command` asked for it, None if a script did."""
+
+    do: Intervention
+    by: str
+    command: str | None = None
 
 
 class PendingSnapshot(StrictModel):
@@ -57,18 +67,17 @@ class PendingInterventions:
         """Nobody needs to do any more what was queued for an object, or to clear the way."""
         self._queued = [each for each in self._queued if each.do.object not in (None, handled)]
 
-    def take_due(
-        self, time_s: float, progress: TaskProgress | None
-    ) -> list[tuple[Intervention, str]]:
-        """Those that are due now, each with who does it; they are no longer pending."""
-        due: list[tuple[Intervention, str]] = []
+    def take_due(self, time_s: float, progress: TaskProgress | None) -> list[Deed]:
+        """Those that are due now; they are no longer pending."""
+        due: list[Deed] = []
         for index, scripted in enumerate(self._scripted):
             if index not in self._fired and _is_due(scripted, time_s, progress):
                 self._fired.add(index)
-                due.append((scripted.do, SCENARIO))
+                due.append(Deed(scripted.do, SCENARIO))
         ripe = [each for each in self._queued if each.at_s <= time_s + _EPSILON]
         self._queued = [each for each in self._queued if each.at_s > time_s + _EPSILON]
-        due.extend((each.do, each.by) for each in sorted(ripe, key=lambda each: each.at_s))
+        ripe.sort(key=lambda each: each.at_s)
+        due.extend(Deed(each.do, each.by, each.command) for each in ripe)
         return due
 
     def snapshot(self) -> PendingSnapshot:

@@ -24,13 +24,12 @@ from robots.link.messages import (
     TakePicture,
 )
 from robots.robot import Robot, TaskProgress
-from sim.interventions import PendingInterventions, PendingSnapshot
+from sim.interventions import Deed, PendingInterventions, PendingSnapshot
 from sim.world import World
-from tasks.intervention import Intervention
 from tasks.scenario import ScriptedIntervention
 from tasks.scene import StrictModel
 
-_SEEN_AT_ONCE = (IssueDetected, Finished, Looked, Rejected, Held)
+_SEEN_AT_ONCE = (StepStarted, IssueDetected, Finished, Looked, Rejected, Held)
 """Reports that the service must see before more time passes."""
 
 _WITH_WORLD = (StepStarted, Finished, Holding, Intervened)
@@ -144,7 +143,7 @@ class SimulatedAgent:
 
     def _intervene_when_due(self, command_id: str, command: Intervene) -> None:
         if command.at is None or command.at <= self.time_s():
-            self._intervene(command.intervention, command.by)
+            self._intervene(Deed(command.intervention, command.by, command_id))
         else:
             self._pending.queue(command_id, command, command.at)
 
@@ -203,12 +202,14 @@ class SimulatedAgent:
         return progress
 
     def _do_due(self, progress: TaskProgress | None) -> None:
-        for intervention, by in self._pending.take_due(self.time_s(), progress):
-            self._intervene(intervention, by)
+        for deed in self._pending.take_due(self.time_s(), progress):
+            self._intervene(deed)
 
-    def _intervene(self, intervention: Intervention, by: str) -> None:
-        problem = self._world.intervene(intervention)
-        report = Intervened(intervention=intervention, by=by, ok=not problem, detail=problem)
+    def _intervene(self, deed: Deed) -> None:
+        problem = self._world.intervene(deed.do)
+        report = Intervened(
+            intervention=deed.do, by=deed.by, ok=not problem, detail=problem, command=deed.command
+        )
         self._pass_on(report, self.time_s(), None)
 
     # --- Reports ------------------------------------------------------------------------------

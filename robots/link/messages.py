@@ -152,13 +152,17 @@ class Held(Message):
 
 
 class Intervened(Message):
-    """A person did something in a simulated world. `ok` False: it could not be done (`detail`)."""
+    """A person did something in a simulated world. `ok` False: it could not be done (`detail`).
+
+    `command` is the id of the `intervene` that asked for it, None if a script did.
+    """
 
     type: Literal["intervened"] = "intervened"
     intervention: Intervention
     by: str
     ok: bool = True
     detail: str = ""
+    command: str | None = None
 
 
 class Rejected(Message):

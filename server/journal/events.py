@@ -217,8 +217,25 @@ class DialogueClosed(DialogueEvent):
     reason: CloseReason
 
 
+class InterventionAccepted(Event):
+    """A person is to do something in a simulated world; journaled before the world hears of it.
+
+    An `intervention` with the same `command` follows once it is done.
+    """
+
+    type: Literal["intervention_accepted"] = "intervention_accepted"
+    act: str
+    object: str | None
+    intervention: Intervention
+    by: str
+    command: str
+
+
 class InterventionDone(Event):
-    """A person did something in a simulated world; `by` says who (scenario, helper, api, ...)."""
+    """A person did something in a simulated world; `by` says who (scenario, helper, api, ...).
+
+    `command` is that of the `intervention_accepted` that it follows from, if it does.
+    """
 
     type: Literal["intervention"] = "intervention"
     act: str
@@ -227,6 +244,7 @@ class InterventionDone(Event):
     by: str
     ok: bool = True
     detail: str = ""
+    command: str | None = None
 
 
 class NodeDone(NodeEvent):
@@ -340,6 +358,7 @@ AnyEvent = Annotated[
     | HelpNotSeen
     | Resolved
     | DialogueClosed
+    | InterventionAccepted
     | InterventionDone
     | NodeDone
     | NodeReset

@@ -1,5 +1,6 @@
 """What the parts of a running run share: its state, clock, journal and settings."""
 
+import asyncio
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
@@ -17,11 +18,13 @@ class RunSettings:
     """How patient a run is. Seconds of the run's clock, but for `robot_lost_timeout_s` (wall).
 
     `max_restarts`: so often a simulated robot is started again without having begun a step since.
+    `max_helped_retries`: so often a robot tries one leaf again because somebody has helped.
     """
 
     help_window_s: float = 30.0
     robot_lost_timeout_s: float = 60.0
     max_restarts: int = 20
+    max_helped_retries: int = 20
     claim_lease_s: float = 30.0
 
 
@@ -41,6 +44,7 @@ class RunContext:
         self.settings = settings
         self.utc_now = utc_now
         self._journal = journal
+        self._noting: asyncio.Task[list[Event]] | None = None
 
     def stamp(self) -> dict[str, Any]:
         """What every event of this run has now."""
@@ -75,3 +79,13 @@ class RunContext:
         if failures:
             raise failures[0]
         return committed
+
+    def note(self, receipt: Receipt) -> None:
+        """Commit the receipt of a report that says nothing new, beside what follows from it."""
+        self._noting = asyncio.create_task(self._journal.append(Entry(receipt=receipt)))
+
+    async def noted(self) -> None:
+        """Wait until what was noted is committed. Raises `DuplicateReceiptError`."""
+        noting, self._noting = self._noting, None
+        if noting is not None:
+            await noting

@@ -54,7 +54,7 @@ class DialogueDriver:
         self._person = person
         self._send_mail = send_mail
         self._was_right: dict[UUID, bool] = {}
-        self._deeds_sent: set[tuple[UUID, int]] = set()
+        self._deeds_sent: set[str] = set()
 
     # --- What the run calls -------------------------------------------------------------------
 
@@ -66,7 +66,7 @@ class DialogueDriver:
         """The events that open a dialogue about an issue, with its first prompts."""
         make = DialogueEvents(self._context.stamp, uuid4(), raised)
         turns = rehearse(self._context.state.scripts[raised.issue], raised, ["open"])
-        return [*before, make.opened(), *self._of_turns(make, turns, "", can_go_on=True)]
+        return [*before, make.opened(), *self._of_turns(make, turns, "", stopped=None)]
 
     async def drive(self, dialogue: DialogueState, side: RobotSide) -> bool:
         """Do what the dialogue needs now; True if that changed the state."""
@@ -196,19 +196,29 @@ class DialogueDriver:
         """Commit a call to the conversation: the events before it, and what it says to it."""
         turns = dialogue.turns_after(call, self._context.state.scripts[dialogue.raised.issue])
         make = self._make(dialogue)
-        leaf = self._context.state.tree.index_of(dialogue.raised.node)
-        execution = self._context.state.execution_of(leaf)
-        can_go_on = (
+        stopped = self._why_it_cannot_go_on(dialogue, side)
+        events = self._of_turns(make, turns, helper, stopped=stopped)
+        return await self._context.commit([*before, *events])
+
+    def _why_it_cannot_go_on(self, dialogue: DialogueState, side: RobotSide) -> str | None:
+        """Why a robot cannot go on with what it was doing when it needed help; None if it can."""
+        state, settings = self._context.state, self._context.settings
+        leaf = state.tree.index_of(dialogue.raised.node)
+        execution = state.execution_of(leaf)
+        has_it = (
             execution is not None
             and side.hello is not None
             and execution.boot == side.hello.boot
             and not side.gone_for_good
         )
-        events = self._of_turns(make, turns, helper, can_go_on=can_go_on)
-        return await self._context.commit([*before, *events])
+        if not has_it:
+            return "the robot had lost what it was doing"
+        if state.helped_retries[leaf] >= settings.max_helped_retries:
+            return f"it was helped {settings.max_helped_retries} times before"
+        return None
 
     def _of_turns(
-        self, make: DialogueEvents, turns: Sequence[Turn], helper: str, *, can_go_on: bool
+        self, make: DialogueEvents, turns: Sequence[Turn], helper: str, *, stopped: str | None
     ) -> list[ev.Event]:
         now, settings = self._context.clock.now(), self._context.settings
         return make.of_turns(
@@ -217,7 +227,7 @@ class DialogueDriver:
             to=first_helper(self._policy),
             help_until=now + settings.help_window_s,
             helper=helper,
-            can_go_on=can_go_on,
+            stopped=stopped,
         )
 
     # --- Looking ------------------------------------------------------------------------------
@@ -284,11 +294,11 @@ class DialogueDriver:
         self, dialogue: DialogueState, awaiting: ev.HelpAwaited, side: RobotSide
     ) -> None:
         """Let the simulated person keep the promise, as reliably as they are."""
-        key = (dialogue.id, dialogue.helps)
-        if self._person is None or not self._person.acts or key in self._deeds_sent:
+        state, command = self._context.state, f"{dialogue.id}:{dialogue.helps}"
+        known = command in self._deeds_sent or command in state.intervened
+        if self._person is None or not self._person.acts or known:
             return
-        self._deeds_sent.add(key)
-        state = self._context.state
+        self._deeds_sent.add(command)
         rng = np.random.default_rng([state.started.seed, state.helps])
         raised = dialogue.raised
         promise = Promise(str(awaiting.help), raised.object, raised.place)
@@ -303,7 +313,7 @@ class DialogueDriver:
         if done is not None:
             promised = awaiting.until - self._context.settings.help_window_s
             at = self._context.clock.to_robot(promised + done.delay_s)
-            side.intervene(f"{dialogue.id}:{dialogue.helps}", done.intervention, "helper", at)
+            side.intervene(command, done.intervention, "helper", at)
 
     async def _help_looked_for(
         self,

@@ -97,12 +97,12 @@ class DialogueEvents:
         to: str | None,
         help_until: float,
         helper: str,
-        can_go_on: bool,
+        stopped: str | None,
     ) -> list[ev.Event]:
         """The events of a conversation's turns.
 
-        `can_go_on`: the robot still has the execution that a `robot_finish` would go on with;
-        without it the leaf is put back instead.
+        `stopped`: why the robot cannot go on with what it was doing, as a `robot_finish` would
+        have it; the leaf is then put back instead.
         """
         events: list[ev.Event] = []
         for turn in turns:
@@ -118,10 +118,10 @@ class DialogueEvents:
                         )
                     )
                 case Close():
-                    events.extend(self._close(turn, can_go_on))
+                    events.extend(self._close(turn, stopped))
         return events
 
-    def _close(self, close: Close, can_go_on: bool) -> list[ev.Event]:
+    def _close(self, close: Close, stopped: str | None) -> list[ev.Event]:
         events: list[ev.Event] = []
         if close.reason in (CloseReason.RESOLVED, CloseReason.WITHDRAWN):
             assert close.resolution is not None, "a resolved issue has a resolution"
@@ -142,8 +142,8 @@ class DialogueEvents:
                     CloseReason.WITHDRAWN: "it was put right",
                 }.get(close.reason, "the robot will try again")
                 events.append(self.reset(reason, failed=not close.helped))
-            case Resolution.ROBOT_FINISH | Resolution.COLLAB_FINISH if not can_go_on:
-                events.append(self.reset("the robot had lost what it was doing", failed=False))
+            case Resolution.ROBOT_FINISH | Resolution.COLLAB_FINISH if stopped is not None:
+                events.append(self.reset(stopped, failed=False))
         return events
 
     def reset(self, reason: str, *, failed: bool) -> ev.NodeReset:

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from robots.link.messages import CommandBody, Hello
-from server.runtime.run import Hardware, Run
+from server.runtime.hardware import Hardware
+from server.runtime.run import Run
 from server.runtime.run_state import RunState
 from tasks.definition import TaskTreeDefinition
 from tasks.scenario import Scenario

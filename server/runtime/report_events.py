@@ -151,6 +151,7 @@ class ReportEvents:
             by=body.by,
             ok=body.ok,
             detail=body.detail,
+            command=body.command,
         )
 
     def _rejected(self, side: RobotSide, body: Rejected) -> list[ev.Event]:

@@ -7,9 +7,6 @@ whatever the state demands, so that a run that is taken up after a crash goes on
 
 import asyncio
 import logging
-from collections.abc import Awaitable, Callable
-from dataclasses import dataclass, field
-from typing import Protocol
 from uuid import uuid4
 
 from robots.link.messages import (
@@ -34,42 +31,22 @@ from server.runtime.claims import Claims
 from server.runtime.context import RunContext
 from server.runtime.dialogue_driver import DialogueDriver
 from server.runtime.failure import fail_run, why_it_stopped
+from server.runtime.giving_up import GivingUp
+from server.runtime.hardware import Hardware
+from server.runtime.inbox import Inbox, Item, Task
+from server.runtime.interventions import Interventions
 from server.runtime.last_look import missing_parts
+from server.runtime.presence import Presence
 from server.runtime.report_events import ReportEvents
 from server.runtime.robot_side import Doing, Purpose, RobotSide
 from server.runtime.run_state import DialogueState, Execution
 from server.runtime.views import RunStatus
+from tasks.intervention import Intervention
 
 log = logging.getLogger(__name__)
 
-Task = Callable[[], Awaitable[object]]
-
 REFUSALS = (ServiceError, DuplicateReceiptError)
 """What a request or a report may be answered with; anything else is a fault of ours."""
-
-
-class Hardware(Protocol):
-    """What stands behind a run's robots: simulated worlds that can be started again, or nothing."""
-
-    @property
-    def simulated(self) -> bool: ...
-
-    async def restart(self, robot: str) -> None:
-        """Start a simulated robot (again), with its world as the journal has it."""
-        ...
-
-    async def release(self) -> None:
-        """The run has ended: stop simulated robots, let go of real ones."""
-        ...
-
-
-@dataclass(slots=True)
-class _Item:
-    """`asked_for`: somebody waits for what comes of it, and is told if it is refused."""
-
-    task: Task
-    asked_for: bool
-    done: asyncio.Future[object] = field(default_factory=asyncio.Future)
 
 
 class Run:
@@ -88,8 +65,19 @@ class Run:
         self._hardware = hardware
         self._reports = ReportEvents(context, dialogues)
         self._claims = Claims(context)
-        self._inbox: asyncio.Queue[_Item] = asyncio.Queue()
-        self._timers: dict[str, asyncio.TimerHandle] = {}
+        self._interventions = Interventions(context)
+        self._inbox = Inbox()
+        self._presence = Presence(
+            context,
+            sides,
+            hardware,
+            dialogues,
+            self._reports,
+            self._interventions,
+            tell=self._inbox.tell,
+            start=self._start,
+        )
+        self._giving_up = GivingUp(context, sides, dialogues, self._reports)
         self.ended = asyncio.Event()
 
     @property
@@ -122,11 +110,7 @@ class Run:
 
     async def _work_off(self) -> None:
         state = self._context.state
-        for side in self._sides.values():
-            if self._hardware.simulated:
-                await self._hardware.restart(side.robot)
-            else:
-                self._wait_for(side)
+        await self._presence.begin()
         await self._settle()
         while not state.status.ended:
             item = await self._next_item()
@@ -147,51 +131,38 @@ class Run:
         """
         if self.ended.is_set():
             raise ConflictError(f"the run has ended ({self._context.state.status})")
-        item = _Item(task, asked_for=True)
-        self._inbox.put_nowait(item)
-        return await item.done
+        return await self._inbox.ask(task)
 
-    async def _next_item(self) -> _Item | None:
+    async def _next_item(self) -> Item | None:
         waits = [self._claims.expire_in_s()]
         due = None if self._hardware.simulated else self._dialogues.next_due()
         if due is not None and self._context.state.status is RunStatus.RUNNING:
             waits.append(max(0.0, due - self._context.clock.now()))
         timeout_s = min((each for each in waits if each is not None), default=None)
-        try:
-            return await asyncio.wait_for(self._inbox.get(), timeout_s)
-        except TimeoutError:
-            return None
+        return await self._inbox.next(timeout_s)
 
-    async def _carry_out(self, item: _Item) -> None:
+    async def _carry_out(self, item: Item) -> None:
         try:
             result = await item.task()
             # Before anybody hears of it: a simulated robot that knows its report was taken lets
             # time pass, and what follows from the report is to reach it before that.
             await self._go_on()
+            await self._context.noted()
         except asyncio.CancelledError:
             # Whoever waits for it must not wait for ever when the service shuts down.
-            if not item.done.done():
-                item.done.set_exception(ConflictError("the service is shutting down"))
+            item.fail(ConflictError("the service is shutting down"))
             raise
         except Exception as error:
-            if not item.done.cancelled():
-                item.done.set_exception(error)
+            item.fail(error)
             if not (item.asked_for and isinstance(error, REFUSALS)):
                 raise
         else:
-            if not item.done.cancelled():
-                item.done.set_result(result)
+            item.succeed(result)
 
     async def _stop_everything(self) -> None:
         self.ended.set()
-        for timer in self._timers.values():
-            timer.cancel()
-        while not self._inbox.empty():
-            item = self._inbox.get_nowait()
-            if not item.done.done():
-                item.done.set_exception(
-                    ConflictError(f"the run has ended ({self._context.state.status})")
-                )
+        self._presence.end()
+        self._inbox.refuse_all(ConflictError(f"the run has ended ({self._context.state.status})"))
         if self._context.state.status.ended:
             for side in self._sides.values():
                 if side.doing is not Doing.ABSENT:
@@ -202,7 +173,7 @@ class Run:
 
     async def robot_connected(self, robot: str, hello: Hello) -> None:
         """A robot is there, for the first time or again."""
-        self._put(lambda: self._connected(self._sides[robot], hello))
+        self._inbox.tell(lambda: self._presence.connected(self._sides[robot], hello))
 
     async def robot_reported(self, robot: str, report: Report, receipt: Receipt) -> None:
         """Take a report; returns when it and what follows from it are committed."""
@@ -220,84 +191,7 @@ class Run:
 
     def tell_lost(self, robot: str, reason: str) -> None:
         """A robot's connection or process is gone."""
-        self._put(lambda: self._lost(self._sides[robot], reason))
-
-    def _put(self, task: Task) -> None:
-        item = _Item(task, asked_for=False)
-        item.done.add_done_callback(_log_failure)
-        self._inbox.put_nowait(item)
-
-    async def _connected(self, side: RobotSide, hello: Hello) -> None:
-        state, robot = self._context.state, side.robot
-        if timer := self._timers.pop(robot, None):
-            timer.cancel()
-        rebooted = side.hello is None or side.hello.boot != hello.boot
-        if rebooted:
-            self._context.clock.align(hello.time)
-            self._dialogues.robot_rebooted()
-        was_doing = side.doing
-        side.connect(hello)
-        execution = state.executions.get(robot)
-        continues = execution is not None and execution.boot == hello.boot
-        events: list[ev.Event] = []
-        if robot in state.lost:
-            events.append(
-                ev.RobotBack(
-                    **self._context.stamp(), robot=robot, boot=hello.boot, continues=continues
-                )
-            )
-        if execution is not None and not continues and state.dialogue_of(execution.leaf) is None:
-            events.append(
-                self._reports.reset(execution.leaf, robot, "its robot was lost", failed=False)
-            )
-        await self._context.commit(events)
-        if continues and execution is not None and side.doing is Doing.IDLE and not execution.held:
-            # The start may never have arrived; a robot that carried it out ignores it.
-            self._start(side, execution)
-        elif continues and not rebooted and was_doing is Doing.RETREATING:
-            side.doing = Doing.RETREATING
-
-    async def _lost(self, side: RobotSide, reason: str) -> None:
-        state, robot = self._context.state, side.robot
-        side.disconnect()
-        if robot not in state.lost:
-            await self._context.commit(
-                [ev.RobotLost(**self._context.stamp(), robot=robot, reason=reason)]
-            )
-        side.restarts += 1
-        if self._hardware.simulated and side.restarts <= self._context.settings.max_restarts:
-            await self._hardware.restart(robot)
-        elif self._hardware.simulated:
-            await self._given_up(side, f"its process keeps ending: {reason}")
-        else:
-            self._wait_for(side)
-
-    def _wait_for(self, side: RobotSide) -> None:
-        """Give a lost robot some time to come back (wall time: it is not the world that waits)."""
-        timeout_s = self._context.settings.robot_lost_timeout_s
-        reason = f"it was not there for {timeout_s:g} s"
-        self._timers[side.robot] = asyncio.get_running_loop().call_later(
-            timeout_s, lambda: self._put(lambda: self._given_up(side, reason))
-        )
-
-    async def _given_up(self, side: RobotSide, reason: str) -> None:
-        if side.doing is not Doing.ABSENT:
-            return
-        side.gone_for_good = True
-        state = self._context.state
-        execution = state.executions.get(side.robot)
-        events: list[ev.Event] = []
-        if execution is not None:
-            if dialogue := state.dialogue_of(execution.leaf):
-                events.append(self._dialogues.abort(dialogue))
-            events.append(
-                self._reports.reset(
-                    execution.leaf, side.robot, f"its robot is lost: {reason}", failed=False
-                )
-            )
-        await self._context.commit(events)
-        if all(each.gone_for_good for each in self._sides.values()):
-            await fail_run(self._context, f"the robot '{side.robot}' is lost: {reason}")
+        self._inbox.tell(lambda: self._presence.lost(self._sides[robot], reason))
 
     async def _reported(self, side: RobotSide, report: Report, receipt: Receipt) -> None:
         if side.hello is not None and receipt.boot != side.hello.boot:
@@ -309,7 +203,12 @@ class Run:
         if isinstance(body, StepStarted):
             side.restarts = 0
         events, pictures = self._reports.read(side, body)
-        await self._context.commit(events, receipt=receipt, world=report.world, pictures=pictures)
+        if events or report.world is not None:
+            await self._context.commit(
+                events, receipt=receipt, world=report.world, pictures=pictures
+            )
+        else:
+            self._context.note(receipt)
         await self._after_report(side, body)
 
     async def _after_report(self, side: RobotSide, body: object) -> None:
@@ -360,7 +259,7 @@ class Run:
         for dialogue in state.open_dialogues:
             if await self._dialogues.drive(dialogue, self._sides[dialogue.opened.robot]):
                 return True
-        if await self._give_up_what_cannot_be_done():
+        if await self._giving_up.give_up_what_cannot_be_done():
             return True
         for side in self._sides.values():
             available = side.free or side.interruptible
@@ -426,60 +325,6 @@ class Run:
             target=Location(**place.pose.model_dump()) if place else None,
         )
 
-    async def _give_up_what_cannot_be_done(self) -> bool:
-        state = self._context.state
-        tree = state.tree
-        hopeless = sorted(each for each in state.exhausted if tree.eligible(each))
-        reason = f"it failed {state.request.max_attempts} times"
-        if not hopeless and all(
-            side.hello is not None or side.gone_for_good for side in self._sides.values()
-        ):
-            hopeless = [
-                leaf
-                for leaf in (int(each) for each in tree.eligible_leaves())
-                if not any(
-                    side.suitability(tree.leaf_definition(leaf).behavior) > 0
-                    for side in self._sides.values()
-                )
-            ][:1]
-            reason = "no robot can do it"
-        if not hopeless:
-            return False
-        await self._give_up(hopeless[0], reason)
-        return True
-
-    async def _give_up(self, leaf: int, reason: str) -> None:
-        """Abandon the nearest alternative that holds a leaf, or fail the run."""
-        state = self._context.state
-        given_up = state.tree.give_up(leaf)
-        if given_up is None:
-            name = state.tree.name_of(leaf)
-            reason = f"'{name}' could not be done: {reason}"
-            await fail_run(self._context, reason, state.tree.path_of(leaf))
-            return
-        events: list[ev.Event] = []
-        cut_short: list[RobotSide] = []
-        for active in given_up.put_back:
-            owner = state.tree.owner(active) or ""
-            if dialogue := state.dialogue_of(active):
-                events.append(self._dialogues.abort(dialogue))
-            events.append(
-                self._reports.reset(active, owner, "its alternative was abandoned", failed=False)
-            )
-            cut_short.append(self._sides[owner])
-        events.append(
-            ev.NodeAbandoned(
-                **self._context.stamp(),
-                **self._reports.node(given_up.alternative),
-                leaf=state.tree.path_of(leaf),
-                reason=reason,
-            )
-        )
-        await self._context.commit(events)
-        for side in cut_short:
-            if side.doing is not Doing.ABSENT:
-                side.retreat()
-
     # --- The end ------------------------------------------------------------------------------
 
     async def _finish(self, side: RobotSide) -> None:
@@ -517,13 +362,12 @@ class Run:
         if not self._context.state.status.ended:
             await fail_run(self._context, reason)
 
+    async def intervene(self, deed: Intervention) -> None:
+        """Have a person do something in the simulated world."""
+        side = next(iter(self._sides.values()))
+        await self._interventions.accept(deed, "api", side)
+
     def _require(self, status: RunStatus, what: str) -> None:
         now = self._context.state.status
         if now is not status:
             raise ConflictError(f"a run can be {what}d only while it is {status}; it is {now}")
-
-
-def _log_failure(done: asyncio.Future[object]) -> None:
-    error = None if done.cancelled() else done.exception()
-    if error is not None and not isinstance(error, ConflictError):
-        log.error("a run could not take a robot's news", exc_info=error)

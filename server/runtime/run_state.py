@@ -1,5 +1,6 @@
 """The state of a run: a fold over its events, and nothing else."""
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import datetime
@@ -14,6 +15,7 @@ from server.runtime.requests import RunRequest
 from server.runtime.views import RunResult, RunStatus
 from tasks.definition import TaskTreeDefinition
 from tasks.issue import Issue
+from tasks.resolution import Resolution
 from tasks.scene import Scene
 from tasks.task_tree import TaskTree
 
@@ -117,6 +119,10 @@ def issue_of(raised: ev.IssueRaised) -> Issue:
     )
 
 
+RETRIES = (Resolution.ROBOT_RETRY, Resolution.ROBOT_FINISH)
+"""After these the robot tries again, from the beginning or from where it was."""
+
+
 class RunState:
     """Everything about a run that its events say."""
 
@@ -131,7 +137,10 @@ class RunState:
         self.executions: dict[str, Execution] = {}
         self.dialogues: dict[UUID, DialogueState] = {}
         self.lost: set[str] = set()
+        self.accepted: dict[str, ev.InterventionAccepted] = {}
+        self.intervened: set[str] = set()
         self.exhausted: set[int] = set()
+        self.helped_retries: Counter[int] = Counter()
         self.asks = 0
         self.helps = 0
         self.seq = started.seq
@@ -249,6 +258,8 @@ class RunState:
     @_apply.register
     def _(self, event: ev.Resolved) -> None:
         self.dialogues[event.dialogue].resolved = event
+        if event.helped and event.resolution in RETRIES:
+            self.helped_retries[self.tree.index_of(event.node)] += 1
 
     @_apply.register
     def _(self, event: ev.DialogueClosed) -> None:
@@ -256,6 +267,16 @@ class RunState:
         dialogue.closed = event.reason
         dialogue.awaiting = None
         dialogue.claim = None
+
+    @_apply.register
+    def _(self, event: ev.InterventionAccepted) -> None:
+        self.accepted[event.command] = event
+
+    @_apply.register
+    def _(self, event: ev.InterventionDone) -> None:
+        if event.command is not None:
+            self.accepted.pop(event.command, None)
+            self.intervened.add(event.command)
 
     @_apply.register
     def _(self, event: ev.NodeDone) -> None:

@@ -3,11 +3,13 @@
 from collections.abc import Mapping
 from typing import Literal
 
+from robots.link.messages import Hello
 from server.runtime.run_state import DialogueState, RunState
 from server.runtime.views import (
     DialogueView,
     NodeView,
     PromptView,
+    RobotView,
     RunSummary,
     RunView,
 )
@@ -105,4 +107,27 @@ def dialogue_view(dialogue: DialogueState) -> DialogueView:
         claimed_by=dialogue.claim.helper if dialogue.claim else None,
         claimed_until=dialogue.claim.until if dialogue.claim else None,
         picture=dialogue.raised.picture,
+    )
+
+
+def robot_view(
+    robot: str, hello: Hello | None, connected: bool, state_of_run: RunState | None
+) -> RobotView:
+    """One robot; `state_of_run` is that of the run that owns it, if one does."""
+    state: Literal["idle", "working", "holding", "lost"] = "idle"
+    if not connected:
+        state = "lost"
+    elif state_of_run is not None:
+        execution = state_of_run.executions.get(robot)
+        if execution is not None:
+            state = "holding" if execution.held else "working"
+    return RobotView(
+        robot=robot,
+        connected=connected,
+        simulated=bool(hello and hello.simulated),
+        behaviors=hello.behaviors if hello else [],
+        cameras=hello.cameras if hello else [],
+        reach=hello.reach.model_dump() if hello else None,
+        run=state_of_run.id if state_of_run else None,
+        state=state,
     )

@@ -6,12 +6,11 @@ from collections.abc import Callable, Mapping
 from datetime import datetime
 from functools import partial
 from typing import Any, Literal, cast
-from uuid import UUID, uuid4
+from uuid import UUID
 
 import numpy as np
 
 from dialogue.script import Script
-from robots.link.messages import Hello
 from server.dialogues.answers import answer_source
 from server.dialogues.escalation import EscalationPolicy
 from server.errors import ConflictError, InvalidError, NotFoundError
@@ -22,12 +21,14 @@ from server.runtime.clock import RunClock, SimulatedClock, WallClock
 from server.runtime.context import RunContext, RunSettings
 from server.runtime.dialogue_driver import DialogueDriver
 from server.runtime.failure import fail_run, why_it_stopped
+from server.runtime.history import History
+from server.runtime.new_run import NewRuns
 from server.runtime.ports import LIVE, RealRobots, Robots, ScenarioSource, TreeSource, Worlds
 from server.runtime.requests import RunRequest
 from server.runtime.robot_side import RobotSide
 from server.runtime.run import Run
 from server.runtime.run_state import DialogueState, RunState
-from server.runtime.run_views import dialogue_view, summary, view
+from server.runtime.run_views import dialogue_view, robot_view, summary, view
 from server.runtime.views import DialogueView, RobotView, RunSummary, RunView, Snapshot
 from tasks.intervention import Intervention
 from tasks.scenario import Person, Scenario
@@ -57,7 +58,6 @@ class Runtime:
         self._journal = journal
         self._robots = robots
         self._worlds = worlds
-        self._trees = trees
         self._scenarios = scenarios
         self._scripts = scripts
         self._policy = policy
@@ -69,6 +69,8 @@ class Runtime:
         self._runs: dict[UUID, Run] = {}
         self._tasks: dict[UUID, asyncio.Task[None]] = {}
         self._unreadable: set[UUID] = set()
+        self._new_runs = NewRuns(trees, scenarios, worlds, utc_now)
+        self._history = History(journal, scripts)
 
     # --- Beginning and ending -----------------------------------------------------------------
 
@@ -76,7 +78,7 @@ class Runtime:
         """Fold the journal, and take up every run that had not ended."""
         for run in await self._journal.runs():
             try:
-                state = await self._refold(run, None)
+                state = await self._history.at(run, None)
             except Exception:
                 # One run that cannot be read must not keep the others from going on.
                 log.exception("run %s cannot be read from the journal", run)
@@ -102,7 +104,7 @@ class Runtime:
 
     async def start_run(self, request: RunRequest) -> RunView:
         """Begin a run. Raises `NotFoundError`, `InvalidError` or `ConflictError`."""
-        started = await self._started(request)
+        started = await self._new_runs.make(request)
         if request.world == LIVE:
             self._check_robots(request.robots)
 
@@ -113,41 +115,6 @@ class Runtime:
         state = self._states[started.run]
         await self._take_up_or_fail(state)
         return self.run(state.id)
-
-    async def _started(self, request: RunRequest) -> ev.RunStarted:
-        scenario = self._scenarios.load(request.scenario) if request.scenario else None
-        if scenario is not None and scenario.tree != request.tree:
-            raise InvalidError(
-                f"scenario '{scenario.name}' is for the tree '{scenario.tree}', "
-                f"not '{request.tree}'"
-            )
-        tree = await self._trees.load(request.tree)
-        if request.world == LIVE:
-            scene = tree.scene or Scene(name="live", objects={}, places={})
-        else:
-            if request.robots:
-                raise InvalidError(
-                    f"'robots' is for the world 'live'; '{request.world}' brings its own"
-                )
-            self._worlds.check(request.world)
-            scene = tree.scene or self._worlds.lay_out(request.world, tree, request.seed)
-        if scenario is not None:
-            scene = _moved(scene, scenario)
-        run = uuid4()
-        return ev.RunStarted(
-            time=0.0,
-            wall_time=self._utc_now(),
-            run=run,
-            tree_name=tree.name,
-            tree=tree.definition.to_json(),
-            scene=scene.model_dump(mode="json"),
-            world=request.world,
-            robots=request.robots if request.world == LIVE else [f"pr2-{str(run)[:8]}"],
-            seed=request.seed,
-            speed=request.speed,
-            scenario=request.scenario,
-            options=request.model_dump(mode="json"),
-        )
 
     def _check_robots(self, robots: list[str]) -> None:
         if not robots:
@@ -242,34 +209,11 @@ class Runtime:
             if run in self._unreadable:
                 continue
             state: RunState | None = self._states.get(run)
-            if state is None or state.seq != await self._last_seq(run, at):
-                state = await self._refold(run, at)
+            if state is None or not await self._history.is_at(state, at):
+                state = await self._history.at(run, at)
             if state is not None and not state.status.ended:
                 views.append(self._view(state))
         return Snapshot(seq=at, runs=views, dialogues=[d for each in views for d in each.dialogues])
-
-    async def _last_seq(self, run: UUID, at: int) -> int:
-        """The last event of a run up to `at`, or -1 if its state may have gone beyond it."""
-        state = self._states[run]
-        if state.seq > at:
-            return -1
-        newer = await self._journal.read(state.seq, 1, run)
-        return -1 if newer and newer[0].seq <= at else state.seq
-
-    async def _refold(self, run: UUID, until: int | None) -> RunState | None:
-        """Fold a run's events again, up to `until`; None if it had not begun."""
-        state: RunState | None = None
-        after = 0
-        while events := await self._journal.read(after, 1000, run):
-            for event in events:
-                if until is not None and event.seq > until:
-                    return state
-                if state is None:
-                    state = RunState(cast(ev.RunStarted, event), self._scripts)
-                else:
-                    state.fold(event)
-            after = events[-1].seq
-        return state
 
     # --- What people ask for ------------------------------------------------------------------
 
@@ -303,8 +247,7 @@ class Runtime:
         if state.started.world == LIVE:
             raise ConflictError("a run in the world 'live' has no simulated person")
         _check_intervention(state.scene, intervention)
-        for side in running.sides.values():
-            side.intervene(str(uuid4()), intervention, "api", None)
+        await running.request(lambda: running.intervene(intervention))
 
     async def picture(self, run: UUID, camera: str) -> bytes:
         """A camera's picture now, as JPEG. Raises `NotFoundError` or `ConflictError`."""
@@ -370,9 +313,9 @@ class Runtime:
 
     def robots(self) -> list[RobotView]:
         """Every robot that is or was connected."""
-        owners = {robot: run for run in self._runs.values() for robot in run.sides}
+        owners = {robot: run.context.state for run in self._runs.values() for robot in run.sides}
         return [
-            _robot_view(
+            robot_view(
                 robot, self._robots.hello(robot), self._robots.connected(robot), owners.get(robot)
             )
             for robot in self._robots.known()
@@ -385,44 +328,8 @@ def _person_of(state: RunState, scenario: Scenario | None) -> Person:
     return scenario.person if scenario is not None else Person()
 
 
-def _moved(scene: Scene, scenario: Scenario) -> Scene:
-    """The scene with the objects where the scenario wants them. Raises `InvalidError`."""
-    unknown = sorted(set(scenario.scene) - set(scene.objects))
-    if unknown:
-        raise InvalidError(
-            f"scenario '{scenario.name}' moves '{unknown[0]}', which scene '{scene.name}' "
-            "does not have"
-        )
-    objects = {
-        name: part.model_copy(update={"pose": scenario.scene.get(name, part.pose)})
-        for name, part in scene.objects.items()
-    }
-    return scene.model_copy(update={"objects": objects})
-
-
 def _check_intervention(scene: Scene, intervention: Intervention) -> None:
     if intervention.object is not None and intervention.object not in scene.objects:
         raise InvalidError(f"the scene '{scene.name}' has no object '{intervention.object}'")
     if intervention.place is not None and intervention.place not in scene.places:
         raise InvalidError(f"the scene '{scene.name}' has no place '{intervention.place}'")
-
-
-def _robot_view(robot: str, hello: Hello | None, connected: bool, run: Run | None) -> RobotView:
-    side = run.sides[robot] if run else None
-    state: Literal["idle", "working", "holding", "lost"] = "idle"
-    if not connected:
-        state = "lost"
-    elif run is not None and side is not None:
-        execution = run.context.state.executions.get(robot)
-        if execution is not None:
-            state = "holding" if execution.held else "working"
-    return RobotView(
-        robot=robot,
-        connected=connected,
-        simulated=bool(hello and hello.simulated),
-        behaviors=hello.behaviors if hello else [],
-        cameras=hello.cameras if hello else [],
-        reach=hello.reach.model_dump() if hello else None,
-        run=run.context.state.id if run else None,
-        state=state,
-    )

@@ -92,7 +92,7 @@ class SimulatedWorlds:
 
 
 class SimulatedHardware:
-    """The simulated robot of one run; implements `server.runtime.run.Hardware`."""
+    """The simulated robot of one run; implements `server.runtime.hardware.Hardware`."""
 
     simulated = True
 

@@ -30,12 +30,14 @@ class Bench:
     def __init__(self, client: Client, scene: Scene) -> None:
         self._client = client
         self.scene = scene
-        _create_floor(client)
         self.table_id = _create_table(client, scene.table)
         self.parts: Mapping[str, Part] = {
             name: Part(client, name, definition, number)
             for number, (name, definition) in enumerate(scene.objects.items())
         }
+        # Last, as the engine's renderer draws in this order: of the floor, the largest thing in a
+        # picture, only what nothing else hides is then coloured.
+        _create_floor(client)
 
     def lay_out(self, rng: np.random.Generator) -> None:
         """Put every part to its start pose, scattered so that no two parts overlap."""

@@ -46,21 +46,27 @@ class WorkcellCamera:
         lighting: Lighting,
         pose: Callable[[], Matrix4],
         time_s: Callable[[], float],
+        arrangement: Callable[[], bytes],
     ) -> None:
+        """`arrangement` tells where everything is: it differs once anything has moved."""
         self._optics = optics
         self._renderer = renderer
         self._lighting = lighting
         self._pose = pose
         self._time_s = time_s
+        self._arrangement = arrangement
+        self._last: tuple[bytes, CameraImage] | None = None
 
     @property
     def period_s(self) -> float:
         return self._optics.period_s
 
     def capture(self) -> CameraImage:
-        """Take a picture now."""
-        image, _ = self.capture_with_bodies()
-        return image
+        """Take a picture now; while neither time passes nor anything moves it is the same one."""
+        now = self._arrangement()
+        if self._last is None or self._last[0] != now or self._last[1].time != self._time_s():
+            self._last = now, self.capture_with_bodies()[0]
+        return self._last[1]
 
     def capture_with_bodies(self) -> tuple[CameraImage, Rendering]:
         """A picture and what it was rendered to, for training and for tests to judge by."""

@@ -28,6 +28,18 @@ def connect() -> Client:
         return BulletClient(pybullet.DIRECT)
 
 
+def arrangement(client: Client) -> bytes:
+    """Where every body and joint is, exactly: two that are equal look the same."""
+    values: list[float] = []
+    for number in range(client.getNumBodies()):
+        body = client.getBodyUniqueId(number)
+        for coordinates in client.getBasePositionAndOrientation(body):
+            values.extend(coordinates)
+        if joints := client.getNumJoints(body):
+            values.extend(each[0] for each in client.getJointStates(body, range(joints)))
+    return np.array(values).tobytes()
+
+
 def to_matrix(position: Point, quaternion: Quaternion) -> Matrix4:
     """A pose of the engine as a homogeneous transform."""
     x, y, z, w = quaternion

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Mapping
+from functools import partial
 from typing import Any, Literal
 
 import numpy as np
@@ -13,7 +14,7 @@ from sim.workcell.lighting import Lighting
 from sim.workcell.options import WorkcellOptions
 from sim.workcell.parts import Part
 from sim.workcell.person import Person
-from sim.workcell.physics import connect
+from sim.workcell.physics import arrangement, connect
 from sim.workcell.pr2 import Pr2
 from sim.workcell.rendering import BulletRenderer, FastRenderer, Renderer
 from sim.workcell.snapshot import (
@@ -75,7 +76,12 @@ class WorkcellWorld:
             "forearm": self._pr2.forearm_camera_pose,
         }
         return WorkcellCamera(
-            optics, self._renderer, self._lighting, poses[name], self._body.time_s
+            optics,
+            self._renderer,
+            self._lighting,
+            poses[name],
+            self._body.time_s,
+            partial(arrangement, self._client),
         )
 
     @property

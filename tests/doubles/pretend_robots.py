@@ -41,7 +41,10 @@ class Sink(Protocol):
 
 @dataclass
 class PretendRobot:
-    """One robot: `faults` maps an object to the issues that its next starts run into, in turn."""
+    """One robot: `faults` maps an object to the issues that its next starts run into, in turn.
+
+    A stubborn one runs into them also when it goes on after a hold.
+    """
 
     name: str
     faults: dict[str, list[tuple[str, int]]] = field(default_factory=dict)
@@ -54,6 +57,7 @@ class PretendRobot:
     right: set[str] = field(default_factory=set)
     hidden: set[str] = field(default_factory=set)
     deaf: bool = False
+    stubborn: bool = False
 
     def hello(self) -> Hello:
         return Hello(
@@ -149,13 +153,13 @@ class PretendRobots:
             case Intervene(intervention=deed, by=by):
                 if deed.act in (Act.PLACE, Act.PUT_BACK, Act.HAND_OVER):
                     robot.right.add(deed.object or "")
-                await self._report(robot, Intervened(intervention=deed, by=by))
+                await self._report(robot, Intervened(intervention=deed, by=by, command=command))
 
     async def _work(self, robot: PretendRobot, start: Start, *, resumed: bool = False) -> None:
         part = str(start.parameters.get("object"))
         faults = robot.faults.get(part, [])
         for step in range(5 if resumed else 1, 9):
-            due = [each for each in faults if each[1] == step and not resumed]
+            due = [each for each in faults if each[1] == step and (robot.stubborn or not resumed)]
             if due and due[0][0] in robot.interrupting:
                 faults.remove(due[0])
                 robot.right.discard(part)

@@ -98,6 +98,7 @@ async def pretend_service(
     policy: EscalationPolicy | None = None,
     scripts: Mapping[str, Script] | None = None,
     scene: Scene = BARE,
+    settings: RunSettings | None = None,
     **robot: Any,
 ) -> AsyncIterator[PretendService]:
     """A runtime whose robots run into `faults` (object -> issue and step, in turn)."""
@@ -121,7 +122,7 @@ async def pretend_service(
         scripts=scripts if scripts is not None else load_scripts(),
         policy=policy or EscalationPolicy(),
         send_mail=send_mail,
-        settings=RunSettings(),
+        settings=settings or RunSettings(),
         monotonic=time.monotonic,
         utc_now=lambda: datetime.now(UTC),
     )

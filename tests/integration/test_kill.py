@@ -10,6 +10,7 @@ from kills import Ordeal
 from service_process import ServiceProcess, service_process
 
 from server.client import MendClient
+from server.journal import events as ev
 from server.runtime.requests import RunRequest
 from server.runtime.views import DialogueView, RunStatus
 from tasks.intervention import Act, Intervention
@@ -68,6 +69,39 @@ async def test_a_question_outlives_the_service_and_can_be_answered_afterwards(
         await client.answer(before.dialogue, before.prompt.prompt, "yes", "ann")
         ended = await _answer_until_the_end(client, run.id)
     assert ended is RunStatus.FINISHED
+
+
+@pytest.mark.parametrize("victim", ["service", "robot"])
+async def test_an_accepted_intervention_that_was_not_reported_is_done_once(
+    service: ServiceProcess, victim: str
+) -> None:
+    pytest.importorskip("pybullet")
+    async with MendClient(service.url) as client:
+        run = await client.start_run(eket("workcell", seed=7, **WILLING))
+        await _first(client, ev.StepStarted)
+        [robot] = service.robots()
+        robot.suspend()
+        await client.intervene(run.id, Intervention(act=Act.STEAL, object="purple_top"))
+        if victim == "service":
+            await service.kill()
+            await service.start()
+        else:
+            await service.kill_robot()
+        done = await _first(client, ev.InterventionDone)
+        await _first(client, ev.StepStarted, after=done.seq)
+        await client.abort(run.id)
+        events = await client.events(run.id, limit=1000)
+    [accepted] = [each for each in events if isinstance(each, ev.InterventionAccepted)]
+    stolen = [each for each in events if isinstance(each, ev.InterventionDone) and each.by == "api"]
+    assert [(each.command, each.ok) for each in stolen] == [(accepted.command, True)]
+
+
+async def _first(client: MendClient, kind: type[ev.Event], *, after: int = 0) -> ev.Event:
+    async with asyncio.timeout(60), client.follow("watcher", after=after) as stream:
+        async for message in stream:
+            if isinstance(message, kind):
+                return message
+    raise AssertionError("a stream has no end of its own")
 
 
 async def _wait_for(client: MendClient, what: Callable[[DialogueView], bool]) -> DialogueView:

@@ -152,28 +152,33 @@ def test_a_timed_intervention_happens_while_the_robot_works() -> None:
 
 def test_an_intervention_without_a_moment_happens_at_once() -> None:
     driver = Driver(make_agent())
-    driver.send(Intervene(intervention=STEAL_A, by="ann"))
+    command = driver.send(Intervene(intervention=STEAL_A, by="ann"))
     (report,) = driver.of(Intervened)
-    assert report.body == Intervened(intervention=STEAL_A, by="ann")
+    assert report.body == Intervened(intervention=STEAL_A, by="ann", command=command)
     assert report.time_s == 0.0
 
 
 def test_an_intervention_for_later_waits_until_the_clock_gets_there() -> None:
     driver = Driver(make_agent())
-    driver.send(Intervene(intervention=STEAL_A, by="ann", at=4.0))
+    command = driver.send(Intervene(intervention=STEAL_A, by="ann", at=4.0))
     driver.agent.advance(100.0)
     assert driver.of(Intervened) == []
     driver.send(Hold(until=10.0))
     driver.run()
     assert driver.of(Intervened)[0].time_s == pytest.approx(4.0, abs=0.05)
+    assert driver.of(Intervened)[0].body.command == command
 
 
 def test_an_intervention_that_cannot_be_done_says_why() -> None:
     driver = Driver(make_agent())
     nobody = Intervention(act=Act.RELEASE)
-    driver.send(Intervene(intervention=nobody, by="ann"))
+    command = driver.send(Intervene(intervention=nobody, by="ann"))
     assert driver.of(Intervened)[0].body == Intervened(
-        intervention=nobody, by="ann", ok=False, detail="nobody stands in the way"
+        intervention=nobody,
+        by="ann",
+        ok=False,
+        detail="nobody stands in the way",
+        command=command,
     )
 
 
@@ -243,6 +248,11 @@ def test_a_look_sees_what_a_person_does_meanwhile() -> None:
 def test_advance_returns_at_what_the_service_must_see() -> None:
     driver = Driver(make_agent(at_step(5, 0.5)))
     driver.start("a", "at_a")
+    ends = []
+    for _ in range(5):
+        driver.agent.advance(1000.0)
+        ends.append(driver.reports[-1].body.type)
+    assert ends == ["step_started"] * 5
     driver.agent.advance(1000.0)
     assert driver.reports[-1].body.type == "issue"
     driver.run()
@@ -318,10 +328,11 @@ def test_shutdown_ends_everything() -> None:
     driver = Driver(make_agent())
     driver.start("a", "at_a")
     driver.agent.advance(2.0)
+    began_s = driver.agent.time_s()
     driver.send(Shutdown())
     assert driver.agent.shut_down
     assert driver.agent.advance(10.0) is False
-    assert driver.agent.time_s() == pytest.approx(2.0)
+    assert driver.agent.time_s() == began_s
 
 
 def transcript(chunk_s: Callable[[int], float]) -> list[str]:

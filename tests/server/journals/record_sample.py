@@ -137,6 +137,14 @@ def every_event() -> list[ev.Event]:
         ev.RunFinished(**stamp(), missing=[missing]),
         ev.RunFailed(**stamp(), reason="the leaf /1/0 could not be done", node="/1/0"),
         ev.RunAborted(**stamp(), reason="by the operator"),
+        ev.InterventionAccepted(
+            **stamp(),
+            act="steal",
+            object="pink_bar",
+            intervention=Intervention(act=Act.STEAL, object="pink_bar"),
+            by="api",
+            command="7f6e5d4c-3b2a-4190-8f7e-6d5c4b3a2905",
+        ),
     ]
 
 

@@ -35,6 +35,7 @@ INSERT INTO "events" VALUES(25,'0b9f8a4e-5a52-4d5b-9a8e-3f1f7f0f5c11','run_resum
 INSERT INTO "events" VALUES(26,'0b9f8a4e-5a52-4d5b-9a8e-3f1f7f0f5c11','run_finished',13.0,1,'{"seq":26,"time":13.0,"wall_time":"2026-01-02T03:04:26Z","run":"0b9f8a4e-5a52-4d5b-9a8e-3f1f7f0f5c11","type":"run_finished","missing":[{"node":"/1/0","name":"pink_bar","object":"pink_bar","place":"pink_place"}]}');
 INSERT INTO "events" VALUES(27,'0b9f8a4e-5a52-4d5b-9a8e-3f1f7f0f5c11','run_failed',13.5,1,'{"seq":27,"time":13.5,"wall_time":"2026-01-02T03:04:27Z","run":"0b9f8a4e-5a52-4d5b-9a8e-3f1f7f0f5c11","type":"run_failed","reason":"the leaf /1/0 could not be done","node":"/1/0"}');
 INSERT INTO "events" VALUES(28,'0b9f8a4e-5a52-4d5b-9a8e-3f1f7f0f5c11','run_aborted',14.0,1,'{"seq":28,"time":14.0,"wall_time":"2026-01-02T03:04:28Z","run":"0b9f8a4e-5a52-4d5b-9a8e-3f1f7f0f5c11","type":"run_aborted","reason":"by the operator"}');
+INSERT INTO "events" VALUES(29,'0b9f8a4e-5a52-4d5b-9a8e-3f1f7f0f5c11','intervention_accepted',14.5,1,'{"seq":29,"time":14.5,"wall_time":"2026-01-02T03:04:29Z","run":"0b9f8a4e-5a52-4d5b-9a8e-3f1f7f0f5c11","type":"intervention_accepted","act":"steal","object":"pink_bar","intervention":{"act":"steal","object":"pink_bar","place":null,"to":null,"manner":"vanish"},"by":"api","command":"7f6e5d4c-3b2a-4190-8f7e-6d5c4b3a2905"}');
 CREATE TABLE pictures (id TEXT PRIMARY KEY, jpeg BLOB NOT NULL) STRICT;
 INSERT INTO "pictures" VALUES('3e2d1c0b-9a8f-4e7d-8c6b-5a4f3e2d1c04',X'FFD8FFD9');
 CREATE TABLE receipts (

@@ -15,6 +15,7 @@ from sim.workcell.parts import Part
 from sim.workcell.physics import to_matrix
 from sim.workcell.rendering import Rendering
 from sim.workcell.world import WorkcellWorld
+from tasks.intervention import Act, Intervention
 from tasks.scene import Scene
 
 pytestmark = pytest.mark.slow
@@ -102,9 +103,30 @@ def test_the_cameras_take_pictures_as_often_as_the_renderer_can(
 
 def test_noise_changes_pictures_by_its_deviation(scene: Scene) -> None:
     world = WorkcellWorld(scene, 5, WorkcellOptions(camera_noise=4.0))
-    one, other = (world.head.capture().bgr.astype(float) for _ in range(2))
+    one = world.head.capture().bgr.astype(float)
+    world.body.advance_cycle()
+    other = world.head.capture().bgr.astype(float)
     inner = (one > 30) & (one < 225) & (other > 30) & (other < 225)
     assert (one - other)[inner].std() == pytest.approx(4.0 * np.sqrt(2), rel=0.1)
+    world.close()
+
+
+def test_one_moment_has_one_picture(scene: Scene) -> None:
+    world = WorkcellWorld(scene, 5, WorkcellOptions(camera_noise=4.0))
+    picture = world.head.capture()
+    assert world.head.capture() is picture
+    world.body.advance_cycle()
+    assert world.head.capture() is not picture
+    world.close()
+
+
+def test_a_picture_shows_what_a_person_did_in_the_same_moment(scene: Scene) -> None:
+    world = WorkcellWorld(scene, 5)
+    before = world.head.capture()
+    assert not world.intervene(Intervention(act=Act.STEAL, object=next(iter(scene.objects))))
+    after = world.head.capture()
+    assert after.time == before.time
+    assert (after.bgr != before.bgr).any()
     world.close()
 
 

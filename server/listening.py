@@ -1,0 +1,33 @@
+"""Where the service listens: its socket, and the address by which this machine reaches it."""
+
+import socket
+
+from server.app import drop_stuck_clients
+from server.settings import Settings
+
+
+def listen(settings: Settings) -> socket.socket:
+    """The listening socket. Raises `OSError` with a sentence if the port is taken."""
+    family = socket.AF_INET6 if ":" in settings.host else socket.AF_INET
+    # asyncio turns Nagle's algorithm off only for sockets that name TCP; with it on, a second small
+    # message would wait for the acknowledgement of the first, some 40 ms.
+    listening = socket.socket(family, socket.SOCK_STREAM, socket.IPPROTO_TCP)
+    listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    drop_stuck_clients(listening)
+    try:
+        listening.bind((settings.host, settings.port))
+    except OSError as error:
+        listening.close()
+        raise OSError(
+            f"cannot listen on {settings.host}:{settings.port}: {error.strerror}"
+        ) from error
+    return listening
+
+
+def reachable_host(host: str) -> str:
+    """The host under which this machine reaches its own service."""
+    if host in ("0.0.0.0", ""):
+        return "127.0.0.1"
+    if host == "::":
+        return "[::1]"
+    return f"[{host}]" if ":" in host else host

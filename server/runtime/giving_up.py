@@ -1,0 +1,94 @@
+"""Giving up: which leaves cannot be done, and what becomes of them."""
+
+from collections.abc import Mapping
+
+from server.journal import events as ev
+from server.runtime.context import RunContext
+from server.runtime.dialogue_driver import DialogueDriver
+from server.runtime.failure import fail_run
+from server.runtime.report_events import ReportEvents
+from server.runtime.robot_side import Doing, RobotSide
+
+
+class GivingUp:
+    """Abandons the alternatives of one run that cannot be done, or fails it."""
+
+    def __init__(
+        self,
+        context: RunContext,
+        sides: Mapping[str, RobotSide],
+        dialogues: DialogueDriver,
+        reports: ReportEvents,
+    ) -> None:
+        self._context = context
+        self._sides = sides
+        self._dialogues = dialogues
+        self._reports = reports
+
+    async def give_up_what_cannot_be_done(self) -> bool:
+        """Give up one leaf that cannot be done; True if there was one."""
+        for leaf, reason in (*self._failed_too_often(), *self._helped_too_often()):
+            await self._give_up(leaf, reason)
+            return True
+        for leaf in self._for_nobody():
+            await self._give_up(leaf, "no robot can do it")
+            return True
+        return False
+
+    def _failed_too_often(self) -> list[tuple[int, str]]:
+        state = self._context.state
+        reason = f"it failed {state.request.max_attempts} times"
+        return [(leaf, reason) for leaf in sorted(state.exhausted) if state.tree.eligible(leaf)]
+
+    def _helped_too_often(self) -> list[tuple[int, str]]:
+        """What fails each time is not done for ever, however willing the helper is."""
+        state, most = self._context.state, self._context.settings.max_helped_retries
+        reason = f"it failed again after {most} helped retries"
+        return [
+            (leaf, reason)
+            for leaf, retries in sorted(state.helped_retries.items())
+            if retries > most and state.tree.eligible(leaf)
+        ]
+
+    def _for_nobody(self) -> list[int]:
+        """The first leaf that none of the robots can do, once all of them are known."""
+        tree, sides = self._context.state.tree, self._sides.values()
+        if not all(side.hello is not None or side.gone_for_good for side in sides):
+            return []
+        return [
+            leaf
+            for leaf in (int(each) for each in tree.eligible_leaves())
+            if not any(side.suitability(tree.leaf_definition(leaf).behavior) > 0 for side in sides)
+        ][:1]
+
+    async def _give_up(self, leaf: int, reason: str) -> None:
+        """Abandon the nearest alternative that holds a leaf, or fail the run."""
+        state = self._context.state
+        given_up = state.tree.give_up(leaf)
+        if given_up is None:
+            name = state.tree.name_of(leaf)
+            reason = f"'{name}' could not be done: {reason}"
+            await fail_run(self._context, reason, state.tree.path_of(leaf))
+            return
+        events: list[ev.Event] = []
+        cut_short: list[RobotSide] = []
+        for active in given_up.put_back:
+            owner = state.tree.owner(active) or ""
+            if dialogue := state.dialogue_of(active):
+                events.append(self._dialogues.abort(dialogue))
+            events.append(
+                self._reports.reset(active, owner, "its alternative was abandoned", failed=False)
+            )
+            cut_short.append(self._sides[owner])
+        events.append(
+            ev.NodeAbandoned(
+                **self._context.stamp(),
+                **self._reports.node(given_up.alternative),
+                leaf=state.tree.path_of(leaf),
+                reason=reason,
+            )
+        )
+        await self._context.commit(events)
+        for side in cut_short:
+            if side.doing is not Doing.ABSENT:
+                side.retreat()

@@ -1,0 +1,68 @@
+"""A run's inbox: what it has to do, in turn, and who waits for what comes of it."""
+
+import asyncio
+import logging
+from collections.abc import Awaitable, Callable
+from dataclasses import dataclass, field
+
+from server.errors import ConflictError
+
+log = logging.getLogger(__name__)
+
+Task = Callable[[], Awaitable[object]]
+
+
+@dataclass(slots=True)
+class Item:
+    """`asked_for`: somebody waits for what comes of it, and is told if it is refused."""
+
+    task: Task
+    asked_for: bool
+    done: asyncio.Future[object] = field(default_factory=asyncio.Future)
+
+    def succeed(self, result: object) -> None:
+        """Tell whoever waits what came of it."""
+        if not self.done.done():
+            self.done.set_result(result)
+
+    def fail(self, error: Exception) -> None:
+        """Tell whoever waits that nothing came of it."""
+        if not self.done.done():
+            self.done.set_exception(error)
+
+
+class Inbox:
+    """Items in the order in which they came."""
+
+    def __init__(self) -> None:
+        self._items: asyncio.Queue[Item] = asyncio.Queue()
+
+    def tell(self, task: Task) -> None:
+        """Have something done in turn; nobody waits for it."""
+        item = Item(task, asked_for=False)
+        item.done.add_done_callback(_log_failure)
+        self._items.put_nowait(item)
+
+    async def ask(self, task: Task) -> object:
+        """Have something done in turn, and wait for what comes of it. Raises what that raises."""
+        item = Item(task, asked_for=True)
+        self._items.put_nowait(item)
+        return await item.done
+
+    async def next(self, timeout_s: float | None) -> Item | None:
+        """The next item; None if none comes in time."""
+        try:
+            return await asyncio.wait_for(self._items.get(), timeout_s)
+        except TimeoutError:
+            return None
+
+    def refuse_all(self, error: ConflictError) -> None:
+        """Tell everybody who still waits that it comes to nothing."""
+        while not self._items.empty():
+            self._items.get_nowait().fail(error)
+
+
+def _log_failure(done: asyncio.Future[object]) -> None:
+    error = None if done.cancelled() else done.exception()
+    if error is not None and not isinstance(error, ConflictError):
+        log.error("a run could not take a robot's news", exc_info=error)

@@ -1,0 +1,132 @@
+"""Which of a run's robots are there: connected, lost, waited for, and at last given up."""
+
+import asyncio
+from collections.abc import Callable, Mapping
+
+from robots.link.messages import Hello
+from server.journal import events as ev
+from server.runtime.context import RunContext
+from server.runtime.dialogue_driver import DialogueDriver
+from server.runtime.failure import fail_run
+from server.runtime.hardware import Hardware
+from server.runtime.inbox import Task
+from server.runtime.interventions import Interventions
+from server.runtime.report_events import ReportEvents
+from server.runtime.robot_side import Doing, RobotSide
+from server.runtime.run_state import Execution
+
+
+class Presence:
+    """The presence of one run's robots.
+
+    `tell` has something done in the run's turn; `start` sends an execution's start again.
+    """
+
+    def __init__(
+        self,
+        context: RunContext,
+        sides: Mapping[str, RobotSide],
+        hardware: Hardware,
+        dialogues: DialogueDriver,
+        reports: ReportEvents,
+        interventions: Interventions,
+        *,
+        tell: Callable[[Task], None],
+        start: Callable[[RobotSide, Execution], None],
+    ) -> None:
+        self._context = context
+        self._sides = sides
+        self._hardware = hardware
+        self._dialogues = dialogues
+        self._reports = reports
+        self._interventions = interventions
+        self._tell = tell
+        self._start = start
+        self._timers: dict[str, asyncio.TimerHandle] = {}
+
+    async def begin(self) -> None:
+        """Start simulated robots, wait for real ones."""
+        for side in self._sides.values():
+            if self._hardware.simulated:
+                await self._hardware.restart(side.robot)
+            else:
+                self._wait_for(side)
+
+    def end(self) -> None:
+        """Wait for nobody any more."""
+        for timer in self._timers.values():
+            timer.cancel()
+
+    async def connected(self, side: RobotSide, hello: Hello) -> None:
+        state, robot = self._context.state, side.robot
+        if timer := self._timers.pop(robot, None):
+            timer.cancel()
+        rebooted = side.hello is None or side.hello.boot != hello.boot
+        if rebooted:
+            self._context.clock.align(hello.time)
+            self._dialogues.robot_rebooted()
+        was_doing = side.doing
+        side.connect(hello)
+        execution = state.executions.get(robot)
+        continues = execution is not None and execution.boot == hello.boot
+        events: list[ev.Event] = []
+        if robot in state.lost:
+            events.append(
+                ev.RobotBack(
+                    **self._context.stamp(), robot=robot, boot=hello.boot, continues=continues
+                )
+            )
+        if execution is not None and not continues and state.dialogue_of(execution.leaf) is None:
+            events.append(
+                self._reports.reset(execution.leaf, robot, "its robot was lost", failed=False)
+            )
+        await self._context.commit(events)
+        if rebooted:
+            self._interventions.tell_again(side)
+        if continues and execution is not None and side.doing is Doing.IDLE and not execution.held:
+            # The start may never have arrived; a robot that carried it out ignores it.
+            self._start(side, execution)
+        elif continues and not rebooted and was_doing is Doing.RETREATING:
+            side.doing = Doing.RETREATING
+
+    async def lost(self, side: RobotSide, reason: str) -> None:
+        state, robot = self._context.state, side.robot
+        side.disconnect()
+        if robot not in state.lost:
+            await self._context.commit(
+                [ev.RobotLost(**self._context.stamp(), robot=robot, reason=reason)]
+            )
+        side.restarts += 1
+        if self._hardware.simulated and side.restarts <= self._context.settings.max_restarts:
+            await self._hardware.restart(robot)
+        elif self._hardware.simulated:
+            await self._given_up(side, f"its process keeps ending: {reason}")
+        else:
+            self._wait_for(side)
+
+    def _wait_for(self, side: RobotSide) -> None:
+        """Give a lost robot some time to come back (wall time: it is not the world that waits)."""
+        timeout_s = self._context.settings.robot_lost_timeout_s
+        reason = f"it was not there for {timeout_s:g} s"
+        self._timers[side.robot] = asyncio.get_running_loop().call_later(
+            timeout_s, lambda: self._tell(lambda: self._given_up(side, reason))
+        )
+
+    async def _given_up(self, side: RobotSide, reason: str) -> None:
+        if side.doing is not Doing.ABSENT:
+            return
+        side.gone_for_good = True
+        state = self._context.state
+        execution = state.executions.get(side.robot)
+        events: list[ev.Event] = []
+        if execution is not None:
+            if dialogue := state.dialogue_of(execution.leaf):
+                events.append(self._dialogues.abort(dialogue))
+            events.append(
+                self._reports.reset(
+                    execution.leaf, side.robot, f"its robot is lost: {reason}", failed=False
+                )
+            )
+        await self._context.commit(events)
+        if all(each.gone_for_good for each in self._sides.values()):
+            await fail_run(self._context, f"the robot '{side.robot}' is lost: {reason}")

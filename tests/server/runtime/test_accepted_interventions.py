@@ -1,0 +1,114 @@
+"""What a person was asked to do is done once, whoever is killed before it was reported."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from pretend_service import PretendService, pretend_service
+from task_documents import definition_of
+
+from robots.link.messages import Intervene
+from server.errors import ConflictError
+from server.journal import events as ev
+from server.runtime.requests import RunRequest
+from server.runtime.views import RunStatus, RunView
+from sim.tabletop.layout import lay_out
+from tasks.intervention import Act, Intervention
+
+ONE_PART = definition_of({"behavior": "pick_and_place", "object": "part_1", "place": "spot_1"})
+SCENE = lay_out([("part_1", "spot_1")], seed=1)
+STEAL = Intervention(act=Act.STEAL, object="part_1")
+
+
+def service_with(**fields: Any) -> Any:
+    return pretend_service(ONE_PART, scene=SCENE, **fields)
+
+
+async def start(service: PretendService) -> RunView:
+    return await service.runtime.start_run(RunRequest(tree="tree", world="tabletop", speed="max"))
+
+
+async def interventions(service: PretendService, run: RunView) -> list[ev.Event]:
+    events = await service.journal.read(0, 1_000_000, run.id)
+    kinds = ev.InterventionAccepted, ev.InterventionDone
+    return [each for each in events if isinstance(each, kinds)]
+
+
+def told(service: PretendService, run: RunView) -> list[Intervene]:
+    [name] = run.robots
+    return [each for each in service.robots.robots[name].commands if isinstance(each, Intervene)]
+
+
+async def test_an_intervention_is_accepted_and_then_done() -> None:
+    async with service_with(faults={"part_1": [("missed", 4)]}) as service:
+        run = await start(service)
+        await service.runtime.pause(run.id)
+        await service.runtime.intervene(run.id, STEAL)
+        await service.runtime.resume(run.id)
+        await service.runtime.wait_for_end(run.id)
+        accepted, done = await interventions(service, run)
+    assert isinstance(accepted, ev.InterventionAccepted)
+    assert isinstance(done, ev.InterventionDone)
+    assert done.command == accepted.command
+    assert (done.intervention, done.by) == (STEAL, "api")
+
+
+async def test_what_a_killed_service_had_accepted_is_done_after_its_restart(
+    tmp_path: Path,
+) -> None:
+    path = tmp_path / "journal.db"
+    async with service_with(journal=path, deaf=True) as service:
+        run = await start(service)
+        await service.runtime.intervene(run.id, STEAL)
+        [accepted] = await interventions(service, run)
+    async with service_with(journal=path, boot=2) as service:
+        ended = await service.runtime.wait_for_end(run.id)
+        again, done = await interventions(service, run)
+    assert ended.status is RunStatus.FINISHED
+    assert again == accepted
+    assert isinstance(done, ev.InterventionDone)
+    assert isinstance(accepted, ev.InterventionAccepted)
+    assert done.command == accepted.command
+
+
+async def test_a_robot_with_a_new_boot_is_told_again_what_the_old_one_had_not_done() -> None:
+    async with service_with(deaf=True) as service:
+        run = await start(service)
+        [name] = run.robots
+        await service.runtime.intervene(run.id, STEAL)
+        await service.runtime.pause(run.id)
+        robot = service.robots.robots[name]
+        robot.boot, robot.deaf = 2, False
+        before = len(told(service, run))
+        await service.run_of(run).robot_connected(name, robot.hello())
+        await service.runtime.resume(run.id)
+        await service.runtime.wait_for_end(run.id)
+        assert len(told(service, run)) == before + 1
+        _, done = await interventions(service, run)
+    assert isinstance(done, ev.InterventionDone)
+
+
+async def test_what_was_done_is_not_told_again(tmp_path: Path) -> None:
+    path = tmp_path / "journal.db"
+    async with service_with(journal=path) as service:
+        run = await start(service)
+        await service.runtime.pause(run.id)
+        await service.runtime.intervene(run.id, STEAL)
+        with service.journal.subscribe(0) as subscription:
+            async for record in subscription:
+                if json.loads(record.text)["type"] == "intervention":
+                    break
+    async with service_with(journal=path, boot=2) as service:
+        await service.runtime.resume(run.id)
+        await service.runtime.wait_for_end(run.id)
+        assert told(service, run) == []
+        assert len(await interventions(service, run)) == 2
+
+
+async def test_an_ended_run_accepts_nothing() -> None:
+    async with service_with() as service:
+        run, _ = await service.run_to_end()
+        with pytest.raises(ConflictError, match="has ended"):
+            await service.runtime.intervene(run.id, STEAL)
+        assert await interventions(service, run) == []
