@@ -58,7 +58,6 @@ async def _race_through_a_run(
 ) -> None:
     request = {"tree": "tree", "world": "tabletop", "speed": "max", "max_attempts": 100}
     run = await service.runtime.start_run(RunRequest.model_validate(request))
-    raced = 0
     with service.journal.subscribe(0, 100_000) as events:
         async for record in events:
             event = json.loads(record.text)
@@ -66,7 +65,6 @@ async def _race_through_a_run(
                 break
             if event["type"] == "prompt" and event["kind"] == "ask":
                 findings.races += 1
-                raced += 1
                 prompt, dialogue = UUID(event["prompt"]), UUID(event["dialogue"])
                 await asyncio.gather(
                     *(
@@ -74,6 +72,9 @@ async def _race_through_a_run(
                         for i in range(helpers)
                     )
                 )
+    if not service.runtime.run(run.id).status.ended:
+        await service.runtime.abort(run.id)
+    await service.runtime.wait_for_end(run.id)
     kept = await service.journal.read(0, 1_000_000, run.id)
     findings.winners.update(each.prompt for each in kept if isinstance(each, ev.Answered))
 

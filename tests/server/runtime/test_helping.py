@@ -70,9 +70,9 @@ async def test_a_claim_is_taken_over_from_another_helper(service: PretendService
         await service.runtime.claim(dialogue, "ann")
     events = await service.journal.read(0, 1000)
     told = [
-        (each.type, each.helper) for each in events if isinstance(each, ev.Claimed | ev.Released)
-    ]  # type: ignore[attr-defined]
-    assert told == [("claimed", "ann"), ("released", "ann"), ("claimed", "bob")]
+        (type(each), each.helper) for each in events if isinstance(each, ev.Claimed | ev.Released)
+    ]
+    assert told == [(ev.Claimed, "ann"), (ev.Released, "ann"), (ev.Claimed, "bob")]
 
 
 async def test_taking_over_ones_own_or_nobodys_claim_only_renews_it(
