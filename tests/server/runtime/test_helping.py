@@ -8,6 +8,7 @@ import pytest
 from answer_races import ONE_PART, race
 from pretend_service import PretendService, pretend_service
 
+from robots.link.messages import ClipTaken
 from server.dialogues.escalation import EscalationPolicy
 from server.errors import ConflictError, NotFoundError
 from server.journal import events as ev
@@ -171,3 +172,38 @@ async def test_a_restart_keeps_the_moved_deadline_and_what_is_left(tmp_path: Pat
         assert after.prompt == before.prompt
         extended = await service.runtime.extend(view.dialogue, prompt_in(view).prompt, "bob")
         assert extended.extensions_left == 8
+
+
+# --- The clip ---------------------------------------------------------------------------------
+
+
+async def test_the_clip_of_a_fault_is_kept_after_the_question_and_belongs_to_it() -> None:
+    async with pretend_service(ONE_PART, FAULT, patient=True, films=True) as service:
+        view = await open_question(service)
+        async with asyncio.timeout(10):
+            while not service.runtime.dialogue(view.dialogue).clip:  # noqa: ASYNC110
+                await asyncio.sleep(0)
+        events = await service.journal.read(0, 1000)
+        clip = service.runtime.dialogue(view.dialogue).clip
+        pictures = [await service.journal.picture(each.picture) for each in clip]
+    raised = next(each for each in events if isinstance(each, ev.IssueRaised))
+    recorded = next(each for each in events if isinstance(each, ev.ClipRecorded))
+    prompt = next(each for each in events if isinstance(each, ev.Prompt))
+    assert raised.seq < prompt.seq < recorded.seq
+    assert (recorded.dialogue, recorded.issue) == (view.dialogue, "missed")
+    assert recorded.execution == raised.execution
+    assert [each.time for each in clip] == pytest.approx(
+        [max(0.0, raised.time - 1.5), max(0.0, raised.time - 0.5)]
+    )
+    assert pictures == [b"first", b"second"]
+    assert recorded.pictures == clip
+
+
+async def test_a_clip_of_no_dialogue_is_not_kept(service: PretendService) -> None:
+    view = await open_question(service)
+    (robot,) = service.robots.robots.values()
+    head = service.journal.head
+    clip = ClipTaken(execution="other", issue="missed", pictures=[])
+    await service.robots.report(robot, clip)
+    assert service.journal.head == head
+    assert service.runtime.dialogue(view.dialogue).clip == []
