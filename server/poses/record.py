@@ -1,6 +1,7 @@
 """Recorded poses: one file of frames per run beside the journal, bounded, written off the loop."""
 
 import asyncio
+import logging
 from collections import deque
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -9,8 +10,12 @@ from pathlib import Path
 from typing import TypeVar
 from uuid import UUID
 
+from pydantic import ValidationError
+
 from server.poses.frame import Frame, framed, time_of, unframed
 from server.poses.layout import Layout
+
+log = logging.getLogger(__name__)
 
 T = TypeVar("T")
 
@@ -70,7 +75,7 @@ class PoseRecord:
         with self._path.open("ab") as file:
             file.write(data)
         self._size += len(data)
-        while self._size > self._most_bytes:
+        if self._size > self._most_bytes:
             self._thin_out()
 
     def _thin_out(self) -> None:
@@ -87,6 +92,7 @@ class PoseRecords:
         self._folder = folder
         self._most_bytes = most_bytes
         self._records: dict[UUID, PoseRecord] = {}
+        self._shut = False
         self._thread = ThreadPoolExecutor(max_workers=1, thread_name_prefix="poses")
 
     def open(self, run: UUID) -> PoseRecord:
@@ -112,7 +118,11 @@ class PoseRecords:
         path = self._layout_path(run)
 
         def read() -> Layout | None:
-            return Layout.model_validate_json(path.read_bytes()) if path.exists() else None
+            try:
+                return Layout.model_validate_json(path.read_bytes()) if path.exists() else None
+            except ValidationError:
+                # Of another version of Mend: what is only for display is not worth an upgrade.
+                return None
 
         return await self._do(read)
 
@@ -144,9 +154,10 @@ class PoseRecords:
         return await self._do(read)
 
     def shut(self) -> None:
-        """Write what waits, and end."""
+        """Write what waits, and end; what still comes is not recorded."""
         for run in list(self._records):
             self.close(run)
+        self._shut = True
         self._thread.shutdown()
 
     def _path(self, run: UUID) -> Path:
@@ -156,7 +167,14 @@ class PoseRecords:
         return self._folder / f"{run}.layout.json"
 
     def _do_later(self, work: Callable[[], None]) -> None:
-        self._thread.submit(self._in_folder, work)
+        if not self._shut:
+            self._thread.submit(self._try, work)
+
+    def _try(self, work: Callable[[], None]) -> None:
+        try:
+            self._in_folder(work)
+        except OSError as error:
+            log.warning("some poses could not be recorded: %s", error)
 
     def _in_folder(self, work: Callable[[], T]) -> T:
         self._folder.mkdir(parents=True, exist_ok=True)

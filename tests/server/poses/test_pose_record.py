@@ -115,3 +115,24 @@ async def test_the_layout_is_kept(records: PoseRecords) -> None:
     layout = lay_out(run_state(), said, said.shows, None)
     records.keep_layout(layout)
     assert await records.layout(RUN) == layout
+
+
+async def test_a_layout_of_another_version_is_as_good_as_none(
+    records: PoseRecords, tmp_path: Path
+) -> None:
+    assert await records.layout(RUN) is None
+    (tmp_path / "poses" / f"{RUN}.layout.json").write_text('{"type": "layout", "shape": "round"}')
+    assert await records.layout(RUN) is None
+
+
+async def test_a_disk_that_takes_nothing_costs_the_poses_and_nothing_else(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    (tmp_path / "poses").write_text("a file where the folder is to be")
+    records = PoseRecords(tmp_path / "poses")
+    record = records.open(RUN)
+    record.add(frame(1.0))
+    records.shut()
+    record.add(frame(2.0))
+    record.flush()
+    assert "could not be recorded" in caplog.text
