@@ -15,6 +15,7 @@ from robots.behaviors.preparation import Assignment
 from robots.body import Body, CameraImage
 from robots.catalogue import Catalogue, Part
 from robots.clip import encode_clip
+from robots.grasp import grasp_of, part_in_tool
 from robots.link.messages import (
     PROTOCOL_VERSION,
     ActiveExecution,
@@ -206,13 +207,14 @@ class Robot:
             joints=[float(each) for each in body.joint_positions()] if body else [],
             tool=pose_values(self._body.tool_pose()),
             opening_m=float(self._body.gripper_opening_m()),
-            objects=[self._shown(name) for name in self._catalogue.parts],
+            objects=[self._shown(part) for part in self._catalogue.parts.values()],
         )
 
-    def _shown(self, name: str) -> ShownPose:
-        located = self._located.get(name)
-        if self._senses.holds(name):
-            return ShownPose(pose=pose_values(self._body.tool_pose()), held=True)
+    def _shown(self, part: Part) -> ShownPose:
+        if self._senses.holds(part.name):
+            held = self._body.tool_pose() @ part_in_tool(grasp_of(part))
+            return ShownPose(pose=pose_values(held), held=True)
+        located = self._located.get(part.name)
         if located is None:
             return ShownPose(pose=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0), hidden=True)
         return ShownPose(pose=sighted_values(located))
