@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from robots.body import ToolPose
+from robots.body import Matrix4, ToolPose
 from robots.catalogue import Part
 
 _DEEPEST_M = 0.025
@@ -55,12 +55,25 @@ def corners_in_tool(part: Part, grasp: Grasp) -> list[NDArray[np.float64]]:
 
     Tool frame: x is the approach direction (down), y the opening direction of the fingers.
     """
-    cos, sin = math.cos(grasp.yaw), math.sin(grasp.yaw)
-    axes = np.array([[0.0, cos, sin], [0.0, sin, -cos], [-1.0, 0.0, 0.0]])
+    axes = _part_axes(grasp)
     boxes = [(0.0, part.size)]
     if part.knob is not None:
         boxes.append((part.size[2], part.knob))
     return [_corners(bottom_m - grasp.height_m, size) @ axes for bottom_m, size in boxes]
+
+
+def part_in_tool(grasp: Grasp) -> Matrix4:
+    """The pose of a grasped part, its bottom centre, in the tool frame of `corners_in_tool`."""
+    pose = np.eye(4)
+    pose[:3, :3] = _part_axes(grasp).T
+    pose[:3, 3] = np.array([0.0, 0.0, -grasp.height_m]) @ _part_axes(grasp)
+    return pose
+
+
+def _part_axes(grasp: Grasp) -> NDArray[np.float64]:
+    """The part's axes as rows, in the tool frame."""
+    cos, sin = math.cos(grasp.yaw), math.sin(grasp.yaw)
+    return np.array([[0.0, cos, sin], [0.0, sin, -cos], [-1.0, 0.0, 0.0]])
 
 
 def _corners(bottom_m: float, size: tuple[float, float, float]) -> NDArray[np.float64]:

@@ -3,9 +3,11 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
+from uuid import UUID
 
 from robots.link.messages import CommandBody, Hello
 from server.runtime.hardware import Hardware
+from server.runtime.pose_sink import PoseSink
 from server.runtime.run import Run
 from server.runtime.run_state import RunState
 from tasks.definition import TaskTreeDefinition
@@ -73,6 +75,14 @@ class Worlds(Protocol):
     def open(self, state: RunState, run: Callable[[], Run]) -> Hardware:
         """The hardware of a run, which starts it; `run` is asked for only then."""
         ...
+
+
+class Poses(Protocol):
+    """Where runs pass on what their robots show."""
+
+    def open(self, state: RunState) -> PoseSink: ...
+
+    def close(self, run: UUID) -> None: ...
 
 
 class RealRobots:

@@ -11,6 +11,7 @@ from server.runtime.failure import fail_run
 from server.runtime.hardware import Hardware
 from server.runtime.inbox import Task
 from server.runtime.interventions import Interventions
+from server.runtime.pose_sink import PoseSink
 from server.runtime.report_events import ReportEvents
 from server.runtime.robot_side import Doing, RobotSide
 from server.runtime.run_state import Execution
@@ -30,6 +31,7 @@ class Presence:
         dialogues: DialogueDriver,
         reports: ReportEvents,
         interventions: Interventions,
+        poses: PoseSink,
         *,
         tell: Callable[[Task], None],
         start: Callable[[RobotSide, Execution], None],
@@ -40,6 +42,7 @@ class Presence:
         self._dialogues = dialogues
         self._reports = reports
         self._interventions = interventions
+        self._poses = poses
         self._tell = tell
         self._start = start
         self._timers: dict[str, asyncio.TimerHandle] = {}
@@ -67,6 +70,7 @@ class Presence:
             self._dialogues.robot_rebooted()
         was_doing = side.doing
         side.connect(hello)
+        self._poses.robot_connected(hello)
         execution = state.executions.get(robot)
         continues = execution is not None and execution.boot == hello.boot
         events: list[ev.Event] = []

@@ -18,6 +18,7 @@ from robots.link.messages import (
     IssueDetected,
     Location,
     Looked,
+    Poses,
     Rejected,
     Report,
     Resumed,
@@ -36,6 +37,7 @@ from server.runtime.hardware import Hardware
 from server.runtime.inbox import Inbox, Item, Task
 from server.runtime.interventions import Interventions
 from server.runtime.last_look import missing_parts
+from server.runtime.pose_sink import PoseSink
 from server.runtime.presence import Presence
 from server.runtime.report_events import ReportEvents
 from server.runtime.robot_side import Doing, Purpose, RobotSide
@@ -58,11 +60,13 @@ class Run:
         sides: dict[str, RobotSide],
         dialogues: DialogueDriver,
         hardware: Hardware,
+        poses: PoseSink,
     ) -> None:
         self._context = context
         self._sides = sides
         self._dialogues = dialogues
         self._hardware = hardware
+        self._poses = poses
         self._reports = ReportEvents(context, dialogues)
         self._claims = Claims(context)
         self._interventions = Interventions(context)
@@ -74,6 +78,7 @@ class Run:
             dialogues,
             self._reports,
             self._interventions,
+            poses,
             tell=self._inbox.tell,
             start=self._start,
         )
@@ -184,6 +189,10 @@ class Run:
             if not self._context.state.status.ended:
                 raise
             await self._context.commit([], receipt=receipt)
+
+    def robot_posed(self, robot: str, poses: Poses) -> None:
+        """Pass on where everything is; for display only, it changes nothing."""
+        self._poses.take(robot, self._context.clock.from_robot(poses.time), poses)
 
     async def robot_lost(self, robot: str, reason: str) -> None:
         """A robot's connection is gone."""

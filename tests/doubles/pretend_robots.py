@@ -1,12 +1,15 @@
 """A robot link without robots: every command is carried out at once, faults come as scripted."""
 
 import asyncio
+import base64
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Protocol
 
 from robots.link.messages import (
+    ClipPicture,
+    ClipTaken,
     CommandBody,
     Finished,
     Held,
@@ -44,6 +47,8 @@ class PretendRobot:
     """One robot: `faults` maps an object to the issues that its next starts run into, in turn.
 
     A stubborn one runs into them also when it goes on after a hold.
+    `patient`: it lets no time pass while a question is open, as live helpers take their time.
+    `films`: two pictures follow every issue.
     """
 
     name: str
@@ -58,6 +63,8 @@ class PretendRobot:
     hidden: set[str] = field(default_factory=set)
     deaf: bool = False
     stubborn: bool = False
+    patient: bool = False
+    films: bool = False
 
     def hello(self) -> Hello:
         return Hello(
@@ -125,7 +132,7 @@ class PretendRobots:
             while self._queues[name] and name in self._sinks:
                 await self._carry_out(robot, *self._queues[name].popleft())
 
-    async def _report(self, robot: PretendRobot, body: ReportBody) -> None:
+    async def report(self, robot: PretendRobot, body: ReportBody) -> None:
         robot.seq += 1
         report = Report(seq=robot.seq, time=robot.time, body=body, world={"time": robot.time})
         receipt = Receipt(robot.name, str(robot.boot), robot.seq)
@@ -141,19 +148,21 @@ class PretendRobots:
                 await self._work(robot, body)
             case Look():
                 await self._look(robot, command, body)
+            case Hold() if robot.patient:
+                return
             case Hold(until=until):
                 robot.time = max(robot.time, until)
-                await self._report(robot, Held(command=command))
+                await self.report(robot, Held(command=command))
             case Interrupt(retreat=retreat):
                 at = "neutral" if retreat else "in_place"
-                await self._report(robot, Holding.model_validate({"execution": None, "at": at}))
+                await self.report(robot, Holding.model_validate({"execution": None, "at": at}))
             case Resume(execution=execution):
-                await self._report(robot, Resumed(execution=execution, step=5))
+                await self.report(robot, Resumed(execution=execution, step=5))
                 await self._work(robot, self._starts[robot.name], resumed=True)
             case Intervene(intervention=deed, by=by):
                 if deed.act in (Act.PLACE, Act.PUT_BACK, Act.HAND_OVER):
                     robot.right.add(deed.object or "")
-                await self._report(robot, Intervened(intervention=deed, by=by, command=command))
+                await self.report(robot, Intervened(intervention=deed, by=by, command=command))
 
     async def _work(self, robot: PretendRobot, start: Start, *, resumed: bool = False) -> None:
         part = str(start.parameters.get("object"))
@@ -166,19 +175,19 @@ class PretendRobots:
                 await self._issue(robot, start, due[0][0], step)
                 at = "in_place" if due[0][0] in ("unreachable", "missing", "blocked") else "neutral"
                 holding = {"execution": start.execution, "at": at}
-                await self._report(robot, Holding.model_validate(holding))
+                await self.report(robot, Holding.model_validate(holding))
                 return
             robot.time += 1.0
-            await self._report(
+            await self.report(
                 robot, StepStarted(execution=start.execution, step=step, name=f"step {step}")
             )
             if due:
                 faults.remove(due[0])
                 await self._issue(robot, start, due[0][0], step)
-        await self._report(robot, Finished(execution=start.execution))
+        await self.report(robot, Finished(execution=start.execution))
 
     async def _issue(self, robot: PretendRobot, start: Start, kind: str, step: int) -> None:
-        await self._report(
+        await self.report(
             robot,
             IssueDetected(
                 execution=start.execution,
@@ -187,11 +196,20 @@ class PretendRobots:
                 interrupts=kind in robot.interrupting,
             ),
         )
+        if robot.films:
+            pictures = [
+                ClipPicture(before_s=before_s, jpeg=base64.b64encode(jpeg).decode())
+                for before_s, jpeg in ((1.5, b"first"), (0.5, b"second"))
+            ]
+            clip = ClipTaken(execution=start.execution, issue=kind, pictures=pictures)
+            await self.report(robot, clip)
 
     async def _look(self, robot: PretendRobot, command: str, look: Look) -> None:
         fulfilled = None
         if look.expect is not None:
             fulfilled = (look.object or "") in robot.right or look.expect == "way_clear"
+            if not fulfilled and robot.patient and look.within_s > 0.0:
+                return
             if not fulfilled:
                 # What is queued may be the deed that is being watched for.
                 robot.time += look.within_s
@@ -200,7 +218,7 @@ class PretendRobots:
             for i in range(100)
             if f"part_{i}" not in robot.hidden
         }
-        await self._report(
+        await self.report(
             robot,
             Looked(
                 command=command,

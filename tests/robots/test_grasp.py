@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from scripted_body import part_in_tool, tool_matrix
 
 from robots.grasp import corners_in_tool, grasp_of, half_turn
+from robots.grasp import part_in_tool as grasped_part_in_tool
 
 
 @pytest.mark.parametrize(
@@ -53,3 +54,23 @@ def test_corners_in_the_tool_are_those_of_the_resting_part(name, x, y, yaw) -> N
 
 def test_a_part_in_the_tool_hangs_below_it() -> None:
     assert part_in_tool("green_leg")[0, 3] == pytest.approx(0.055)
+
+
+@pytest.mark.parametrize("name", sorted(PARTS))
+@given(
+    x=st.floats(-1, 1),
+    y=st.floats(-1, 1),
+    z=st.floats(0, 1),
+    yaw=st.floats(-math.pi / 2, math.pi / 2 - 1e-6),
+)
+def test_where_a_grasped_part_is_follows_from_where_the_tool_is(
+    name: str, x: float, y: float, z: float, yaw: float
+) -> None:
+    grasp = grasp_of(PARTS[name])
+    pose = tool_matrix(grasp.tool_pose(x, y, z, yaw)) @ grasped_part_in_tool(grasp)
+    assert pose[:3, 3] == pytest.approx([x, y, z], abs=1e-9)
+    assert pose[:3, 2] == pytest.approx([0.0, 0.0, 1.0], abs=1e-9)
+    # Fingers do not tell a part from one turned by half a turn.
+    found = math.atan2(pose[1, 0], pose[0, 0])
+    assert math.sin(2 * (found - yaw)) == pytest.approx(0.0, abs=1e-6)
+    assert math.cos(2 * (found - yaw)) == pytest.approx(1.0, abs=1e-6)

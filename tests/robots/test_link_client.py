@@ -13,6 +13,7 @@ from robots.link.client import LinkSettings, run_agent
 from robots.link.clock import LoopClock
 from robots.link.messages import (
     Ack,
+    AnyServiceMessage,
     Command,
     CommandBody,
     Heartbeat,
@@ -20,7 +21,10 @@ from robots.link.messages import (
     Hold,
     LinkError,
     Look,
+    PoseLayout,
+    Poses,
     Report,
+    ShowPoses,
     Shutdown,
     Start,
     Taken,
@@ -32,7 +36,7 @@ from robots.link.outbox import IN_MEMORY, Outbox
 START = Start(execution="e1", node="/0", behavior="count", parameters={})
 IMPATIENT = LinkSettings(first_backoff_s=0.001, longest_backoff_s=0.002, goodbye_s=0.05)
 
-M = TypeVar("M", Hello, Report, Taken, Heartbeat)
+M = TypeVar("M", Hello, Report, Taken, Heartbeat, Poses)
 
 
 class PlayedService:
@@ -55,7 +59,7 @@ class PlayedService:
         await self.say(Welcome(protocol=1, received=received, heartbeat_s=self.heartbeat_s))
         return hello
 
-    async def say(self, message: Welcome | Ack | Command | LinkError) -> None:
+    async def say(self, message: AnyServiceMessage) -> None:
         await self.say_text(message.model_dump_json())
 
     async def say_text(self, text: str) -> None:
@@ -272,3 +276,69 @@ async def test_a_service_that_is_not_there_yet_is_tried_again() -> None:
     await service.command("c1", Shutdown())
     await task
     outbox.close()
+
+
+# --- Poses ------------------------------------------------------------------------------------
+
+
+class ShowingAgent(CountingAgent):
+    """A counting robot that counts as well how often it was asked where everything is."""
+
+    asked = 0
+
+    def pose_layout(self) -> PoseLayout:
+        return PoseLayout(joints=["elbow"])
+
+    def poses(self) -> Poses:
+        self.asked += 1
+        return Poses(
+            time=self.time_s(),
+            joints=[self.time_s()],
+            tool=(0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0),
+            opening_m=0.05,
+        )
+
+
+@pytest.fixture
+async def showing() -> AsyncIterator[Robot]:
+    robot = Robot(ShowingAgent(simulated=False))
+    yield robot
+    robot.task.cancel()
+    await asyncio.gather(robot.task, return_exceptions=True)
+    robot.outbox.close()
+
+
+async def test_a_robot_says_what_it_shows_and_shows_it_only_when_asked(showing: Robot) -> None:
+    agent = showing.agent
+    assert isinstance(agent, ShowingAgent)
+    hello = await showing.service.accept()
+    assert hello.shows == PoseLayout(joints=["elbow"])
+    await showing.service.command("c1", START)
+    await acknowledge_until_finished(showing.service)
+    assert agent.asked == 0
+    await showing.service.say(ShowPoses(rate_hz=20.0))
+    poses = await showing.service.next(Poses)
+    assert poses.time == agent.time_s()
+    await showing.service.command("c2", START)
+    assert (await showing.service.next(Poses)).time >= poses.time
+
+
+async def test_what_a_connection_was_asked_to_show_ends_with_it(showing: Robot) -> None:
+    agent = showing.agent
+    assert isinstance(agent, ShowingAgent)
+    await showing.service.accept()
+    await showing.service.say(ShowPoses(rate_hz=20.0))
+    await showing.service.next(Poses)
+    await showing.service.drop()
+    await showing.service.accept()
+    asked = agent.asked
+    await showing.service.command("c1", START)
+    await acknowledge_until_finished(showing.service)
+    assert agent.asked == asked
+
+
+async def test_a_robot_that_shows_nothing_ignores_that_it_was_asked(robot: Robot) -> None:
+    assert (await robot.service.accept()).shows is None
+    await robot.service.say(ShowPoses(rate_hz=20.0))
+    await robot.service.command("c1", START)
+    assert await acknowledge_until_finished(robot.service)

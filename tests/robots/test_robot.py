@@ -535,3 +535,34 @@ def test_a_robot_needs_the_monitors_that_explain_why_nothing_starts() -> None:
             load_plugins("mend.behaviors"),
             monitors,
         )
+
+
+# --- What it shows ----------------------------------------------------------------------------
+
+
+def test_a_robot_shows_what_it_has_located_and_hides_what_it_has_not() -> None:
+    bench = RobotBench()
+    names = [each.name for each in bench.robot.pose_layout().objects]
+    assert set(names) == set(catalogue().parts)
+    assert all(each.hidden for each in bench.robot.poses().objects)
+    bench.look()
+    bench.run()
+    (looked,) = bench.of(Looked)
+    poses = bench.robot.poses()
+    assert poses.tool[:3] == pytest.approx(tuple(bench.body.tool_pose()[:3, 3]))
+    for name, shown in zip(names, poses.objects, strict=True):
+        assert shown.hidden == (name not in looked.objects)
+        if not shown.hidden:
+            seen = looked.objects[name]
+            assert shown.pose[:3] == (seen.x, seen.y, seen.z)
+
+
+def test_a_robot_shows_what_it_holds_in_its_gripper() -> None:
+    bench = RobotBench()
+    bench.start("pink_bar")
+    bench.run_to(5, 0.5)
+    names = [each.name for each in bench.robot.pose_layout().objects]
+    held = {
+        name for name, each in zip(names, bench.robot.poses().objects, strict=True) if each.held
+    }
+    assert held == {"pink_bar"}

@@ -6,6 +6,7 @@ import pytest
 
 from server.errors import InvalidError
 from server.library import Scenes, check_uploaded_tree
+from server.trees import WrongTreeError
 from tasks.library import SCENES, NotInLibraryError
 
 TREE = """\
@@ -51,3 +52,26 @@ def test_a_tree_is_checked_against_the_scene_of_the_folder(folder: Path) -> None
 
 def test_every_scene_of_the_library_is_found_without_a_folder() -> None:
     assert [Scenes(None).find(name).name for name in SCENES.names()] == SCENES.names()
+
+
+def test_every_mistake_of_a_tree_says_where_it_is(folder: Path) -> None:
+    text = TREE.replace("pick_and_place", "pick_and_plac") + "nonsense: 1\n"
+    with pytest.raises(WrongTreeError) as wrong:
+        check_uploaded_tree(text, Scenes(folder))
+    lines = text.splitlines()
+    assert len(wrong.value.mistakes) == len(wrong.value.problems) == 2
+    for mistake in wrong.value.mistakes:
+        assert mistake.line is not None
+        assert mistake.column == 1
+        assert lines[mistake.line - 1]
+    assert {each.node for each in wrong.value.mistakes} == {"/", None}
+
+
+def test_a_list_item_is_pointed_at_after_its_dash_and_broken_yaml_where_it_breaks() -> None:
+    nested = "name: x\ntree:\n  then:\n    - {behavior: nothing}\n"
+    with pytest.raises(WrongTreeError) as wrong:
+        check_uploaded_tree(nested, Scenes(None))
+    assert (wrong.value.mistakes[0].line, wrong.value.mistakes[0].column) == (4, 7)
+    with pytest.raises(WrongTreeError) as broken:
+        check_uploaded_tree("name: x\ntree: }\n", Scenes(None))
+    assert (broken.value.mistakes[0].line, broken.value.mistakes[0].column) == (2, 7)

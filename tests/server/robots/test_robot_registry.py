@@ -11,6 +11,8 @@ from recording_sink import RecordingSink
 from robots.link.channel import Channel, ChannelClosedError, memory_channel
 from robots.link.messages import (
     Ack,
+    AnyRobotMessage,
+    AnyServiceMessage,
     Command,
     Heartbeat,
     Held,
@@ -18,9 +20,12 @@ from robots.link.messages import (
     LinkError,
     Look,
     Picture,
+    PoseLayout,
+    Poses,
     ReachLimits,
     Rejected,
     Report,
+    ShowPoses,
     Taken,
     Welcome,
     service_message,
@@ -52,10 +57,10 @@ class PlayedRobot:
         self.channel, service_end = memory_channel()
         self.serving = asyncio.create_task(registry.serve(service_end))
 
-    async def say(self, message: Hello | Report | Heartbeat | Taken | Picture) -> None:
+    async def say(self, message: AnyRobotMessage) -> None:
         await self.channel.send(message.model_dump_json(exclude_none=True))
 
-    async def hear(self) -> Welcome | Ack | Command | LinkError:
+    async def hear(self) -> AnyServiceMessage:
         async with asyncio.timeout(10):
             return service_message.validate_json(await self.channel.receive())
 
@@ -452,3 +457,52 @@ async def test_a_closed_registry_ends_every_connection(registry: RobotRegistry) 
     await late.send(hello().model_dump_json())
     with pytest.raises(ChannelClosedError):
         await late.receive()
+
+
+# --- Poses ------------------------------------------------------------------------------------
+
+SHOWING = PoseLayout(joints=["elbow"])
+POSES = Poses(time=1.0, joints=[0.5], tool=(0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0), opening_m=0.05)
+
+
+async def test_poses_go_to_the_owner_and_are_not_acknowledged(
+    registry: RobotRegistry, sink: RecordingSink
+) -> None:
+    robot = PlayedRobot(registry)
+    await robot.greet(hello().model_copy(update={"shows": SHOWING}))
+    await robot.say(POSES)
+    assert (await robot.deliver(report(1))).seq == 1
+    assert sink.posed == [POSES]
+    await robot.leave()
+
+
+@pytest.mark.usefixtures("sink")
+async def test_a_robot_is_asked_for_poses_on_every_connection_while_they_are_wanted(
+    registry: RobotRegistry,
+) -> None:
+    shows = hello().model_copy(update={"shows": SHOWING})
+    registry.show_poses("arm", 20.0)
+    for _ in range(2):
+        robot = PlayedRobot(registry)
+        await robot.greet(shows)
+        assert await robot.hear() == ShowPoses(rate_hz=20.0)
+        await robot.leave()
+    robot = PlayedRobot(registry)
+    await robot.greet(shows)
+    assert await robot.hear() == ShowPoses(rate_hz=20.0)
+    registry.show_poses("arm", 20.0)
+    registry.show_poses("arm", 0.0)
+    assert await robot.hear() == ShowPoses(rate_hz=0.0)
+    await robot.leave()
+
+
+async def test_a_robot_that_shows_nothing_is_never_asked_for_poses(
+    registry: RobotRegistry, sink: RecordingSink
+) -> None:
+    registry.show_poses("arm", 20.0)
+    robot = PlayedRobot(registry)
+    await robot.greet(hello())
+    registry.show_poses("arm", 5.0)
+    assert isinstance(await robot.deliver(report(1)), Ack)
+    assert sink.posed == []
+    await robot.leave()

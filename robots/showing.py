@@ -1,0 +1,108 @@
+"""What a robot shows of itself to people, for display only: its joints, its tool, what is where."""
+
+from collections.abc import Mapping, Sequence
+from typing import Protocol, runtime_checkable
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from robots.body import Body, Matrix4
+from robots.catalogue import Catalogue, Part
+from robots.grasp import grasp_of, part_in_tool
+from robots.link.messages import PoseLayout, Poses, PoseValues, ShownObject, ShownPose, Sighting
+from robots.senses import Senses
+
+
+@runtime_checkable
+class ShowsPoses(Protocol):
+    """An agent core that can say where everything is."""
+
+    def pose_layout(self) -> PoseLayout:
+        """What its poses hold; the same all the time."""
+        ...
+
+    def poses(self) -> Poses:
+        """Where everything is now."""
+        ...
+
+
+@runtime_checkable
+class JointedBody(Protocol):
+    """A body that a model can be drawn of, from its joint positions."""
+
+    @property
+    def model(self) -> str | None:
+        """The name of its model files, if there are any."""
+        ...
+
+    @property
+    def joint_names(self) -> Sequence[str]:
+        """As the model names them."""
+        ...
+
+    def joint_positions(self) -> Sequence[float]:
+        """In the order of `joint_names`, radians."""
+        ...
+
+
+class PoseDisplay:
+    """What is shown of one robot: its joints and tool, and the parts where it located them."""
+
+    def __init__(self, body: Body, catalogue: Catalogue, senses: Senses) -> None:
+        self._body = body
+        self._jointed = body if isinstance(body, JointedBody) else None
+        self._catalogue = catalogue
+        self._senses = senses
+        self.located: Mapping[str, Sighting] = {}
+
+    def layout(self) -> PoseLayout:
+        """What `poses` holds: the body's joints, and every part of the catalogue."""
+        return PoseLayout(
+            model=self._jointed.model if self._jointed else None,
+            joints=list(self._jointed.joint_names) if self._jointed else [],
+            objects=[
+                ShownObject(name=part.name, size=part.size, knob=part.knob)
+                for part in self._catalogue.parts.values()
+            ],
+        )
+
+    def poses(self) -> Poses:
+        """The joints and the tool now, and every part where it was located last."""
+        joints = self._jointed.joint_positions() if self._jointed else ()
+        return Poses(
+            time=self._body.time_s(),
+            joints=[float(each) for each in joints],
+            tool=pose_values(self._body.tool_pose()),
+            opening_m=float(self._body.gripper_opening_m()),
+            objects=[self._shown(part) for part in self._catalogue.parts.values()],
+        )
+
+    def _shown(self, part: Part) -> ShownPose:
+        if self._senses.holds(part.name):
+            held = self._body.tool_pose() @ part_in_tool(grasp_of(part))
+            return ShownPose(pose=pose_values(held), held=True)
+        located = self.located.get(part.name)
+        if located is None:
+            return ShownPose(pose=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0), hidden=True)
+        return ShownPose(pose=sighted_values(located))
+
+
+def pose_values(pose: Matrix4) -> PoseValues:
+    """A homogeneous transform as a message has it."""
+    x, y, z = (float(each) for each in pose[:3, 3])
+    qx, qy, qz, qw = (float(each) for each in Rotation.from_matrix(pose[:3, :3]).as_quat())
+    return x, y, z, qx, qy, qz, qw
+
+
+def sighted_values(sighting: Sighting) -> PoseValues:
+    """Where something upright was seen."""
+    half = sighting.yaw / 2
+    return (
+        sighting.x,
+        sighting.y,
+        sighting.z,
+        0.0,
+        0.0,
+        float(np.sin(half)),
+        float(np.cos(half)),
+    )
