@@ -11,18 +11,18 @@ def make_script(patience: Patience) -> Script:
         opening="can_you_clear_the_way",
         states={
             "can_you_clear_the_way": AskState(
-                text="Something is in the way of my arm. Can you clear the way?",
+                text="Something is in my way or where the {object} belongs. Can you clear it away?",
                 yes="clear_way",
-                yes_effect="You clear the way; I go on as soon as I see that it is free.",
+                yes_effect="You clear it away; I go on as soon as I see that the way is free.",
                 no=place_branch.OPENING,
                 no_effect=place_branch.OPENING_EFFECT,
             ),
             "clear_way": HelpState(
-                text="Please clear the way. I wait until it is free.",
+                text="Please clear my way and the place. I wait until I see that both are free.",
                 help=Help.CLEAR_WAY,
                 resolution=Resolution.ROBOT_FINISH,
                 thanks="Thank you. The way is free and I go on.",
-                not_seen="My way is not free yet. Are you still clearing it?",
+                not_seen="I do not see my way and the place free yet. Are you still clearing them?",
                 otherwise=place_branch.OPENING,
                 otherwise_effect=place_branch.OPENING_EFFECT,
             ),

@@ -7,7 +7,7 @@ import numpy as np
 from robots.body import Body, CameraImage, ToolPose
 from robots.catalogue import Catalogue, Part
 from robots.grasp import grasp_of
-from robots.link.messages import Position, Sighting
+from robots.link.messages import Location, Position, Sighting
 from robots.vision.color_model import ColorModel, Segmentation
 from robots.vision.forearm import GripReading, GripState, GripTolerances, GripWatch
 from robots.vision.head import HeadSighting, locate
@@ -18,6 +18,7 @@ from robots.vision.obstruction import (
     corridor,
     find_obstruction,
 )
+from robots.vision.occupancy import Fit, Room, find_occupant
 
 HEAD = "head"
 FOREARM = "forearm"
@@ -39,11 +40,13 @@ class Senses:
         catalogue: Catalogue,
         tolerances: GripTolerances | None = None,
         clearance: Clearance | None = None,
+        fit: Fit | None = None,
     ) -> None:
         self._body = body
         self._model = model
         self._tolerances = tolerances
         self._clearance = clearance or Clearance()
+        self._fit = fit or Fit()
         self._segmented: tuple[CameraImage, Segmentation] | None = None
         self.catalogue = catalogue
         self.grip: GripWatch | None = None
@@ -122,6 +125,19 @@ class Senses:
             () if arm_is_away else (self._own_arm(),),
             self.catalogue.table.height,
             self._clearance,
+        )
+
+    def occupant(
+        self, image: CameraImage, part: Part, target: Location, arm_is_away: bool
+    ) -> Obstruction | None:
+        """What is in the room that `part` needs at `target`."""
+        return find_occupant(
+            image,
+            self._segment(image),
+            Room(part, target, self.catalogue.height_of(target)),
+            () if arm_is_away else (self._own_arm(),),
+            self._clearance,
+            self._fit,
         )
 
     def _own_arm(self) -> Segment:

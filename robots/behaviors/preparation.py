@@ -112,9 +112,26 @@ def make_plan(assignment: Assignment, arm: Arm, senses: Senses, findings: Findin
     if waypoints and path is None:
         findings.path_found = False
         return None
-    if findings.image is not None:
-        findings.obstruction = senses.obstruction(findings.image, waypoints, arm.at_neutral)
+    findings.obstruction = _obstruction(assignment, waypoints, arm, senses, findings)
     return Plan(steps, first, path)
+
+
+def _obstruction(
+    assignment: Assignment,
+    waypoints: Sequence[ToolPose],
+    arm: Arm,
+    senses: Senses,
+    findings: Findings,
+) -> Obstruction | None:
+    """What is seen on the way, or at the place to which the object is to go."""
+    if findings.image is not None:
+        on_the_way = senses.obstruction(findings.image, waypoints, arm.at_neutral)
+        if on_the_way is not None:
+            return on_the_way
+    part, target = assignment.part, assignment.target
+    if part is None or target is None:
+        return None
+    return senses.occupant(findings.image or senses.look(), part, target, arm.at_neutral)
 
 
 def waypoints_of(steps: Sequence[Step]) -> list[ToolPose]:
