@@ -6,13 +6,13 @@ from tasks.resolution import Resolution
 
 script = offer_script(
     Offer(
-        question="Something is in my way or where the {object} belongs. Can you clear it away?",
+        question="Something is in my way, on the {object} or at its place. Can you clear it away?",
         yes_effect="You clear it away; I go on as soon as I see that the way is free.",
         help=Help.CLEAR_WAY,
-        request="Please clear my way and the place. I wait until I see that both are free.",
+        request="Please clear it away. I wait until I see that my way is free.",
         resolution=Resolution.ROBOT_FINISH,
         thanks="Thank you. The way is free and I go on.",
-        not_seen="I do not see my way and the place free yet. Are you still clearing them?",
+        not_seen="I do not see my way free yet. Are you still clearing it?",
         put_right={Expectation.WAY_CLEAR: Resolution.ROBOT_FINISH},
     )
 )

@@ -39,7 +39,7 @@ class Looker:
     execution: str | None
     way: list[ToolPose]
     may_move: bool
-    destination: tuple[Part, Location] | None = None
+    destination: tuple[Part, Location | None] | None = None
 
     def free_view(self) -> Routine[None]:
         """Move the arm out of the head camera's view if that is allowed."""
@@ -97,7 +97,7 @@ class InReach:
 
 
 class WayClear:
-    """Nothing presses against the arm, nothing unknown is where it has to go, its place is free."""
+    """Nothing presses against the arm or is where it has to go, object and place are free."""
 
     def __init__(self, looker: Looker) -> None:
         self._looker = looker
@@ -115,7 +115,8 @@ class WayClear:
         if self._looker.destination is None:
             return True
         part, target = self._looker.destination
-        return senses.occupant(image, part, target, arm.at_neutral) is None
+        sighting = None if senses.holds(part.name) else senses.sight(part, image)
+        return senses.occupant(image, part, sighting, target, arm.at_neutral) is None
 
 
 def look_once(looker: Looker, command: str) -> Routine[Looked]:

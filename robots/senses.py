@@ -18,7 +18,7 @@ from robots.vision.obstruction import (
     corridor,
     find_obstruction,
 )
-from robots.vision.occupancy import Fit, Room, find_occupant
+from robots.vision.occupancy import Fit, find_occupant, room_above, room_at_place
 
 HEAD = "head"
 FOREARM = "forearm"
@@ -128,17 +128,26 @@ class Senses:
         )
 
     def occupant(
-        self, image: CameraImage, part: Part, target: Location, arm_is_away: bool
+        self,
+        image: CameraImage,
+        part: Part,
+        sighting: HeadSighting | None,
+        target: Location | None,
+        arm_is_away: bool,
     ) -> Obstruction | None:
-        """What is in the room that `part` needs at `target`."""
-        return find_occupant(
-            image,
-            self._segment(image),
-            Room(part, target, self.catalogue.height_of(target)),
-            () if arm_is_away else (self._own_arm(),),
-            self._clearance,
-            self._fit,
+        """What lies on `part`, seen at `sighting`, or in the room that it needs at `target`."""
+        rooms = []
+        if sighting is not None:
+            rooms.append(room_above(part, sighting))
+        if target is not None:
+            rooms.append(room_at_place(part, target, self.catalogue.height_of(target)))
+        arm = () if arm_is_away else (self._own_arm(),)
+        segmentation = self._segment(image)
+        found = (
+            find_occupant(image, segmentation, room, arm, self._clearance, self._fit)
+            for room in rooms
         )
+        return next((each for each in found if each is not None), None)
 
     def _own_arm(self) -> Segment:
         """From the tool point back through the forearm camera, which is mounted on the arm."""

@@ -17,6 +17,7 @@ from server.api import (
     metrics,
     page,
     pictures,
+    reference,
     robots,
     runs,
     session,
@@ -43,6 +44,7 @@ ROUTES = (
     health,
     metrics,
     helper_socket,
+    reference,
     page,
 )
 
@@ -88,7 +90,7 @@ def described_app(lifespan: Lifespan | None = None) -> FastAPI:
         version=version("mend"),
         description=DESCRIPTION,
         lifespan=_entered(lifespan),
-        docs_url="/docs",
+        docs_url=None,  # see server.api.reference
         redoc_url=None,
     )
     for module in ROUTES:

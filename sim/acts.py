@@ -183,17 +183,23 @@ class Acts(ABC, Generic[P, At]):
         return place
 
     def _lying_at(self, intervention: Intervention) -> list[P]:
-        """What lies at the place where the object is to go."""
+        """What lies on the object, or at the place where that is to go."""
         if intervention.place is None or intervention.object is None:
             return []
         belongs, pose = self._part(intervention), self._place_of(intervention.place).pose
         length, width, _ = self._scene.objects[belongs.name].size
-        room = Footprint(pose.x, pose.y, pose.yaw, length, width)
         floor_z = self._scene.table.height if pose.z is None else pose.z
+        rooms = [(Footprint(pose.x, pose.y, pose.yaw, length, width), floor_z)]
+        own = self._footprint(belongs)
+        if own is not None:
+            rooms.append((own, self._top_z(belongs)))
         return [
             part
             for part, covered in self._resting(belongs)
-            if covered.overlaps(room) and self._top_z(part) > floor_z + _IN_THE_WAY_M
+            if any(
+                covered.overlaps(room) and self._top_z(part) > low_z + _IN_THE_WAY_M
+                for room, low_z in rooms
+            )
         ]
 
     def _resting(self, but: P) -> Iterator[tuple[P, Footprint]]:

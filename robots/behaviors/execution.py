@@ -111,10 +111,10 @@ class Execution:
         return waypoints_of(self._plan.steps[max(self._step, self._plan.first) - 1 :])
 
     @property
-    def destination(self) -> tuple[Part, Location] | None:
+    def destination(self) -> tuple[Part, Location | None] | None:
         """The object and where it goes; None for a behavior without."""
-        part, target = self._assignment.part, self._assignment.target
-        return None if part is None or target is None else (part, target)
+        part = self._assignment.part
+        return None if part is None else (part, self._assignment.target)
 
     # --- Routines -----------------------------------------------------------------------------
 

@@ -123,15 +123,17 @@ def _obstruction(
     senses: Senses,
     findings: Findings,
 ) -> Obstruction | None:
-    """What is seen on the way, or at the place to which the object is to go."""
+    """What is seen on the way, on the object, or at the place where that is to go."""
     if findings.image is not None:
         on_the_way = senses.obstruction(findings.image, waypoints, arm.at_neutral)
         if on_the_way is not None:
             return on_the_way
-    part, target = assignment.part, assignment.target
-    if part is None or target is None:
+    if assignment.part is None:
         return None
-    return senses.occupant(findings.image or senses.look(), part, target, arm.at_neutral)
+    image = findings.image or senses.look()
+    return senses.occupant(
+        image, assignment.part, findings.sighting, assignment.target, arm.at_neutral
+    )
 
 
 def waypoints_of(steps: Sequence[Step]) -> list[ToolPose]:

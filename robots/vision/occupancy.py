@@ -12,20 +12,42 @@ from robots.body import CameraImage
 from robots.catalogue import Part
 from robots.link.messages import Location
 from robots.vision.color_model import Segmentation
+from robots.vision.head import HeadSighting
 from robots.vision.obstruction import Clearance, Obstruction, Segment, near
-from robots.vision.projection import Points, heights, unproject
+from robots.vision.projection import Points, heights, pixels_covered, unproject
 
 _RIM = np.ones((5, 5), np.uint8)
 """Colours mix at a part's rim; so much wider it hides none of what is beside it."""
 
+_COVERED_SHARE = 0.7
+"""Something covers a part of whose top less than this is seen."""
+
 
 @dataclass(frozen=True, slots=True)
 class Room:
-    """The room that `part` takes at a place: upright, with its bottom at `bottom_z`."""
+    """The room that `part` takes at a place: upright, with its bottom at `bottom_z`.
+
+    `meaning` says what it is when something else is there. `around_m` is looked at beside it.
+    """
 
     part: Part
     at: Location
     bottom_z: float
+    meaning: str
+    around_m: float = 0.0
+
+
+def room_at_place(part: Part, target: Location, bottom_z: float) -> Room:
+    """Where a part is to go."""
+    return Room(part, target, bottom_z, f"is where {part.name} belongs")
+
+
+def room_above(part: Part, sighting: HeadSighting) -> Room:
+    """What has to be free over a part for the fingers to take it."""
+    at = Location(x=sighting.x, y=sighting.y, z=sighting.top_z, yaw=sighting.yaw)
+    # Of a part that is half covered the other half was measured: what covers it is beside that.
+    around_m = 0.0 if sighting.shown >= _COVERED_SHARE else min(part.size[:2]) / 2
+    return Room(part, at, sighting.top_z, f"lies on {part.name}", around_m)
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +74,7 @@ def find_occupant(
     clearance: Clearance,
     fit: Fit,
 ) -> Obstruction | None:
-    """What is in `room` that is neither its own part nor the `arm` itself."""
+    """What is in `room` that is neither its part nor the `arm` itself."""
     if image.depth_m is None:
         return None
     own = np.asarray(cv2.dilate(segmentation.mask(room.part.name), _RIM))
@@ -70,14 +92,16 @@ def find_occupant(
         position=(float(middle[0]), float(middle[1]), float(middle[2])),
         center=(float(np.median(us[inside])), float(np.median(vs[inside]))),
         area_px=area_px,
-        what=f"{shown or 'something unknown'} is where {room.part.name} belongs",
+        what=f"{shown or 'something unknown'} {room.meaning}",
     )
 
 
 def _inside(points: Points, room: Room, fit: Fit) -> NDArray[np.bool_]:
     dx, dy = points[:, 0] - room.at.x, points[:, 1] - room.at.y
     cos, sin = math.cos(room.at.yaw), math.sin(room.at.yaw)
-    half_x, half_y = (max(extent / 2 - fit.margin_m, 0.0) for extent in room.part.size[:2])
+    half_x, half_y = (
+        max(extent / 2 - fit.margin_m, 0.0) + room.around_m for extent in room.part.size[:2]
+    )
     top_z = room.bottom_z + _height_m(room.part) + fit.approach_m
     inside: NDArray[np.bool_] = (
         (np.abs(dx * cos + dy * sin) <= half_x)
@@ -93,8 +117,5 @@ def _height_m(part: Part) -> float:
 
 def _floor_px(image: CameraImage, room: Room) -> float:
     """How many pixels the floor of a room would cover in the picture."""
-    to_room = np.array([room.at.x, room.at.y, room.bottom_z]) - image.pose[:3, 3]
-    distance_m = float(np.linalg.norm(to_room))
-    slant = abs(float(to_room[2])) / distance_m
-    area_m2 = room.part.size[0] * room.part.size[1]
-    return area_m2 * slant * (image.focal_px / distance_m) ** 2
+    at = (room.at.x, room.at.y, room.bottom_z)
+    return pixels_covered(image, at, room.part.size[:2])

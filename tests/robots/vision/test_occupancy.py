@@ -6,12 +6,13 @@ from drawn_scene import PARTS, TABLE_Z, DrawnScene, Resting
 from scripted_body import trained_model
 
 from robots.link.messages import Location
+from robots.vision.head import locate
 from robots.vision.obstruction import Clearance, Obstruction
-from robots.vision.occupancy import Fit, Room, find_occupant
+from robots.vision.occupancy import Fit, Room, find_occupant, room_above, room_at_place
 
 MODEL = trained_model()
-BAR_ROOM = Room(PARTS["pink_bar"], Location(x=0.535, y=-0.12), TABLE_Z)
-TOP_ROOM = Room(PARTS["purple_top"], Location(x=0.535, y=-0.05), TABLE_Z + 0.08)
+BAR_ROOM = room_at_place(PARTS["pink_bar"], Location(x=0.535, y=-0.12), TABLE_Z)
+TOP_ROOM = room_at_place(PARTS["purple_top"], Location(x=0.535, y=-0.05), TABLE_Z + 0.08)
 LEGS = {
     "green_leg": Resting(0.46, -0.05, TABLE_Z),
     "blue_leg": Resting(0.61, -0.05, TABLE_Z),
@@ -62,3 +63,18 @@ def test_the_arm_over_the_place_is_no_occupant() -> None:
     above = (np.array([0.535, -0.12, TABLE_Z]), np.array([0.535, -0.12, TABLE_Z + 0.4]))
     assert check(DrawnScene(grey_boxes=[box])) is not None
     assert check(DrawnScene(grey_boxes=[box]), arm=(above,)) is None
+
+
+@pytest.mark.parametrize(("on_it", "free"), [(0.04, False), (None, True)])
+def test_what_lies_on_a_part_is_seen(on_it: float | None, free: bool) -> None:
+    parts = {"pink_bar": Resting(0.5, -0.3, TABLE_Z), "green_leg": Resting(0.58, -0.3, TABLE_Z)}
+    if on_it is not None:
+        parts["yellow_bar"] = Resting(0.54, -0.3, TABLE_Z + on_it, 1.2)
+    image = DrawnScene(parts).picture()
+    segmentation = MODEL.segment(image.bgr)
+    sighting = locate(image, segmentation, PARTS["pink_bar"])
+    assert sighting is not None
+    room = room_above(PARTS["pink_bar"], sighting)
+    found = find_occupant(image, segmentation, room, (), Clearance(), Fit())
+    assert (found is None) is free
+    assert free or found.what == "yellow_bar lies on pink_bar"

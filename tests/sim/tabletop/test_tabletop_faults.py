@@ -151,6 +151,22 @@ def test_a_place_that_is_taken_is_seen_cleared_and_then_filled() -> None:
     assert expect(driver, Look(object="o2", expect="in_reach", within_s=1.0)) is True
 
 
+def test_a_part_under_another_is_freed_and_then_picked() -> None:
+    start = LAID_OUT.objects["o1"].pose
+    driver = make_driver()
+    driver.send(by_ann(Act.MOVE, object="o2", to=Pose(x=start.x + 0.03, y=start.y + 0.02)))
+    driver.start("o1", "p1")
+    raised = driver.run_until_issue()
+    assert (raised.issue, raised.step) == ("blocked", 0)
+    assert "o2 lies on o1" in raised.detection.explanation
+    driver.run()
+    driver.send(by_ann(Act.RELEASE, object="o1", place="p1"))
+    assert expect(driver, Look(object="o1", expect="way_clear", within_s=2.0)) is True
+    driver.send(Resume(execution="e1"))
+    driver.run()
+    assert len(driver.of(Finished)) == 1
+
+
 def test_what_is_handed_over_is_not_put_on_another_part() -> None:
     driver = make_driver()
     driver.send(by_ann(Act.STEAL, object="o1"))
