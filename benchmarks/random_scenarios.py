@@ -16,6 +16,7 @@ import asyncio
 import faulthandler
 import json
 import logging
+import math
 import os
 import sys
 import time
@@ -185,7 +186,7 @@ def where_parts_rest(
     world = {} if snapshot is None else snapshot["world"]
     if "parts" in world:
         return {
-            name: None if part["stolen"] else tuple(part["rest"]["position"])
+            name: None if part["stolen"] else _rest_of(part["rest"])
             for name, part in world["parts"].items()
         }
     height_m = started.scene["table"]["height"]
@@ -194,8 +195,14 @@ def where_parts_rest(
         pose = each["pose"]
         start = (pose["x"], pose["y"], height_m if pose["z"] is None else pose["z"])
         x, y, z = world.get("moved", {}).get(name, start)[:3]
-        resting[name] = None if name in world.get("gone", []) else (x, y, z)
+        resting[name] = None if name in world.get("gone", []) else Rest(x, y, z)
     return resting
+
+
+def _rest_of(pose: dict[str, Any]) -> Rest:
+    tilt_x, tilt_y, _, _ = pose["quaternion"]
+    upright = 1.0 - 2.0 * (tilt_x**2 + tilt_y**2)
+    return Rest(*pose["position"], lean_rad=math.acos(min(max(upright, -1.0), 1.0)))
 
 
 def _print_events(events: Iterable[ev.Event]) -> None:

@@ -29,7 +29,8 @@ _MOST_READINGS = 6
 class Looker:
     """What a look works with.
 
-    `way` are the poses that the held execution has still to go through; `execution` its id.
+    `way` are the poses that the held execution has still to go through; `execution` its id,
+    `destination` its object and where that goes.
     `may_move`: the arm may go to neutral to free the head camera's view.
     """
 
@@ -39,6 +40,7 @@ class Looker:
     execution: str | None
     way: list[ToolPose]
     may_move: bool
+    destination: tuple[Part, Location | None] | None = None
 
     def free_view(self) -> Routine[None]:
         """Move the arm out of the head camera's view if that is allowed."""
@@ -96,7 +98,7 @@ class InReach:
 
 
 class WayClear:
-    """Nothing presses against the arm, and nothing unknown is where it has to go."""
+    """Nothing presses against the arm or is where it has to go, object and place are free."""
 
     def __init__(self, looker: Looker) -> None:
         self._looker = looker
@@ -104,11 +106,18 @@ class WayClear:
     def is_fulfilled(self) -> bool:
         if self._looker.arm.body.contact_force_n() > _CLEAR_FORCE_N:
             return False
-        senses, way = self._looker.senses, self._looker.way
-        here = self._looker.arm.tool_pose()
-        if here is not None and not self._looker.arm.at_neutral:
+        senses, way, arm = self._looker.senses, self._looker.way, self._looker.arm
+        here = arm.tool_pose()
+        if here is not None and not arm.at_neutral:
             way = [here, *way]
-        return senses.obstruction(senses.look(), way, self._looker.arm.at_neutral) is None
+        image = senses.look()
+        if senses.obstruction(image, way, arm.at_neutral) is not None:
+            return False
+        if self._looker.destination is None:
+            return True
+        part, target = self._looker.destination
+        sighting = None if senses.holds(part.name) else senses.sight(part, image)
+        return senses.occupant(image, part, sighting, target, arm.at_neutral) is None
 
 
 def look_as_told(

@@ -363,6 +363,7 @@ class Robot:
             report=self._report,
             execution=None if held is None else held.id,
             way=[] if held is None else held.way,
+            destination=None if held is None else held.destination,
             may_move=may_move and not self._senses.holds(),
         )
 

@@ -9,7 +9,7 @@ from robots.body import Body, CameraImage, ToolPose
 from robots.catalogue import Catalogue, Part
 from robots.clip import Clip
 from robots.grasp import grasp_of
-from robots.link.messages import Position, Sighting
+from robots.link.messages import Location, Position, Sighting
 from robots.vision.color_model import ColorModel, Segmentation
 from robots.vision.forearm import GripReading, GripState, GripTolerances, GripWatch
 from robots.vision.head import HeadSighting, locate
@@ -20,6 +20,7 @@ from robots.vision.obstruction import (
     corridor,
     find_obstruction,
 )
+from robots.vision.occupancy import Fit, find_occupant, room_above, room_at_place
 
 HEAD = "head"
 FOREARM = "forearm"
@@ -50,11 +51,13 @@ class Senses:
         catalogue: Catalogue,
         tolerances: GripTolerances | None = None,
         clearance: Clearance | None = None,
+        fit: Fit | None = None,
     ) -> None:
         self._body = body
         self._model = model
         self._tolerances = tolerances
         self._clearance = clearance or Clearance()
+        self._fit = fit or Fit()
         self._seen: _Seen | None = None
         self.catalogue = catalogue
         self.grip: GripWatch | None = None
@@ -148,6 +151,28 @@ class Senses:
             self.catalogue.table.height,
             self._clearance,
         )
+
+    def occupant(
+        self,
+        image: CameraImage,
+        part: Part,
+        sighting: HeadSighting | None,
+        target: Location | None,
+        arm_is_away: bool,
+    ) -> Obstruction | None:
+        """What lies on `part`, seen at `sighting`, or in the room that it needs at `target`."""
+        rooms = []
+        if sighting is not None:
+            rooms.append(room_above(part, sighting))
+        if target is not None:
+            rooms.append(room_at_place(part, target, self.catalogue.height_of(target)))
+        arm = () if arm_is_away else (self._own_arm(),)
+        segmentation = self._understand(image).segmentation
+        found = (
+            find_occupant(image, segmentation, room, arm, self._clearance, self._fit)
+            for room in rooms
+        )
+        return next((each for each in found if each is not None), None)
 
     def _own_arm(self) -> Segment:
         """From the tool point back through the forearm camera, which is mounted on the arm."""

@@ -18,6 +18,7 @@ from server.api import (
     live_socket,
     metrics,
     pictures,
+    reference,
     robots,
     runs,
     session,
@@ -53,6 +54,7 @@ ROUTES = (
     metrics,
     helper_socket,
     live_socket,
+    reference,
     console,
 )
 
@@ -113,7 +115,7 @@ def described_app(lifespan: Lifespan | None = None) -> FastAPI:
         version=version("mend"),
         description=DESCRIPTION,
         lifespan=_entered(lifespan),
-        docs_url="/docs",
+        docs_url=None,  # see server.api.reference
         redoc_url=None,
     )
     for module in ROUTES:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from robots.link.messages import Intervene
 from robots.robot import TaskProgress
-from tasks.intervention import Intervention
+from tasks.intervention import Act, Intervention
 from tasks.scenario import ScriptedIntervention, Trigger
 from tasks.scene import StrictModel
 
@@ -64,8 +64,16 @@ class PendingInterventions:
         self._queued.append(queued)
 
     def withdraw(self, handled: str | None) -> None:
-        """Nobody needs to do any more what was queued for an object, or to clear the way."""
-        self._queued = [each for each in self._queued if each.do.object not in (None, handled)]
+        """Nobody needs to do any more what was queued for an object.
+
+        Who promised to get out of the way still does: an arm that has only just touched somebody
+        may take its way for free.
+        """
+        self._queued = [
+            each
+            for each in self._queued
+            if each.do.act is Act.RELEASE or each.do.object not in (None, handled)
+        ]
 
     def take_due(self, time_s: float, progress: TaskProgress | None) -> list[Deed]:
         """Those that are due now; they are no longer pending."""

@@ -57,7 +57,7 @@ def deed(
         return None
     delay_s = person.delay_s + (person.late_s if late < person.late else 0.0)
     if act is Act.RELEASE:
-        return Deed(Intervention(act=act), delay_s)
+        return Deed(Intervention(act=act, object=promise.object, place=promise.place), delay_s)
     if promise.object is None:
         return None
     handled = promise.object

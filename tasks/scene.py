@@ -58,6 +58,13 @@ class Table(StrictModel):
     center: tuple[Metres, Metres] = (0.70, -0.10)
     size: tuple[Length, Length] = (0.70, 1.30)
 
+    def is_under(self, x: float, y: float) -> bool:
+        """Whether a point of the plane is over the table."""
+        return (
+            abs(x - self.center[0]) <= self.size[0] / 2
+            and abs(y - self.center[1]) <= self.size[1] / 2
+        )
+
 
 class Scatter(StrictModel):
     """How far a world may move an object's start pose, uniformly, by its seed."""

@@ -30,6 +30,7 @@ from robots.link.messages import (
     Finished,
     Holding,
     IssueDetected,
+    Location,
     ReportBody,
     Resumed,
     StepStarted,
@@ -108,6 +109,12 @@ class Execution:
         if self._plan is None:
             return []
         return waypoints_of(self._plan.steps[max(self._step, self._plan.first) - 1 :])
+
+    @property
+    def destination(self) -> tuple[Part, Location | None] | None:
+        """The object and where it goes; None for a behavior without."""
+        part = self._assignment.part
+        return None if part is None else (part, self._assignment.target)
 
     # --- Routines -----------------------------------------------------------------------------
 

@@ -1,4 +1,4 @@
-"""`blocked`: something is in the arm's way, seen before it moves or felt while it does."""
+"""`blocked`: something is in the arm's way or at the object's place, seen or felt."""
 
 from collections.abc import Sequence
 from typing import ClassVar
@@ -18,7 +18,7 @@ class BlockedParameters(StrictModel):
 
 
 class Blocked(Monitor[BlockedParameters]):
-    """Raises `blocked` from before step 1 to step 8."""
+    """Raises `blocked` from before step 1 (by what is seen) to step 8 (by what is felt)."""
 
     issue: ClassVar[str] = "blocked"
     start_step: ClassVar[int] = BEFORE_FIRST_STEP
@@ -41,7 +41,7 @@ class Blocked(Monitor[BlockedParameters]):
                 camera="head",
                 center=view.obstruction.center,
                 area_px=view.obstruction.area_px,
-                explanation=f"something unknown is in the arm's way at ({x:.2f}, {y:.2f}, {z:.2f})",
+                explanation=f"{view.obstruction.what} at ({x:.2f}, {y:.2f}, {z:.2f})",
             )
         return None
 

@@ -3,15 +3,17 @@
 from typing import ClassVar
 
 from robots.link.messages import Detection
-from robots.monitors.monitor import BEFORE_FIRST_STEP, Meanwhile, Monitor, MonitorView
+from robots.monitors.monitor import (
+    BEFORE_FIRST_STEP,
+    Meanwhile,
+    Monitor,
+    MonitorView,
+    NoParameters,
+)
 from tasks.scene import StrictModel
 
 
-class MissingParameters(StrictModel):
-    """It has none."""
-
-
-class Missing(Monitor[MissingParameters]):
+class Missing(Monitor[NoParameters]):
     """Raises `missing` before step 1."""
 
     issue: ClassVar[str] = "missing"
@@ -19,7 +21,7 @@ class Missing(Monitor[MissingParameters]):
     stop_step: ClassVar[int] = BEFORE_FIRST_STEP
     meanwhile: ClassVar[Meanwhile] = Meanwhile.DO_NOT_START
     camera: ClassVar[str | None] = "head"
-    parameters: ClassVar[type[StrictModel]] = MissingParameters
+    parameters: ClassVar[type[StrictModel]] = NoParameters
 
     def check(self, view: MonitorView) -> Detection | None:
         if view.part is None or view.sighting is not None or view.grip is not None:

@@ -19,6 +19,10 @@ BEFORE_FIRST_STEP = 0
 P = TypeVar("P", bound=StrictModel)
 
 
+class NoParameters(StrictModel):
+    """The settings of a monitor that has none."""
+
+
 class Meanwhile(StrEnum):
     """What the robot does once the issue is raised."""
 

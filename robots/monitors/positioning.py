@@ -3,22 +3,18 @@
 from typing import ClassVar
 
 from robots.link.messages import Detection
-from robots.monitors.monitor import Meanwhile, Monitor, MonitorView
+from robots.monitors.monitor import Meanwhile, Monitor, MonitorView, NoParameters
 from tasks.scene import StrictModel
 
 
-class PositioningParameters(StrictModel):
-    """It has none."""
-
-
-class Positioning(Monitor[PositioningParameters]):
+class Positioning(Monitor[NoParameters]):
     """Raises `positioning` at step 5; the robot goes on slowly."""
 
     issue: ClassVar[str] = "positioning"
     start_step: ClassVar[int] = 5
     stop_step: ClassVar[int] = 5
     meanwhile: ClassVar[Meanwhile] = Meanwhile.SLOW_DOWN
-    parameters: ClassVar[type[StrictModel]] = PositioningParameters
+    parameters: ClassVar[type[StrictModel]] = NoParameters
 
     def check(self, view: MonitorView) -> Detection | None:
         if not view.needs_help or view.part is None:

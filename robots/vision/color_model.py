@@ -79,6 +79,12 @@ class Segmentation:
             self._of_any = np.where(self._labels > 0, 255, 0).astype(np.uint8)
         return self._of_any
 
+    def shown_at(self, us: NDArray[np.intp], vs: NDArray[np.intp]) -> str | None:
+        """The object that most of some pixels show; None if it is less than half of them."""
+        counts = np.bincount(self._labels[vs, us], minlength=len(self._names) + 1)
+        name, label = max(self._names.items(), key=lambda each: int(counts[each[1]]))
+        return name if counts[label] * 2 >= max(len(us), 1) else None
+
 
 class ColorModel:
     """Hue-saturation histograms per object, each bin given to the object that has most of it."""

@@ -13,7 +13,7 @@ from robots.grasp import half_turn
 from robots.link.messages import Sighting
 from robots.vision.blob import Blob, Mask, find_blob
 from robots.vision.color_model import Segmentation
-from robots.vision.projection import Points, unproject
+from robots.vision.projection import Points, pixels_covered, unproject
 from robots.vision.rectangle import TOP_TOLERANCE_M, measure_rectangle
 
 _LAYER_M = 0.004
@@ -35,6 +35,7 @@ class HeadSighting:
     (x, y, z) is the bottom centre, `yaw` of the part's own x axis (in [-pi/2, pi/2): parts look
     the same after half a turn), `top_z` the height of its top surface. `complete` is False when
     part of the top is hidden or outside the picture: then the centre is that of what is seen.
+    `shown` is the share of the top that is seen.
     """
 
     x: float
@@ -43,6 +44,7 @@ class HeadSighting:
     yaw: float
     top_z: float
     complete: bool
+    shown: float
     blob: Blob
     time: float
 
@@ -84,6 +86,8 @@ def locate(image: CameraImage, segmentation: Segmentation, part: Part) -> HeadSi
         yaw=seen.yaw,
         top_z=top_z,
         complete=complete,
+        shown=np.count_nonzero(on_top)
+        / pixels_covered(image, (*seen.center, top_z), part.size[:2]),
         blob=blob,
         time=image.time,
     )

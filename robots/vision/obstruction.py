@@ -33,11 +33,15 @@ class Clearance:
 
 @dataclass(frozen=True, slots=True)
 class Obstruction:
-    """Something unknown in the way: its middle in the base frame and in the picture."""
+    """Something in the way: its middle in the base frame and in the picture.
+
+    `what` says what it is and of what it is in the way.
+    """
 
     position: tuple[float, float, float]
     center: tuple[float, float]
     area_px: int
+    what: str = "something unknown is in the arm's way"
 
 
 def corridor(waypoints: Sequence[ToolPose]) -> list[Segment]:
@@ -63,9 +67,9 @@ def find_obstruction(
     high = heights(image) > table_z + clearance.above_table_m
     vs, us = np.nonzero(high & (np.asarray(known) == 0))
     points = unproject(image, us, vs)
-    inside = _near(points, way, clearance.radius_m)
+    inside = near(points, way, clearance.radius_m)
     if arm:
-        inside &= ~_near(points, arm, clearance.arm_radius_m)
+        inside &= ~near(points, arm, clearance.arm_radius_m)
     canvas = np.zeros(image.bgr.shape[:2], np.uint8)
     canvas[vs[inside], us[inside]] = 255
     clean = cv2.morphologyEx(canvas, cv2.MORPH_OPEN, np.ones((3, 3), np.uint8))
@@ -81,12 +85,13 @@ def find_obstruction(
     )
 
 
-def _near(points: Points, segments: Sequence[Segment], radius_m: float) -> NDArray[np.bool_]:
-    near = np.zeros(len(points), np.bool_)
+def near(points: Points, segments: Sequence[Segment], radius_m: float) -> NDArray[np.bool_]:
+    """Which points are within `radius_m` of any of the segments."""
+    found = np.zeros(len(points), np.bool_)
     for start, end in segments:
         along = end - start
         length_2 = float(along @ along)
         share = (points - start) @ along / length_2 if length_2 > 0 else np.zeros(len(points))
         closest = start + np.clip(share, 0.0, 1.0)[:, None] * along
-        near |= ((points - closest) ** 2).sum(axis=1) <= radius_m * radius_m
-    return near
+        found |= ((points - closest) ** 2).sum(axis=1) <= radius_m * radius_m
+    return found

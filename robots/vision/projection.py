@@ -52,3 +52,13 @@ def project(image: CameraImage, points: Points) -> Points:
     depth = np.maximum(optical[:, 2], NEAR_M)
     pixels: Points = optical[:, :2] / depth[:, None] * image.focal_px + np.array(image.center_px)
     return pixels
+
+
+def pixels_covered(
+    image: CameraImage, center: tuple[float, float, float], size: tuple[float, float]
+) -> float:
+    """How many pixels a level rectangle of `size` metres around `center` covers."""
+    to_eye = image.pose[:3, 3] - np.array(center)
+    distance_m = float(np.linalg.norm(to_eye))
+    slant = abs(float(to_eye[2])) / distance_m
+    return size[0] * size[1] * slant * (image.focal_px / distance_m) ** 2

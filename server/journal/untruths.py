@@ -7,20 +7,31 @@ really are it is told by somebody who may know, the judge of a simulated world.
 import math
 import re
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 from server.journal import events as ev
 from tasks.definition import BehaviorNode, TaskTreeDefinition
 from tasks.resolution import Resolution
 from tasks.scene import Place, Scene
 
-Rest = tuple[float, float, float]
-"""Where the bottom centre of a part rests, in the base frame, metres."""
+
+@dataclass(frozen=True, slots=True)
+class Rest:
+    """Where the bottom centre of a part rests (base frame, metres), and how far it leans."""
+
+    x: float
+    y: float
+    z: float
+    lean_rad: float = 0.0
+
 
 AT_PLACE_M = 0.02
+LEVEL_RAD = 0.05
 AWAY_M = 0.06
 TOO_HIGH_M = 0.04
-"""A part within `AT_PLACE_M` of its place is there. Farther from it than `AWAY_M` in the plane, or
-`TOO_HIGH_M` in height, it is not; in between (it lies askew on something) both may be said."""
+"""A part within `AT_PLACE_M` of its place that leans less than `LEVEL_RAD` is there. Farther from
+it than `AWAY_M` in the plane, or `TOO_HIGH_M` in height, it is not; in between (it lies askew on
+something, or hangs down where a leg was taken from under it) both may be said."""
 
 
 def find_untruths(events: Sequence[ev.Event], resting: Mapping[str, Rest | None]) -> list[str]:
@@ -54,15 +65,17 @@ def _untrue_missing(
         leaf = leaves[done.node]
         if leaf.object is None or leaf.place is None:
             continue
-        aside_m, above_m = _offset(resting[leaf.object], scene, scene.places[leaf.place])
-        there = aside_m <= AT_PLACE_M and above_m <= AT_PLACE_M
+        rest = resting[leaf.object]
+        aside_m, above_m = _offset(rest, scene, scene.places[leaf.place])
+        level = rest is not None and rest.lean_rad <= LEVEL_RAD
+        there = level and aside_m <= AT_PLACE_M and above_m <= AT_PLACE_M
         away = aside_m > AWAY_M or above_m > TOO_HIGH_M
         if there and done.node in told and not blocked:
             wrong.append(f"'{leaf.object}' is told to be missing, but is at its place")
         if away and done.node not in told:
             wrong.append(f"'{leaf.object}' is not at its place, but is not told to be missing")
-        others = [rest for name, rest in resting.items() if name != leaf.object]
-        taken = any(_offset(rest, scene, scene.places[leaf.place])[0] <= AWAY_M for rest in others)
+        others = [other for name, other in resting.items() if name != leaf.object]
+        taken = any(_offset(each, scene, scene.places[leaf.place])[0] <= AWAY_M for each in others)
         # A part put where another one lies is no untruth: nobody looks before the last look.
         if away and not taken and not _disturbed_since(events, done.node, leaf.object):
             wrong.append(f"'{done.node}' is done, but '{leaf.object}' never was at its place")
@@ -74,8 +87,8 @@ def _offset(rest: Rest | None, scene: Scene, place: Place) -> tuple[float, float
     if rest is None:
         return math.inf, math.inf
     height_m = scene.table.height if place.pose.z is None else place.pose.z
-    in_plane_m = math.hypot(rest[0] - place.pose.x, rest[1] - place.pose.y)
-    return in_plane_m, abs(rest[2] - height_m)
+    in_plane_m = math.hypot(rest.x - place.pose.x, rest.y - place.pose.y)
+    return in_plane_m, abs(rest.z - height_m)
 
 
 def _somebody_stands_there(events: Sequence[ev.Event]) -> bool:

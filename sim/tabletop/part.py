@@ -4,6 +4,7 @@ import math
 from dataclasses import dataclass
 from enum import StrEnum
 
+from sim.footprint import Footprint
 from tasks.scene import SceneObject
 
 
@@ -88,6 +89,15 @@ class TablePart:
     def height(self) -> float:
         """From its bottom to its highest point."""
         return self.size[2] + (self.knob[2] if self.knob else 0.0)
+
+    @property
+    def footprint(self) -> Footprint:
+        """The ground that it covers."""
+        return self.footprint_at(self.pose)
+
+    def footprint_at(self, pose: PartPose) -> Footprint:
+        """The ground that it would cover."""
+        return Footprint(pose.x, pose.y, pose.yaw, self.size[0], self.size[1])
 
     @property
     def grasp_box(self) -> GraspBox:

@@ -9,19 +9,8 @@ from tasks.scene import Table
 
 FLOOR_M = 0.0
 
-_TOUCH_M = 0.006
-"""Footprints that overlap less than this slide past each other, as loosely fitting parts do."""
-
 _SINK_M = 0.015
 """A part let go this far inside another is still put on top of it."""
-
-
-def is_on_table(table: Table, x: float, y: float) -> bool:
-    """Whether a point of the plane is over the table."""
-    return (
-        abs(x - table.center[0]) <= table.size[0] / 2
-        and abs(y - table.center[1]) <= table.size[1] / 2
-    )
 
 
 def settle(parts: Iterable[TablePart], table: Table) -> None:
@@ -54,31 +43,10 @@ def support_height(
     part: TablePart, pose: PartPose, others: Sequence[TablePart], table: Table
 ) -> float:
     """The height of the highest surface under a part let go at `pose`."""
-    height = table.height if is_on_table(table, pose.x, pose.y) else FLOOR_M
+    covered = part.footprint_at(pose)
+    height = table.height if table.is_under(pose.x, pose.y) else FLOOR_M
     for other in others:
         top = other.pose.z + other.size[2]
-        if height < top <= pose.z + _SINK_M and _overlap(part, pose, other):
+        if height < top <= pose.z + _SINK_M and covered.overlaps(other.footprint):
             height = top
     return height
-
-
-def _overlap(part: TablePart, pose: PartPose, other: TablePart) -> bool:
-    """Whether two footprints overlap: no edge direction of either separates them."""
-    dx, dy = other.pose.x - pose.x, other.pose.y - pose.y
-    if math.hypot(dx, dy) > (_diagonal(part) + _diagonal(other)) / 2:
-        return False
-    for yaw in (pose.yaw, other.pose.yaw):
-        for axis in (yaw, yaw + math.pi / 2):
-            distance = abs(dx * math.cos(axis) + dy * math.sin(axis))
-            room = _half_extent(part, axis - pose.yaw) + _half_extent(other, axis - other.pose.yaw)
-            if distance > room - _TOUCH_M:
-                return False
-    return True
-
-
-def _diagonal(part: TablePart) -> float:
-    return math.hypot(part.size[0], part.size[1])
-
-
-def _half_extent(part: TablePart, direction: float) -> float:
-    return (abs(part.size[0] * math.cos(direction)) + abs(part.size[1] * math.sin(direction))) / 2

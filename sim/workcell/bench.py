@@ -79,13 +79,6 @@ class Bench:
             if part.at_rest():
                 part.last_rest = part.pose()
 
-    def is_on_table(self, x: float, y: float) -> bool:
-        table = self.scene.table
-        return (
-            abs(x - table.center[0]) <= table.size[0] / 2
-            and abs(y - table.center[1]) <= table.size[1] / 2
-        )
-
     def _start_pose(self, part: Part, rng: np.random.Generator | None) -> PartPose:
         pose, scatter = part.definition.pose, self.scene.scatter
         z = (self.scene.table.height if pose.z is None else pose.z) + _DROP_M

@@ -4,12 +4,13 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
+from robots.body import Matrix4
 from robots.link.messages import ShownObject, ShownPose
 from robots.motion.curve import JointCurve
 from robots.motion.kinematics import KinematicChain
 from sim.workcell.physics import Client, Point
 
-_HALF_M = (0.05, 0.05, 0.20)
+_HALF_M = (0.05, 0.05, 0.05)
 _COLOR = (0.25, 0.27, 0.30, 1.0)
 _AWAY: Point = (-3.0, -2.0, 1.0)
 _UPRIGHT = (0.0, 0.0, 0.0, 1.0)
@@ -21,8 +22,16 @@ _HOLD_FORCE_N = 250.0
 _ABOVE_TOOL_M = 0.045
 """Higher than what hangs between the fingers reaches, low enough to meet the fingers."""
 
-_CLEAR_M = 0.02
+_CLEAR_OF_ARM_M = 0.02
+_CLEAR_OF_PARTS_M = 0.035
 _SAMPLES = 40
+
+_SINKS_M = 0.06
+"""An arm that is about to sink by more than this comes down on what is held just under it."""
+_BEHIND_CAMERA = (1.2, 1.35, 1.5)
+"""How far from wrist to camera and beyond: what is held there hides nothing from the camera."""
+_LOWER_M = 0.01
+_LOWEST_M = 0.12
 
 
 class Obstacle:
@@ -70,10 +79,11 @@ class Obstacle:
         client.resetBaseVelocity(self._body_id, [0.0] * 3, [0.0] * 3)
         client.changeConstraint(self._hold, center, maxForce=_HOLD_FORCE_N)
 
-    def is_clear_of(self, bodies: Iterable[int]) -> bool:
-        """Whether there is room between it and every one of some bodies."""
-        return not any(
-            self._client.getClosestPoints(self._body_id, body, _CLEAR_M) for body in bodies
+    def is_clear_of(self, arm: int, parts: Iterable[int]) -> bool:
+        """Whether there is room between it and the arm, and more to every one of some parts."""
+        near = self._client.getClosestPoints
+        return not near(self._body_id, arm, _CLEAR_OF_ARM_M) and not any(
+            near(self._body_id, part, _CLEAR_OF_PARTS_M) for part in parts
         )
 
 
@@ -88,3 +98,16 @@ def centers_ahead(tool: KinematicChain, ways: Iterable[JointCurve]) -> Iterator[
         for parameter in np.linspace(0.0, way.length, _SAMPLES):
             x, y, z = tool.pose(way.at(float(parameter)))[:3, 3]
             yield center_above(float(x), float(y), float(z))
+
+
+def sinks(tool: KinematicChain, here: Matrix4, ways: Iterable[JointCurve]) -> bool:
+    """Whether the tool is about to go down."""
+    return any(tool.pose(way.end)[2, 3] < here[2, 3] - _SINKS_M for way in ways)
+
+
+def centers_below(wrist: Point, camera: Point) -> Iterator[Point]:
+    """Under the forearm, behind its camera as seen from the wrist, the nearest to it first."""
+    for share in _BEHIND_CAMERA:
+        x, y, z = (float(each) for each in np.array(wrist) * (1 - share) + np.array(camera) * share)
+        for below_m in np.arange(0.0, _LOWEST_M, _LOWER_M):
+            yield x, y, z - _HALF_M[2] - float(below_m)

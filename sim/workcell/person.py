@@ -1,7 +1,7 @@
 """The person beside the table: carries out interventions, some over many cycles."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,28 +9,33 @@ from numpy.typing import NDArray
 
 from robots.catalogue import Part as CataloguePart
 from robots.grasp import grasp_of
+from sim.acts import PULL_M_PER_S, Acts, Impossible
+from sim.footprint import Footprint
 from sim.workcell.bench import Bench
 from sim.workcell.body import PERIOD_S, WorkcellBody
 from sim.workcell.hand import HOLD_FORCE_N, PULL_FORCE_N, Hand
-from sim.workcell.obstacle import Obstacle, center_above, centers_ahead
+from sim.workcell.obstacle import (
+    Obstacle,
+    center_above,
+    centers_ahead,
+    centers_below,
+    sinks,
+)
 from sim.workcell.parts import Part, PartPose
 from sim.workcell.physics import Client, Point
 from sim.workcell.pr2 import Pr2
-from tasks.intervention import Act, Intervention
+from tasks.scene import Pose
 
-PULL_M_S = 0.4
 PULLED_OUT_M = 0.5
 _CLEAR_M = 0.15
 """So far a part is pulled out from between the fingers, or lifted off the table, before it turns
 up or sideways."""
 
-HAND_OVER_S = 15.0
-"""How long somebody holds a part out to the robot."""
-
 _GRIPPED_CYCLES = 24
 """So long both fingers press on a part before the person trusts the grip."""
 
 _LEVEL = 0.3
+_UPRIGHT_RAD = 0.2
 _DROP_M = 0.001
 _DEFAULT_TOOL_HEIGHT_M = 0.20
 """Above the table: where the tool passes on most ways."""
@@ -38,10 +43,6 @@ _DEFAULT_TOOL_HEIGHT_M = 0.20
 
 Direction = NDArray[np.float64]
 _UP: Direction = np.array([0.0, 0.0, 1.0])
-
-
-class _Impossible(Exception):  # noqa: N818 - an answer to the one who asked, not a failure
-    """An intervention cannot be carried out; the message says why."""
 
 
 @dataclass(slots=True)
@@ -70,10 +71,11 @@ class HandOver:
     gripped_cycles: int = 0
 
 
-class Person:
+class Person(Acts[Part, PartPose]):
     """Everybody who is not the robot."""
 
     def __init__(self, client: Client, bench: Bench, pr2: Pr2, body: WorkcellBody) -> None:
+        super().__init__(bench.scene, bench.parts)
         self._client = client
         self._bench = bench
         self._pr2 = pr2
@@ -81,23 +83,6 @@ class Person:
         self._pulls: list[_Pull] = []
         self.hand_over: HandOver | None = None
         self.obstacle = Obstacle(client)
-        self._acts: dict[Act, Callable[[Intervention], None]] = {
-            Act.STEAL: self._steal,
-            Act.PUT_BACK: self._put_back,
-            Act.PLACE: self._place,
-            Act.HAND_OVER: self._hand_over,
-            Act.MOVE: self._move,
-            Act.BLOCK: self._block,
-            Act.RELEASE: self._release,
-        }
-
-    def intervene(self, intervention: Intervention) -> str:
-        """Start an intervention; an empty string, or one sentence that says why not."""
-        try:
-            self._acts[intervention.act](intervention)
-        except _Impossible as reason:
-            return str(reason)
-        return ""
 
     def act(self) -> None:
         """Go on with what takes longer than one cycle."""
@@ -128,81 +113,80 @@ class Person:
         part.hide()
         self.hand_over = HandOver(part, until_s)
 
-    # --- Acts ---------------------------------------------------------------------------------
+    # --- What a workcell adds -----------------------------------------------------------------
 
-    def _steal(self, intervention: Intervention) -> None:
-        part = self._part(intervention)
-        if part.stolen or self.is_pulling(part):
-            raise _Impossible(f"'{part.name}' is gone already")
-        if self._is_waiting_to_hand_over(part) or intervention.manner == "vanish":
-            self._take(part)
+    def _now_s(self) -> float:
+        return self._body.time_s()
+
+    def _is_gone(self, part: Part) -> bool:
+        return part.stolen or self.is_pulling(part)
+
+    def _is_held(self, part: Part) -> bool:
+        return self._bench.held(self._pr2) is part
+
+    def _offered(self) -> Part | None:
+        return None if self.hand_over is None else self.hand_over.part
+
+    def _stands_in_the_way(self) -> bool:
+        return self.obstacle.center is not None
+
+    def _stand_in_the_way(self) -> None:
+        parts = [part.body_id for part in self._bench.parts.values()]
+        for center in self._spots_in_the_way():
+            self.obstacle.stand_at(center)
+            if self.obstacle.is_clear_of(self._pr2.body_id, parts):
+                return
+        self.obstacle.withdraw()
+        raise Impossible("there is no room to stand in the arm's way")
+
+    def _spots_in_the_way(self) -> Iterator[Point]:
+        """Where the arm will meet somebody, the soonest first: on its task, or going home."""
+        *task, home = self._body.ways_ahead()
+        tool = self._pr2.tool.pose(self._pr2.arm_joints())
+        yield from centers_ahead(self._pr2.tool, task)
+        if sinks(self._pr2.tool, tool, task):
+            x, y, z = (float(each) for each in self._pr2.forearm_camera_pose()[:3, 3])
+            yield from centers_below(self._pr2.wrist(tool), (x, y, z))
+        yield from centers_ahead(self._pr2.tool, [home])
+        yield self._between_starts_and_places()
+
+    def _step_aside(self) -> None:
+        self.obstacle.withdraw()
+
+    def _take_away(self, part: Part, *, by_force: bool) -> None:
+        out_of_sight = self._is_waiting_to_hand_over(part)
+        self._take(part)
+        if out_of_sight or not by_force:
             part.take_away()
             return
-        self._take(part)
         hand = Hand.take_hold(self._client, part, PULL_FORCE_N)
         sideways = self._way_out(part)
-        if self._bench.held(self._pr2) is part:
+        if self._is_held(part):
             self._pulls.append(_Pull(hand, first=sideways, then=_UP))
         else:
             self._pulls.append(_Pull(hand, first=_UP, then=sideways))
 
-    def _put_back(self, intervention: Intervention) -> None:
-        part = self._part(intervention)
-        self._put(part, part.start, f"where '{part.name}' started")
+    def _start_of(self, part: Part) -> PartPose:
+        return part.start
 
-    def _place(self, intervention: Intervention) -> None:
-        part = self._part(intervention)
-        if intervention.place is None:
-            raise _Impossible(f"it does not say at which place to put '{part.name}'")
-        place = self._bench.scene.places.get(intervention.place)
-        if place is None:
-            raise _Impossible(f"the scene has no place '{intervention.place}'")
-        pose = PartPose.at(place.pose, self._bench.scene.table.height)
-        self._put(part, pose, f"at '{intervention.place}'")
+    def _pose_at(self, pose: Pose) -> PartPose:
+        return PartPose.at(pose, self._bench.scene.table.height)
 
-    def _move(self, intervention: Intervention) -> None:
-        part, to = self._part(intervention), intervention.to
-        assert to is not None  # required by the act itself
-        if not self._bench.is_on_table(to.x, to.y):
-            raise _Impossible(f"({to.x}, {to.y}) is not on the table")
-        pose = PartPose.at(to, self._bench.scene.table.height)
-        self._put(part, pose, f"at ({to.x}, {to.y})")
+    def _footprint(self, part: Part) -> Footprint | None:
+        if part.stolen or self.has_in_hand(part) or self._is_held(part):
+            return None
+        pose, size = part.pose(), part.definition.size
+        x, y, _ = pose.position
+        if pose.tilt_rad > _UPRIGHT_RAD:
+            # Whichever side it lies on, it covers no more than this.
+            return Footprint(x, y, 0.0, max(size), max(size))
+        return Footprint(x, y, pose.yaw, size[0], size[1])
 
-    def _hand_over(self, intervention: Intervention) -> None:
-        part = self._part(intervention)
-        if self._bench.held(self._pr2) is part:
-            raise _Impossible(f"the robot holds '{part.name}' already")
-        if self.hand_over is not None and self.hand_over.part is not part:
-            raise _Impossible(f"somebody is handing over '{self.hand_over.part.name}' already")
-        self._take(part)
-        self.hold_out(part, self._body.time_s() + HAND_OVER_S)
-
-    def _block(self, _: Intervention) -> None:
-        if self.obstacle.center is not None:
-            raise _Impossible("somebody stands in the way already")
-        bodies = [self._pr2.body_id, *(part.body_id for part in self._bench.parts.values())]
-        for center in (
-            *centers_ahead(self._pr2.tool, self._body.ways_ahead()),
-            self._between_starts_and_places(),
-        ):
-            self.obstacle.stand_at(center)
-            if self.obstacle.is_clear_of(bodies):
-                return
-        self.obstacle.withdraw()
-        raise _Impossible("there is no room to stand in the arm's way")
-
-    def _release(self, _: Intervention) -> None:
-        if self.obstacle.center is None:
-            raise _Impossible("nobody stands in the way")
-        self.obstacle.withdraw()
+    def _top_z(self, part: Part) -> float:
+        _, high = self._client.getAABB(part.body_id)
+        return float(high[2])
 
     # --- How ----------------------------------------------------------------------------------
-
-    def _part(self, intervention: Intervention) -> Part:
-        part = self._bench.parts.get(intervention.object or "")
-        if part is None:
-            raise _Impossible(f"the scene has no object '{intervention.object}'")
-        return part
 
     def _is_waiting_to_hand_over(self, part: Part) -> bool:
         hand_over = self.hand_over
@@ -216,18 +200,18 @@ class Person:
         if self.hand_over is not None and self.hand_over.part is part:
             self._end_hand_over(self.hand_over)
 
-    def _put(self, part: Part, pose: PartPose, where: str) -> None:
+    def _put(self, part: Part, at: PartPose, where: str) -> None:
         """Put a part down, out of the robot's fingers if need be, unless something is there."""
         before, was_stolen = part.pose(), part.stolen
-        x, y, z = pose.position
-        part.put(PartPose((x, y, z + _DROP_M), pose.quaternion))
+        x, y, z = at.position
+        part.put(PartPose((x, y, z + _DROP_M), at.quaternion))
         problem = self._conflict(part)
         if problem is None:
             self._take(part)
             return
         part.put(before)
         part.stolen = was_stolen
-        raise _Impossible(f"{problem} is {where}, so '{part.name}' cannot be put there")
+        raise Impossible(f"{problem} is {where}, so '{part.name}' cannot be put there")
 
     def _conflict(self, part: Part) -> str | None:
         other = next(self._bench.intersecting(part), None)
@@ -268,7 +252,7 @@ class Person:
     # --- What goes on over cycles -------------------------------------------------------------
 
     def _go_on_pulling(self, pull: _Pull) -> None:
-        pull.go_on(PULL_M_S * PERIOD_S)
+        pull.go_on(PULL_M_PER_S * PERIOD_S)
         if pull.pulled_m >= PULLED_OUT_M:
             self._pulls.remove(pull)
             pull.hand.let_go()

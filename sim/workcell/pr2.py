@@ -8,7 +8,7 @@ import numpy as np
 
 from robots.body import Matrix4
 from robots.motion.kinematics import Joints, KinematicChain
-from sim.workcell.physics import Client
+from sim.workcell.physics import Client, Point
 from sim.workcell.quiet import silenced
 from sim.workcell.robot_model import (
     ARM_JOINTS,
@@ -45,6 +45,8 @@ _FINGER_SPIN_FRICTION = 0.02
 _FINGER_LENGTH_M = 0.09137
 _FINGER_OFFSET_M = 0.00495
 """From a finger's joint to its tip's joint, along and across the closed finger."""
+
+_WRIST_TO_TOOL_M = 0.18
 
 _PAD_M = 0.005
 """Contacts this near to the inner side of a finger are with what is between the fingers."""
@@ -130,6 +132,11 @@ class Pr2:
     def forearm_camera_pose(self) -> Matrix4:
         """The forearm camera's optical frame, from the measured joint angles."""
         return self._forearm_camera.pose(self.arm_joints()[: len(_FOREARM_JOINTS)])
+
+    def wrist(self, tool: Matrix4) -> Point:
+        """Where the wrist is behind a tool pose."""
+        x, y, z = (float(each) for each in tool[:3, 3] - _WRIST_TO_TOOL_M * tool[:3, 0])
+        return x, y, z
 
     def finger_angles(self) -> tuple[float, float]:
         """The measured angles of the left and the right finger."""

@@ -3,8 +3,9 @@
 import math
 
 import pytest
+from drawn_scene import Resting
 from robot_bench import RobotBench
-from scripted_body import HAND_OVER, NEUTRAL, STARTS
+from scripted_body import HAND_OVER, NEUTRAL, PLACES, STARTS
 
 from robots.link.messages import (
     Finished,
@@ -196,6 +197,25 @@ def test_what_stands_in_the_way_of_a_held_start_is_seen_until_it_is_gone() -> No
     bench.body.grey_boxes.clear()
     bench.look(expect="way_clear", within_s=1.0)
     assert looked(bench).fulfilled is True
+
+
+def test_another_part_at_the_place_blocks_until_it_is_taken_away() -> None:
+    bench = RobotBench()
+    left = PLACES["left"]
+    bench.body.parts["yellow_bar"] = Resting(left.x, left.y, yaw=left.yaw)
+    bench.start("pink_bar")
+    bench.run()
+    issue = bench.of(IssueDetected)[0]
+    assert (issue.issue, issue.step) == ("blocked", 0)
+    assert "yellow_bar is where pink_bar belongs" in issue.detection.explanation
+    bench.look(expect="way_clear", within_s=1.0)
+    assert looked(bench).fulfilled is False
+    bench.body.parts["yellow_bar"] = STARTS["yellow_bar"]
+    bench.look(expect="way_clear", within_s=1.0)
+    assert looked(bench).fulfilled is True
+    bench.send(Resume(execution="e1"))
+    bench.run()
+    assert bench.kinds()[-1] == "finished"
 
 
 def test_a_new_command_replaces_a_look_without_a_word() -> None:

@@ -22,7 +22,7 @@ from robots.vision.obstruction import Obstruction
 from tasks.plugins import load_plugins
 
 BLOB = Blob((50.0, 60.0), 200, (40, 50, 20, 20), np.zeros((120, 160), np.uint8))
-SEEN = HeadSighting(0.5, -0.2, TABLE_Z, 0.0, TABLE_Z + 0.04, True, BLOB, 0.0)
+SEEN = HeadSighting(0.5, -0.2, TABLE_Z, 0.0, TABLE_Z + 0.04, True, 1.0, BLOB, 0.0)
 VIEW = MonitorView(
     time_s=1.0,
     step=0,

@@ -1,5 +1,6 @@
 """The end of a run is compared with its events and with where the parts really are."""
 
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -18,7 +19,7 @@ LEAVES = [{"behavior": "pick_and_place", "object": part, "place": spot} for part
 
 def at_places() -> dict[str, Rest | None]:
     poses = {part: SCENE.places[spot].pose for part, spot in NAMES}
-    return {part: (pose.x, pose.y, SCENE.table.height) for part, pose in poses.items()}
+    return {part: Rest(pose.x, pose.y, SCENE.table.height) for part, pose in poses.items()}
 
 
 def with_end(events: list[ev.Event], **changed: Any) -> list[ev.Event]:
@@ -38,13 +39,13 @@ async def test_a_finished_run_with_all_parts_at_their_places_is_true() -> None:
     assert find_untruths(events, at_places()) == []
 
 
-@pytest.mark.parametrize("rest", [None, (0.0, 0.0, 0.7), "on_top"])
+@pytest.mark.parametrize("rest", [None, Rest(0.0, 0.0, 0.7), "on_top"])
 async def test_a_part_that_is_not_at_its_place_must_be_told_to_be_missing(rest: Any) -> None:
     events = with_end(await events_of("then"), missing=[])
     resting = at_places()
-    if rest == "on_top":
-        x, y, z = resting["part_2"] or (0.0, 0.0, 0.0)
-        rest = (x, y, z + 0.05)
+    at_place = resting["part_2"]
+    if rest == "on_top" and at_place is not None:
+        rest = replace(at_place, z=at_place.z + 0.05)
     untruths = find_untruths(events, {**resting, "part_2": rest})
     assert "'part_2' is not at its place, but is not told to be missing" in untruths
     assert not any("part_1" in each for each in untruths)
@@ -56,6 +57,16 @@ async def test_a_part_at_its_place_must_not_be_told_to_be_missing() -> None:
     assert find_untruths(events, at_places()) == [
         "'part_1' is told to be missing, but is at its place"
     ]
+
+
+async def test_a_part_that_leans_at_its_place_may_be_told_to_be_missing() -> None:
+    told = ev.MissingPart(node="/0", name="part_1", object="part_1", place="spot_1")
+    at_place = at_places()["part_1"]
+    assert at_place is not None
+    hanging = replace(at_place, z=at_place.z - 0.0197, lean_rad=0.33)
+    for missing in ([told], []):
+        events = with_end(await events_of("then"), missing=missing)
+        assert find_untruths(events, {**at_places(), "part_1": hanging}) == []
 
 
 async def test_what_somebody_hides_may_be_told_to_be_missing() -> None:

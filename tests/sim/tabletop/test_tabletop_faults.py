@@ -132,6 +132,55 @@ def test_somebody_in_the_way_is_felt_and_when_gone_the_robot_goes_on(step: int) 
     assert [each.issue for each in driver.issues] == ["blocked"]
 
 
+def test_a_place_that_is_taken_is_seen_cleared_and_then_filled() -> None:
+    driver = make_driver()
+    driver.send(by_ann(Act.PLACE, object="o2", place="p1"))
+    driver.start("o1", "p1")
+    raised = driver.run_until_issue()
+    assert (raised.issue, raised.step) == ("blocked", 0)
+    assert "o2 is where o1 belongs" in raised.detection.explanation
+    driver.run()
+    clear = Look(object="o1", place="p1", expect="way_clear", within_s=2.0)
+    assert expect(driver, clear) is False
+    driver.send(by_ann(Act.RELEASE, object="o1", place="p1"))
+    assert expect(driver, clear) is True
+    driver.send(Resume(execution="e1"))
+    driver.run()
+    assert len(driver.of(Finished)) == 1
+    assert expect(driver, Look(object="o1", place="p1", expect="at_place")) is True
+    assert expect(driver, Look(object="o2", expect="in_reach", within_s=1.0)) is True
+
+
+def test_a_part_under_another_is_freed_and_then_picked() -> None:
+    start = LAID_OUT.objects["o1"].pose
+    driver = make_driver()
+    driver.send(by_ann(Act.MOVE, object="o2", to=Pose(x=start.x + 0.03, y=start.y + 0.02)))
+    driver.start("o1", "p1")
+    raised = driver.run_until_issue()
+    assert (raised.issue, raised.step) == ("blocked", 0)
+    assert "o2 lies on o1" in raised.detection.explanation
+    driver.run()
+    driver.send(by_ann(Act.RELEASE, object="o1", place="p1"))
+    assert expect(driver, Look(object="o1", expect="way_clear", within_s=2.0)) is True
+    driver.send(Resume(execution="e1"))
+    driver.run()
+    assert len(driver.of(Finished)) == 1
+
+
+def test_what_is_handed_over_is_not_put_on_another_part() -> None:
+    driver = make_driver()
+    driver.send(by_ann(Act.STEAL, object="o1"))
+    driver.start("o1", "p1")
+    assert driver.run_until_issue().issue == "missing"
+    driver.run()
+    driver.send(by_ann(Act.HAND_OVER, object="o1"))
+    assert expect(driver, Look(object="o1", expect="in_gripper", within_s=10.0)) is True
+    driver.send(by_ann(Act.PLACE, object="o2", place="p1"))
+    driver.send(Resume(execution="e1"))
+    driver.run()
+    assert [each.issue for each in driver.issues] == ["missing", "blocked"]
+
+
 def test_a_robot_that_stays_blocked_can_still_retreat() -> None:
     driver = make_driver(LAID_OUT, during(5, 0.3, Intervention(act=Act.BLOCK)))
     driver.start("o1", "p1")

@@ -6,7 +6,7 @@ import pytest
 from tabletop_hands import TABLE_M, Hands
 
 from robots.body import ToolPose
-from sim.tabletop.person import HAND_OVER_S
+from sim.acts import HAND_OVER_S
 from sim.tabletop.world import TabletopWorld
 from tasks.intervention import Act, Intervention
 from tasks.scene import Pose

@@ -6,7 +6,17 @@ from collections.abc import Sequence
 import pytest
 from workcell_hands import TABLE_M, distance_m
 
-from robots.link.messages import Finished, IssueDetected, Location, ReportBody, Start
+from robots.link.messages import (
+    Finished,
+    Intervene,
+    IssueDetected,
+    Location,
+    Look,
+    Looked,
+    ReportBody,
+    Resume,
+    Start,
+)
 from sim.simulated_agent import SimulatedAgent
 from sim.workcell.adapter import adapter
 from sim.workcell.parts import PartPose
@@ -23,9 +33,12 @@ PLACE = PartPose.upright(0.55, 0.0, TABLE_M, 0.0)
 
 
 def place_bar(
-    scene: Scene, options: dict[str, object], interventions: Sequence[ScriptedIntervention] = ()
+    scene: Scene,
+    options: dict[str, object],
+    interventions: Sequence[ScriptedIntervention] = (),
+    beforehand: Sequence[Intervention] = (),
 ) -> tuple[SimulatedAgent, list[ReportBody]]:
-    """Let a robot place the bar; what it reported."""
+    """Let a robot place the bar, after what people did `beforehand`; what it reported."""
     setup = WorldSetup(
         robot="r1",
         scene=scene,
@@ -37,6 +50,8 @@ def place_bar(
     agent = adapter.create_agent(setup)
     reports: list[ReportBody] = []
     agent.attach(lambda body, _time, _world: reports.append(body), lambda _picture: None)
+    for number, each in enumerate(beforehand):
+        agent.handle(f"before {number}", Intervene(intervention=each, by="ann"))
     agent.handle(
         "1",
         Start(
@@ -94,9 +109,30 @@ def test_a_stolen_part_is_noticed(
     assert [each.issue for each in reports if isinstance(each, IssueDetected)] == [issue]
 
 
-def test_somebody_in_the_way_is_noticed(scene: Scene) -> None:
+@pytest.mark.parametrize("options", [{}, {"renderer": "fast", "camera_noise": 3.0, "light": 1.0}])
+def test_a_place_that_is_taken_is_seen_cleared_and_then_filled(
+    scene: Scene, options: dict[str, object]
+) -> None:
+    taken = Intervention(act=Act.PLACE, object="leg", place="left")
+    agent, reports = place_bar(scene, options, beforehand=[taken])
+    issues = [each for each in reports if isinstance(each, IssueDetected)]
+    assert [each.issue for each in issues] == ["blocked"]
+    assert "leg is where bar belongs" in issues[0].detection.explanation
+    freed = Intervention(act=Act.RELEASE, object="bar", place="left")
+    look = Look(object="bar", place="left", expect="way_clear", within_s=1.0)
+    for command in (look, Intervene(intervention=freed, by="ann"), look, Resume(execution="e")):
+        agent.handle("next", command)
+        while agent.advance(1.0):
+            pass
+    assert [each.fulfilled for each in reports if isinstance(each, Looked)] == [False, True]
+    assert isinstance(reports[-1], Finished)
+    assert distance_m(world_of(agent).parts["bar"].pose(), PLACE) < 0.003
+
+
+@pytest.mark.parametrize("fraction", [0.2, 0.7, 0.9])
+def test_somebody_in_the_way_is_met_however_late_they_come(scene: Scene, fraction: float) -> None:
     blocked = ScriptedIntervention(
-        when=Trigger(object="bar", step=5, fraction=0.2), do=Intervention(act=Act.BLOCK)
+        when=Trigger(object="bar", step=5, fraction=fraction), do=Intervention(act=Act.BLOCK)
     )
     agent, reports = place_bar(scene, {}, [blocked])
     assert [each.issue for each in reports if isinstance(each, IssueDetected)] == ["blocked"]

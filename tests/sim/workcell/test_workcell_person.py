@@ -7,8 +7,8 @@ import pytest
 from workcell_hands import TABLE_M, Hands, distance_m, do
 
 from robots.body import ToolPose
+from sim.acts import HAND_OVER_S
 from sim.workcell.parts import PartPose
-from sim.workcell.person import HAND_OVER_S
 from sim.workcell.world import WorkcellWorld
 from tasks.intervention import Act
 from tasks.scene import Pose

@@ -1,0 +1,80 @@
+"""Whether a place is free: what is in the room for a part is seen, its neighbours are let be."""
+
+import numpy as np
+import pytest
+from drawn_scene import PARTS, TABLE_Z, DrawnScene, Resting
+from scripted_body import trained_model
+
+from robots.link.messages import Location
+from robots.vision.head import locate
+from robots.vision.obstruction import Clearance, Obstruction
+from robots.vision.occupancy import Fit, Room, find_occupant, room_above, room_at_place
+
+MODEL = trained_model()
+BAR_ROOM = room_at_place(PARTS["pink_bar"], Location(x=0.535, y=-0.12), TABLE_Z)
+TOP_ROOM = room_at_place(PARTS["purple_top"], Location(x=0.535, y=-0.05), TABLE_Z + 0.08)
+LEGS = {
+    "green_leg": Resting(0.46, -0.05, TABLE_Z),
+    "blue_leg": Resting(0.61, -0.05, TABLE_Z),
+}
+
+
+def check(scene: DrawnScene, room: Room = BAR_ROOM, arm=()) -> Obstruction | None:
+    image = scene.picture()
+    return find_occupant(image, MODEL.segment(image.bgr), room, arm, Clearance(), Fit())
+
+
+@pytest.mark.parametrize("noise", [0.0, 4.0])
+@pytest.mark.parametrize(
+    "at", [Resting(0.535, -0.12, TABLE_Z), Resting(0.56, -0.115, TABLE_Z, 0.6)]
+)
+def test_another_part_at_the_place_is_seen_and_named(at: Resting, noise: float) -> None:
+    found = check(DrawnScene({"yellow_bar": at, **LEGS}, noise=noise))
+    assert found is not None
+    assert np.allclose(found.position[:2], (0.535, -0.12), atol=0.04)
+    assert found.what == "yellow_bar is where pink_bar belongs"
+
+
+def test_something_unknown_at_the_place_is_seen() -> None:
+    found = check(DrawnScene(grey_boxes=[((0.55, -0.12, TABLE_Z), (0.05, 0.05, 0.05))]))
+    assert found is not None
+    assert found.what == "something unknown is where pink_bar belongs"
+
+
+@pytest.mark.parametrize("noise", [0.0, 4.0])
+@pytest.mark.parametrize(
+    ("parts", "room"),
+    [
+        ({}, BAR_ROOM),
+        (LEGS, BAR_ROOM),
+        ({**LEGS, "yellow_bar": Resting(0.535, 0.02, TABLE_Z)}, BAR_ROOM),
+        ({**LEGS, "pink_bar": Resting(0.55, -0.14, TABLE_Z, 0.4)}, BAR_ROOM),
+        (LEGS, TOP_ROOM),
+        ({**LEGS, "pink_bar": Resting(0.535, -0.12, TABLE_Z)}, TOP_ROOM),
+    ],
+    ids=["nothing", "legs beside", "a bar beside", "itself", "legs below", "all below"],
+)
+def test_a_free_place_is_free(parts: dict[str, Resting], room: Room, noise: float) -> None:
+    assert check(DrawnScene(parts, noise=noise), room) is None
+
+
+def test_the_arm_over_the_place_is_no_occupant() -> None:
+    box = ((0.535, -0.12, TABLE_Z + 0.03), (0.08, 0.08, 0.2))
+    above = (np.array([0.535, -0.12, TABLE_Z]), np.array([0.535, -0.12, TABLE_Z + 0.4]))
+    assert check(DrawnScene(grey_boxes=[box])) is not None
+    assert check(DrawnScene(grey_boxes=[box]), arm=(above,)) is None
+
+
+@pytest.mark.parametrize(("on_it", "free"), [(0.04, False), (None, True)])
+def test_what_lies_on_a_part_is_seen(on_it: float | None, free: bool) -> None:
+    parts = {"pink_bar": Resting(0.5, -0.3, TABLE_Z), "green_leg": Resting(0.58, -0.3, TABLE_Z)}
+    if on_it is not None:
+        parts["yellow_bar"] = Resting(0.54, -0.3, TABLE_Z + on_it, 1.2)
+    image = DrawnScene(parts).picture()
+    segmentation = MODEL.segment(image.bgr)
+    sighting = locate(image, segmentation, PARTS["pink_bar"])
+    assert sighting is not None
+    room = room_above(PARTS["pink_bar"], sighting)
+    found = find_occupant(image, segmentation, room, (), Clearance(), Fit())
+    assert (found is None) is free
+    assert free or found.what == "yellow_bar lies on pink_bar"

@@ -1,0 +1,24 @@
+"""What people have still to do: what a robot sees done is not done again."""
+
+import pytest
+
+from robots.link.messages import Intervene
+from sim.interventions import PendingInterventions
+from tasks.intervention import Act, Intervention
+
+
+@pytest.mark.parametrize(
+    ("do", "still_done"),
+    [
+        (Intervention(act=Act.PUT_BACK, object="cup"), False),
+        (Intervention(act=Act.PUT_BACK, object="bowl"), True),
+        (Intervention(act=Act.RELEASE, object="cup", place="left"), True),
+    ],
+)
+def test_only_who_stands_in_the_way_acts_after_the_robot_saw_it_done(
+    do: Intervention, still_done: bool
+) -> None:
+    pending = PendingInterventions([])
+    pending.queue("c1", Intervene(intervention=do, by="helper"), 3.0)
+    pending.withdraw("cup")
+    assert bool(pending.take_due(3.0, None)) is still_done
