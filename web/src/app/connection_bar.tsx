@@ -1,7 +1,7 @@
 // Says calmly that the connection is lost, since when, and that nothing is lost with it.
 import { hurry, lostSince } from "../state/service";
 
-const CLOCK = new Intl.DateTimeFormat(undefined, { timeStyle: "medium" });
+const CLOCK = new Intl.DateTimeFormat("en-GB", { timeStyle: "medium" });
 
 export function ConnectionBar() {
   const since = lostSince.value;

@@ -11,6 +11,8 @@ export type Session = "unknown" | "needs_token" | "needs_name" | "in";
 export const session = signal<Session>("unknown");
 export const tokenRequired = signal(false);
 export const connection = signal<ConnectionState>("connecting");
+/** When the connection was lost, as `Date.now()`; null while there is one. */
+export const lostSince = signal<number | null>(null);
 export const runs = signal<ReadonlyMap<string, RunSummary>>(new Map());
 
 const STATUS_AFTER: Readonly<Partial<Record<Event["type"], RunStatus>>> = {
@@ -44,7 +46,7 @@ export async function begin(): Promise<void> {
     tokenRequired.value = required;
     session.value = required && !signed_in ? "needs_token" : helperName.value === "" ? "needs_name" : "in";
   } catch {
-    connection.value = "lost";
+    becomes("lost");
     window.setTimeout(() => void begin(), 1000);
     return;
   }
@@ -69,6 +71,11 @@ export async function call(name: string): Promise<void> {
   await begin();
 }
 
+/** Look for the service now rather than after the next pause. */
+export function hurry(): void {
+  socket?.hurry();
+}
+
 /** Send a command over the helper's socket. */
 export function command(message: Parameters<HelperSocket["send"]>[0]): ReturnType<HelperSocket["send"]> {
   return socket === null ? Promise.reject(new rest.Unreachable()) : socket.send(message);
@@ -79,12 +86,16 @@ function connect(): void {
   socket = new HelperSocket(helperName.value, {
     snapshot: takeSnapshot,
     event: takeEvent,
-    state: (state) => {
-      connection.value = state;
-    },
+    state: becomes,
     mayReconnect,
   });
   socket.connect();
+}
+
+function becomes(state: ConnectionState): void {
+  connection.value = state;
+  if (state === "lost") lostSince.value ??= Date.now();
+  else if (state !== "connecting") lostSince.value = null;
 }
 
 async function mayReconnect(): Promise<boolean> {
@@ -124,5 +135,11 @@ export async function refreshRuns(): Promise<void> {
   runs.value = next;
 }
 
+rest.onSignedOut(() => {
+  if (session.value !== "in") return;
+  socket?.close();
+  socket = null;
+  session.value = "needs_token";
+});
 window.addEventListener("online", () => socket?.hurry());
 window.addEventListener("offline", () => socket?.drop());

@@ -85,7 +85,7 @@ function Line({ line, wrong }: { line: string; wrong: boolean }) {
   );
 }
 
-function useLinesInSight(frame: RefObject<HTMLDivElement>, count: number): [number, number] {
+function useLinesInSight(frame: RefObject<HTMLDivElement | null>, count: number): [number, number] {
   const [sight, setSight] = useState({ top: 0, height: 800 });
   useEffect(() => {
     const element = frame.current as HTMLDivElement;
@@ -103,7 +103,7 @@ function useLinesInSight(frame: RefObject<HTMLDivElement>, count: number): [numb
 }
 
 /** Make the text area as large as its text; only the browser knows how wide its longest line is. */
-function useFit(area: RefObject<HTMLTextAreaElement>, text: string, height: number): void {
+function useFit(area: RefObject<HTMLTextAreaElement | null>, text: string, height: number): void {
   useLayoutEffect(() => {
     const element = area.current as HTMLTextAreaElement;
     element.style.height = `${height}px`;
@@ -113,8 +113,8 @@ function useFit(area: RefObject<HTMLTextAreaElement>, text: string, height: numb
 }
 
 function useJump(
-  frame: RefObject<HTMLDivElement>,
-  area: RefObject<HTMLTextAreaElement>,
+  frame: RefObject<HTMLDivElement | null>,
+  area: RefObject<HTMLTextAreaElement | null>,
   lines: readonly string[],
   jump: Jump | null,
 ): void {

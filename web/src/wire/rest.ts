@@ -7,12 +7,15 @@ import type {
   Problem as ProblemDocument,
   RobotView,
   RunRequest,
+  RunStatus,
   RunSummary,
   RunView,
   Scenario,
   SessionView,
+  TreeCheck,
   TreeSummary,
   TreeView,
+  WorldView,
 } from "./types";
 
 /** The service refused: what it said in its problem document (RFC 9457). */
@@ -35,16 +38,31 @@ export class Unreachable extends Error {
 }
 
 const JSON_TYPE = "application/json";
+const SESSION = "/api/session";
 
-async function call<T>(method: string, path: string, body?: unknown, type = JSON_TYPE): Promise<T> {
-  const init: RequestInit = { method };
+let whenRefused: () => void = () => undefined;
+
+/** Hear when the service no longer knows this browser's session. */
+export function onSignedOut(listener: () => void): void {
+  whenRefused = listener;
+}
+
+async function call<T>(
+  method: string,
+  path: string,
+  body?: unknown,
+  { type = JSON_TYPE, signal }: { type?: string; signal?: AbortSignal } = {},
+): Promise<T> {
+  const init: RequestInit = signal === undefined ? { method } : { method, signal };
   if (body !== undefined) {
     init.headers = { "Content-Type": type };
     init.body = type === JSON_TYPE ? JSON.stringify(body) : String(body);
   }
   const response = await fetch(path, init).catch(() => {
+    signal?.throwIfAborted();
     throw new Unreachable();
   });
+  if (response.status === 401 && path !== SESSION) whenRefused();
   if (!response.ok) throw await refusal(response);
   return (response.status === 204 ? undefined : await response.json()) as T;
 }
@@ -58,12 +76,15 @@ async function refusal(response: Response): Promise<Refusal> {
 
 const segment = encodeURIComponent;
 
-export const session = () => call<SessionView>("GET", "/api/session");
-export const signIn = (token: string) => call<void>("POST", "/api/session", { token });
-export const signOut = () => call<void>("DELETE", "/api/session");
+export const session = () => call<SessionView>("GET", SESSION);
+export const signIn = (token: string) => call<void>("POST", SESSION, { token });
+export const signOut = () => call<void>("DELETE", SESSION);
 
-export const runs = (limit = 100, offset = 0) =>
-  call<RunSummary[]>("GET", `/api/runs?limit=${limit}&offset=${offset}`);
+export const runs = (limit = 100, offset = 0, statuses: readonly RunStatus[] = []) =>
+  call<RunSummary[]>(
+    "GET",
+    `/api/runs?limit=${limit}&offset=${offset}${statuses.map((status) => `&status=${status}`).join("")}`,
+  );
 export const run = (id: string) => call<RunView>("GET", `/api/runs/${segment(id)}`);
 export const startRun = (request: RunRequest) => call<RunView>("POST", "/api/runs", request);
 export const pauseRun = (id: string) => call<RunView>("POST", `/api/runs/${segment(id)}/pause`);
@@ -93,11 +114,15 @@ export const answer = (id: string, prompt: string, value: "yes" | "no", helper: 
   call<Answered>("POST", `/api/dialogues/${segment(id)}/answers`, { prompt, answer: value, helper });
 
 export const robots = () => call<RobotView[]>("GET", "/api/robots");
+export const worlds = () => call<WorldView[]>("GET", "/api/worlds");
 export const scenarios = () => call<Scenario[]>("GET", "/api/scenarios");
 export const trees = () => call<TreeSummary[]>("GET", "/api/trees");
 export const tree = (name: string) => call<TreeView>("GET", `/api/trees/${segment(name)}`);
 export const saveTree = (text: string, name?: string) =>
   call<TreeView>("POST", "/api/trees", name === undefined ? { text } : { name, text });
+/** Check a task file without keeping it. */
+export const checkTree = (text: string, signal: AbortSignal) =>
+  call<TreeCheck>("POST", "/api/trees/check", { text }, { signal });
 export const deleteTree = (name: string) => call<void>("DELETE", `/api/trees/${segment(name)}`);
 
 export const picturePath = (picture: string) => `/api/pictures/${segment(picture)}`;
