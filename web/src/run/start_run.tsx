@@ -65,7 +65,13 @@ async function read(): Promise<Choices> {
     rest.scenarios(),
     rest.robots(),
   ]);
-  return { trees, worlds, scenarios, robots };
+  return { trees, worlds: worlds.toSorted((a, b) => rank(a) - rank(b)), scenarios, robots };
+}
+
+/** Simulated worlds first, and of these the fullest. */
+function rank({ name }: WorldView): number {
+  if (name === PREFERRED_WORLD) return 0;
+  return name === "live" ? 2 : 1;
 }
 
 function StartForm({ tree, choices }: { tree: string | null; choices: Choices }) {
@@ -214,7 +220,7 @@ function AnswerChoice({ scripted, filled, fill, mistakes }: PartProps & { script
   return (
     <fieldset class="panel" aria-describedby="start-answers-mistake">
       <legend>Who answers the robot</legend>
-      <div class="choices">
+      <div class="choices pairs">
         {ways.map(([value, name, about, possible]) => (
           <label key={value} class="choice">
             <input type="radio" name="answers" disabled={!possible} checked={filled.answers === value} onChange={() => fill({ answers: value })} />

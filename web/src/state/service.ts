@@ -9,6 +9,8 @@ import { takeDialogueEvent, takeDialogues } from "./questions";
 export type Session = "unknown" | "needs_token" | "needs_name" | "in";
 
 export const session = signal<Session>("unknown");
+/** Whether there was a session here that the service no longer knows. */
+export const sessionEnded = signal(false);
 export const tokenRequired = signal(false);
 export const connection = signal<ConnectionState>("connecting");
 /** When the connection was lost, as `Date.now()`; null while there is one. */
@@ -55,6 +57,7 @@ export async function begin(): Promise<void> {
 
 export async function signIn(token: string): Promise<void> {
   await rest.signIn(token);
+  sessionEnded.value = false;
   await begin();
 }
 
@@ -101,7 +104,7 @@ function becomes(state: ConnectionState): void {
 async function mayReconnect(): Promise<boolean> {
   const found = await rest.session().catch(() => null);
   if (found === null || !found.required || found.signed_in) return true;
-  session.value = "needs_token";
+  endSession();
   return false;
 }
 
@@ -135,11 +138,14 @@ export async function refreshRuns(): Promise<void> {
   runs.value = next;
 }
 
-rest.onSignedOut(() => {
+function endSession(): void {
   if (session.value !== "in") return;
   socket?.close();
   socket = null;
+  sessionEnded.value = true;
   session.value = "needs_token";
-});
+}
+
+rest.onSignedOut(endSession);
 window.addEventListener("online", () => socket?.hurry());
 window.addEventListener("offline", () => socket?.drop());

@@ -42,6 +42,11 @@ async function begin(tree: string | null): Promise<Beginning> {
   return { saved: { text: renamed(text, copy), name: copy, note }, draft, trees };
 }
 
+function titleOf(tree: string | null, trees: readonly TreeSummary[]): string {
+  if (tree === null) return "New task tree";
+  return trees.some((each) => each.name === tree && each.built_in) ? `Copy of ${tree}` : `Edit ${tree}`;
+}
+
 function Editor({ tree, saved, draft, trees }: Beginning & { tree: string | null }) {
   const [{ text, name, note }, setDraft] = useState(draft ?? saved);
   const [jump, setJump] = useState<Jump | null>(null);
@@ -67,7 +72,7 @@ function Editor({ tree, saved, draft, trees }: Beginning & { tree: string | null
   const about = draft !== null && draft.note === "" ? "These are changes that were not saved yet." : note;
   return (
     <section class="page editor-page">
-      <h1>{tree === null ? "New task tree" : `Edit ${tree}`}</h1>
+      <h1>{titleOf(tree, trees)}</h1>
       {about !== "" && <p class="note">{about}</p>}
       <SaveForm
         tree={tree}
