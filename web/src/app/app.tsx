@@ -1,4 +1,6 @@
 // The frame of every view: who is signed in decides what is shown, the address which view.
+import { Announcer } from "../question/announcer";
+import { AskBar } from "../question/ask_bar";
 import { QuestionsView } from "../question/questions_view";
 import { SignIn } from "../sign_in/sign_in";
 import { session } from "../state/service";
@@ -21,6 +23,8 @@ export function App() {
         Skip to content
       </a>
       <Header />
+      <Announcer />
+      <AskBar />
       <main id="main" tabIndex={-1}>
         <View />
       </main>
