@@ -5,6 +5,7 @@ from typing import Literal
 
 from server.runtime.run_state import DialogueState, RunState
 from server.runtime.views import (
+    AwaitedHelp,
     DialogueView,
     NodeView,
     PromptView,
@@ -108,4 +109,13 @@ def dialogue_view(dialogue: DialogueState) -> DialogueView:
         claimed_until=dialogue.claim.until if dialogue.claim else None,
         picture=dialogue.raised.picture,
         clip=dialogue.clip,
+        detection=dialogue.raised.detection,
+        help=None if dialogue.closed else _awaited_help(dialogue),
     )
+
+
+def _awaited_help(dialogue: DialogueState) -> AwaitedHelp | None:
+    awaited = dialogue.awaiting
+    if awaited is None:
+        return None
+    return AwaitedHelp(help=awaited.help, helper=awaited.helper, until=awaited.until)

@@ -1,4 +1,6 @@
 // The frame of every view: who is signed in decides what is shown, the address which view.
+import { Announcer } from "../question/announcer";
+import { AskBar } from "../question/ask_bar";
 import { QuestionsView } from "../question/questions_view";
 import { SignIn } from "../sign_in/sign_in";
 import { session } from "../state/service";
@@ -23,10 +25,12 @@ export function App() {
       <a class="skip" href="#main">
         Skip to content
       </a>
-      <div class="top">
+<div class="top">
         <Header />
         <ConnectionBar />
       </div>
+      <Announcer />
+      <AskBar />
       <main id="main" tabIndex={-1}>
         <View />
       </main>

@@ -113,6 +113,16 @@ export const dialogue = (id: string) =>
 export const answer = (id: string, prompt: string, value: "yes" | "no", helper: string) =>
   call<Answered>("POST", `/api/dialogues/${segment(id)}/answers`, { prompt, answer: value, helper });
 
+/** Answer from a page that is being left: nobody is there any more to hear the result. */
+export function answerWhileLeaving(id: string, prompt: string, value: "yes" | "no", helper: string): void {
+  void fetch(`/api/dialogues/${segment(id)}/answers`, {
+    method: "POST",
+    headers: { "Content-Type": JSON_TYPE },
+    body: JSON.stringify({ prompt, answer: value, helper }),
+    keepalive: true,
+  });
+}
+
 export const robots = () => call<RobotView[]>("GET", "/api/robots");
 export const worlds = () => call<WorldView[]>("GET", "/api/worlds");
 export const scenarios = () => call<Scenario[]>("GET", "/api/scenarios");
