@@ -25,7 +25,7 @@ export function App() {
       <a class="skip" href="#main">
         Skip to content
       </a>
-<div class="top">
+      <div class="top">
         <Header />
         <ConnectionBar />
       </div>
