@@ -102,9 +102,12 @@ function useLinesInSight(frame: RefObject<HTMLDivElement | null>, count: number)
   return [first, Math.min(count, Math.ceil((sight.top + sight.height) / LINE_PX) + LINES_AROUND)];
 }
 
-/** Make the text area as large as its text; only the browser knows how wide its longest line is. */
+const FITS_ITSELF = CSS.supports("field-sizing", "content");
+
+/** Where the browser does not, make the text area as large as its text. */
 function useFit(area: RefObject<HTMLTextAreaElement | null>, text: string, height: number): void {
   useLayoutEffect(() => {
+    if (FITS_ITSELF) return;
     const element = area.current as HTMLTextAreaElement;
     element.style.height = `${height}px`;
     element.style.width = "0";

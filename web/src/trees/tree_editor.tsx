@@ -48,13 +48,13 @@ function titleOf(tree: string | null, trees: readonly TreeSummary[]): string {
 }
 
 function Editor({ tree, saved, draft, trees }: Beginning & { tree: string | null }) {
-  const [{ text, name, note }, setDraft] = useState(draft ?? saved);
+  const [{ text, name }, setDraft] = useState(draft ?? saved);
   const [jump, setJump] = useState<Jump | null>(null);
   const checked = useChecked(text);
   const changed = text !== saved.text || name !== saved.name;
   const leaving = useUnsaved(changed);
   const edit = (next: Partial<Draft>) => {
-    const now = { text, name, note, ...next };
+    const now = { text, name, note: draft?.note ?? "", ...next };
     setDraft(now);
     if (now.text === saved.text && now.name === saved.name) dropDraft(tree);
     else keepDraft(tree, now);
@@ -69,7 +69,7 @@ function Editor({ tree, saved, draft, trees }: Beginning & { tree: string | null
     leaving.allow(() => go(address));
   };
   const wrong = new Set((checked.check?.errors ?? []).flatMap(({ line }) => (line === null ? [] : [line])));
-  const about = draft !== null && draft.note === "" ? "These are changes that were not saved yet." : note;
+  const about = draft === null ? saved.note : draft.note || "These are changes that were not saved yet.";
   return (
     <section class="page editor-page">
       <h1>{titleOf(tree, trees)}</h1>

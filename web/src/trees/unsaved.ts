@@ -1,5 +1,5 @@
 // Asks before a view with unsaved changes is left.
-import { useEffect, useRef, useState } from "preact/hooks";
+import { useLayoutEffect, useRef, useState } from "preact/hooks";
 import { guardLeaving } from "../app/router";
 
 export interface Unsaved {
@@ -13,7 +13,7 @@ export interface Unsaved {
 export function useUnsaved(changed: boolean): Unsaved {
   const [asked, setAsked] = useState<(() => void) | null>(null);
   const lift = useRef<() => void>(() => undefined);
-  useEffect(() => {
+  useLayoutEffect(() => {
     if (!changed) return;
     const stopGuard = guardLeaving((leave) => setAsked(() => leave));
     const warn = (event: BeforeUnloadEvent) => event.preventDefault();
