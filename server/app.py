@@ -20,6 +20,8 @@ from server.api import (
     robots,
     runs,
     session,
+    speech,
+    speech_socket,
     trees,
 )
 from server.api.access import Access
@@ -28,6 +30,7 @@ from server.api.parts import ObservedJournal, Parts
 from server.api.problems import Problem, answer_errors_with_problems
 from server.runtime.service import RunService
 from server.settings import Settings
+from server.speech.abilities import NO_SPEECH, SpeechAbilities
 from server.trees import ScenarioLibrary, TreeLibrary
 
 MAX_SOCKET_MESSAGE_BYTES = 4 * 1024 * 1024
@@ -43,6 +46,8 @@ ROUTES = (
     health,
     metrics,
     helper_socket,
+    speech,
+    speech_socket,
     page,
 )
 
@@ -61,6 +66,7 @@ def create_app(
     *,
     trees_library: TreeLibrary,
     scenarios: ScenarioLibrary,
+    speech_abilities: SpeechAbilities = NO_SPEECH,
     lifespan: Lifespan | None = None,
     wall_time_s: Callable[[], float] = time.time,
 ) -> FastAPI:
@@ -76,7 +82,9 @@ def create_app(
         wall_time_s=wall_time_s,
     )
     app = described_app(lifespan)
-    app.state.parts = Parts(service, journal, trees_library, scenarios, settings, access)
+    app.state.parts = Parts(
+        service, journal, trees_library, scenarios, settings, access, speech_abilities
+    )
     app.add_middleware(Gate, access=access)
     return app
 

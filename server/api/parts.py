@@ -14,6 +14,7 @@ from server.journal.subscriptions import Subscribers
 from server.journal.writer import CommitStatistics
 from server.runtime.service import RunService
 from server.settings import Settings
+from server.speech.abilities import NO_SPEECH, SpeechAbilities
 from server.trees import ScenarioLibrary, TreeLibrary
 
 MAX_SEQ = 2**63 - 1
@@ -38,6 +39,7 @@ class Parts:
     scenarios: ScenarioLibrary
     settings: Settings
     access: Access
+    speech: SpeechAbilities = NO_SPEECH
 
 
 def parts_of(connection: HTTPConnection) -> Parts:
