@@ -1,0 +1,20 @@
+"""What the robot says besides the prompts: the fixed phrases, and what the answers will do."""
+
+from collections.abc import Mapping, Sequence
+
+from server.journal.events import AnswerOption
+
+SORRY = "Sorry, please say yes or no."
+
+FIXED: Mapping[str, str] = {
+    "sorry": SORRY,
+    "commands": "You can say yes or no. You can also say: repeat, help, or stop.",
+    "buttons": "I did not understand. Please use the buttons.",
+}
+"""By the name under which their sound is served."""
+
+
+def help_text(answers: Sequence[AnswerOption]) -> str:
+    """What yes and no will each do, and what else can be said."""
+    effects = [f"If you say {each.value}: {each.effect}" for each in answers]
+    return " ".join([*effects, "You can also say: repeat, or stop."])
