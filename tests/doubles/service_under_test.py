@@ -13,6 +13,7 @@ from fastapi import FastAPI
 from server.app import create_app, serve_config
 from server.journal.sqlite import SqliteJournal
 from server.settings import Settings
+from server.speech.abilities import NO_SPEECH, SpeechAbilities
 from server.trees import JournaledTrees
 
 TOKEN = "correct-horse-battery"
@@ -38,20 +39,29 @@ class ServiceUnderTest:
         return httpx.AsyncClient(transport=transport, base_url=self.url, **arguments)
 
 
-def build(**settings: Any) -> ServiceUnderTest:
+def build(speech: SpeechAbilities = NO_SPEECH, **settings: Any) -> ServiceUnderTest:
     """A service on an empty journal in memory."""
     journal = SqliteJournal(":memory:")
     runs = FakeRuns(journal)
     chosen = Settings(port=0, **settings)
     trees = JournaledTrees(journal, TREES, check_tree)
-    app = create_app(runs, journal, chosen, trees_library=trees, scenarios=FakeScenarios())
+    app = create_app(
+        runs,
+        journal,
+        chosen,
+        trees_library=trees,
+        scenarios=FakeScenarios(),
+        speech_abilities=speech,
+    )
     return ServiceUnderTest(app, runs, journal, chosen)
 
 
 @contextlib.asynccontextmanager
-async def serving(**settings: Any) -> AsyncIterator[ServiceUnderTest]:
+async def serving(
+    speech: SpeechAbilities = NO_SPEECH, **settings: Any
+) -> AsyncIterator[ServiceUnderTest]:
     """A service behind a real socket on a free port."""
-    service = build(**settings)
+    service = build(speech, **settings)
     server = uvicorn.Server(serve_config(service.app, service.settings))
     server.config.log_level = None
     socket = server.config.bind_socket()
