@@ -11,7 +11,7 @@ from server.api.problems import ProblemError, documented
 from server.errors import NotFoundError
 from server.speech.commands import PHRASES, Command
 from server.speech.ear import NoEars
-from server.speech.phrases import FIXED, help_text
+from server.speech.phrases import FIXED, effect_text, help_text
 from server.speech.question import find_prompt
 from server.speech.voice import NoVoice, VoiceError
 
@@ -103,6 +103,23 @@ async def get_prompt_help_speech(
     if not found.answers:
         raise NotFoundError(f"the prompt {prompt} asks nothing")
     return await _sound(parts, help_text(found.answers))
+
+
+@router.get(
+    "/api/dialogues/{dialogue}/prompts/{prompt}/speech/{answer}",
+    operation_id="get_prompt_effect_speech",
+    response_class=Response,
+    responses={**WAV, **REFUSALS},
+)
+async def get_prompt_effect_speech(
+    dialogue: DialogueId, prompt: PromptId, answer: Literal["yes", "no"], parts: WithParts
+) -> Response:
+    """What one answer will do; said while it can still be taken back."""
+    found = await find_prompt(parts.runs, parts.journal, dialogue, prompt)
+    for option in found.answers:
+        if option.value == answer:
+            return await _sound(parts, effect_text(option))
+    raise NotFoundError(f"the prompt {prompt} cannot be answered '{answer}'")
 
 
 async def _sound(parts: Parts, text: str) -> Response:

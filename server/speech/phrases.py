@@ -18,3 +18,8 @@ def help_text(answers: Sequence[AnswerOption]) -> str:
     """What yes and no will each do, and what else can be said."""
     effects = [f"If you say {each.value}: {each.effect}" for each in answers]
     return " ".join([*effects, "You can also say: repeat, or stop."])
+
+
+def effect_text(answer: AnswerOption) -> str:
+    """What was answered and what that will do, for whoever may still take it back."""
+    return f"{answer.value.capitalize()}. {answer.effect}"
