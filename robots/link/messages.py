@@ -154,6 +154,22 @@ class IssueDetected(Message):
     """The picture in which the fault was seen, base64 JPEG."""
 
 
+class ClipPicture(Message):
+    """One picture of a clip, a base64 JPEG; `before_s`: how long before the fault was detected."""
+
+    before_s: Annotated[float, Field(ge=0)]
+    jpeg: str
+
+
+class ClipTaken(Message):
+    """What the forearm camera saw before an issue, oldest first; sent after the issue itself."""
+
+    type: Literal["clip"] = "clip"
+    execution: str
+    issue: str
+    pictures: Annotated[list[ClipPicture], Field(max_length=64)]
+
+
 class Holding(Message):
     """The robot has stopped and holds: after an interrupt, or of itself after a fault."""
 
@@ -220,6 +236,7 @@ class Rejected(Message):
 ReportBody = Annotated[
     StepStarted
     | IssueDetected
+    | ClipTaken
     | Holding
     | Resumed
     | Finished

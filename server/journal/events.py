@@ -131,7 +131,7 @@ class ClipRecorded(NodeEvent):
     robot: str
     issue: str
     execution: UUID
-    dialogue: UUID | None
+    dialogue: UUID
     pictures: list[ClipPicture]
 
 

@@ -238,8 +238,7 @@ class RunState:
 
     @_apply.register
     def _(self, event: ev.ClipRecorded) -> None:
-        if event.dialogue is not None:
-            self.dialogues[event.dialogue].clip = event.pictures
+        self.dialogues[event.dialogue].clip = event.pictures
 
     @_apply.register
     def _(self, event: ev.Claimed) -> None:

@@ -23,6 +23,7 @@ PARTS: dict[str, type[BaseModel]] = {
     "executing": m.ActiveExecution,
     "detection": m.Detection,
     "sighting": m.Sighting,
+    "clip_picture": m.ClipPicture,
     "shows": m.PoseLayout,
     "shown": m.ShownObject,
     "shown_pose": m.ShownPose,

@@ -98,12 +98,6 @@ def every_event() -> list[ev.Event]:
             detection=detection,
             picture=PICTURE,
         ),
-        ev.ClipRecorded(
-            **work(),
-            issue="dropped",
-            dialogue=None,
-            pictures=[ev.ClipPicture(time=1.0, picture=PICTURE)],
-        ),
         ev.RobotHolding(**robot(), at="neutral"),
         ev.DialogueOpened(**talk()),
         ev.Prompt(
@@ -115,6 +109,12 @@ def every_event() -> list[ev.Event]:
             answers=answers(),
             deadline=40.0,
             to="anna",
+        ),
+        ev.ClipRecorded(
+            **work(),
+            issue="dropped",
+            dialogue=DIALOGUE,
+            pictures=[ev.ClipPicture(time=1.0, picture=PICTURE)],
         ),
         ev.Claimed(**talk(), helper="anna", lease_until=datetime(2026, 1, 2, 3, 5, tzinfo=UTC)),
         ev.Released(**talk(), helper="anna", expired=True),
