@@ -10,12 +10,14 @@ from pydantic import BaseModel, TypeAdapter
 from pydantic.json_schema import models_json_schema
 
 from robots.link import messages as link
-from server.api import helper_messages
+from server.api import helper_messages, speech_messages
 from server.api.problems import Problem
 from server.app import described_app
 from server.journal.events import AnyEvent
+from server.poses.layout import Layout
 from server.runtime.requests import RunRequest
-from server.runtime.views import DialogueView, RobotView, RunView
+from server.runtime.views import DialogueView, RobotView, RunView, WorldView
+from server.trees import TreeCheck
 from tasks.intervention import Intervention
 from tasks.scenario import Scenario
 from tasks.scene import Scene
@@ -33,6 +35,9 @@ SCHEMAS: dict[str, Any] = {
     "run": RunView,
     "dialogue": DialogueView,
     "robot": RobotView,
+    "layout": Layout,
+    "tree_check": TreeCheck,
+    "world": WorldView,
     "problem": Problem,
     "intervention": Intervention,
     "scene": Scene,
@@ -54,7 +59,7 @@ def json_schemas() -> dict[str, dict[str, Any]]:
 
 
 def asyncapi() -> dict[str, Any]:
-    """The two WebSockets as AsyncAPI 3, from the service's point of view."""
+    """The WebSockets as AsyncAPI 3, from the service's point of view."""
     to_helpers = TO_HELPERS
     from_helpers = _members(helper_messages.ClientMessage)
     to_robots = _members(link.ServiceMessage)
@@ -62,6 +67,7 @@ def asyncapi() -> dict[str, Any]:
     # A robot's messages and the events share class names, so each socket has its own prefix.
     sockets: dict[str, Models] = {
         "helper": (*to_helpers, *from_helpers),
+        "live": (Layout, helper_messages.Error, helper_messages.Auth),
         "robot": (*to_robots, *from_robots),
     }
     schemas: dict[str, Any] = {}
@@ -72,7 +78,8 @@ def asyncapi() -> dict[str, Any]:
         "info": {
             "title": "Mend",
             "version": version("mend"),
-            "description": "The WebSockets of helpers and robots. All messages are JSON text.",
+            "description": "The WebSockets of helpers and robots. All messages are JSON text, "
+            "but for the poses of a run that is watched.",
         },
         "servers": {"local": {"host": "127.0.0.1:8080", "protocol": "ws"}},
         "channels": {
@@ -81,6 +88,16 @@ def asyncapi() -> dict[str, Any]:
                 "description": "A snapshot, then every event after it; answers and claims.",
                 "messages": _message_references("helper", sockets["helper"]),
                 "bindings": {"ws": {"query": HELPER_QUERY}},
+            },
+            "live": {
+                "address": "/ws/live",
+                "description": "Where everything in a run is: layouts, and a binary frame for "
+                "every moment.",
+                "messages": {
+                    **_message_references("live", sockets["live"]),
+                    **_reference("Frame", "live"),
+                },
+                "bindings": {"ws": {"query": LIVE_QUERY}},
             },
             "robot": {
                 "address": "/ws/robot",
@@ -91,6 +108,10 @@ def asyncapi() -> dict[str, Any]:
         "operations": {
             "sendToHelper": _operation("send", "helper", to_helpers),
             "receiveFromHelper": _operation("receive", "helper", from_helpers),
+            "sendToWatcher": _operation(
+                "send", "live", (Layout, helper_messages.Error), more=("Frame",)
+            ),
+            "receiveFromWatcher": _operation("receive", "live", (helper_messages.Auth,)),
             "sendToRobot": _operation("send", "robot", to_robots),
             "receiveFromRobot": _operation("receive", "robot", from_robots),
         },
@@ -105,7 +126,8 @@ def asyncapi() -> dict[str, Any]:
                 }
                 for prefix, models in sockets.items()
                 for model in models
-            },
+            }
+            | {"live.Frame": FRAME},
         },
     }
 
@@ -118,16 +140,24 @@ def console() -> dict[str, Any]:
         prefix, _, model = name.partition(".")
         if prefix == "helper":
             definitions[model] = schema
+    to_speakers = speech_messages.SPEECH_SERVER_MESSAGES
+    from_speakers = _members(speech_messages.SpeechClientMessage)
+    for name, schema in _component_schemas("speech", (*to_speakers, *from_speakers)).items():
+        definitions[name.removeprefix("speech.")] = schema
     definitions["Event"] = _one_of(_members(AnyEvent))
     definitions["FromHelper"] = _one_of(_members(helper_messages.ClientMessage))
     definitions["ToHelper"] = _one_of(TO_HELPERS)
+    definitions["FromSpeaker"] = _one_of(from_speakers)
+    definitions["ToSpeaker"] = _one_of(to_speakers)
     bodies = [
         operation["requestBody"]
         for methods in rest["paths"].values()
         for operation in methods.values()
         if "requestBody" in operation
     ]
-    received = _reachable([definitions["FromHelper"], bodies], definitions)
+    received = _reachable(
+        [definitions["FromHelper"], definitions["FromSpeaker"], bodies], definitions
+    )
     for name in definitions.keys() - received:
         _require_all_fields(definitions[name])
     described = json.dumps({"$schema": DIALECT, "$defs": definitions})
@@ -136,7 +166,7 @@ def console() -> dict[str, Any]:
     return untitled
 
 
-REFERENCE = re.compile(r'"#/(?:components/schemas|[$]defs)/(?:helper\.)?')
+REFERENCE = re.compile(r'"#/(?:components/schemas|[$]defs)/(?:helper\.|speech\.)?')
 
 
 def _reachable(roots: Any, definitions: Mapping[str, Any]) -> set[str]:
@@ -178,6 +208,29 @@ HELPER_QUERY = {
 }
 
 
+LIVE_QUERY = {
+    "type": "object",
+    "required": ["run", "helper"],
+    "properties": {
+        "run": {"type": "string", "format": "uuid"},
+        "helper": {"type": "string", "minLength": 1, "maxLength": 64},
+    },
+}
+
+FRAME = {
+    "name": "frame",
+    "contentType": "application/octet-stream",
+    "summary": "One moment; little endian, as the layout before it says.",
+    "payload": {
+        "type": "string",
+        "format": "binary",
+        "description": "float64 time_s, uint32 number, uint16 joints J, uint16 objects N, "
+        "J x float32 joint positions, 7 x float32 base pose, 7 x float32 tool pose, "
+        "float32 opening_m, N x (7 x float32 pose, uint32 flags: 1 held, 2 gone, 4 hidden).",
+    },
+}
+
+
 def _members(union: Any) -> Models:
     """The models of a discriminated union."""
     models: Models = get_args(get_args(union)[0])
@@ -206,17 +259,22 @@ def _component_schemas(prefix: str, models: Models) -> dict[str, Any]:
 
 
 def _message_references(prefix: str, models: Models) -> dict[str, Any]:
-    return {
-        model.__name__: {"$ref": f"#/components/messages/{prefix}.{model.__name__}"}
-        for model in models
-    }
+    references: dict[str, Any] = {}
+    for model in models:
+        references |= _reference(model.__name__, prefix)
+    return references
 
 
-def _operation(action: str, channel: str, models: Models) -> dict[str, Any]:
+def _reference(name: str, prefix: str) -> dict[str, Any]:
+    return {name: {"$ref": f"#/components/messages/{prefix}.{name}"}}
+
+
+def _operation(
+    action: str, channel: str, models: Models, more: tuple[str, ...] = ()
+) -> dict[str, Any]:
+    names = (*(model.__name__ for model in models), *more)
     return {
         "action": action,
         "channel": {"$ref": f"#/channels/{channel}"},
-        "messages": [
-            {"$ref": f"#/channels/{channel}/messages/{model.__name__}"} for model in models
-        ],
+        "messages": [{"$ref": f"#/channels/{channel}/messages/{name}"} for name in names],
     }

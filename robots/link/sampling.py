@@ -2,7 +2,7 @@
 
 import math
 
-SHORTEST_WALL_S = 0.01
+SHORTEST_WALL_S = 0.005
 """However fast a simulated clock runs, no sample comes sooner after another one than this."""
 
 

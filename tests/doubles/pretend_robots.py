@@ -41,7 +41,10 @@ class Sink(Protocol):
 
 @dataclass
 class PretendRobot:
-    """One robot: `faults` maps an object to the issues that its next starts run into, in turn."""
+    """One robot: `faults` maps an object to the issues that its next starts run into, in turn.
+
+    `patient`: it lets no time pass while a question is open, as live helpers take their time.
+    """
 
     name: str
     faults: dict[str, list[tuple[str, int]]] = field(default_factory=dict)
@@ -54,6 +57,7 @@ class PretendRobot:
     right: set[str] = field(default_factory=set)
     hidden: set[str] = field(default_factory=set)
     deaf: bool = False
+    patient: bool = False
 
     def hello(self) -> Hello:
         return Hello(
@@ -137,6 +141,8 @@ class PretendRobots:
                 await self._work(robot, body)
             case Look():
                 await self._look(robot, command, body)
+            case Hold() if robot.patient:
+                return
             case Hold(until=until):
                 robot.time = max(robot.time, until)
                 await self._report(robot, Held(command=command))
@@ -188,6 +194,8 @@ class PretendRobots:
         fulfilled = None
         if look.expect is not None:
             fulfilled = (look.object or "") in robot.right or look.expect == "way_clear"
+            if not fulfilled and robot.patient and look.within_s > 0.0:
+                return
             if not fulfilled:
                 # What is queued may be the deed that is being watched for.
                 robot.time += look.within_s

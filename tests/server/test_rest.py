@@ -5,9 +5,12 @@ import httpx
 import pytest
 from service_under_test import ServiceUnderTest, build
 
+from server.runtime.requests import RunRequest
+
 # Fixed, so that every worker collects the same tests.
 NOBODY = "2dc8e3f6-6479-4c12-9baf-d2534d0b7e34"
 
+REQUEST = RunRequest(tree="eket", world="tabletop", speed="max")
 EKET = {"tree": "eket", "world": "tabletop", "speed": "max", "seed": 7}
 
 
@@ -359,3 +362,74 @@ async def test_openapi_names_every_operation_and_has_examples(client: httpx.Asyn
     references = {text.split('"')[0] for text in str(schema).split("#/components/schemas/")[1:]}
     names_used = {each.split("'")[0] for each in references}
     assert names_used <= set(schema["components"]["schemas"])
+
+
+# --- What the console chooses from -------------------------------------------------------------
+
+
+async def test_worlds_say_why_they_cannot_run(client: httpx.AsyncClient) -> None:
+    tabletop, workcell = (await client.get("/api/worlds")).json()
+    assert tabletop == {"name": "tabletop", "available": True, "reason": None}
+    assert workcell["available"] is False
+    assert workcell["reason"]
+
+
+async def test_scenes_are_listed_and_read(client: httpx.AsyncClient) -> None:
+    listed = (await client.get("/api/scenes")).json()
+    assert {"name": "eket", "objects": 6, "places": 6} in listed
+    scene = (await client.get("/api/scenes/eket")).json()
+    assert scene["name"] == "eket"
+    assert scene["objects"]["green_leg"]["size"] == [0.03, 0.2, 0.08]
+    assert (await client.get("/api/scenes/nowhere")).status_code == 404
+    assert (await client.get("/api/scenes/..%2Feket")).status_code in (404, 422)
+
+
+async def test_checking_a_tree_tells_its_mistakes_and_keeps_nothing(
+    client: httpx.AsyncClient,
+) -> None:
+    before = (await client.get("/api/trees")).json()
+    good = await client.post("/api/trees/check", json={"text": "name: mine\nthen: []"})
+    assert good.status_code == 200
+    assert good.json()["name"] == "mine"
+    assert good.json()["definition"]
+    assert good.json()["errors"] == []
+    bad = await client.post("/api/trees/check", json={"text": "tree: 7"})
+    assert bad.status_code == 200
+    assert bad.json()["definition"] is None
+    (mistake,) = bad.json()["errors"]
+    assert mistake["message"]
+    assert (mistake["line"], mistake["column"]) == (1, 1)
+    yaml = {"content-type": "application/yaml"}
+    assert (await client.post("/api/trees/check", content="then: []", headers=yaml)).is_success
+    assert (await client.post("/api/trees/check", content="x", headers={})).status_code == 415
+    assert (await client.get("/api/trees")).json() == before
+
+
+async def test_more_time_and_taking_over_are_asked_for_over_rest(
+    service: ServiceUnderTest, client: httpx.AsyncClient
+) -> None:
+    view = await service.runs.raise_issue((await service.runs.start_run(REQUEST)).id)
+    assert view.prompt is not None
+    path = f"/api/dialogues/{view.dialogue}"
+    body = {"prompt": str(view.prompt.prompt), "helper": "anna"}
+    extended = await client.post(f"{path}/extend", json=body)
+    assert extended.status_code == 200
+    assert extended.json()["type"] == "deadline_extended"
+    assert extended.json()["extensions_left"] == 9
+    assert (await client.post(f"{path}/extend", json={**body, "prompt": NOBODY})).status_code == 404
+    assert (await client.post(f"{path}/claim", json={"helper": "anna"})).is_success
+    assert (await client.post(f"{path}/claim", json={"helper": "ben"})).status_code == 409
+    taken = await client.post(f"{path}/claim", json={"helper": "ben", "take_over": True})
+    assert taken.json()["claimed_by"] == "ben"
+
+
+async def test_poses_of_a_run_that_showed_nothing_are_empty_and_of_no_run_not_found(
+    client: httpx.AsyncClient,
+) -> None:
+    run = await start(client)
+    poses = await client.get(f"/api/runs/{run}/poses")
+    assert (poses.status_code, poses.content) == (200, b"")
+    assert "mend-poses-span" not in poses.headers
+    assert (await client.get(f"/api/runs/{run}/layout")).status_code == 404
+    assert (await client.get(f"/api/runs/{NOBODY}/poses")).status_code == 404
+    assert (await client.get(f"/api/runs/{run}/poses?from_s=nan")).status_code == 422

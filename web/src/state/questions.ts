@@ -19,6 +19,7 @@ export interface Together {
   issue: string;
   object: string | null;
   name: string;
+  prompt: string;
   text: string;
   picture: string | null;
 }
@@ -178,11 +179,12 @@ function opened(event: Extract<Event, { type: "dialogue_opened" }>): Question {
 }
 
 function close(question: Question, reason: Extract<Event, { type: "dialogue_closed" }>["reason"]): void {
-  const statement = question.prompt?.kind === "say" ? question.prompt.text : null;
+  const statement = question.prompt?.kind === "say" ? question.prompt : null;
   if (resolutions.get(question.dialogue) === "collab_finish" && statement !== null) {
-    together.value = [...together.value, { ...question, text: statement }];
+    const { prompt, text } = statement;
+    together.value = [...together.value, { ...question, prompt, text }];
   } else {
-    tellEnding(question, closing(reason, statement));
+    tellEnding(question, closing(reason, statement?.text ?? null));
   }
   resolutions.delete(question.dialogue);
   const next = new Map(open.value);

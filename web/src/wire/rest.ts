@@ -12,6 +12,7 @@ import type {
   RunView,
   Scenario,
   SessionView,
+  SpeechView,
   TreeCheck,
   TreeSummary,
   TreeView,
@@ -122,6 +123,11 @@ export function answerWhileLeaving(id: string, prompt: string, value: "yes" | "n
     keepalive: true,
   });
 }
+
+export const speech = () => call<SpeechView>("GET", "/api/speech");
+export const promptSoundPath = (id: string, prompt: string) =>
+  `/api/dialogues/${segment(id)}/prompts/${segment(prompt)}/speech`;
+export const phraseSoundPath = (name: string) => `/api/speech/phrases/${segment(name)}`;
 
 export const robots = () => call<RobotView[]>("GET", "/api/robots");
 export const worlds = () => call<WorldView[]>("GET", "/api/worlds");

@@ -1,0 +1,71 @@
+"""Frames hold what the documented format says, and come back whole out of what is stored."""
+
+import struct
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from robots.link.messages import Poses, ShownPose
+from server.poses.frame import encode, framed, time_of, unframed
+
+number = st.floats(-1e6, 1e6, width=32)
+pose = st.tuples(*[number] * 7)
+shown = st.builds(
+    ShownPose, pose=pose, held=st.booleans(), gone=st.booleans(), hidden=st.booleans()
+)
+
+
+@given(
+    count=st.integers(0, 2**32 - 1),
+    time_s=st.floats(0, 1e9),
+    joints=st.lists(number, max_size=12),
+    base=pose,
+    tool=pose,
+    opening_m=number,
+    objects=st.lists(shown, max_size=8),
+)
+def test_a_frame_can_be_read_as_documented(
+    count: int,
+    time_s: float,
+    joints: list[float],
+    base: tuple[float, ...],
+    tool: tuple[float, ...],
+    opening_m: float,
+    objects: list[ShownPose],
+) -> None:
+    poses = Poses.model_validate(
+        {
+            "type": "poses",
+            "time": 0.0,
+            "joints": joints,
+            "base": base,
+            "tool": tool,
+            "opening_m": opening_m,
+            "objects": objects,
+        }
+    )
+    frame = encode(count, time_s, poses)
+    assert len(frame) == 76 + 4 * len(joints) + 32 * len(objects)
+    assert struct.unpack_from("<dIHH", frame) == (time_s, count, len(joints), len(objects))
+    assert time_of(frame) == time_s
+    assert list(struct.unpack_from(f"<{len(joints)}f", frame, 16)) == joints
+    after = 16 + 4 * len(joints)
+    assert struct.unpack_from("<7f", frame, after) == base
+    assert struct.unpack_from("<7f", frame, after + 28) == tool
+    assert struct.unpack_from("<f", frame, after + 56) == (opening_m,)
+    for index, each in enumerate(objects):
+        *values, flags = struct.unpack_from("<7fI", frame, after + 60 + 32 * index)
+        assert tuple(values) == each.pose
+        assert flags == 1 * each.held + 2 * each.gone + 4 * each.hidden
+
+
+@given(st.lists(st.binary(min_size=16, max_size=64), max_size=6), st.integers(0, 40))
+def test_stored_frames_come_back_but_for_a_torn_last_one(frames: list[bytes], cut: int) -> None:
+    stored = framed(frames)
+    assert list(unframed(stored)) == frames
+    kept = list(unframed(stored[: max(0, len(stored) - cut)]))
+    assert kept == frames[: len(kept)]
+    if cut == 0 or not frames:
+        assert kept == frames
+    elif cut < len(frames[-1]) + 4:
+        assert kept == frames[:-1]

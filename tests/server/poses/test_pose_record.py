@@ -1,0 +1,117 @@
+"""Recorded poses: thinned to twenty a second and to a bounded size, whole again after a kill."""
+
+import asyncio
+from collections.abc import AsyncIterator
+from pathlib import Path
+
+import pytest
+from sample_events import RUN
+from shown_run import hello, poses, run_state
+
+from server.poses.frame import Frame, encode, time_of
+from server.poses.layout import lay_out
+from server.poses.record import PoseRecords
+
+ALL = (0.0, 1e9, 100_000)
+
+
+def frame(time_s: float) -> Frame:
+    return encode(0, time_s, poses())
+
+
+@pytest.fixture
+async def records(tmp_path: Path) -> AsyncIterator[PoseRecords]:
+    records = PoseRecords(tmp_path / "poses")
+    yield records
+    records.shut()
+
+
+async def test_frames_are_read_in_order_before_and_after_the_end_of_the_run(
+    records: PoseRecords,
+) -> None:
+    record = records.open(RUN)
+    frames = [frame(step / 10) for step in range(30)]
+    for each in frames:
+        record.add(each)
+    assert list((await records.read(RUN, *ALL)).frames) == frames
+    records.close(RUN)
+    read = await records.read(RUN, *ALL)
+    assert list(read.frames) == frames
+    assert read.span_s == (0.0, 2.9)
+    assert await records.last(RUN) == frames[-1]
+
+
+async def test_nothing_is_recorded_of_a_run_that_showed_nothing(records: PoseRecords) -> None:
+    read = await records.read(RUN, *ALL)
+    assert (read.frames, read.span_s) == ([], None)
+    assert await records.last(RUN) is None
+    assert await records.layout(RUN) is None
+
+
+async def test_no_more_than_twenty_frames_a_second_are_kept(records: PoseRecords) -> None:
+    record = records.open(RUN)
+    for step in range(1000):
+        record.add(frame(step / 100))
+    assert 180 <= len((await records.read(RUN, *ALL)).frames) <= 201
+
+
+async def test_a_span_is_read_and_evenly_thinned_out_to_a_limit(records: PoseRecords) -> None:
+    record = records.open(RUN)
+    for step in range(100):
+        record.add(frame(step / 10))
+    span = await records.read(RUN, 2.0, 6.0, 1000)
+    assert [time_of(each) for each in span.frames] == [step / 10 for step in range(20, 61)]
+    few = [time_of(each) for each in (await records.read(RUN, 0.0, 1e9, 10)).frames]
+    assert few == [float(step) for step in range(10)]
+
+
+async def test_a_long_run_is_thinned_out_over_its_whole_length(tmp_path: Path) -> None:
+    records = PoseRecords(tmp_path, most_bytes=50 * len(frame(0)))
+    record = records.open(RUN)
+    for step in range(400):
+        record.add(frame(step / 10))
+        if step % 20 == 0:
+            record.flush()
+            await records.last(RUN)
+    times = [time_of(each) for each in (await records.read(RUN, *ALL)).frames]
+    records.shut()
+    assert (tmp_path / f"{RUN}.poses").stat().st_size <= 50 * len(frame(0))
+    assert len(times) > 12
+    assert times == sorted(times)
+    assert times[0] == 0.0
+    assert times[-1] > 35.0
+
+
+async def test_a_frame_torn_by_a_kill_is_cut_off_and_the_record_goes_on(tmp_path: Path) -> None:
+    first = PoseRecords(tmp_path)
+    record = first.open(RUN)
+    record.add(frame(1.0))
+    record.add(frame(2.0))
+    first.shut()
+    path = tmp_path / f"{RUN}.poses"
+    path.write_bytes(path.read_bytes()[:-5])
+    second = PoseRecords(tmp_path)
+    second.open(RUN).add(frame(3.0))
+    times = [time_of(each) for each in (await second.read(RUN, *ALL)).frames]
+    second.shut()
+    assert times == [1.0, 3.0]
+
+
+async def test_what_waits_is_written_without_anybody_asking(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("server.poses.record.FLUSH_S", 0.0)
+    records = PoseRecords(tmp_path)
+    records.open(RUN).add(frame(1.0))
+    async with asyncio.timeout(10):
+        while await records.last(RUN) is None:
+            pass
+    records.shut()
+
+
+async def test_the_layout_is_kept(records: PoseRecords) -> None:
+    said = hello()
+    assert said.shows is not None
+    layout = lay_out(run_state(), said, said.shows, None)
+    records.keep_layout(layout)
+    assert await records.layout(RUN) == layout
