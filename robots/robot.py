@@ -1,6 +1,6 @@
 """One robot: takes commands, walks behaviors, looks, and reports, over any body."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,11 +12,13 @@ from robots.behaviors.behavior import Behavior
 from robots.behaviors.execution import Execution
 from robots.behaviors.execution_state import ExecutionState
 from robots.behaviors.preparation import Assignment
-from robots.body import Body
+from robots.body import Body, CameraImage
 from robots.catalogue import Catalogue, Part
+from robots.clip import encode_clip
 from robots.link.messages import (
     PROTOCOL_VERSION,
     ActiveExecution,
+    ClipTaken,
     CommandBody,
     Finished,
     Hello,
@@ -27,11 +29,16 @@ from robots.link.messages import (
     Look,
     Looked,
     Picture,
+    PoseLayout,
+    Poses,
     ReachLimits,
     Rejected,
     ReportBody,
     Resume,
+    ShownObject,
+    ShownPose,
     Shutdown,
+    Sighting,
     SlowDown,
     Start,
     TakePicture,
@@ -46,8 +53,9 @@ from robots.looks import (
     look_until,
     take_from_person,
 )
-from robots.monitors.monitor import Monitor
-from robots.senses import Senses
+from robots.monitors.monitor import BEFORE_FIRST_STEP, Monitor
+from robots.senses import FOREARM, Senses
+from robots.showing import JointedBody, pose_values, sighted_values
 from robots.vision.color_model import ColorModel
 from robots.vision.drawing import encode_jpeg
 
@@ -75,6 +83,16 @@ class TaskProgress:
     attempt: int
 
 
+@dataclass(frozen=True, slots=True)
+class _OwedClip:
+    """What was seen before an issue that was reported at `time_s`."""
+
+    execution: str
+    issue: str
+    time_s: float
+    images: Sequence[CameraImage]
+
+
 class Robot:
     """An `AgentCore` over a body.
 
@@ -93,7 +111,10 @@ class Robot:
         monitors: Mapping[str, type[Monitor[Any]]],
         monitor_parameters: Mapping[str, Mapping[str, Any]] | None = None,
         senses: Senses | None = None,
+        *,
+        films: bool = True,
     ) -> None:
+        """`films`: the forearm camera also takes pictures that only a clip before a fault needs."""
         if not monitors.keys() >= _EXPLAINING:
             raise ValueError(f"expected monitors for {sorted(_EXPLAINING)}, got {sorted(monitors)}")
         self._name = name
@@ -112,6 +133,9 @@ class Robot:
         self._execution: Execution | None = None
         self._attempts: dict[str, int] = {}
         self._waiting: list[tuple[str, CommandBody]] = []
+        self._films = films and FOREARM in body.cameras
+        self._owed_clip: _OwedClip | None = None
+        self._located: dict[str, Sighting] = {}
         self._reported = False
         self._shut_down = False
 
@@ -150,7 +174,7 @@ class Robot:
     @property
     def busy(self) -> bool:
         """Whether anything is under way."""
-        return self._activity is not None
+        return self._activity is not None or self._owed_clip is not None
 
     @property
     def task_progress(self) -> TaskProgress | None:
@@ -162,6 +186,37 @@ class Robot:
         fraction = 1.0 if not self._body.moving else self._body.progress
         return TaskProgress(name, execution.step, fraction, self._attempts.get(name or "", 1))
 
+    def pose_layout(self) -> PoseLayout:
+        """What `poses` holds: the body's joints, and every part of the catalogue."""
+        body = self._body if isinstance(self._body, JointedBody) else None
+        return PoseLayout(
+            model=body.model if body else None,
+            joints=list(body.joint_names) if body else [],
+            objects=[
+                ShownObject(name=part.name, size=part.size, knob=part.knob)
+                for part in self._catalogue.parts.values()
+            ],
+        )
+
+    def poses(self) -> Poses:
+        """The joints and the tool now, and every part where it was located last."""
+        body = self._body if isinstance(self._body, JointedBody) else None
+        return Poses(
+            time=self.time_s(),
+            joints=[float(each) for each in body.joint_positions()] if body else [],
+            tool=pose_values(self._body.tool_pose()),
+            opening_m=float(self._body.gripper_opening_m()),
+            objects=[self._shown(name) for name in self._catalogue.parts],
+        )
+
+    def _shown(self, name: str) -> ShownPose:
+        located = self._located.get(name)
+        if self._senses.holds(name):
+            return ShownPose(pose=pose_values(self._body.tool_pose()), held=True)
+        if located is None:
+            return ShownPose(pose=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0), hidden=True)
+        return ShownPose(pose=sighted_values(located))
+
     def attach(self, emit: Emit, emit_picture: EmitPicture) -> None:
         """Say where reports and pictures go; called once, before anything else."""
         self._emit, self._emit_picture = emit, emit_picture
@@ -172,15 +227,25 @@ class Robot:
         """Let up to `duration_s` pass; False when nothing is under way (no time passes then)."""
         end_s = self.time_s() + duration_s
         self._reported = False
+        self._hand_in_clip()
         while self._activity is not None and not self._reported:
             if self._decided is not self._activity:
                 self._decide(self._activity)
             elif self.time_s() < end_s - 1e-9:
                 self._body.advance_cycle()
                 self._decided = None
+                if self._films and self._walking:
+                    self._senses.film()
             else:
                 break
-        return self._activity is not None
+        return self.busy
+
+    def _hand_in_clip(self) -> None:
+        """Report what was seen before the last issue, which people have heard of by now."""
+        owed, self._owed_clip = self._owed_clip, None
+        if owed is not None:
+            pictures = encode_clip(owed.images, owed.time_s)
+            self._report(ClipTaken(execution=owed.execution, issue=owed.issue, pictures=pictures))
 
     def _decide(self, activity: Routine[None]) -> None:
         """Let the activity decide, once, on what the next cycle is to do."""
@@ -244,6 +309,7 @@ class Robot:
             kind.create(self._monitor_parameters.get(name, {}))
             for name, kind in self._monitors.items()
         ]
+        self._senses.clip.begin()
         self._execution = Execution(assignment, monitors, self._arm, self._senses, self._report)
         self._activity = self._execution.run()
 
@@ -378,6 +444,12 @@ class Robot:
         return self._activity is not None and not self._looking
 
     @property
+    def _walking(self) -> bool:
+        """Whether an execution is between its first step and its last."""
+        execution = self._execution
+        return execution is not None and execution.state is ExecutionState.RUNNING
+
+    @property
     def _retreating(self) -> bool:
         execution = self._execution
         return (
@@ -421,5 +493,11 @@ class Robot:
     def _report(self, body: ReportBody) -> None:
         if isinstance(body, _SEEN_AT_ONCE):
             self._reported = True
+        if isinstance(body, IssueDetected) and body.step > BEFORE_FIRST_STEP:
+            images = self._senses.clip.images()
+            if images:
+                self._owed_clip = _OwedClip(body.execution, body.issue, self.time_s(), images)
+        if isinstance(body, Looked):
+            self._located = dict(body.objects)
         if self._emit is not None:
             self._emit(body, self.time_s(), None)

@@ -6,6 +6,7 @@ import numpy as np
 
 from robots.body import Body, CameraImage, ToolPose
 from robots.catalogue import Catalogue, Part
+from robots.clip import Clip
 from robots.grasp import grasp_of
 from robots.link.messages import Position, Sighting
 from robots.vision.color_model import ColorModel, Segmentation
@@ -47,6 +48,7 @@ class Senses:
         self._segmented: tuple[CameraImage, Segmentation] | None = None
         self.catalogue = catalogue
         self.grip: GripWatch | None = None
+        self.clip = Clip()
 
     @property
     def known_colors(self) -> tuple[str, ...]:
@@ -95,13 +97,23 @@ class Senses:
         """Take a forearm picture into account; None if nothing is followed."""
         if self.grip is None:
             return None
-        image = self._body.cameras[FOREARM].capture()
+        image = self._look_at_hand()
         return self.grip.update(image, self._body.tool_pose(), self._body.gripper_opening_m())
 
     def measure_grip(self, watch: GripWatch) -> GripReading:
         """Judge a forearm picture by a watch without coming to a verdict."""
-        image = self._body.cameras[FOREARM].capture()
+        image = self._look_at_hand()
         return watch.measure(image, self._body.tool_pose(), self._body.gripper_opening_m())
+
+    def film(self) -> None:
+        """Take a forearm picture for the clip, if there is none yet of this moment."""
+        if self.clip.due(self._body.time_s()):
+            self._look_at_hand()
+
+    def _look_at_hand(self) -> CameraImage:
+        image = self._body.cameras[FOREARM].capture()
+        self.clip.note(image)
+        return image
 
     def holds(self, name: str | None = None) -> bool:
         """Whether a part (`name`, or any) was confirmed in the gripper and not lost since."""

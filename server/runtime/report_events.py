@@ -6,6 +6,7 @@ import logging
 from uuid import UUID, uuid4
 
 from robots.link.messages import (
+    ClipTaken,
     Finished,
     Holding,
     Intervened,
@@ -41,6 +42,8 @@ class ReportEvents:
                 events = self._step_started(side, body)
             case IssueDetected():
                 events = self._issue_detected(side, body, pictures)
+            case ClipTaken():
+                events = self._clip_taken(body, pictures)
             case Finished():
                 events = self._finished(side, body)
             case Holding():
@@ -118,6 +121,40 @@ class ReportEvents:
             reset = self.reset(execution.leaf, side.robot, reason, failed=True)
             return [raised, reset] if body.interrupts else [raised]
         return self._dialogues.open(raised, [raised])
+
+    def _clip_taken(self, body: ClipTaken, pictures: dict[UUID, bytes]) -> list[ev.Event]:
+        """The clip of an issue that opened a dialogue; of another one it is not kept."""
+        dialogues = reversed(self._context.state.dialogues.values())
+        dialogue = next(
+            (
+                each
+                for each in dialogues
+                if str(each.raised.execution) == body.execution and each.raised.issue == body.issue
+            ),
+            None,
+        )
+        if dialogue is None:
+            return []
+        raised, clip = dialogue.raised, []
+        for each in body.pictures:
+            jpeg = _decode(each.jpeg)
+            if jpeg is not None:
+                picture = uuid4()
+                pictures[picture] = jpeg
+                time = max(0.0, raised.time - each.before_s)
+                clip.append(ev.ClipPicture(time=time, picture=picture))
+        return [
+            ev.ClipRecorded(
+                **self._context.stamp(),
+                node=raised.node,
+                name=raised.name,
+                robot=raised.robot,
+                issue=raised.issue,
+                execution=raised.execution,
+                dialogue=dialogue.id,
+                pictures=clip,
+            )
+        ]
 
     def _finished(self, side: RobotSide, body: Finished) -> list[ev.Event]:
         execution = self._current(side, body.execution)

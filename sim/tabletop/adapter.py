@@ -54,6 +54,8 @@ class TabletopAdapter:
             Catalogue.from_scene(setup.scene),
             load_plugins("mend.behaviors"),
             load_plugins("mend.monitors"),
+            # As fast as possible, nobody watches: a picture that no monitor needs costs only time.
+            films=setup.speed is not None,
         )
         return SimulatedAgent(
             robot,
