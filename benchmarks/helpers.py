@@ -212,7 +212,9 @@ async def mend(folder: Path, helpers: int, seconds: float) -> float:
     nothing: Any = None
     settings = Settings(subscriber_queue=QUEUE)
     access = Access(None, wall_time_s=time.time)
-    app.state.parts = Parts(runtime, journal, nothing, nothing, settings, access)
+    app.state.parts = Parts(
+        runtime, journal, nothing, nothing, nothing, nothing, nothing, nothing, settings, access
+    )
     print(f"Mend: {helpers} helpers and a stuck one, {RUNS} runs, {seconds:.0f} s")
     p95_ms = await measure(app, lambda each: journal.append(Entry(events=[each])), helpers, seconds)
     print(f"  cut off           {journal.subscribers.overflows}")

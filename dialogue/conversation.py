@@ -15,6 +15,7 @@ from dialogue.script import (
     HelpState,
     Say,
     Script,
+    State,
     Turn,
 )
 from dialogue.wording import word
@@ -37,6 +38,9 @@ _LEGAL_CALLS = {
     Phase.AWAITING_HELP: ("help_seen", "help_not_seen", "abort"),
     Phase.CLOSED: (),
 }
+
+_ROBOT_GOES_ON = (Resolution.ROBOT_FINISH, Resolution.COLLAB_FINISH)
+"""Once it sees the help, or to take it, the robot moves."""
 
 
 class IllegalTransitionError(Exception):
@@ -121,6 +125,8 @@ class Conversation:
                 text=self._word(state.not_seen),
                 yes_effect="I keep watching for it.",
                 no_effect=self._word(state.otherwise_effect),
+                yes_final=_is_final(state),
+                no_final=_is_final(self._script.states[state.otherwise]),
             )
         ]
 
@@ -157,6 +163,8 @@ class Conversation:
                         text=self._word(state.text),
                         yes_effect=self._word(state.yes_effect),
                         no_effect=self._word(state.no_effect),
+                        yes_final=_is_final(self._script.states[state.yes]),
+                        no_final=_is_final(self._script.states[state.no]),
                     )
                 ]
             case HelpState():
@@ -190,3 +198,14 @@ class Conversation:
 
     def _word(self, text: str) -> str:
         return word(text, self._issue)
+
+
+def _is_final(following: State) -> bool:
+    """Whether what an answer leads to closes the dialogue or sets the robot in motion."""
+    match following:
+        case AskState():
+            return False
+        case HelpState(resolution=resolution):
+            return resolution in _ROBOT_GOES_ON
+        case CloseState():
+            return True

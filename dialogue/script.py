@@ -41,11 +41,16 @@ class CloseReason(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Ask:
-    """A yes/no question; the effects say in plain words what each answer will do."""
+    """A yes/no question; the effects say in plain words what each answer will do.
+
+    An answer is final when nothing that is asked later can take it back.
+    """
 
     text: str
     yes_effect: str
     no_effect: str
+    yes_final: bool = False
+    no_final: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -27,11 +27,16 @@ from robots.link.messages import (
     Look,
     Looked,
     Picture,
+    PoseLayout,
+    Poses,
     ReachLimits,
     Rejected,
     ReportBody,
     Resume,
+    ShownObject,
+    ShownPose,
     Shutdown,
+    Sighting,
     SlowDown,
     Start,
     TakePicture,
@@ -48,6 +53,7 @@ from robots.looks import (
 )
 from robots.monitors.monitor import Monitor
 from robots.senses import Senses
+from robots.showing import JointedBody, pose_values, sighted_values
 from robots.vision.color_model import ColorModel
 from robots.vision.drawing import encode_jpeg
 
@@ -112,6 +118,7 @@ class Robot:
         self._execution: Execution | None = None
         self._attempts: dict[str, int] = {}
         self._waiting: list[tuple[str, CommandBody]] = []
+        self._located: dict[str, Sighting] = {}
         self._reported = False
         self._shut_down = False
 
@@ -161,6 +168,37 @@ class Robot:
         name = None if execution.part is None else execution.part.name
         fraction = 1.0 if not self._body.moving else self._body.progress
         return TaskProgress(name, execution.step, fraction, self._attempts.get(name or "", 1))
+
+    def pose_layout(self) -> PoseLayout:
+        """What `poses` holds: the body's joints, and every part of the catalogue."""
+        body = self._body if isinstance(self._body, JointedBody) else None
+        return PoseLayout(
+            model=body.model if body else None,
+            joints=list(body.joint_names) if body else [],
+            objects=[
+                ShownObject(name=part.name, size=part.size, knob=part.knob)
+                for part in self._catalogue.parts.values()
+            ],
+        )
+
+    def poses(self) -> Poses:
+        """The joints and the tool now, and every part where it was located last."""
+        body = self._body if isinstance(self._body, JointedBody) else None
+        return Poses(
+            time=self.time_s(),
+            joints=[float(each) for each in body.joint_positions()] if body else [],
+            tool=pose_values(self._body.tool_pose()),
+            opening_m=float(self._body.gripper_opening_m()),
+            objects=[self._shown(name) for name in self._catalogue.parts],
+        )
+
+    def _shown(self, name: str) -> ShownPose:
+        located = self._located.get(name)
+        if self._senses.holds(name):
+            return ShownPose(pose=pose_values(self._body.tool_pose()), held=True)
+        if located is None:
+            return ShownPose(pose=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0), hidden=True)
+        return ShownPose(pose=sighted_values(located))
 
     def attach(self, emit: Emit, emit_picture: EmitPicture) -> None:
         """Say where reports and pictures go; called once, before anything else."""
@@ -421,5 +459,7 @@ class Robot:
     def _report(self, body: ReportBody) -> None:
         if isinstance(body, _SEEN_AT_ONCE):
             self._reported = True
+        if isinstance(body, Looked):
+            self._located = dict(body.objects)
         if self._emit is not None:
             self._emit(body, self.time_s(), None)

@@ -15,6 +15,7 @@ from server.api import (
     dialogues,
     health,
     helper_socket,
+    live_socket,
     metrics,
     pictures,
     robots,
@@ -22,13 +23,18 @@ from server.api import (
     session,
     trees,
 )
+from server.api import models as models_api
+from server.api import poses as poses_api
+from server.api import worlds as worlds_api
 from server.api.access import Access
 from server.api.gate import Gate
-from server.api.parts import ObservedJournal, Parts
+from server.api.parts import ObservedJournal, Parts, WorldList
 from server.api.problems import Problem, answer_errors_with_problems
+from server.models import RobotModels
+from server.poses.feed import PoseSource
 from server.runtime.service import RunService
 from server.settings import Settings
-from server.trees import ScenarioLibrary, TreeLibrary
+from server.trees import ScenarioLibrary, SceneShelf, TreeLibrary
 
 MAX_SOCKET_MESSAGE_BYTES = 4 * 1024 * 1024
 """Robots send pictures; helpers get an `error` message for anything above 64 KiB."""
@@ -36,13 +42,17 @@ MAX_SOCKET_MESSAGE_BYTES = 4 * 1024 * 1024
 ROUTES = (
     session,
     trees,
+    worlds_api,
     runs,
+    poses_api,
     dialogues,
     robots,
     pictures,
+    models_api,
     health,
     metrics,
     helper_socket,
+    live_socket,
     console,
 )
 
@@ -61,6 +71,10 @@ def create_app(
     *,
     trees_library: TreeLibrary,
     scenarios: ScenarioLibrary,
+    scenes: SceneShelf,
+    worlds: WorldList,
+    models: RobotModels,
+    poses: PoseSource,
     lifespan: Lifespan | None = None,
     wall_time_s: Callable[[], float] = time.time,
 ) -> FastAPI:
@@ -76,7 +90,18 @@ def create_app(
         wall_time_s=wall_time_s,
     )
     app = described_app(lifespan)
-    app.state.parts = Parts(service, journal, trees_library, scenarios, settings, access)
+    app.state.parts = Parts(
+        service,
+        journal,
+        trees_library,
+        scenarios,
+        scenes,
+        worlds,
+        models,
+        poses,
+        settings,
+        access,
+    )
     app.add_middleware(Gate, access=access)
     return app
 

@@ -13,6 +13,7 @@ from server.client_stream import EventStream
 from server.journal.events import (
     Answered,
     AnyEvent,
+    DeadlineExtended,
     Event,
     RunAborted,
     RunFailed,
@@ -157,9 +158,15 @@ class MendClient:
         body = {"prompt": str(prompt), "answer": answer, "helper": helper}
         return await self._post(f"/api/dialogues/{dialogue}/answers", Answered, body)
 
-    async def claim(self, dialogue: UUID, helper: str) -> DialogueView:
+    async def extend(self, dialogue: UUID, prompt: UUID, helper: str) -> DeadlineExtended:
+        """Give the open question as much time again as it was first put for."""
+        path = f"/api/dialogues/{dialogue}/extend"
+        return await self._post(path, DeadlineExtended, {"prompt": str(prompt), "helper": helper})
+
+    async def claim(self, dialogue: UUID, helper: str, *, take_over: bool = False) -> DialogueView:
         path = f"/api/dialogues/{dialogue}/claim"
-        return await self._post(path, DialogueView, {"helper": helper})
+        body = {"helper": helper, "take_over": take_over}
+        return await self._post(path, DialogueView, body)
 
     async def release(self, dialogue: UUID, helper: str) -> DialogueView:
         path = f"/api/dialogues/{dialogue}/release"

@@ -177,15 +177,19 @@ class EventStream:
             type="answer", dialogue=str(dialogue), prompt=str(prompt), answer=answer
         )
 
-    async def claim(self, dialogue: UUID) -> dict[str, Any]:
+    async def extend(self, dialogue: UUID, prompt: UUID) -> dict[str, Any]:
+        """Give the open question more time; raises as `answer` does."""
+        return await self._command(type="extend", dialogue=str(dialogue), prompt=str(prompt))
+
+    async def claim(self, dialogue: UUID, *, take_over: bool = False) -> dict[str, Any]:
         """Show the others that you are on it; raises as `answer` does."""
-        return await self._command(type="claim", dialogue=str(dialogue))
+        return await self._command(type="claim", dialogue=str(dialogue), take_over=take_over)
 
     async def release(self, dialogue: UUID) -> dict[str, Any]:
         """Give up your claim; raises as `answer` does."""
         return await self._command(type="release", dialogue=str(dialogue))
 
-    async def _command(self, **message: str) -> dict[str, Any]:
+    async def _command(self, **message: str | bool) -> dict[str, Any]:
         socket = self._socket
         if socket is None:
             raise ConnectionLostError("there is no connection to the service at the moment")

@@ -15,14 +15,18 @@ from dialogue.registry import load_scripts
 from server.app import create_app, drop_stuck_clients, serve_config
 from server.dialogues.escalation import EscalationPolicy
 from server.dialogues.mail import Mailer
-from server.journal.sqlite import SqliteJournal
+from server.journal.sqlite import IN_MEMORY, SqliteJournal
 from server.library import (
     BuiltInScenarios,
+    SceneLibrary,
     Scenes,
     TaskLibrary,
     built_in_trees,
     check_uploaded_tree,
 )
+from server.models import RobotModels
+from server.poses.feed import PoseFeed
+from server.poses.record import PoseRecords
 from server.robots.endpoint import ROBOT_PATH, add_robot_route
 from server.robots.process import launch
 from server.robots.registry import RobotRegistry
@@ -78,8 +82,11 @@ async def _open(
     scenes = Scenes(settings.scenes)
     trees = JournaledTrees(journal, built_in_trees(), partial(check_uploaded_tree, scenes=scenes))
     scenarios = BuiltInScenarios()
+    adapters = load_plugins("mend.worlds")
+    models = RobotModels(adapters.values())
+    poses = PoseFeed(registry.show_poses, models.address, _pose_records(settings))
     worlds = SimulatedWorlds(
-        load_plugins("mend.worlds"),
+        adapters,
         journal,
         partial(
             launch,
@@ -109,8 +116,19 @@ async def _open(
         ),
         monotonic=time.monotonic,
         utc_now=lambda: datetime.now(UTC),
+        poses=poses,
     )
-    app = create_app(runtime, journal, settings, trees_library=trees, scenarios=scenarios)
+    app = create_app(
+        runtime,
+        journal,
+        settings,
+        trees_library=trees,
+        scenarios=scenarios,
+        scenes=SceneLibrary(scenes),
+        worlds=worlds,
+        models=models,
+        poses=poses,
+    )
     add_robot_route(app, registry, token)
     server = _Server(serve_config(app, settings))
     serving: asyncio.Task[None] | None = None
@@ -126,6 +144,7 @@ async def _open(
         registry.close()
         await runtime.close()
         await mail.close()
+        poses.shut()
         if serving is not None:
             server.should_exit = True
             with suppress(asyncio.CancelledError):
@@ -173,6 +192,13 @@ def _reachable(host: str) -> str:
     if host == "::":
         return "[::1]"
     return f"[{host}]" if ":" in host else host
+
+
+def _pose_records(settings: Settings) -> PoseRecords | None:
+    """Beside the journal; a journal in memory is not there for replay."""
+    if not settings.record_poses or str(settings.journal_path) == IN_MEMORY:
+        return None
+    return PoseRecords(settings.journal_path.with_suffix(".poses"))
 
 
 def _policy(settings: Settings) -> EscalationPolicy:

@@ -1,15 +1,17 @@
 """Task trees and scenarios as the runtime takes them: checked, with their scenes."""
 
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from pydantic import BaseModel
 
 from server.errors import InvalidError, NotFoundError
 from server.runtime.ports import LoadedTree
-from server.trees import CheckedTree, TreeLibrary
+from server.trees import CheckedTree, TreeLibrary, TreeMistake, WrongTreeError
 from tasks.definition import TaskTreeDefinition
-from tasks.library import SCENARIOS, TREES, NotInLibraryError
+from tasks.library import SCENARIOS, SCENES, TREES, NotInLibraryError
 from tasks.plugins import load_plugins
+from tasks.problem import Problem
 from tasks.scenario import Scenario
 from tasks.scenario_file import built_in_scenario
 from tasks.scene import Scene
@@ -28,6 +30,11 @@ class Scenes:
     def __init__(self, folder: Path | None) -> None:
         self._folder = folder
 
+    def names(self) -> list[str]:
+        """Every scene that there is, sorted."""
+        own = {path.stem for path in self._folder.glob("*.yaml")} if self._folder else set()
+        return sorted({*own, *SCENES.names()})
+
     def find(self, name: str) -> Scene:
         """One scene. Raises `NotInLibraryError` or `SceneFileError`."""
         # Only a listed name is opened, so that a name is never taken for a path.
@@ -35,6 +42,25 @@ class Scenes:
             if path.stem == name:
                 return check_scene_file(path)
         return built_in_scene(name)
+
+
+class SceneLibrary:
+    """Implements `server.trees.SceneShelf`."""
+
+    def __init__(self, scenes: Scenes) -> None:
+        self._scenes = scenes
+
+    def names(self) -> list[str]:
+        return self._scenes.names()
+
+    def scene(self, name: str) -> Scene:
+        """One scene. Raises `NotFoundError`, and `InvalidError` for a file with mistakes."""
+        try:
+            return self._scenes.find(name)
+        except NotInLibraryError as error:
+            raise NotFoundError(f"there is no scene '{name}'") from error
+        except SceneFileError as error:
+            raise InvalidError(f"the scene '{name}' cannot be used", [str(error)]) from error
 
 
 class TaskLibrary:
@@ -75,11 +101,31 @@ def behavior_parameters() -> dict[str, type[BaseModel]]:
 
 
 def check_uploaded_tree(text: str, scenes: Scenes) -> CheckedTree:
-    """Read a task file. Raises `InvalidError` with one sentence per mistake."""
+    """Read a task file. Raises `WrongTreeError` with every mistake."""
     try:
         definition = check_task_text(text, behavior_parameters(), scenes.find).definition
     except TaskFileError as error:
-        problems = [each.describe("line") for each in error.problems]
-        count = "a mistake" if len(problems) == 1 else f"{len(problems)} mistakes"
-        raise InvalidError(f"the task file has {count}", problems) from error
+        sentences = [each.describe("line") for each in error.problems]
+        raise WrongTreeError(_mistakes(error.problems, text), sentences) from error
     return CheckedTree(name=definition.name, definition=definition.to_json())
+
+
+def _mistakes(problems: Iterable[Problem], text: str) -> list[TreeMistake]:
+    lines = text.splitlines()
+    return [
+        TreeMistake(
+            line=each.line,
+            column=each.column or _content_column(lines, each.line),
+            node=each.node_path,
+            message=each.message,
+        )
+        for each in problems
+    ]
+
+
+def _content_column(lines: Sequence[str], number: int | None) -> int | None:
+    """Where the content of a line begins, after its indentation and the dashes of a list."""
+    if number is None or not 0 < number <= len(lines):
+        return None
+    line = lines[number - 1]
+    return len(line) - len(line.lstrip(" -\t")) + 1

@@ -76,6 +76,8 @@ class Settings(BaseSettings):
     robot_lost_timeout_s: Seconds = 60.0
     subscriber_queue: Annotated[int, Field(ge=1, le=1_000_000)] = 4096
     """How many events may wait for one slow client before it is cut off."""
+    record_poses: bool = True
+    """Whether to record beside the journal where everything was, for replay."""
     log_level: Literal["critical", "error", "warning", "info", "debug"] = "info"
 
     @property

@@ -196,6 +196,10 @@ class Transcript:
         return [_line(event, "", text, Tone.FAULT)]
 
     @lines.register
+    def _(self, _event: ev.ClipRecorded) -> list[Line]:
+        return []
+
+    @lines.register
     def _(self, _event: ev.DialogueOpened) -> list[Line]:
         return []
 
@@ -218,6 +222,11 @@ class Transcript:
     @lines.register
     def _(self, event: ev.Answered) -> list[Line]:
         return [_line(event, f"helper ({event.helper})", event.answer, Tone.ANSWERED)]
+
+    @lines.register
+    def _(self, event: ev.DeadlineExtended) -> list[Line]:
+        text = f"asks for more time, until {event.deadline:.1f} s"
+        return [_line(event, f"helper ({event.helper})", text, Tone.WATCHED)]
 
     @lines.register
     def _(self, event: ev.Escalated) -> list[Line]:

@@ -1,6 +1,6 @@
 """The task trees that runs may name: the built-in ones and those that were uploaded."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -8,6 +8,7 @@ from server.errors import ConflictError, InvalidError, NotFoundError
 from server.journal.journal import Journal
 from server.runtime.views import View
 from tasks.scenario import Scenario
+from tasks.scene import Scene
 
 
 class TreeSummary(View):
@@ -24,6 +25,35 @@ class TreeView(TreeSummary):
     definition: dict[str, Any]
 
 
+class TreeMistake(View):
+    """One mistake of a task file: where it is, from 1, and one sentence.
+
+    `column` is where the line's content begins, or exactly where a text stops being readable.
+    """
+
+    line: int | None
+    column: int | None
+    node: str | None
+    message: str
+
+
+class TreeCheck(View):
+    """What a task file is worth: its `definition` in JSON form, or what is wrong with it."""
+
+    name: str | None
+    definition: dict[str, Any] | None
+    errors: list[TreeMistake]
+
+
+class WrongTreeError(InvalidError):
+    """A task file has mistakes."""
+
+    def __init__(self, mistakes: Sequence[TreeMistake], sentences: list[str]) -> None:
+        count = "a mistake" if len(mistakes) == 1 else f"{len(mistakes)} mistakes"
+        super().__init__(f"the task file has {count}", sentences)
+        self.mistakes = list(mistakes)
+
+
 @dataclass(frozen=True, slots=True)
 class CheckedTree:
     """What a checker found in a file without mistakes; `name` None where the file has none."""
@@ -33,7 +63,7 @@ class CheckedTree:
 
 
 TreeChecker = Callable[[str], CheckedTree]
-"""Reads a task file. Raises `InvalidError` with one sentence per mistake."""
+"""Reads a task file. Raises `WrongTreeError` with every mistake."""
 
 
 class TreeLibrary(Protocol):
@@ -45,6 +75,10 @@ class TreeLibrary(Protocol):
         """Raises `NotFoundError`."""
         ...
 
+    def check(self, text: str) -> TreeCheck:
+        """Check a task file without keeping it."""
+        ...
+
     async def save(self, name: str | None, text: str) -> tuple[TreeView, bool]:
         """Check and keep a task file; the second value says whether its name is new.
 
@@ -54,6 +88,16 @@ class TreeLibrary(Protocol):
 
     async def delete(self, name: str) -> None:
         """Raises `NotFoundError`, `ConflictError` (built in)."""
+        ...
+
+
+class SceneShelf(Protocol):
+    """Where the API finds scenes."""
+
+    def names(self) -> list[str]: ...
+
+    def scene(self, name: str) -> Scene:
+        """Raises `NotFoundError`, `InvalidError` (a file with mistakes)."""
         ...
 
 
@@ -83,6 +127,13 @@ class JournaledTrees:
         if text is None:
             raise NotFoundError(f"there is no tree '{name}'")
         return self._view(name, text, self._check(text))
+
+    def check(self, text: str) -> TreeCheck:
+        try:
+            checked = self._check(text)
+        except WrongTreeError as error:
+            return TreeCheck(name=None, definition=None, errors=error.mistakes)
+        return TreeCheck(name=checked.name, definition=checked.definition, errors=[])
 
     async def save(self, name: str | None, text: str) -> tuple[TreeView, bool]:
         checked = self._check(text)

@@ -17,6 +17,8 @@ from robots.link.messages import (
     IssueDetected,
     Look,
     Looked,
+    PoseLayout,
+    Poses,
     Rejected,
     ReportBody,
     Shutdown,
@@ -25,7 +27,7 @@ from robots.link.messages import (
 )
 from robots.robot import Robot, TaskProgress
 from sim.interventions import PendingInterventions, PendingSnapshot
-from sim.world import World
+from sim.world import ShownWorld, World
 from tasks.intervention import Intervention
 from tasks.scenario import ScriptedIntervention
 from tasks.scene import StrictModel
@@ -73,6 +75,7 @@ class SimulatedAgent:
         """
         self._robot = robot
         self._world = world
+        self._shown = world if isinstance(world, ShownWorld) else None
         self._speed = speed
         self._pending = PendingInterventions(interventions)
         self._attempts: dict[str, int] = {}
@@ -91,6 +94,20 @@ class SimulatedAgent:
     def hello(self, boot: str) -> Hello:
         """What the robot is, and what it is doing now."""
         return self._robot.hello(boot).model_copy(update={"simulated": True})
+
+    def pose_layout(self) -> PoseLayout:
+        """What `poses` holds; the parts are the world's, where it shows them."""
+        layout = self._robot.pose_layout()
+        if self._shown is None:
+            return layout
+        return layout.model_copy(update={"objects": list(self._shown.shown_objects)})
+
+    def poses(self) -> Poses:
+        """Where everything is now; the parts where they really are, where the world shows that."""
+        poses = self._robot.poses()
+        if self._shown is None:
+            return poses
+        return poses.model_copy(update={"objects": list(self._shown.shown_poses())})
 
     def attach(self, emit: Emit, emit_picture: EmitPicture) -> None:
         """Say where reports and pictures go; called once, before anything else."""

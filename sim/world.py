@@ -1,10 +1,12 @@
 """A world: stands in for hardware and the people around it; workcell and tabletop are two."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from pathlib import Path
 from typing import Any, Protocol, runtime_checkable
 
 from robots.agent import AgentCore
 from robots.body import Body
+from robots.link.messages import ShownObject, ShownPose
 from robots.vision.color_model import ColorModel
 from tasks.intervention import Intervention
 from tasks.scenario import ScriptedIntervention
@@ -58,6 +60,20 @@ class World(Protocol):
     def close(self) -> None: ...
 
 
+@runtime_checkable
+class ShownWorld(Protocol):
+    """A world that shows people where everything really is; no robot may ask for that."""
+
+    @property
+    def shown_objects(self) -> Sequence[ShownObject]:
+        """What it shows, always the same."""
+        ...
+
+    def shown_poses(self) -> Sequence[ShownPose]:
+        """Where that is now, in the same order."""
+        ...
+
+
 class WorldUnavailableError(Exception):
     """A world cannot run on this machine; the message says what to install."""
 
@@ -88,6 +104,23 @@ class WorldAdapter(Protocol):
 
     def create_agent(self, setup: WorldSetup) -> AgentCore:
         """Build the world and the robot in it."""
+        ...
+
+
+@runtime_checkable
+class ModelProvider(Protocol):
+    """A world adapter whose robot can be drawn from model files."""
+
+    @property
+    def model(self) -> str:
+        """What the files go by, as its bodies say."""
+        ...
+
+    def model_folder(self) -> Path:
+        """Holds `robot.urdf` and the meshes that it names relative to itself.
+
+        Raises `WorldUnavailableError` where they cannot be had.
+        """
         ...
 
 

@@ -36,9 +36,9 @@ _LOADER: type[Any] = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 class DocumentError(Exception):
     """A text cannot be read at all; raised by `read_document` and `read_text`."""
 
-    def __init__(self, line: int | None, message: str) -> None:
+    def __init__(self, line: int | None, message: str, column: int | None = None) -> None:
         super().__init__(message)
-        self.problem = Problem(line, None, message)
+        self.problem = Problem(line, None, message, column)
 
 
 class LinedMapping(dict[str, Any]):
@@ -232,5 +232,7 @@ def _line(event: Any) -> int:
 def _translate(error: yaml.YAMLError) -> DocumentError:
     mark = getattr(error, "problem_mark", None)
     reason = getattr(error, "problem", None) or getattr(error, "reason", None) or "cannot be read"
-    line = None if mark is None else mark.line + 1
-    return DocumentError(line, f"the text is not valid YAML or JSON: {reason}")
+    message = f"the text is not valid YAML or JSON: {reason}"
+    if mark is None:
+        return DocumentError(None, message)
+    return DocumentError(mark.line + 1, message, mark.column + 1)

@@ -9,11 +9,15 @@ _MAX_LISTED = 12
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """One mistake. `line` counts from 1; `node_path` is the path of child indices (`/0/2`)."""
+    """One mistake. `line` and `column` count from 1; `node_path` is the path of child indices.
+
+    `column` is known where the text could not be read at all.
+    """
 
     line: int | None
     node_path: str | None
     message: str
+    column: int | None = None
 
     def describe(self, source: str) -> str:
         """One line: where it is and what is wrong."""

@@ -15,9 +15,11 @@ from robots.link.channel import Channel, ChannelClosedError
 from robots.link.clock import Clock
 from robots.link.command_memory import CommandMemory
 from robots.link.connection import Connection, UnknownCommand
-from robots.link.messages import Command, Picture, Rejected, ReportBody, Taken
+from robots.link.messages import Command, Hello, Picture, Rejected, ReportBody, Taken
 from robots.link.outbox import Outbox
 from robots.link.pacing import Pacer
+from robots.link.sampling import PoseSampling
+from robots.showing import ShowsPoses
 
 log = logging.getLogger(__name__)
 
@@ -76,10 +78,12 @@ class _RobotEnd:
         self._wake = asyncio.Event()
         self._connection: Connection | None = None
         self._simulated = False
+        self._shown = agent if isinstance(agent, ShowsPoses) else None
+        self._sampling = PoseSampling()
 
     async def run(self) -> None:
         self._agent.attach(self._emit, self._emit_picture)
-        self._simulated = self._agent.hello(self._outbox.boot).simulated
+        self._simulated = self._hello().simulated
         link = asyncio.create_task(self._stay_connected())
         pump = asyncio.create_task(self._pump())
         try:
@@ -91,6 +95,12 @@ class _RobotEnd:
             for task in (link, pump):
                 task.cancel()
             await asyncio.gather(link, pump, return_exceptions=True)
+
+    def _hello(self) -> Hello:
+        hello = self._agent.hello(self._outbox.boot)
+        if self._shown is None:
+            return hello
+        return hello.model_copy(update={"shows": self._shown.pose_layout()})
 
     # --- What the agent emits -----------------------------------------------------------------
 
@@ -113,6 +123,7 @@ class _RobotEnd:
                     await self._talk(channel)
                 finally:
                     self._connection = None
+                    self._sampling.ask(0.0)
                     with suppress(ChannelClosedError):
                         await channel.close()
             delay_s = self._backoff.next_s()
@@ -127,6 +138,7 @@ class _RobotEnd:
             self._agent.time_s,
             self._take,
             self._wake.set,
+            self._show_poses,
         )
 
         def welcomed() -> None:
@@ -134,7 +146,7 @@ class _RobotEnd:
 
         began = self._clock.now()
         try:
-            await connection.run(self._agent.hello(self._outbox.boot), welcomed)
+            await connection.run(self._hello(), welcomed)
         finally:
             # Two programs that both claim to be this robot end each other's connections at once:
             # only one that lasted counts as a success.
@@ -144,6 +156,19 @@ class _RobotEnd:
     def _take(self, command: Command | UnknownCommand) -> None:
         self._commands.append(command)
         self._wake.set()
+
+    # --- Poses --------------------------------------------------------------------------------
+
+    def _show_poses(self, rate_hz: float) -> None:
+        self._sampling.ask(rate_hz)
+        self._wake.set()
+
+    def _show_if_due(self, *, at_rest: bool = False) -> None:
+        if self._shown is None or self._connection is None:
+            return
+        due = self._sampling.due_at_rest if at_rest else self._sampling.due
+        if due(self._agent.time_s(), self._clock.now()):
+            self._connection.show(self._shown.poses())
 
     # --- The agent ----------------------------------------------------------------------------
 
@@ -156,14 +181,17 @@ class _RobotEnd:
                 await self._say_goodbye()
                 return
             if self._must_wait():
+                self._show_if_due()
                 await self._wake.wait()
                 continue
             delay_s = self._pacer.delay_s(agent.pace, self._clock.now(), agent.time_s())
             if delay_s > 0.0:
                 await self._clock.wait(self._wake, delay_s)
             elif self._advance():
+                self._show_if_due()
                 await self._let_commands_in()
             else:
+                self._show_if_due(at_rest=True)
                 self._pacer.rest()
                 await self._wake.wait()
 
@@ -179,7 +207,8 @@ class _RobotEnd:
         """Let a slice of time pass; False when there is nothing to do."""
         agent = self._agent
         began, robot_began = self._clock.now(), agent.time_s()
-        busy = agent.advance(self._pacer.slice_s(agent.pace))
+        slice_s = min(self._pacer.slice_s(agent.pace), self._sampling.longest_slice_s(began))
+        busy = agent.advance(slice_s)
         self._pacer.took(self._clock.now() - began, agent.time_s() - robot_began)
         return busy
 
@@ -192,6 +221,7 @@ class _RobotEnd:
                     self._emit(rejected, self._agent.time_s(), None)
                 else:
                     self._agent.handle(command.id, command.body)
+                    self._sampling.change()
             if self._connection is not None:
                 self._connection.send(Taken(command=command.id))
 

@@ -13,11 +13,14 @@ from robots.link.channel import Channel, ChannelClosedError, LinkRefusedError
 from robots.link.clock import Clock
 from robots.link.messages import (
     Ack,
+    AnyServiceMessage,
     Command,
     Heartbeat,
     Hello,
     LinkError,
     Picture,
+    Poses,
+    ShowPoses,
     Taken,
     Welcome,
     service_message,
@@ -51,6 +54,7 @@ class Connection:
         time_s: Callable[[], float],
         take: Callable[[Command | UnknownCommand], None],
         acknowledged: Callable[[], None],
+        show_poses: Callable[[float], None],
     ) -> None:
         self._channel = channel
         self._outbox = outbox
@@ -58,9 +62,11 @@ class Connection:
         self._time_s = time_s
         self._take = take
         self._acknowledged = acknowledged
+        self._show_poses = show_poses
         self._wake_writer = asyncio.Event()
         self._over = asyncio.Event()
         self._unsaved: deque[Taken | Picture] = deque()
+        self._poses: Poses | None = None
         self._sent_id = 0
         self._in_flight = 0
 
@@ -71,6 +77,11 @@ class Connection:
     def send(self, message: Taken | Picture) -> None:
         """Send a message that is lost with the connection."""
         self._unsaved.append(message)
+        self.wake()
+
+    def show(self, poses: Poses) -> None:
+        """Send poses once the link has nothing better to do; newer ones take their place."""
+        self._poses = poses
         self.wake()
 
     async def run(self, hello: Hello, welcomed: Callable[[], None]) -> None:
@@ -118,10 +129,12 @@ class Connection:
                     self._take(message)
                 case Ack():
                     self._acknowledge(message.boot or self._outbox.boot, message.seq)
+                case ShowPoses():
+                    self._show_poses(message.rate_hz)
                 case LinkError():
                     log.warning("the service says: %s", message.detail)
 
-    def _parse(self, text: str) -> Welcome | Ack | Command | LinkError | UnknownCommand | None:
+    def _parse(self, text: str) -> AnyServiceMessage | UnknownCommand | None:
         try:
             return service_message.validate_json(text)
         except ValidationError as error:
@@ -151,7 +164,11 @@ class Connection:
                 await self._channel.send(self._unsaved.popleft().model_dump_json())
             stored = self._outbox.after(self._sent_id, 1) if self._in_flight < WINDOW else []
             if not stored:
-                return
+                if self._poses is None:
+                    return
+                poses, self._poses = self._poses, None
+                await self._channel.send(poses.model_dump_json())
+                continue
             self._sent_id = stored[0].id
             self._in_flight += 1
             await self._channel.send(stored[0].text)

@@ -1,9 +1,10 @@
 """The protocol between the service and a robot: every message, as docs/robot_protocol.md says.
 
-JSON text frames over one WebSocket. The robot sends `hello`, `report`, `heartbeat`, `taken` and
-`picture`; the service sends `welcome`, `ack`, `command` and `error`. Reports are durable: the robot
-keeps each in its outbox under (robot, boot, seq) until the service has acknowledged it, which it
-does after it has committed it. Commands are idempotent: a robot carries out a command `id` once,
+JSON text frames over one WebSocket. The robot sends `hello`, `report`, `heartbeat`, `taken`,
+`picture` and `poses`; the service sends `welcome`, `ack`, `command`, `show_poses` and `error`.
+Reports are durable: the robot keeps each in its outbox under (robot, boot, seq) until the service
+has acknowledged it, which it does after it has committed it. Commands are idempotent: a robot
+carries out a command `id` once,
 and the service sends it again after a reconnect until it is `taken`.
 All lengths are metres, angles radians, times seconds of the robot's clock, poses in its base frame.
 """
@@ -71,6 +72,48 @@ class Detection(Message):
     tolerance_px: float | None = None
     area_px: int = 0
     explanation: str = ""
+
+
+Shown = Annotated[float, Field(ge=-1e6, le=1e6)]
+
+PoseValues = tuple[Shown, Shown, Shown, Shown, Shown, Shown, Shown]
+"""x, y, z (m), qx, qy, qz, qw."""
+
+_IDENTITY: PoseValues = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
+
+
+class ShownObject(Message):
+    """Something whose pose a robot's `poses` tell; a box, with a smaller one on top (`knob`).
+
+    `kind` `obstacle`: what somebody holds in the arm's way. `color`: linear RGB in [0, 1]; None
+    is that of the task's scene.
+    """
+
+    name: Identifier
+    kind: Literal["object", "obstacle"] = "object"
+    size: tuple[float, float, float]
+    knob: tuple[float, float, float] | None = None
+    color: tuple[float, float, float] | None = None
+
+
+class PoseLayout(Message):
+    """What a robot's `poses` hold, in their order; `model` names its model files."""
+
+    model: Identifier | None = None
+    joints: Annotated[list[Identifier], Field(max_length=256)] = []
+    objects: Annotated[list[ShownObject], Field(max_length=1024)] = []
+
+
+class ShownPose(Message):
+    """Where something is: the pose of its bottom centre.
+
+    `gone`: nobody can see it any more. `hidden`: not to be seen now; the pose is the last known.
+    """
+
+    pose: PoseValues
+    held: bool = False
+    gone: bool = False
+    hidden: bool = False
 
 
 class ActiveExecution(Message):
@@ -300,8 +343,8 @@ class Hello(Message):
     """First message of a robot on every connection.
 
     `boot` is new at every start of the robot's program. `suitability`: per behavior, in (0, 1].
-    `executing`: what it is doing, if anything. `restored`: True when a simulated world was rebuilt
-    from a snapshot.
+    `executing`: what it is doing, if anything. `shows`: what its `poses` hold; None if it sends
+    none.
     """
 
     type: Literal["hello"] = "hello"
@@ -315,6 +358,7 @@ class Hello(Message):
     executing: ActiveExecution | None = None
     time: float
     simulated: bool = False
+    shows: PoseLayout | None = None
 
 
 class Report(Message):
@@ -356,7 +400,25 @@ class Picture(Message):
     jpeg: str
 
 
-RobotMessage = Annotated[Hello | Report | Heartbeat | Taken | Picture, Field(discriminator="type")]
+class Poses(Message):
+    """Where everything is that the hello's `shows` names; for display only, not durable.
+
+    `base`: the robot's base frame in the world; all other poses are in the base frame. `tool`: the
+    tool point (x the approach direction, y the opening direction of the fingers).
+    """
+
+    type: Literal["poses"] = "poses"
+    time: float
+    joints: list[Shown] = []
+    base: PoseValues = _IDENTITY
+    tool: PoseValues
+    opening_m: Shown
+    objects: list[ShownPose] = []
+
+
+AnyRobotMessage = Hello | Report | Heartbeat | Taken | Picture | Poses
+
+RobotMessage = Annotated[AnyRobotMessage, Field(discriminator="type")]
 
 
 class Welcome(Message):
@@ -384,6 +446,16 @@ class Command(Message):
     body: CommandBody
 
 
+class ShowPoses(Message):
+    """Send `poses` at most so often per second of the robot's clock; 0 is not at all.
+
+    Only for a robot whose hello says what it `shows`; holds for this connection.
+    """
+
+    type: Literal["show_poses"] = "show_poses"
+    rate_hz: Annotated[float, Field(ge=0, le=100)]
+
+
 class LinkError(Message):
     """The last message was not understood, or the connection is refused; in one sentence."""
 
@@ -391,7 +463,9 @@ class LinkError(Message):
     detail: str
 
 
-ServiceMessage = Annotated[Welcome | Ack | Command | LinkError, Field(discriminator="type")]
+AnyServiceMessage = Welcome | Ack | Command | ShowPoses | LinkError
 
-robot_message: TypeAdapter[Hello | Report | Heartbeat | Taken | Picture] = TypeAdapter(RobotMessage)
-service_message: TypeAdapter[Welcome | Ack | Command | LinkError] = TypeAdapter(ServiceMessage)
+ServiceMessage = Annotated[AnyServiceMessage, Field(discriminator="type")]
+
+robot_message: TypeAdapter[AnyRobotMessage] = TypeAdapter(RobotMessage)
+service_message: TypeAdapter[AnyServiceMessage] = TypeAdapter(ServiceMessage)

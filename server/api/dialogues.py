@@ -9,7 +9,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from server.api.parts import DialogueId, HelperName, Limit, Offset, WithParts
 from server.api.problems import documented
 from server.api.strict_json import StrictJsonRoute
-from server.journal.events import Answered
+from server.journal.events import Answered, DeadlineExtended
 from server.runtime.views import DialogueView
 
 router = APIRouter(prefix="/api/dialogues", tags=["dialogues"], route_class=StrictJsonRoute)
@@ -28,11 +28,26 @@ class AnswerRequest(BaseModel):
     helper: HelperName
 
 
-class ClaimRequest(BaseModel):
-    """Who is on it."""
+class ReleaseRequest(BaseModel):
+    """Who is no longer on it."""
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
 
+    helper: HelperName
+
+
+class ClaimRequest(ReleaseRequest):
+    """Who is on it; `take_over` takes the claim from another helper."""
+
+    take_over: bool = False
+
+
+class ExtendRequest(BaseModel):
+    """Which question needs more time, and who says so."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+
+    prompt: Annotated[UUID, Field(strict=False)]
     helper: HelperName
 
 
@@ -74,13 +89,23 @@ async def claim_dialogue(
     parts: WithParts,
 ) -> DialogueView:
     """Show the other helpers that you are on it; the claim ends with its lease."""
-    return await parts.runs.claim(dialogue, body.helper)
+    return await parts.runs.claim(dialogue, body.helper, take_over=body.take_over)
+
+
+@router.post("/{dialogue}/extend", operation_id="extend_deadline", responses=CHANGES)
+async def extend_deadline(
+    dialogue: DialogueId,
+    body: Annotated[ExtendRequest, Body(examples=[{"prompt": PROMPT, "helper": "anna"}])],
+    parts: WithParts,
+) -> DeadlineExtended:
+    """Move the open question's deadline by its original length, at most ten times."""
+    return await parts.runs.extend(dialogue, body.prompt, body.helper)
 
 
 @router.post("/{dialogue}/release", operation_id="release_dialogue", responses=CHANGES)
 async def release_dialogue(
     dialogue: DialogueId,
-    body: Annotated[ClaimRequest, Body(examples=[{"helper": "anna"}])],
+    body: Annotated[ReleaseRequest, Body(examples=[{"helper": "anna"}])],
     parts: WithParts,
 ) -> DialogueView:
     """Give up your claim."""

@@ -35,10 +35,14 @@ class Answer(HelperMessage):
 
 
 class Claim(HelperMessage):
-    """Show the others that you are on it; send it again to renew the lease."""
+    """Show the others that you are on it; send it again to renew the lease.
+
+    `take_over`: take the claim from the helper who has it.
+    """
 
     type: Literal["claim"]
     dialogue: UUID
+    take_over: bool = False
 
 
 class Release(HelperMessage):
@@ -48,15 +52,25 @@ class Release(HelperMessage):
     dialogue: UUID
 
 
+class Extend(HelperMessage):
+    """Move the open question's deadline by its original length, at most ten times."""
+
+    type: Literal["extend"]
+    dialogue: UUID
+    prompt: UUID
+
+
 class Ping(HelperMessage):
     """Is anybody there?"""
 
     type: Literal["ping"]
 
 
-ClientMessage = Annotated[Auth | Answer | Claim | Release | Ping, Field(discriminator="type")]
+AnyClientMessage = Auth | Answer | Claim | Release | Extend | Ping
 
-client_message: TypeAdapter[Auth | Answer | Claim | Release | Ping] = TypeAdapter(ClientMessage)
+ClientMessage = Annotated[AnyClientMessage, Field(discriminator="type")]
+
+client_message: TypeAdapter[AnyClientMessage] = TypeAdapter(ClientMessage)
 
 
 class ServerMessage(BaseModel):

@@ -11,9 +11,11 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 from server.api.admission import POLICY_VIOLATION, admit
 from server.api.helper_messages import (
     Answer,
+    AnyClientMessage,
     Auth,
     Claim,
     Error,
+    Extend,
     Ping,
     Release,
     Result,
@@ -160,7 +162,7 @@ class HelperSocket:
             return None
         return message.token if isinstance(message, Auth) else None
 
-    async def _answer_message(self, message: Auth | Answer | Claim | Release | Ping) -> None:
+    async def _answer_message(self, message: AnyClientMessage) -> None:
         try:
             result = await self._do(message)
         except Exception as error:
@@ -172,7 +174,7 @@ class HelperSocket:
         else:
             await self._send(Result(id=message.id, result=result))
 
-    async def _do(self, message: Auth | Answer | Claim | Release | Ping) -> dict[str, Any]:
+    async def _do(self, message: AnyClientMessage) -> dict[str, Any]:
         runs, helper = self._parts.runs, self._query.helper
         match message:
             case Answer():
@@ -180,9 +182,11 @@ class HelperSocket:
                     message.dialogue, message.prompt, message.answer, helper
                 )
             case Claim():
-                done = await runs.claim(message.dialogue, helper)
+                done = await runs.claim(message.dialogue, helper, take_over=message.take_over)
             case Release():
                 done = await runs.release(message.dialogue, helper)
+            case Extend():
+                done = await runs.extend(message.dialogue, message.prompt, helper)
             case Auth() | Ping():
                 return {}
         return done.model_dump(mode="json")

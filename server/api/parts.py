@@ -12,9 +12,12 @@ from server.api.access import Access
 from server.journal.journal import Journal
 from server.journal.subscriptions import Subscribers
 from server.journal.writer import CommitStatistics
+from server.models import RobotModels
+from server.poses.feed import PoseSource
 from server.runtime.service import RunService
+from server.runtime.views import WorldView
 from server.settings import Settings
-from server.trees import ScenarioLibrary, TreeLibrary
+from server.trees import ScenarioLibrary, SceneShelf, TreeLibrary
 
 MAX_SEQ = 2**63 - 1
 
@@ -28,6 +31,12 @@ class ObservedJournal(Journal, Protocol):
     def commit_statistics(self) -> CommitStatistics: ...
 
 
+class WorldList(Protocol):
+    """Where the API finds worlds."""
+
+    def worlds(self) -> list[WorldView]: ...
+
+
 @dataclass(frozen=True, slots=True)
 class Parts:
     """The parts of one service; `app.state.parts` holds them."""
@@ -36,6 +45,10 @@ class Parts:
     journal: ObservedJournal
     trees: TreeLibrary
     scenarios: ScenarioLibrary
+    scenes: SceneShelf
+    worlds: WorldList
+    models: RobotModels
+    poses: PoseSource
     settings: Settings
     access: Access
 
@@ -50,6 +63,7 @@ WithParts = Annotated[Parts, Depends(parts_of)]
 RunId = Annotated[UUID, Path(description="The run's id.")]
 DialogueId = Annotated[UUID, Path(description="The dialogue's id.")]
 TreeName = Annotated[str, Path(pattern=r"^[A-Za-z][A-Za-z0-9_\-]{0,63}$", examples=["eket"])]
+SceneName = Annotated[str, Path(pattern=r"^[A-Za-z][A-Za-z0-9_\-]{0,63}$", examples=["eket"])]
 After = Annotated[int, Query(ge=0, le=MAX_SEQ, description="Only what comes after this `seq`.")]
 Limit = Annotated[int, Query(ge=1, le=1000, description="At most so many.")]
 Offset = Annotated[int, Query(ge=0, le=MAX_SEQ, description="Skip so many.")]

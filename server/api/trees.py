@@ -4,11 +4,12 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request, Response
 from pydantic import BaseModel, ConfigDict, ValidationError
+from starlette.concurrency import run_in_threadpool
 
 from server.api.parts import Limit, Offset, TreeName, WithParts
 from server.api.problems import ProblemError, documented, validation_sentences
 from server.errors import InvalidError
-from server.trees import TreeSummary, TreeView
+from server.trees import TreeCheck, TreeSummary, TreeView
 from tasks.scenario import Scenario
 from tasks.scene import Name
 
@@ -79,6 +80,20 @@ async def upload_tree(
     response.status_code = 201 if new else 200
     response.headers["Location"] = f"/api/trees/{tree.name}"
     return tree
+
+
+@router.post(
+    "/trees/check",
+    operation_id="check_tree",
+    response_model=TreeCheck,
+    responses=documented(400, 401, 403, 413, 415, 421, 422),
+    openapi_extra=UPLOAD_BODY,
+)
+async def check_tree(request: Request, parts: WithParts) -> TreeCheck:
+    """Check a task file without keeping it: its definition, or every mistake with its line."""
+    upload = await _read_upload(request, None)
+    checked = await run_in_threadpool(parts.trees.check, upload.text)
+    return checked if upload.name is None else checked.model_copy(update={"name": upload.name})
 
 
 @router.get("/trees/{name}", operation_id="get_tree", responses=documented(401, 404, 421, 422))

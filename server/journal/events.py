@@ -49,10 +49,14 @@ class Candidate(EventModel):
 
 
 class AnswerOption(EventModel):
-    """One way to answer a prompt, and what it will do."""
+    """One way to answer a prompt, and what it will do.
+
+    `final`: it cannot be taken back otherwise, as the robot starts to move or the dialogue closes.
+    """
 
     value: Literal["yes", "no"]
     effect: str
+    final: bool = False
 
 
 class RunStarted(Event):
@@ -113,6 +117,24 @@ class IssueRaised(NodeEvent):
     picture: UUID | None = None
 
 
+class ClipPicture(EventModel):
+    """One picture of a clip, at `/api/pictures/{picture}`; `time` on the run's clock."""
+
+    time: float
+    picture: UUID
+
+
+class ClipRecorded(NodeEvent):
+    """What the forearm camera saw before an issue, oldest first; comes after the issue itself."""
+
+    type: Literal["clip_recorded"] = "clip_recorded"
+    robot: str
+    issue: str
+    execution: UUID
+    dialogue: UUID | None
+    pictures: list[ClipPicture]
+
+
 class DialogueEvent(NodeEvent):
     """An event of one dialogue."""
 
@@ -168,6 +190,17 @@ class Answered(DialogueEvent):
     prompt: UUID
     version: int
     answer: Literal["yes", "no"]
+    helper: str
+
+
+class DeadlineExtended(DialogueEvent):
+    """A helper asked for more time: the open question now waits until `deadline` (run's clock)."""
+
+    type: Literal["deadline_extended"] = "deadline_extended"
+    prompt: UUID
+    version: int
+    deadline: float
+    extensions_left: int
     helper: str
 
 
@@ -329,11 +362,13 @@ AnyEvent = Annotated[
     | NodeStarted
     | StepStarted
     | IssueRaised
+    | ClipRecorded
     | DialogueOpened
     | Prompt
     | Claimed
     | Released
     | Answered
+    | DeadlineExtended
     | Escalated
     | HelpAwaited
     | HelpVerified

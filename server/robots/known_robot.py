@@ -16,8 +16,10 @@ from robots.link.messages import (
     CommandBody,
     Hello,
     Picture,
+    Poses,
     Rejected,
     Report,
+    ShowPoses,
     Taken,
     TakePicture,
     Welcome,
@@ -49,6 +51,7 @@ class KnownRobot:
         self._pictures: dict[str, asyncio.Future[bytes]] = {}
         self._received: dict[str, int] = {}
         self._heard_of: set[str] = set()
+        self._poses_hz = 0.0
         self._absence: asyncio.TimerHandle | None = None
         self._tasks: set[asyncio.Task[None]] = set()
 
@@ -81,6 +84,8 @@ class KnownRobot:
         for command in self._untaken.values():
             session.send(command)
         session.do(self._announce)
+        if self._poses_hz > 0.0:
+            self._ask_for_poses()
 
     def disconnect(self, session: RobotSession) -> None:
         """A connection has ended; after a while without a new one the robot is lost."""
@@ -132,6 +137,7 @@ class KnownRobot:
 
     def unassign(self) -> None:
         self._sink, self._sink_sees_it = None, False
+        self.show_poses(0.0)
 
     async def _announce(self) -> None:
         if self._sink is not None and self.hello is not None:
@@ -156,6 +162,17 @@ class KnownRobot:
         command = self._untaken[command_id] = Command(id=command_id, body=body)
         if self.session is not None:
             self.session.send(command)
+
+    def show_poses(self, rate_hz: float) -> None:
+        """Have it send its poses at most so often; 0 is not at all. Holds until changed."""
+        if rate_hz != self._poses_hz:
+            self._poses_hz = rate_hz
+            self._ask_for_poses()
+
+    def _ask_for_poses(self) -> None:
+        shows = self.hello is not None and self.hello.shows is not None
+        if self.session is not None and shows:
+            self.session.send(ShowPoses(rate_hz=self._poses_hz))
 
     async def take_picture(self, camera: str, timeout_s: float) -> bytes:
         """A camera's picture (JPEG). Raises `NotFoundError` or `ConflictError`."""
@@ -188,6 +205,10 @@ class KnownRobot:
         except binascii.Error as error:
             raise PictureError(f"the picture of '{picture.camera}' is not base64") from error
         self._answer(picture.command, lambda future: future.set_result(jpeg))
+
+    def receive_poses(self, poses: Poses) -> None:
+        if self._sink is not None and self._sink_sees_it:
+            self._sink.robot_posed(self.name, poses)
 
     def _answer(self, command: str, answer: Callable[[asyncio.Future[bytes]], None]) -> None:
         future = self._pictures.get(command)

@@ -60,6 +60,11 @@ class RobotRegistry:
         """
         self._known(robot).command(command_id, body)
 
+    def show_poses(self, robot: str, rate_hz: float) -> None:
+        """Have a robot send its poses at most so often, also on its later connections; 0: never."""
+        if robot in self._robots:
+            self._robots[robot].show_poses(rate_hz)
+
     async def take_picture(self, robot: str, camera: str, timeout_s: float = 2.0) -> bytes:
         """A camera's picture now, as JPEG.
 

@@ -11,14 +11,14 @@ from pydantic import ValidationError
 from robots.link.channel import Channel, ChannelClosedError
 from robots.link.messages import (
     Ack,
-    Command,
-    Heartbeat,
+    AnyRobotMessage,
+    AnyServiceMessage,
     Hello,
     LinkError,
     Picture,
+    Poses,
     Report,
     Taken,
-    Welcome,
     robot_message,
 )
 from server.errors import ServiceError
@@ -50,6 +50,8 @@ class Receiver(Protocol):
 
     def receive_taken(self, taken: Taken) -> None: ...
 
+    def receive_poses(self, poses: Poses) -> None: ...
+
     def receive_picture(self, picture: Picture) -> None:
         """Raises `PictureError`."""
         ...
@@ -77,9 +79,7 @@ class RobotSession:
         self._receiver = receiver
         self._clock = clock
         self._times = times
-        self._outgoing: asyncio.Queue[Welcome | Ack | Command | LinkError] = asyncio.Queue(
-            WAITING_MESSAGES
-        )
+        self._outgoing: asyncio.Queue[AnyServiceMessage] = asyncio.Queue(WAITING_MESSAGES)
         self._work: asyncio.Queue[Report | Callable[[], Awaitable[None]]] = asyncio.Queue()
         self._room = asyncio.Semaphore(WAITING_REPORTS)
         self._owed: Ack | None = None
@@ -89,7 +89,7 @@ class RobotSession:
         self._last_word = ""
         self.reason = "its connection was closed"
 
-    def send(self, message: Welcome | Ack | Command | LinkError) -> None:
+    def send(self, message: AnyServiceMessage) -> None:
         """Send a message after those that wait already; a robot that reads none is cut off."""
         try:
             self._outgoing.put_nowait(message)
@@ -166,7 +166,7 @@ class RobotSession:
                 except ValidationError as error:
                     self.send(LinkError(detail=sentence(error)))
 
-    async def _take(self, message: Hello | Report | Heartbeat | Taken | Picture) -> None:
+    async def _take(self, message: AnyRobotMessage) -> None:
         match message:
             case Report():
                 await self._room.acquire()
@@ -178,6 +178,8 @@ class RobotSession:
                     self._receiver.receive_picture(message)
                 except PictureError as error:
                     self.send(LinkError(detail=str(error)))
+            case Poses():
+                self._receiver.receive_poses(message)
             case Hello():
                 self.send(LinkError(detail="a hello is only the first message of a connection"))
 

@@ -2,7 +2,7 @@
 
 from typing import Protocol
 
-from robots.link.messages import Hello, Report
+from robots.link.messages import Hello, Poses, Report
 from server.journal.journal import Receipt
 
 
@@ -19,6 +19,10 @@ class RobotSink(Protocol):
         A `receipt.boot` other than that of the last hello tells of an earlier start of the robot's
         program, which did not get to deliver it: it is history and says nothing about now.
         """
+        ...
+
+    def robot_posed(self, robot: str, poses: Poses) -> None:
+        """Where everything is, for people who watch; never waits."""
         ...
 
     async def robot_lost(self, robot: str, reason: str) -> None:

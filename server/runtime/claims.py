@@ -17,20 +17,31 @@ class Claims:
     def __init__(self, context: RunContext) -> None:
         self._context = context
 
-    async def claim(self, dialogue: DialogueState, helper: str) -> None:
-        """Claim a dialogue, or renew one's own claim.
+    async def claim(self, dialogue: DialogueState, helper: str, *, take_over: bool) -> None:
+        """Claim a dialogue, or renew one's own claim; `take_over` takes it from another helper.
 
-        Raises `ConflictError` while another helper's lease lasts, or once it is closed.
+        Raises `ConflictError` while another helper's lease lasts (unless it is taken over), or
+        once the dialogue is closed.
         """
         now = self._context.utc_now()
         held = dialogue.claim
         if dialogue.closed is not None:
             raise ConflictError(f"this dialogue is closed ({dialogue.closed})")
-        if held is not None and held.helper != helper and held.until > now:
+        others = held is not None and held.helper != helper
+        if held is not None and others and held.until > now and not take_over:
             seconds = (held.until - now).total_seconds()
-            raise ConflictError(f"{held.helper} is on this dialogue for {seconds:.0f} s more")
+            raise ConflictError(
+                f"{held.helper} is on this dialogue for {seconds:.0f} s more; "
+                "'take_over' takes it from them"
+            )
+        make = self._make(dialogue)
         lease = timedelta(seconds=self._context.settings.claim_lease_s)
-        await self._context.commit([self._make(dialogue).claimed(helper, now + lease)])
+        claimed = make.claimed(helper, now + lease)
+        if held is not None and others:
+            released = make.released(held.helper, expired=held.until <= now)
+            await self._context.commit([released, claimed])
+        else:
+            await self._context.commit([claimed])
 
     async def release(self, dialogue: DialogueState, helper: str) -> None:
         """Give up one's own claim. Raises `ConflictError` when the helper has none."""

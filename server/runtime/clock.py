@@ -21,6 +21,10 @@ class RunClock(Protocol):
         """A time of this clock as the robot's clock says it."""
         ...
 
+    def from_robot(self, robot_time: float) -> float:
+        """A time of the robot's clock as this one says it; where they differ, what it is now."""
+        ...
+
     def pause(self) -> None: ...
 
     def resume(self) -> None: ...
@@ -44,6 +48,9 @@ class SimulatedClock:
 
     def to_robot(self, time: float) -> float:
         return time - self._offset
+
+    def from_robot(self, robot_time: float) -> float:
+        return robot_time + self._offset
 
     def pause(self) -> None:
         """Nothing to do: the world's clock only moves when it is told to."""
@@ -72,6 +79,9 @@ class WallClock:
 
     def to_robot(self, time: float) -> float:
         return time
+
+    def from_robot(self, robot_time: float) -> float:  # noqa: ARG002 - part of the protocol
+        return self.now()
 
     def pause(self) -> None:
         self._elapsed, self._since = self.now(), None

@@ -23,7 +23,7 @@ from server.runtime.at_place import is_at_place
 from server.runtime.context import RunContext
 from server.runtime.dialogue_events import DialogueEvents
 from server.runtime.robot_side import Purpose, RobotSide
-from server.runtime.run_state import EXPECTED, DialogueState, rehearse
+from server.runtime.run_state import EXPECTED, MOST_EXTENSIONS, DialogueState, rehearse
 from sim.person import Promise, deed
 from tasks.scenario import Person
 
@@ -134,6 +134,29 @@ class DialogueDriver:
         if ask is None or ask.prompt != prompt:
             raise ConflictError("this prompt does not wait for an answer")
         return await self._take_answer(dialogue, ask, answer, helper, side)
+
+    async def extend(
+        self, dialogue: DialogueState, prompt: UUID, helper: str
+    ) -> ev.DeadlineExtended:
+        """Move the open question's deadline by as long as it was first put for.
+
+        Raises `NotFoundError` (no such prompt) or `ConflictError` (not open, or too often).
+        """
+        if prompt not in dialogue.prompts:
+            raise NotFoundError(f"there is no prompt {prompt} in this dialogue")
+        ask, length_s = dialogue.open_ask, dialogue.asked_for_s
+        if ask is None or ask.prompt != prompt or ask.deadline is None or length_s is None:
+            raise ConflictError("this prompt does not wait for an answer: it has no deadline")
+        left = dialogue.extensions_left - 1
+        if left < 0:
+            raise ConflictError(
+                f"this question was given more time {MOST_EXTENSIONS} times already"
+            )
+        make = self._make(dialogue)
+        event = make.extended(ask, ask.deadline + length_s, left, helper)
+        (extended,) = await self._context.commit([event])
+        assert isinstance(extended, ev.DeadlineExtended), "what is committed keeps its type"
+        return extended
 
     def abort(self, dialogue: DialogueState) -> ev.DialogueClosed:
         """The event that ends a dialogue because its run, robot or alternative ends."""

@@ -41,8 +41,8 @@ class DialogueEvents:
             kind="ask",
             text=ask.text,
             answers=[
-                ev.AnswerOption(value="yes", effect=ask.yes_effect),
-                ev.AnswerOption(value="no", effect=ask.no_effect),
+                ev.AnswerOption(value="yes", effect=ask.yes_effect, final=ask.yes_final),
+                ev.AnswerOption(value="no", effect=ask.no_effect, final=ask.no_final),
             ],
             deadline=deadline,
             to=to,
@@ -69,6 +69,18 @@ class DialogueEvents:
                 "answer": answer,
                 "helper": helper,
             }
+        )
+
+    def extended(
+        self, asked: ev.Prompt, deadline: float, extensions_left: int, helper: str
+    ) -> ev.DeadlineExtended:
+        return ev.DeadlineExtended(
+            **self._fields(),
+            prompt=asked.prompt,
+            version=asked.version,
+            deadline=deadline,
+            extensions_left=extensions_left,
+            helper=helper,
         )
 
     def escalated(self, channel: str, to: str) -> ev.Escalated:

@@ -3,9 +3,10 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
+from uuid import UUID
 
 from robots.link.messages import CommandBody, Hello
-from server.runtime.run import Hardware, Run
+from server.runtime.run import Hardware, PoseSink, Run
 from server.runtime.run_state import RunState
 from tasks.definition import TaskTreeDefinition
 from tasks.scenario import Scenario
@@ -72,6 +73,14 @@ class Worlds(Protocol):
     def open(self, state: RunState, run: Callable[[], Run]) -> Hardware:
         """The hardware of a run, which starts it; `run` is asked for only then."""
         ...
+
+
+class Poses(Protocol):
+    """Where runs pass on what their robots show."""
+
+    def open(self, state: RunState) -> PoseSink: ...
+
+    def close(self, run: UUID) -> None: ...
 
 
 class RealRobots:

@@ -21,6 +21,7 @@ from robots.link.messages import (
     IssueDetected,
     Location,
     Looked,
+    Poses,
     Rejected,
     Report,
     Resumed,
@@ -63,6 +64,16 @@ class Hardware(Protocol):
         ...
 
 
+class PoseSink(Protocol):
+    """Takes what robots show, for people who watch."""
+
+    def robot_connected(self, hello: Hello) -> None: ...
+
+    def take(self, robot: str, time_s: float, poses: Poses) -> None:
+        """`time_s` is of the run's clock."""
+        ...
+
+
 @dataclass(slots=True)
 class _Item:
     """`asked_for`: somebody waits for what comes of it, and is told if it is refused."""
@@ -81,11 +92,13 @@ class Run:
         sides: dict[str, RobotSide],
         dialogues: DialogueDriver,
         hardware: Hardware,
+        poses: PoseSink,
     ) -> None:
         self._context = context
         self._sides = sides
         self._dialogues = dialogues
         self._hardware = hardware
+        self._poses = poses
         self._reports = ReportEvents(context, dialogues)
         self._claims = Claims(context)
         self._inbox: asyncio.Queue[_Item] = asyncio.Queue()
@@ -214,6 +227,10 @@ class Run:
                 raise
             await self._context.commit([], receipt=receipt)
 
+    def robot_posed(self, robot: str, poses: Poses) -> None:
+        """Pass on where everything is; for display only, it changes nothing."""
+        self._poses.take(robot, self._context.clock.from_robot(poses.time), poses)
+
     async def robot_lost(self, robot: str, reason: str) -> None:
         """A robot's connection is gone."""
         self.tell_lost(robot, reason)
@@ -237,6 +254,7 @@ class Run:
             self._dialogues.robot_rebooted()
         was_doing = side.doing
         side.connect(hello)
+        self._poses.robot_connected(hello)
         execution = state.executions.get(robot)
         continues = execution is not None and execution.boot == hello.boot
         events: list[ev.Event] = []

@@ -17,6 +17,9 @@ from tasks.issue import Issue
 from tasks.scene import Scene
 from tasks.task_tree import TaskTree
 
+MOST_EXTENSIONS = 10
+"""So often the deadline of one question may be moved."""
+
 
 @dataclass(slots=True)
 class Execution:
@@ -56,10 +59,22 @@ class DialogueState:
     closed: CloseReason | None = None
     helps: int = 0
     ask_number: int = 0
+    asked_for_s: float | None = None
+    """How long the open question waited for an answer when it was put."""
+    extensions: dict[UUID, int] = field(default_factory=dict)
+    """How often each question's deadline may still be moved, where it was before."""
+    clip: list[ev.ClipPicture] = field(default_factory=list)
 
     @property
     def id(self) -> UUID:
         return self.opened.dialogue
+
+    @property
+    def extensions_left(self) -> int:
+        """How often the latest question's deadline may still be moved."""
+        if self.asked is None:
+            return 0
+        return self.extensions.get(self.asked.prompt, MOST_EXTENSIONS)
 
     @property
     def open_ask(self) -> ev.Prompt | None:
@@ -210,7 +225,21 @@ class RunState:
             self.asks += 1
             dialogue.ask_number = self.asks
             dialogue.asked = event
+            dialogue.asked_for_s = None if event.deadline is None else event.deadline - event.time
             dialogue.awaiting = None
+
+    @_apply.register
+    def _(self, event: ev.DeadlineExtended) -> None:
+        dialogue = self.dialogues[event.dialogue]
+        assert dialogue.asked is not None, "only a question has a deadline"
+        moved = dialogue.asked.model_copy(update={"deadline": event.deadline})
+        dialogue.prompt = dialogue.asked = dialogue.prompts[event.prompt] = moved
+        dialogue.extensions[event.prompt] = event.extensions_left
+
+    @_apply.register
+    def _(self, event: ev.ClipRecorded) -> None:
+        if event.dialogue is not None:
+            self.dialogues[event.dialogue].clip = event.pictures
 
     @_apply.register
     def _(self, event: ev.Claimed) -> None:

@@ -99,10 +99,13 @@ def dialogue_view(dialogue: DialogueState) -> DialogueView:
             answers=prompt.answers,
             deadline=prompt.deadline,
             to=prompt.to,
+            within_s=dialogue.asked_for_s if prompt.kind == "ask" else None,
+            extensions_left=dialogue.extensions_left if prompt.kind == "ask" else 0,
         ),
         awaiting=awaiting,
         answered_by=last_answer.helper if last_answer else None,
         claimed_by=dialogue.claim.helper if dialogue.claim else None,
         claimed_until=dialogue.claim.until if dialogue.claim else None,
         picture=dialogue.raised.picture,
+        clip=dialogue.clip,
     )

@@ -22,7 +22,7 @@ from server.runtime.clock import RunClock, SimulatedClock, WallClock
 from server.runtime.context import RunContext, RunSettings
 from server.runtime.dialogue_driver import DialogueDriver
 from server.runtime.failure import fail_run, why_it_stopped
-from server.runtime.ports import LIVE, RealRobots, Robots, ScenarioSource, TreeSource, Worlds
+from server.runtime.ports import LIVE, Poses, RealRobots, Robots, ScenarioSource, TreeSource, Worlds
 from server.runtime.requests import RunRequest
 from server.runtime.robot_side import RobotSide
 from server.runtime.run import Run
@@ -53,6 +53,7 @@ class Runtime:
         settings: RunSettings,
         monotonic: Callable[[], float],
         utc_now: Callable[[], datetime],
+        poses: Poses,
     ) -> None:
         self._journal = journal
         self._robots = robots
@@ -65,6 +66,7 @@ class Runtime:
         self._settings = settings
         self._monotonic = monotonic
         self._utc_now = utc_now
+        self._poses = poses
         self._states: dict[UUID, RunState] = {}
         self._runs: dict[UUID, Run] = {}
         self._tasks: dict[UUID, asyncio.Task[None]] = {}
@@ -186,7 +188,7 @@ class Runtime:
             partial(self._send_mail, state),
         )
         hardware = RealRobots() if live else self._worlds.open(state, lambda: self._runs[state.id])
-        run = Run(context, sides, dialogues, hardware)
+        run = Run(context, sides, dialogues, hardware, self._poses.open(state))
         self._runs[state.id] = run
         for robot in sides:
             self._robots.assign(robot, run)
@@ -198,6 +200,7 @@ class Runtime:
         for robot in state.started.robots:
             self._robots.unassign(robot)
         self._runs.pop(state.id, None)
+        self._poses.close(state.id)
         if not task.cancelled() and (error := task.exception()) is not None:
             log.error("run %s stopped and could not say so", state.id, exc_info=error)
 
@@ -352,11 +355,21 @@ class Runtime:
         )
         return cast(ev.Answered, answered)
 
-    async def claim(self, dialogue: UUID, helper: str) -> DialogueView:
-        """Show the others that a helper is on it. Raises `ConflictError` while another is."""
+    async def extend(self, dialogue: UUID, prompt: UUID, helper: str) -> ev.DeadlineExtended:
+        """Give the open question more time. Raises `NotFoundError` or `ConflictError`."""
         state, found = self._dialogue(dialogue)
         run = self._running(state.id)
-        await run.request(lambda: run.claims.claim(found, helper))
+        extended = await run.request(lambda: run.dialogues.extend(found, prompt, helper))
+        return cast(ev.DeadlineExtended, extended)
+
+    async def claim(self, dialogue: UUID, helper: str, *, take_over: bool = False) -> DialogueView:
+        """Show the others that a helper is on it.
+
+        Raises `ConflictError` while another is, unless it is taken over from them.
+        """
+        state, found = self._dialogue(dialogue)
+        run = self._running(state.id)
+        await run.request(lambda: run.claims.claim(found, helper, take_over=take_over))
         return dialogue_view(found)
 
     async def release(self, dialogue: UUID, helper: str) -> DialogueView:

@@ -3,7 +3,7 @@
 from typing import Literal, Protocol
 from uuid import UUID
 
-from server.journal.events import Answered
+from server.journal.events import Answered, DeadlineExtended
 from server.runtime.requests import RunRequest
 from server.runtime.views import DialogueView, RobotView, RunSummary, RunView, Snapshot
 from tasks.intervention import Intervention
@@ -46,7 +46,13 @@ class RunService(Protocol):
         """Answer a prompt: the first answer wins. Raises `LostRaceError`, `ConflictError`."""
         ...
 
-    async def claim(self, dialogue: UUID, helper: str) -> DialogueView: ...
+    async def extend(self, dialogue: UUID, prompt: UUID, helper: str) -> DeadlineExtended:
+        """Move the open question's deadline by its original length. Raises `ConflictError`."""
+        ...
+
+    async def claim(
+        self, dialogue: UUID, helper: str, *, take_over: bool = False
+    ) -> DialogueView: ...
 
     async def release(self, dialogue: UUID, helper: str) -> DialogueView: ...
 

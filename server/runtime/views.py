@@ -7,7 +7,7 @@ from uuid import UUID
 
 from pydantic import BaseModel, ConfigDict
 
-from server.journal.events import AnswerOption, MissingPart
+from server.journal.events import AnswerOption, ClipPicture, MissingPart
 
 
 class View(BaseModel):
@@ -54,6 +54,9 @@ class PromptView(View):
     answers: list[AnswerOption]
     deadline: float | None
     to: str | None
+    within_s: float | None = None
+    """How long the question was to wait when it was put; an extension adds as much again."""
+    extensions_left: int = 0
 
 
 class DialogueView(View):
@@ -74,6 +77,7 @@ class DialogueView(View):
     claimed_by: str | None
     claimed_until: datetime | None
     picture: UUID | None
+    clip: list[ClipPicture] = []
 
 
 class RunResult(View):
@@ -121,6 +125,14 @@ class RobotView(View):
     reach: dict[str, float] | None
     run: UUID | None
     state: Literal["idle", "working", "holding", "lost"]
+
+
+class WorldView(View):
+    """A world that a run may be in; `reason` says why it cannot run here."""
+
+    name: str
+    available: bool
+    reason: str | None
 
 
 class Snapshot(View):

@@ -8,9 +8,10 @@ import numpy as np
 
 from server.errors import InvalidError
 from server.journal.journal import Journal
-from server.runtime.ports import LoadedTree
+from server.runtime.ports import LIVE, LoadedTree
 from server.runtime.run import Run
 from server.runtime.run_state import RunState
+from server.runtime.views import WorldView
 from sim.mischief import random_interventions
 from sim.world import WorldAdapter, WorldSetup, WorldUnavailableError
 from tasks.definition import BehaviorNode
@@ -42,6 +43,18 @@ class SimulatedWorlds:
         self._journal = journal
         self._launch = launch
         self._scenario = scenario
+
+    def worlds(self) -> list[WorldView]:
+        """Every world that a run may be in, and why one cannot run here."""
+        live = WorldView(name=LIVE, available=True, reason=None)
+        return [live, *(self._view(name) for name in sorted(self._adapters))]
+
+    def _view(self, name: str) -> WorldView:
+        try:
+            self._adapters[name].check_available()
+        except WorldUnavailableError as error:
+            return WorldView(name=name, available=False, reason=str(error))
+        return WorldView(name=name, available=True, reason=None)
 
     def check(self, world: str) -> None:
         """Raise `InvalidError` when there is no such world, or it cannot run here."""

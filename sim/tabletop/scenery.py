@@ -23,8 +23,8 @@ _TABLE_THICKNESS_M = 0.04
 _FLOOR_BGR = (96, 96, 96)
 _GREY = (0.45, 0.45, 0.45)
 _TABLE_COLOR = (0.72, 0.70, 0.68)
-_BLOCKER_COLOR = (0.30, 0.30, 0.32)
-_BLOCKER_SIZE_M = (0.10, 0.10, 0.30)
+BLOCKER_COLOR = (0.30, 0.30, 0.32)
+BLOCKER_SIZE_M = (0.10, 0.10, 0.30)
 
 _FINGER = box_triangles((0.012, 0.02, 0.07), (0.0, 0.0, 0.025))
 _PALM = np.concatenate(
@@ -52,7 +52,7 @@ class Scenery:
                 Mesh(_FINGER, _GREY),
                 Mesh(_FINGER, _GREY),
                 Mesh(_PALM, _GREY),
-                Mesh(box_triangles(_BLOCKER_SIZE_M), _BLOCKER_COLOR),
+                Mesh(box_triangles(BLOCKER_SIZE_M), BLOCKER_COLOR),
                 Mesh(top, _TABLE_COLOR),
             ]
         )
@@ -100,7 +100,7 @@ class Scenery:
         at = self._state.blocker_at
         self._visible[index] = at is not None
         if at is not None:
-            middle = self._state.scene.table.height + _BLOCKER_SIZE_M[2] / 2
+            middle = self._state.scene.table.height + BLOCKER_SIZE_M[2] / 2
             _set_upright(self._transforms[index], at[0], at[1], middle, 0.0)
 
 

@@ -2,16 +2,18 @@
 
 import json
 import math
+from collections.abc import Sequence
 from typing import Annotated, Any
 
 import numpy as np
 from pydantic import Field
 
 from robots.body import Reach, ToolPose
+from robots.link.messages import ShownObject, ShownPose
 from sim.tabletop.body import TabletopBody
 from sim.tabletop.part import PartPose, TablePart, Whereabouts
 from sim.tabletop.person import Person
-from sim.tabletop.scenery import ForearmCamera, HeadCamera, Scenery
+from sim.tabletop.scenery import BLOCKER_COLOR, BLOCKER_SIZE_M, ForearmCamera, HeadCamera, Scenery
 from sim.tabletop.snapshot import TabletopSnapshot, to_rest_pose
 from sim.tabletop.state import TabletopState
 from tasks.intervention import Intervention
@@ -60,6 +62,25 @@ class TabletopWorld:
     def intervene(self, intervention: Intervention) -> str:
         """Do what a person does; an empty string, or one sentence that says why it cannot be."""
         return self._person.intervene(intervention)
+
+    @property
+    def shown_objects(self) -> Sequence[ShownObject]:
+        """The parts, then whoever may stand in the arm's way."""
+        parts = [
+            ShownObject(name=each.name, size=each.size, knob=each.knob)
+            for each in self._state.parts.values()
+        ]
+        blocker = ShownObject(
+            name="obstacle", kind="obstacle", size=BLOCKER_SIZE_M, color=BLOCKER_COLOR
+        )
+        return [*parts, blocker]
+
+    def shown_poses(self) -> Sequence[ShownPose]:
+        """Where they really are, for people who watch."""
+        parts = [_shown_pose(each) for each in self._state.parts.values()]
+        x, y = self._state.blocker_at or (0.0, 0.0)
+        foot = (x, y, self.scene.table.height, 0.0, 0.0, 0.0, 1.0)
+        return [*parts, ShownPose(pose=foot, gone=self._state.blocker_at is None)]
 
     def snapshot(self) -> dict[str, Any]:
         """The state from which `restore` can rebuild the world; JSON-compatible."""
@@ -120,6 +141,16 @@ class TabletopWorld:
 
     def _is_lost(self, part: TablePart) -> bool:
         return part.whereabouts is Whereabouts.GONE or self._person.is_pulling(part)
+
+
+def _shown_pose(part: TablePart) -> ShownPose:
+    pose, half = part.pose, part.pose.yaw / 2
+    return ShownPose(
+        pose=(pose.x, pose.y, pose.z, 0.0, 0.0, math.sin(half), math.cos(half)),
+        held=part.whereabouts is Whereabouts.HELD,
+        gone=part.whereabouts is Whereabouts.GONE,
+        hidden=not part.shown,
+    )
 
 
 def _reach(scene: Scene, reach_m: float | None) -> Reach:

@@ -1,11 +1,13 @@
 """The workcell as a kind of world that runs can name (entry point `mend.worlds`)."""
 
+from pathlib import Path
+
 from robots.catalogue import Catalogue
 from robots.robot import Robot
 from robots.vision.color_model import ColorModel
 from sim.simulated_agent import SimulatedAgent
 from sim.workcell.options import read_options
-from sim.workcell.robot_model import check_installed
+from sim.workcell.robot_model import MODEL, check_installed, robot_urdf
 from sim.world import WorldSetup
 from tasks.plugins import load_plugins
 from tasks.scene import Scene
@@ -16,6 +18,12 @@ class WorkcellAdapter:
 
     own_process = True
     lays_out_anything = False
+
+    model = MODEL
+
+    def model_folder(self) -> Path:
+        """The trimmed PR2's files; made on the first call on a machine."""
+        return robot_urdf().parent
 
     def check_available(self) -> None:
         """Raise `WorldUnavailableError` where PyBullet or the robot's description is missing."""

@@ -13,7 +13,14 @@ from robots.motion.timing import TimedMotion
 from sim.workcell.finger_motion import FingerMotion
 from sim.workcell.physics import CONTROL_HZ
 from sim.workcell.pr2 import Pr2
-from sim.workcell.robot_model import FINGERS_OPEN_RAD, NEUTRAL_RAD, PREFERRED_RAD
+from sim.workcell.robot_model import (
+    ARM_JOINTS,
+    FINGER_JOINTS,
+    FINGERS_OPEN_RAD,
+    MODEL,
+    NEUTRAL_RAD,
+    PREFERRED_RAD,
+)
 
 PERIOD_S = 1.0 / CONTROL_HZ
 
@@ -63,6 +70,18 @@ class WorkcellBody:
         self._held_up_cycles = 0
         self._braking = False
         self._gripper = FingerMotion()
+
+    @property
+    def model(self) -> str:
+        return MODEL
+
+    @property
+    def joint_names(self) -> Sequence[str]:
+        """The arm's joints, then the fingers'."""
+        return (*ARM_JOINTS, *FINGER_JOINTS)
+
+    def joint_positions(self) -> Sequence[float]:
+        return self._pr2.joint_positions()
 
     @property
     def control_period_s(self) -> float:

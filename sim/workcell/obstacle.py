@@ -4,6 +4,7 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
+from robots.link.messages import ShownObject, ShownPose
 from robots.motion.curve import JointCurve
 from robots.motion.kinematics import KinematicChain
 from sim.workcell.physics import Client, Point
@@ -40,6 +41,18 @@ class Obstacle:
             self._body_id, -1, -1, -1, client.JOINT_FIXED, [0, 0, 0], [0, 0, 0], _AWAY
         )
         self._move_to(_AWAY)
+
+    @property
+    def shown(self) -> ShownObject:
+        """What it looks like, for people who watch."""
+        x, y, z = (2.0 * half for half in _HALF_M)
+        return ShownObject(name="obstacle", kind="obstacle", size=(x, y, z), color=_COLOR[:3])
+
+    def shown_pose(self) -> ShownPose:
+        """Where its bottom centre is; gone while nobody holds it."""
+        position, quaternion = self._client.getBasePositionAndOrientation(self._body_id)
+        x, y, z = position[0], position[1], position[2] - _HALF_M[2]
+        return ShownPose(pose=(x, y, z, *quaternion), gone=self.center is None)
 
     def stand_at(self, center: Point) -> None:
         """Be in the air around a point."""

@@ -59,6 +59,8 @@ class Part:
         self.body_id = _create_body(client, definition)
         self._away = PartPose.upright(_AWAY_X_M, number * _AWAY_SPACING_M, 0.0, 0.0)
         self.stolen = False
+        self.hidden = False
+        """Whether it is in a hand that nobody can see."""
         self.start = self._away
         self.last_rest = self._away
         """Where it rested last, for a world that is rebuilt while it is in the air."""
@@ -87,6 +89,7 @@ class Part:
     def hide(self) -> None:
         """Be in somebody's hand, out of the cameras' sight and the arm's reach."""
         self._reset(self._away)
+        self.hidden = True
 
     def at_rest(self) -> bool:
         linear, angular = self._client.getBaseVelocity(self.body_id)
@@ -99,6 +102,7 @@ class Part:
         return (x, y, z), pose.quaternion
 
     def _reset(self, pose: PartPose) -> None:
+        self.hidden = False
         self._client.resetBasePositionAndOrientation(self.body_id, *self.body_pose(pose))
         self._client.resetBaseVelocity(self.body_id, [0.0] * 3, [0.0] * 3)
 

@@ -122,6 +122,11 @@ class Pr2:
         states = self._client.getJointStates(self.body_id, self._arm)
         return np.array([state[0] for state in states])
 
+    def joint_positions(self) -> list[float]:
+        """The measured angles of the arm's joints, then of the fingers'."""
+        states = self._client.getJointStates(self.body_id, [*self._arm, *self._fingers])
+        return [float(state[0]) for state in states]
+
     def forearm_camera_pose(self) -> Matrix4:
         """The forearm camera's optical frame, from the measured joint angles."""
         return self._forearm_camera.pose(self.arm_joints()[: len(_FOREARM_JOINTS)])

@@ -61,7 +61,10 @@ _KEPT_VISUALS = re.compile(r"r_|torso|base_link")
 _KEPT_COLLISIONS = re.compile(r"r_(gripper|wrist|forearm)")
 _MESH_PREFIX = "package://example-robot-data/robots/pr2_description/meshes/"
 
-_LAYOUT = 2
+MODEL = "pr2"
+URDF = "robot.urdf"
+
+_LAYOUT = 3
 """Raised whenever this module makes different files from the same package."""
 
 
@@ -88,7 +91,7 @@ def robot_urdf() -> Path:
     target = _cache_root() / f"pr2-{version}-{_LAYOUT}"
     if not target.exists():
         _make(source, target)
-    return target / "pr2.urdf"
+    return target / URDF
 
 
 def _find_description() -> tuple[Path, str]:
@@ -144,7 +147,7 @@ def _write_model(source: Path, folder: Path) -> None:
         if not repaired.exists():
             repaired.parent.mkdir(parents=True, exist_ok=True)
             repaired.write_bytes(repair_stl((source / "meshes" / name).read_bytes()))
-    ElementTree.ElementTree(robot).write(folder / "pr2.urdf")
+    ElementTree.ElementTree(robot).write(folder / URDF)
 
 
 def _trim_joint(joint: ElementTree.Element) -> None:

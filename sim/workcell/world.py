@@ -1,11 +1,12 @@
 """The workcell: a PR2 at a table with parts, in PyBullet, with a person who intervenes."""
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, Literal
 
 import numpy as np
 
+from robots.link.messages import ShownObject, ShownPose
 from sim.workcell.bench import Bench
 from sim.workcell.body import PERIOD_S, WorkcellBody
 from sim.workcell.cameras import Optics, WorkcellCamera, forearm_optics, head_optics
@@ -85,6 +86,30 @@ class WorkcellWorld:
     def intervene(self, intervention: Intervention) -> str:
         """Do what a person does; an empty string, or one sentence that says why it cannot be."""
         return self._person.intervene(intervention)
+
+    @property
+    def shown_objects(self) -> Sequence[ShownObject]:
+        """The parts, then what somebody may hold in the arm's way."""
+        parts = [
+            ShownObject(name=each.name, size=each.definition.size, knob=each.definition.knob)
+            for each in self.parts.values()
+        ]
+        return [*parts, self._person.obstacle.shown]
+
+    def shown_poses(self) -> Sequence[ShownPose]:
+        """Where they really are, for people who watch."""
+        held = self._bench.held(self._pr2)
+        parts = [self._shown_pose(each, held) for each in self.parts.values()]
+        return [*parts, self._person.obstacle.shown_pose()]
+
+    def _shown_pose(self, part: Part, held: Part | None) -> ShownPose:
+        pose = part.pose()
+        return ShownPose(
+            pose=(*pose.position, *pose.quaternion),
+            held=part is held,
+            gone=part.stolen,
+            hidden=part.hidden,
+        )
 
     def snapshot(self) -> dict[str, Any]:
         """The state from which `restore` can rebuild the world; JSON-compatible."""

@@ -20,8 +20,9 @@ from server.runtime.views import (
     RunSummary,
     RunView,
     Snapshot,
+    WorldView,
 )
-from server.trees import CheckedTree
+from server.trees import CheckedTree, TreeMistake, WrongTreeError
 from tasks.intervention import Intervention
 from tasks.scenario import Scenario
 
@@ -32,7 +33,8 @@ JPEG = b"\xff\xd8\xff\xd9"
 def check_tree(text: str) -> CheckedTree:
     """Takes any text that has a `then` or `and`; a first line `name: x` names it."""
     if "then" not in text and "and" not in text:
-        raise InvalidError("the task file has mistakes", ["line 1: there is no goal node"])
+        mistake = TreeMistake(line=1, column=1, node=None, message="there is no goal node")
+        raise WrongTreeError([mistake], ["line 1: there is no goal node"])
     name = text.removeprefix("name: ").split("\n")[0].strip() if "name: " in text[:6] else None
     return CheckedTree(name, {"text": text})
 
@@ -42,6 +44,16 @@ class FakeScenarios:
 
     def scenarios(self) -> list[Scenario]:
         return [Scenario(name="eket_paper", tree="eket")]
+
+
+class FakeWorlds:
+    """A `WorldList` of one that can run and one that cannot."""
+
+    def worlds(self) -> list[WorldView]:
+        return [
+            WorldView(name="tabletop", available=True, reason=None),
+            WorldView(name="workcell", available=False, reason="it needs PyBullet"),
+        ]
 
 
 class FakeRuns:
@@ -183,6 +195,8 @@ class FakeRuns:
             ],
             deadline=30.0,
             to=None,
+            within_s=30.0,
+            extensions_left=10,
         )
         view = DialogueView(
             dialogue=uuid4(),
@@ -204,7 +218,10 @@ class FakeRuns:
         self._dialogues[view.dialogue] = view
         await self.commit(
             ev.DialogueOpened(**_of_dialogue(view)),
-            ev.Prompt(**_of_dialogue(view), **prompt.model_dump()),
+            ev.Prompt(
+                **_of_dialogue(view),
+                **prompt.model_dump(exclude={"within_s", "extensions_left"}),
+            ),
         )
         return view
 
@@ -235,11 +252,33 @@ class FakeRuns:
         assert isinstance(answered, ev.Answered)
         return answered
 
-    async def claim(self, dialogue: UUID, helper: str) -> DialogueView:
+    async def extend(self, dialogue: UUID, prompt: UUID, helper: str) -> ev.DeadlineExtended:
+        view = self.dialogue(dialogue)
+        if view.prompt is None or view.prompt.prompt != prompt:
+            raise NotFoundError(f"there is no prompt {prompt}")
+        if view.status == "closed" or view.prompt.extensions_left == 0:
+            raise ConflictError("this question gets no more time")
+        deadline, left = (view.prompt.deadline or 0.0) + 30.0, view.prompt.extensions_left - 1
+        moved = view.prompt.model_copy(update={"deadline": deadline, "extensions_left": left})
+        self._change(dialogue, prompt=moved)
+        (extended,) = await self.commit(
+            ev.DeadlineExtended(
+                **_of_dialogue(view),
+                prompt=prompt,
+                version=1,
+                deadline=deadline,
+                extensions_left=left,
+                helper=helper,
+            )
+        )
+        assert isinstance(extended, ev.DeadlineExtended)
+        return extended
+
+    async def claim(self, dialogue: UUID, helper: str, *, take_over: bool = False) -> DialogueView:
         view = self.dialogue(dialogue)
         if view.status == "closed":
             raise ConflictError("the dialogue is closed")
-        if view.claimed_by not in (None, helper):
+        if view.claimed_by not in (None, helper) and not take_over:
             raise ConflictError(f"{view.claimed_by} is on it")
         until = datetime.now(UTC) + timedelta(seconds=30)
         await self.commit(ev.Claimed(**_of_dialogue(view), helper=helper, lease_until=until))

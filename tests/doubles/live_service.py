@@ -12,6 +12,7 @@ from pretend_service import NoScenarios, PretendWorlds
 from dialogue.registry import load_scripts
 from server.dialogues.escalation import EscalationPolicy
 from server.journal.sqlite import SqliteJournal
+from server.poses.feed import PoseFeed
 from server.robots.registry import RobotRegistry
 from server.runtime.context import RunSettings
 from server.runtime.ports import LoadedTree
@@ -55,6 +56,7 @@ async def live_service(
         settings=RunSettings(),
         monotonic=time.monotonic,
         utc_now=lambda: datetime.now(UTC),
+        poses=PoseFeed(registry.show_poses, lambda _: None),
     )
     async with served(registry, token, port) as url:
         await runtime.recover()

@@ -15,6 +15,7 @@ from dialogue.script import Script
 from server.dialogues.escalation import EscalationPolicy
 from server.journal import events as ev
 from server.journal.sqlite import SqliteJournal
+from server.poses.feed import PoseFeed
 from server.runtime.context import RunSettings
 from server.runtime.ports import LoadedTree
 from server.runtime.requests import RunRequest
@@ -124,6 +125,7 @@ async def pretend_service(
         settings=RunSettings(),
         monotonic=time.monotonic,
         utc_now=lambda: datetime.now(UTC),
+        poses=PoseFeed(lambda *_: None, lambda _: None),
     )
     try:
         await runtime.recover()

@@ -4,7 +4,7 @@ import asyncio
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from robots.link.messages import Hello, Report
+from robots.link.messages import Hello, Poses, Report
 from server.journal.journal import Entry, Journal, Receipt
 
 
@@ -17,6 +17,7 @@ class RecordingSink:
     hellos: list[Hello] = field(default_factory=list)
     reports: list[Report] = field(default_factory=list)
     receipts: list[Receipt] = field(default_factory=list)
+    posed: list[Poses] = field(default_factory=list)
     lost: list[str] = field(default_factory=list)
     changed: asyncio.Condition = field(default_factory=asyncio.Condition)
 
@@ -31,6 +32,10 @@ class RecordingSink:
         self.reports.append(report)
         self.receipts.append(receipt)
         await self._notify()
+
+    def robot_posed(self, robot: str, poses: Poses) -> None:
+        self.robots.add(robot)
+        self.posed.append(poses)
 
     async def robot_lost(self, robot: str, reason: str) -> None:
         self.robots.add(robot)

@@ -1,17 +1,21 @@
 """The whole service around a fake runtime, in this process or behind real sockets."""
 
 import contextlib
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import httpx
 import uvicorn
-from fake_runs import TREES, FakeRuns, FakeScenarios, check_tree
+from fake_runs import TREES, FakeRuns, FakeScenarios, FakeWorlds, check_tree
 from fastapi import FastAPI
 
 from server.app import create_app, serve_config
 from server.journal.sqlite import SqliteJournal
+from server.library import SceneLibrary, Scenes
+from server.models import RobotModels
+from server.poses.feed import PoseFeed
+from server.poses.record import PoseRecords
 from server.settings import Settings
 from server.trees import JournaledTrees
 
@@ -26,6 +30,7 @@ class ServiceUnderTest:
     runs: FakeRuns
     journal: SqliteJournal
     settings: Settings
+    poses: PoseFeed
     url: str = "http://localhost"
 
     @property
@@ -38,14 +43,27 @@ class ServiceUnderTest:
         return httpx.AsyncClient(transport=transport, base_url=self.url, **arguments)
 
 
-def build(**settings: Any) -> ServiceUnderTest:
-    """A service on an empty journal in memory."""
+def build(
+    records: PoseRecords | None = None, models: Sequence[Any] = (), **settings: Any
+) -> ServiceUnderTest:
+    """A service on an empty journal in memory; `models` are adapters that provide some."""
     journal = SqliteJournal(":memory:")
     runs = FakeRuns(journal)
     chosen = Settings(port=0, **settings)
     trees = JournaledTrees(journal, TREES, check_tree)
-    app = create_app(runs, journal, chosen, trees_library=trees, scenarios=FakeScenarios())
-    return ServiceUnderTest(app, runs, journal, chosen)
+    poses = PoseFeed(lambda *_: None, lambda _: None, records)
+    app = create_app(
+        runs,
+        journal,
+        chosen,
+        trees_library=trees,
+        scenarios=FakeScenarios(),
+        scenes=SceneLibrary(Scenes(None)),
+        worlds=FakeWorlds(),
+        models=RobotModels(models),
+        poses=poses,
+    )
+    return ServiceUnderTest(app, runs, journal, chosen, poses)
 
 
 @contextlib.asynccontextmanager

@@ -17,6 +17,9 @@ from server.journal.upgrades import (
 
 SAMPLES = sorted((Path(__file__).parent / "journals").glob("v*.sql"))
 
+ADDED_SINCE = {"v1": {"clip_recorded", "deadline_extended"}}
+"""The types of events that came after a sample was written."""
+
 
 def test_there_is_a_sample_of_every_schema_version() -> None:
     assert [sample.stem for sample in SAMPLES] == [f"v{n}" for n in range(1, len(MIGRATIONS) + 1)]
@@ -24,7 +27,7 @@ def test_there_is_a_sample_of_every_schema_version() -> None:
 
 @pytest.fixture(params=SAMPLES, ids=lambda sample: sample.stem)
 def sample_journal(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
-    path = tmp_path / "journal.db"
+    path = tmp_path / f"{request.param.stem}.db"
     connection = sqlite3.connect(path)
     connection.executescript(request.param.read_text())
     connection.close()
@@ -35,7 +38,7 @@ async def test_sample_is_read_completely(sample_journal: Path) -> None:
     journal = SqliteJournal(sample_journal)
     events = await journal.read(0, 10_000)
     assert [event.seq for event in events] == list(range(1, journal.head + 1))
-    assert {event.type for event in events} == every_event_type()
+    assert {event.type for event in events} == every_event_type() - ADDED_SINCE[sample_journal.stem]
     (run,) = await journal.runs()
     assert await journal.read(0, 10_000, run) == events
     assert await journal.world(run) is not None

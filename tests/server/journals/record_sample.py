@@ -98,6 +98,12 @@ def every_event() -> list[ev.Event]:
             detection=detection,
             picture=PICTURE,
         ),
+        ev.ClipRecorded(
+            **work(),
+            issue="dropped",
+            dialogue=None,
+            pictures=[ev.ClipPicture(time=1.0, picture=PICTURE)],
+        ),
         ev.RobotHolding(**robot(), at="neutral"),
         ev.DialogueOpened(**talk()),
         ev.Prompt(
@@ -113,6 +119,14 @@ def every_event() -> list[ev.Event]:
         ev.Claimed(**talk(), helper="anna", lease_until=datetime(2026, 1, 2, 3, 5, tzinfo=UTC)),
         ev.Released(**talk(), helper="anna", expired=True),
         ev.Escalated(**talk(), channel="mail", to="operators@example.com"),
+        ev.DeadlineExtended(
+            **talk(),
+            prompt=PROMPT,
+            version=2,
+            deadline=80.0,
+            extensions_left=9,
+            helper="ben",
+        ),
         ev.Answered(**talk(), prompt=PROMPT, version=2, answer="yes", helper="ben"),
         ev.HelpAwaited(**talk(), help=Help.PUT_BACK, helper="ben", until=90.0),
         ev.HelpNotSeen(**talk(), help=Help.PUT_BACK),

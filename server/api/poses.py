@@ -1,0 +1,64 @@
+"""Recorded poses of runs, for replay."""
+
+import math
+from typing import Annotated
+
+from fastapi import APIRouter, Query, Response
+
+from server.api.parts import RunId, WithParts
+from server.api.problems import documented
+from server.errors import NotFoundError
+from server.poses.frame import framed
+from server.poses.layout import Layout
+
+router = APIRouter(prefix="/api/runs", tags=["runs"])
+
+SPAN_HEADER = "Mend-Poses-Span"
+MOST_FRAMES = 20_000
+
+Seconds = Annotated[float, Query(ge=0.0, le=1e9, allow_inf_nan=False)]
+
+
+@router.get("/{run}/layout", operation_id="get_layout", responses=documented(401, 404, 421, 422))
+async def get_layout(run: RunId, parts: WithParts) -> Layout:
+    """What the frames of a run hold, in order, and what does not move in it."""
+    parts.runs.run(run)
+    layout = await parts.poses.layout(run)
+    if layout is None:
+        raise NotFoundError(f"the robot of run {run} has not shown where anything is")
+    return layout
+
+
+@router.get(
+    "/{run}/poses",
+    operation_id="get_poses",
+    response_class=Response,
+    responses={
+        200: {
+            "content": {"application/octet-stream": {}},
+            "description": "Frames, each after its length in bytes (uint32, little endian).",
+            "headers": {
+                SPAN_HEADER: {
+                    "description": "The first and the last recorded time of the run.",
+                    "schema": {"type": "string"},
+                }
+            },
+        },
+        **documented(401, 404, 421, 422),
+    },
+)
+async def get_poses(
+    run: RunId,
+    parts: WithParts,
+    from_s: Seconds = 0.0,
+    to_s: Seconds | None = None,
+    limit: Annotated[int, Query(ge=1, le=MOST_FRAMES)] = MOST_FRAMES,
+) -> Response:
+    """The recorded frames of a span of the run's clock, evenly thinned out to `limit`."""
+    parts.runs.run(run)
+    until_s = math.inf if to_s is None else to_s
+    recorded = await parts.poses.recorded(run, from_s, until_s, limit)
+    headers = {"Cache-Control": "no-store"}
+    if recorded.span_s is not None:
+        headers[SPAN_HEADER] = " ".join(f"{each:.3f}" for each in recorded.span_s)
+    return Response(framed(recorded.frames), media_type="application/octet-stream", headers=headers)

@@ -1,0 +1,112 @@
+"""The layout: what the frames of a run hold, and what stands still around it."""
+
+from typing import Literal
+from uuid import UUID
+
+from robots.link.messages import Hello, PoseLayout, Poses
+from server.runtime.run_state import RunState
+from server.runtime.views import View
+from tasks.scene import Place, Scene
+
+RATE_HZ = 20.0
+"""Frames per second of the robot's clock, at most."""
+
+Triple = tuple[float, float, float]
+
+_GREY: Triple = (0.5, 0.5, 0.5)
+
+
+class ObjectLayout(View):
+    """An object as it is drawn: a box, and a second one (`knob_m`) in the middle on top of it."""
+
+    name: str
+    kind: Literal["object", "obstacle"]
+    shape: Literal["box"] = "box"
+    size_m: Triple
+    knob_m: Triple | None
+    color: Triple
+
+
+class PlaceLayout(View):
+    """A target: where the bottom centre of an object is to rest, in the robot's base frame."""
+
+    name: str
+    position: Triple
+    yaw: float
+
+
+class TableLayout(View):
+    """The work surface."""
+
+    center: tuple[float, float]
+    size_m: tuple[float, float]
+    height_m: float
+
+
+class ReachLayout(View):
+    """The graspable range in the plane: distances from (x, y)."""
+
+    x: float
+    y: float
+    min_m: float
+    max_m: float
+
+
+class Layout(View):
+    """What every binary frame after it holds, in order, and what does not move."""
+
+    type: Literal["layout"] = "layout"
+    run: UUID
+    robot: str
+    model: str | None
+    joints: list[str]
+    objects: list[ObjectLayout]
+    places: list[PlaceLayout]
+    table: TableLayout
+    reach: ReachLayout
+    cameras: list[str]
+    simulated: bool
+    rate_hz: float = RATE_HZ
+
+    def fits(self, poses: Poses) -> bool:
+        """Whether poses hold what this says."""
+        joints, objects = len(poses.joints), len(poses.objects)
+        return joints == len(self.joints) and objects == len(self.objects)
+
+
+def lay_out(state: RunState, hello: Hello, shows: PoseLayout, model: str | None) -> Layout:
+    """The layout of a run with this robot; `model` is the address of its model files."""
+    scene = state.scene
+    return Layout(
+        run=state.id,
+        robot=hello.robot,
+        model=model,
+        joints=shows.joints,
+        objects=[
+            ObjectLayout(
+                name=each.name,
+                kind=each.kind,
+                size_m=each.size,
+                knob_m=each.knob,
+                color=each.color or _color(scene, each.name),
+            )
+            for each in shows.objects
+        ],
+        places=[_place(name, each, scene) for name, each in scene.places.items()],
+        table=TableLayout(
+            center=scene.table.center, size_m=scene.table.size, height_m=scene.table.height
+        ),
+        reach=ReachLayout(**hello.reach.model_dump()),
+        cameras=sorted(hello.cameras),
+        simulated=hello.simulated,
+    )
+
+
+def _color(scene: Scene, name: str) -> Triple:
+    return scene.objects[name].color if name in scene.objects else _GREY
+
+
+def _place(name: str, place: Place, scene: Scene) -> PlaceLayout:
+    pose = place.pose
+    height = scene.table.height if pose.z is None else pose.z
+    return PlaceLayout(name=name, position=(pose.x, pose.y, height), yaw=pose.yaw)

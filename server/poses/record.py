@@ -1,0 +1,188 @@
+"""Recorded poses: one file of frames per run beside the journal, bounded, written off the loop."""
+
+import asyncio
+from collections import deque
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TypeVar
+from uuid import UUID
+
+from server.poses.frame import Frame, framed, time_of, unframed
+from server.poses.layout import Layout
+
+T = TypeVar("T")
+
+MOST_BYTES = 32 * 1024 * 1024
+SHORTEST_INTERVAL_S = 0.049
+"""Of the run's clock: no more than 20 frames per second are kept."""
+FLUSH_S = 1.0
+MOST_WAITING = 4096
+"""So many frames may wait to be written; a disk that is slower than that loses some."""
+
+
+@dataclass(frozen=True, slots=True)
+class RecordedPoses:
+    """Frames in order; `span_s` has the run's first and last recorded time, if there are any."""
+
+    frames: Sequence[Frame]
+    span_s: tuple[float, float] | None
+
+
+class PoseRecord:
+    """The record of one run that goes on. Its file is touched by the records' thread alone."""
+
+    def __init__(self, path: Path, write: Callable[[Callable[[], None]], None], most: int) -> None:
+        self._path = path
+        self._write = write
+        self._most_bytes = most
+        self._waiting: list[Frame] = []
+        self._timer: asyncio.TimerHandle | None = None
+        self._last_s: float | None = None
+        self._interval_s = SHORTEST_INTERVAL_S
+        self._size: int | None = None
+
+    def add(self, frame: Frame) -> None:
+        """Keep a frame, unless it follows the last one too soon."""
+        time_s = time_of(frame)
+        if self._last_s is not None and 0.0 <= time_s - self._last_s < self._interval_s:
+            return
+        self._last_s = time_s
+        if len(self._waiting) < MOST_WAITING:
+            self._waiting.append(frame)
+        if self._timer is None:
+            self._timer = asyncio.get_running_loop().call_later(FLUSH_S, self.flush)
+
+    def flush(self) -> None:
+        """Have what waits written."""
+        if self._timer is not None:
+            self._timer.cancel()
+            self._timer = None
+        if self._waiting:
+            waiting, self._waiting = self._waiting, []
+            self._write(lambda: self._append(waiting))
+
+    def _append(self, frames: Sequence[Frame]) -> None:
+        if self._size is None:
+            self._size = _without_torn_end(self._path)
+        data = framed(frames)
+        with self._path.open("ab") as file:
+            file.write(data)
+        self._size += len(data)
+        while self._size > self._most_bytes:
+            self._thin_out()
+
+    def _thin_out(self) -> None:
+        """Keep every other frame, and from now on half as many."""
+        kept = list(unframed(self._path.read_bytes()))[::2]
+        self._size = _replace(self._path, framed(kept))
+        self._interval_s *= 2
+
+
+class PoseRecords:
+    """The records of all runs, in one folder."""
+
+    def __init__(self, folder: Path, most_bytes: int = MOST_BYTES) -> None:
+        self._folder = folder
+        self._most_bytes = most_bytes
+        self._records: dict[UUID, PoseRecord] = {}
+        self._thread = ThreadPoolExecutor(max_workers=1, thread_name_prefix="poses")
+
+    def open(self, run: UUID) -> PoseRecord:
+        """The record to which a run's frames are added; it goes on where an earlier one ended."""
+        if run not in self._records:
+            path = self._path(run)
+            self._records[run] = PoseRecord(path, self._do_later, self._most_bytes)
+        return self._records[run]
+
+    def close(self, run: UUID) -> None:
+        """A run is over."""
+        record = self._records.pop(run, None)
+        if record is not None:
+            record.flush()
+
+    def keep_layout(self, layout: Layout) -> None:
+        """Keep the last layout of a run."""
+        path, text = self._layout_path(layout.run), layout.model_dump_json()
+        self._do_later(lambda: _write_text(path, text))
+
+    async def layout(self, run: UUID) -> Layout | None:
+        """The last layout of a run."""
+        path = self._layout_path(run)
+
+        def read() -> Layout | None:
+            return Layout.model_validate_json(path.read_bytes()) if path.exists() else None
+
+        return await self._do(read)
+
+    async def read(self, run: UUID, from_s: float, to_s: float, limit: int) -> RecordedPoses:
+        """The frames of a span, evenly thinned out to `limit`."""
+        if run in self._records:
+            self._records[run].flush()
+        path = self._path(run)
+
+        def read() -> RecordedPoses:
+            frames = list(unframed(path.read_bytes())) if path.exists() else []
+            if not frames:
+                return RecordedPoses([], None)
+            span_s = time_of(frames[0]), time_of(frames[-1])
+            chosen = [each for each in frames if from_s <= time_of(each) <= to_s]
+            every = -(-len(chosen) // limit) or 1
+            return RecordedPoses(chosen[::every], span_s)
+
+        return await self._do(read)
+
+    async def last(self, run: UUID) -> Frame | None:
+        """The last frame of a run."""
+        path = self._path(run)
+
+        def read() -> Frame | None:
+            frames = deque(unframed(path.read_bytes() if path.exists() else b""), maxlen=1)
+            return frames[0] if frames else None
+
+        return await self._do(read)
+
+    def shut(self) -> None:
+        """Write what waits, and end."""
+        for run in list(self._records):
+            self.close(run)
+        self._thread.shutdown()
+
+    def _path(self, run: UUID) -> Path:
+        return self._folder / f"{run}.poses"
+
+    def _layout_path(self, run: UUID) -> Path:
+        return self._folder / f"{run}.layout.json"
+
+    def _do_later(self, work: Callable[[], None]) -> None:
+        self._thread.submit(self._in_folder, work)
+
+    def _in_folder(self, work: Callable[[], T]) -> T:
+        self._folder.mkdir(parents=True, exist_ok=True)
+        return work()
+
+    async def _do(self, work: Callable[[], T]) -> T:
+        return await asyncio.get_running_loop().run_in_executor(
+            self._thread, lambda: self._in_folder(work)
+        )
+
+
+def _without_torn_end(path: Path) -> int:
+    """Cut off what a kill left half written; returns the size of the rest."""
+    if not path.exists():
+        return 0
+    data = path.read_bytes()
+    whole = framed(unframed(data))
+    return len(data) if len(whole) == len(data) else _replace(path, whole)
+
+
+def _replace(path: Path, data: bytes) -> int:
+    draft = path.with_suffix(".draft")
+    draft.write_bytes(data)
+    draft.replace(path)
+    return len(data)
+
+
+def _write_text(path: Path, text: str) -> None:
+    _replace(path, text.encode())
