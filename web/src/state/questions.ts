@@ -53,7 +53,7 @@ export function takeDialogues(views: readonly DialogueView[], runTimes: Readonly
 /** Fold one event into the questions. */
 export function takeDialogueEvent(event: Event, me: string): void {
   if (event.type === "issue_raised") raised.set(event.run + event.node, event);
-  if (!("dialogue" in event)) return;
+  if (!("dialogue" in event) || event.dialogue === null) return;
   const before = open.value.get(event.dialogue);
   if (event.type === "dialogue_opened") {
     put(opened(event));
@@ -64,7 +64,7 @@ export function takeDialogueEvent(event: Event, me: string): void {
     case "prompt":
       put({
         ...before,
-        prompt: event,
+        prompt: { ...event, within_s: null, extensions_left: 0 },
         awaiting: event.kind === "ask" ? "answer" : before.awaiting,
         prompted: { runTime: event.time, at: performance.now() },
       });
@@ -117,6 +117,7 @@ function opened(event: Extract<Event, { type: "dialogue_opened" }>): Question {
     claimed_by: null,
     claimed_until: null,
     picture: issue?.picture ?? null,
+    clip: [],
     opened: event.seq,
     prompted: null,
     issueRaised: issue,
