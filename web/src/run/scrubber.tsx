@@ -2,6 +2,8 @@
 import { clock } from "./run_header";
 import { type Moment, SPEEDS } from "./moment";
 
+const STEP_S = 0.1;
+
 interface ScrubberProps {
   moment: Moment;
   /** Whether the run goes on. */
@@ -15,6 +17,8 @@ export function Scrubber({ moment, going, onStep }: ScrubberProps) {
   const end = moment.end.value;
   const newest = moment.newest.value;
   const playing = moment.playing.value;
+  // Whole steps up to the end, so that the slider's last step is not before it.
+  const last = Math.max(Math.ceil(end / STEP_S), 1) * STEP_S;
   return (
     <section class={`scrubber ${newest ? "newest" : "past"}`} aria-label="Moment">
       <div class="scrubber-buttons">
@@ -38,9 +42,9 @@ export function Scrubber({ moment, going, onStep }: ScrubberProps) {
         aria-label="Moment of the run"
         aria-valuetext={`${time.toFixed(1)} of ${end.toFixed(1)} seconds`}
         min={0}
-        max={Math.max(end, 0.1)}
-        step={0.1}
-        value={newest ? Math.max(end, 0.1) : time}
+        max={last}
+        step={STEP_S}
+        value={newest ? last : time}
         onInput={(event) => moment.goTo(Number(event.currentTarget.value))}
       />
       <label class="scrubber-speed">

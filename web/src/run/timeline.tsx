@@ -205,7 +205,7 @@ function LaneItems({ lane, scale, height, walk, onChoose }: LaneItemsProps) {
             role="button"
             class={`item ${item.look}`}
             aria-label={`${clock(item.start)}: ${item.title}`}
-            tabIndex={item.seq === walk.at ? 0 : -1}
+            tabindex={item.seq === walk.at ? 0 : -1}
             data-seq={item.seq}
             onClick={(event) => {
               event.stopPropagation();
@@ -262,11 +262,13 @@ function Mark({ item, x, height, room }: { item: TimelineItem; x: number; height
     : item.look === "resolution"
       ? `M${x - 7} ${y}a7 7 0 1 0 14 0a7 7 0 1 0-14 0`
       : `M${x} ${y - 8}l8 8-8 8-8-8z`;
+  const wordPx = item.word.length * CHARACTER_PX;
+  const worded = room > wordPx + 24;
   return (
     <>
-      <rect class="hit" x={x - 12} y={0} width={24} height={height} />
+      <rect class="hit" x={x - 12} y={0} width={24 + (worded ? wordPx : 0)} height={height} />
       <path class="body" d={d} />
-      {room > item.word.length * CHARACTER_PX + 24 && (
+      {worded && (
         <text x={x + 13} y={y + 4}>
           {item.word}
         </text>
@@ -342,21 +344,21 @@ function useWheel(element: { current: HTMLElement | null }, zoom: (x: number, fa
 function useWalk(lanes: readonly Lane[], span: Span, whole: Span, setSpan: (span: Span | null) => void) {
   const [walked, setWalked] = useState<number | null>(null);
   const elements = useRef(new Map<number, SVGGElement>());
-  const following = useRef(false);
+  const goingTo = useRef<number | null>(null);
   const places = useMemo(
     () => new Map(lanes.flatMap((lane, row) => lane.items.map((item, column) => [item.seq, { row, column }] as const))),
     [lanes],
   );
   const first = lanes.flatMap((lane) => lane.items).find((item) => item.end >= span.from)?.seq ?? null;
   const at = walked !== null && places.has(walked) ? walked : first;
-  useEffect(() => {
-    if (!following.current || at === null) return;
-    following.current = false;
+  useLayoutEffect(() => {
+    if (at === null || goingTo.current !== at) return;
+    goingTo.current = null;
     elements.current.get(at)?.focus();
   });
   const walkTo = (item: TimelineItem | undefined) => {
     if (item === undefined) return;
-    following.current = true;
+    goingTo.current = item.seq;
     const length = span.to - span.from;
     if (item.start < span.from || item.start > span.to) setSpan(within(item.start - length / 2, length, whole));
     setWalked(item.seq);
@@ -369,7 +371,7 @@ function useWalk(lanes: readonly Lane[], span: Span, whole: Span, setSpan: (span
     return undefined;
   };
   const onKeyDown = (event: KeyboardEvent) => {
-    const place = at === null ? undefined : places.get(at);
+    const place = places.get(Number((event.target as Element).getAttribute("data-seq")));
     if (place === undefined) return;
     const items = lanes[place.row]?.items ?? [];
     const item = items[place.column] as TimelineItem;
