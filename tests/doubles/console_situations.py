@@ -103,7 +103,7 @@ async def delete_tree(service: Service, open_page: OpenPage) -> Page:
 
 async def start_run(_: Service, open_page: OpenPage) -> Page:
     page = await open_page("/start/eket")
-    await page.get_by_label("Seed").fill("-1")
+    await page.get_by_role("spinbutton", name="Seed").fill("-1")
     await page.get_by_role("button", name="Start the run").click()
     await expect(page.get_by_role("alert").filter(has_text="greater than or equal")).to_be_visible()
     return page

@@ -73,7 +73,7 @@ export function TreeDrawing(props: TreeDrawingProps) {
               aria-setsize={placed.siblings}
               aria-selected={placed.node.path === selected}
               aria-expanded={placed.expandable ? placed.hidden === 0 : undefined}
-              tabIndex={placed.node.path === walk.at ? 0 : -1}
+              tabindex={placed.node.path === walk.at ? 0 : -1}
               class={`node ${placed.node.kind} ${placed.node.state ?? "defined"} ${placed.node.path === focus ? "in-focus" : ""}`}
               data-path={placed.node.path}
               data-state={placed.node.state ?? undefined}
@@ -266,17 +266,17 @@ function useWalk(
 ) {
   const [walked, setWalked] = useState<string | null>(null);
   const elements = useRef(new Map<string, SVGGElement>());
-  const following = useRef(false);
+  const goingTo = useRef<string | null>(null);
   const shown = (path: string | null) => layout.nodes.some((placed) => placed.node.path === path);
   const at = shown(walked) ? walked : shown(initial) ? initial : (layout.nodes[0]?.node.path ?? null);
-  useEffect(() => {
-    if (!following.current || at === null) return;
-    following.current = false;
+  useLayoutEffect(() => {
+    if (at === null || goingTo.current !== at) return;
+    goingTo.current = null;
     elements.current.get(at)?.focus();
   }, [at]);
   const go = (path: string | undefined | null) => {
-    if (path === undefined || path === null || path === at) return;
-    following.current = true;
+    if (path === undefined || path === null) return;
+    goingTo.current = path;
     setWalked(path);
   };
   const take = (path: string) => {
@@ -284,7 +284,8 @@ function useWalk(
     onSelect?.(path);
   };
   const onKeyDown = (event: KeyboardEvent) => {
-    const index = layout.nodes.findIndex((placed) => placed.node.path === at);
+    const focused = (event.target as Element).getAttribute("data-path");
+    const index = layout.nodes.findIndex((placed) => placed.node.path === focused);
     const placed = layout.nodes[index];
     if (placed === undefined || event.ctrlKey || event.metaKey || event.altKey) return;
     const { path } = placed.node;
