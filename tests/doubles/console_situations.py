@@ -94,7 +94,9 @@ async def wrong_tree(_: Service, open_page: OpenPage) -> Page:
 
 
 async def delete_tree(service: Service, open_page: OpenPage) -> Page:
-    await service.trees.save("shelf", "name: shelf\ntree: {behavior: pick_and_place, object: a, place: b}\n")
+    await service.trees.save(
+        "shelf", "name: shelf\ntree: {behavior: pick_and_place, object: a, place: b}\n"
+    )
     page = await open_page("/trees/shelf")
     await page.get_by_role("button", name="Delete").click()
     await expect(page.get_by_role("dialog")).to_be_visible()
@@ -117,7 +119,9 @@ async def settings(_: Service, open_page: OpenPage) -> Page:
 
 async def unknown(_: Service, open_page: OpenPage) -> Page:
     page = await open_page("/runs")
-    await page.evaluate("history.replaceState(null, '', '/nowhere'); dispatchEvent(new Event('popstate'))")
+    await page.evaluate(
+        "history.replaceState(null, '', '/nowhere'); dispatchEvent(new Event('popstate'))"
+    )
     await expect(page.get_by_role("heading", name="There is nothing")).to_be_visible()
     return page
 

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 from console_in_browser import OpenPage
 from console_situations import SITUATIONS, Situation
-from playwright.async_api import Page, expect
+from playwright.async_api import Page
 
 from server.composition import Service
 

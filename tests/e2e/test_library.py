@@ -217,7 +217,9 @@ async def test_refused_save_keeps_the_text(open_page: OpenPage) -> None:
     await text_of(page).fill(CORRECT)
     await page.get_by_label("Name", exact=True).fill("tea_table")
     await page.get_by_role("button", name="Save").click()
-    await expect(page.get_by_role("alert").filter(has_text="'tea_table' is built in")).to_be_visible()
+    await expect(
+        page.get_by_role("alert").filter(has_text="'tea_table' is built in")
+    ).to_be_visible()
     await expect(text_of(page)).to_have_value(CORRECT)
     await page.get_by_label("Name", exact=True).fill("no good name")
     await page.get_by_role("button", name="Save").click()

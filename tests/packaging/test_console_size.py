@@ -47,8 +47,6 @@ def test_static_imports_are_followed_and_lazy_ones_are_not(tmp_path: Path) -> No
     not (BUILT / "index.html").is_file(), reason="the console is not built (make console)"
 )
 def test_answering_path_is_at_most_45_kib() -> None:
-    sizes = {
-        path.name: len(gzip.compress(path.read_bytes(), 9)) for path in answering_path(BUILT)
-    }
+    sizes = {path.name: len(gzip.compress(path.read_bytes(), 9)) for path in answering_path(BUILT)}
     assert {Path(name).suffix for name in sizes} == {".html", ".js", ".css"}
     assert sum(sizes.values()) <= MAX_BYTES, sizes
