@@ -1,36 +1,16 @@
 // The console's fold against the service's own, on runs that are made here and now.
-import { execFileSync } from "node:child_process";
 import { beforeAll, describe, expect, it } from "vitest";
 import { awaiting, nodeViews, type RunState } from "../src/run/fold";
 import { createHistory } from "../src/run/history";
-import type { DialogueView, Event, NodeView, RunResult, RunStatus } from "../src/wire/types";
-
-interface Said {
-  status: RunStatus;
-  result: RunResult | null;
-  nodes: NodeView[];
-  dialogues: Pick<DialogueView, "dialogue" | "node" | "awaiting" | "claimed_by">[];
-}
-
-interface Run {
-  events: Event[];
-  states: Said[];
-}
+import type { Event } from "../src/wire/types";
+import { type FoldedRun, foldedRuns, type Said } from "./folded_runs.mjs";
 
 const SEEDS = ["5", "8", "11", "12", "15", "23"];
 
-let runs: Run[] = [];
+let runs: FoldedRun[] = [];
 
 beforeAll(() => {
-  // The python of the environment that runs the tests (`make test`).
-  const root = new URL("../../", import.meta.url).pathname;
-  const lines = execFileSync("python", ["tests/doubles/folded_runs.py", ...SEEDS], {
-    cwd: root,
-    env: { ...process.env, PYTHONPATH: `${root}:${root}tests/doubles` },
-    encoding: "utf8",
-    maxBuffer: 1 << 30,
-  });
-  runs = lines.trim().split("\n").map((line: string) => JSON.parse(line) as Run);
+  runs = foldedRuns(SEEDS);
 }, 120_000);
 
 function said(state: RunState): Said {
@@ -89,7 +69,7 @@ describe("history", () => {
   });
 
   it("takes each event once, however often it comes", () => {
-    const { events } = runs[0] as Run;
+    const { events } = runs[0] as FoldedRun;
     const history = createHistory();
     expect(history.add(events.slice(0, 10))).toBe(true);
     expect(history.add(events.slice(5, 10))).toBe(false);
@@ -98,7 +78,7 @@ describe("history", () => {
   });
 
   it("counts the events up to a time, or up to one of several at that time", () => {
-    const { events } = runs[0] as Run;
+    const { events } = runs[0] as FoldedRun;
     const history = createHistory();
     history.add(events);
     const dropped = events.findIndex((event) => event.type === "issue_raised");

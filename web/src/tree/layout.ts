@@ -43,7 +43,7 @@ export interface Measures {
   columnGap: number;
 }
 
-export const FULL: Measures = { goalWidth: 152, leafWidth: 216, height: 60, rowGap: 12, columnGap: 40 };
+export const FULL: Measures = { goalWidth: 184, leafWidth: 216, height: 60, rowGap: 12, columnGap: 40 };
 export const COMPACT: Measures = { goalWidth: 120, leafWidth: 148, height: 32, rowGap: 8, columnGap: 32 };
 
 const MARGIN = 8;

@@ -2,10 +2,11 @@
 import type { PlacedNode } from "./layout";
 import { KindSign, StateSign } from "./signs";
 import type { NodeKind, TreeNode } from "./tree_node";
-import { KIND_WORDS, plain, shortened, STATE_WORDS } from "./words";
+import { KIND_RULES, KIND_WORDS, plain, shortened, STATE_WORDS } from "./words";
 
 const NAME_PX = 7.6;
 const SMALL_PX = 6.6;
+const KIND_PX = 10.6;
 const POINT = 14;
 const METER_WIDTH = 44;
 
@@ -98,7 +99,7 @@ function GoalText(props: { node: TreeNode; kind: GoalKind; width: number; compac
   const left = kind === "or" ? 16 : 10;
   const word = KIND_WORDS[kind];
   const y = compact ? 21 : 24;
-  const nameLeft = left + 24 + word.length * 8.4 + 8;
+  const nameLeft = left + 24 + word.length * KIND_PX + 6;
   const right = node.state === null ? 20 : 40;
   const room = Math.floor((width - nameLeft - right) / NAME_PX);
   const named = node.name !== kind;
@@ -108,14 +109,14 @@ function GoalText(props: { node: TreeNode; kind: GoalKind; width: number; compac
       <text class="kind-word" x={left + 24} y={y}>
         {word}
       </text>
-      {named && compact && room > 2 && (
+      {named && (
         <text class="name" x={nameLeft} y={y}>
           {shortened(plain(node.name), room)}
         </text>
       )}
-      {named && !compact && (
-        <text class="word" x={left + 2} y={44}>
-          {shortened(plain(node.name), node.level === null ? 16 : 3)}
+      {!compact && node.state === null && (
+        <text class="word" x={left + 24} y={44}>
+          {KIND_RULES[kind]}
         </text>
       )}
       {node.state !== null && <StateSign state={node.state} x={width - 36} y={y - 15} />}

@@ -8,10 +8,17 @@ export const KIND_WORDS: Readonly<Record<NodeKind, string>> = {
   behavior: "behavior",
 };
 
+/** What has to be done of the children. */
+export const KIND_RULES: Readonly<Record<Exclude<NodeKind, "behavior">, string>> = {
+  then: "all, in this order",
+  and: "all, in any order",
+  or: "exactly one",
+};
+
 export const KIND_MEANINGS: Readonly<Record<NodeKind, string>> = {
-  then: "THEN, all in this order",
-  and: "AND, all in any order",
-  or: "OR, exactly one of them",
+  then: `THEN, ${KIND_RULES.then}`,
+  and: `AND, ${KIND_RULES.and}`,
+  or: `OR, ${KIND_RULES.or}`,
   behavior: "behavior",
 };
 
