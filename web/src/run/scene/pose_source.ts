@@ -40,6 +40,7 @@ export function createPoseSource(run: string, helper: string, moment: Moment): P
   const buffer = createPoseBuffer();
   let newest: Frame | null = null;
   let past: Frame | null = null;
+  let wanted = 0;
   let changed = () => {};
 
   const tell = (frame: Frame) => {
@@ -82,7 +83,6 @@ export function createPoseSource(run: string, helper: string, moment: Moment): P
     void replay(moment.time.value);
   });
 
-  let wanted = 0;
   async function replay(time: number): Promise<void> {
     wanted += 1;
     const mine = wanted;
