@@ -3,6 +3,7 @@ import { useRef, useState } from "preact/hooks";
 import { plain } from "../tree/words";
 import * as rest from "../wire/rest";
 import { ended, type RunState } from "./fold";
+import type { Moment } from "./moment";
 
 const STATUS_WORDS = {
   running: "running",
@@ -12,7 +13,7 @@ const STATUS_WORDS = {
   aborted: "aborted",
 } as const;
 
-export function RunHeader({ newest, time }: { newest: RunState; time: number }) {
+export function RunHeader({ newest, moment }: { newest: RunState; moment: Moment }) {
   const { started, status, result } = newest;
   return (
     <header class="run-header">
@@ -22,9 +23,7 @@ export function RunHeader({ newest, time }: { newest: RunState; time: number }) 
         </h1>
         <p class="run-facts">
           <span class={`badge ${status}`}>{STATUS_WORDS[status]}</span>
-          <span class="run-clock" aria-label={`Run clock ${time.toFixed(1)} seconds`}>
-            {clock(time)}
-          </span>
+          <RunClock moment={moment} />
           <span class="quiet">
             {started.robots.map((robot) => (newest.lost.has(robot) ? `${robot} (lost)` : robot)).join(", ")}
           </span>
@@ -39,6 +38,16 @@ export function RunHeader({ newest, time }: { newest: RunState; time: number }) 
       </div>
       {!ended(status) && <RunControls run={started.run} paused={status === "paused"} />}
     </header>
+  );
+}
+
+/** By itself: it runs while all the rest stands still. */
+function RunClock({ moment }: { moment: Moment }) {
+  return (
+    <span class="run-clock">
+      <span class="unseen">Run clock </span>
+      {clock(moment.end.value)}
+    </span>
   );
 }
 

@@ -1,11 +1,14 @@
 // One run: where it stands or stood at a moment, as a tree, a timeline and a transcript.
+import { useComputed } from "@preact/signals";
 import { useCallback, useEffect, useMemo, useState } from "preact/hooks";
+import { later } from "../app/later";
 import { QuestionCard } from "../question/question_card";
 import { questions } from "../state/questions";
 import { TreeDrawing } from "../tree/tree_drawing";
 import { nodesOfRun } from "../tree/tree_node";
 import { plain } from "../tree/words";
 import type { NodeStarted, NodeView } from "../wire/types";
+import { Cameras } from "./cameras";
 import { ChoicePanel } from "./choice_panel";
 import { DialogueNow } from "./dialogue_now";
 import { ended, nodeViews, type RunState } from "./fold";
@@ -17,6 +20,10 @@ import { Timeline } from "./timeline";
 import { lanesOf, type TimelineItem } from "./timeline_lanes";
 import { Transcript } from "./transcript";
 import "./run.css";
+
+const ScenePanel = later(() => import("./scene/scene_panel").then((module) => module.ScenePanel));
+
+const LANE_STEP_S = 0.5;
 
 export function RunView({ run }: { run: string }) {
   const feed = useFeed(run);
@@ -38,9 +45,13 @@ function Followed({ feed }: { feed: RunFeed }) {
   const { history, moment } = feed;
   const version = feed.version.value;
   usePlaying(feed);
-  const time = moment.time.value;
-  const newest = moment.newest.value;
-  const count = newest ? history.events.length : history.countAt(time, moment.seq.value);
+  // Time passes all along; what is drawn changes with the events alone.
+  const count = useComputed(() => {
+    if (moment.newest.value) return Infinity;
+    // More events may have come for the very time that is shown.
+    void feed.version.value;
+    return history.countAt(moment.time.value, moment.seq.value);
+  }).value;
   const state = useMemo(() => history.stateAfter(Math.max(count, 1)), [history, count, version]);
   const latest = history.stateAfter(history.events.length);
   if (feed.failure.value !== null) return <NotThere reason={feed.failure.value} />;
@@ -89,13 +100,33 @@ function Shown({ feed, version, state, latest }: ShownProps) {
     },
     [history, moment, goToEvent],
   );
-  const views = useMemo(() => nodeViews(state), [state]);
+  const views = useMemo(
+    () => nodeViews(state),
+    [state.leaves, state.abandoned, state.potentials, state.status],
+  );
   const choices = useChoices(feed, state, selected);
-  const tree = <TreePanel state={state} views={views} selected={selected} onSelect={setSelected} />;
+  const talkedAbout = useTalkedAbout(state);
+  // Made anew only with what it shows: most events change neither the tree nor the selection.
+  const tree = useMemo(
+    () => <TreePanel name={state.started.tree_name} views={views} talkedAbout={talkedAbout} selected={selected} onSelect={setSelected} />,
+    [views, talkedAbout, selected],
+  );
   const choice = (
     <ChoicePanel node={views.find((view) => view.node === selected) ?? null} choices={choices} onChoose={goToEvent} />
   );
-  const timeline = <TimelinePanel feed={feed} version={version} onSelect={setSelected} onGoTo={goToEvent} />;
+  const timeline = useMemo(
+    () => <TimelinePanel feed={feed} version={version} onSelect={setSelected} onGoTo={goToEvent} />,
+    [feed, version, goToEvent],
+  );
+  const world = useMemo(
+    () => (
+      <>
+        <ScenePanel run={state.started.run} moment={moment} />
+        <Cameras run={state.started.run} moment={moment} status={latest.status} />
+      </>
+    ),
+    [state.started.run, moment, latest.status],
+  );
   const transcript = (
     <section class="panel run-transcript">
       <h2>Transcript</h2>
@@ -104,13 +135,14 @@ function Shown({ feed, version, state, latest }: ShownProps) {
   );
   return (
     <div class={`run-view ${newest ? "" : "in-past"}`}>
-      <RunHeader newest={latest} time={moment.end.value} />
+      <RunHeader newest={latest} moment={moment} />
       {narrow ? (
         <>
           <Talk state={state} newest={newest} />
           <Tabs
             panels={[
               { id: "tree", name: "Tree", content: [tree, choice] },
+              { id: "world", name: "Scene", content: world },
               { id: "timeline", name: "Timeline", content: timeline },
               { id: "transcript", name: "Transcript", content: transcript },
             ]}
@@ -118,6 +150,7 @@ function Shown({ feed, version, state, latest }: ShownProps) {
         </>
       ) : (
         <>
+          <div class="run-area world">{world}</div>
           <div class="run-area tree">{tree}</div>
           <div class="run-area timeline">{timeline}</div>
           <div class="run-area side">
@@ -154,18 +187,21 @@ function Talk({ state, newest }: { state: RunState; newest: boolean }) {
   );
 }
 
+/** The leaves that an open dialogue is about; the same set as long as they are. */
+function useTalkedAbout(state: RunState): ReadonlySet<string> {
+  const paths = [...state.dialogues.values()].map((dialogue) => dialogue.opened.node);
+  return useMemo(() => new Set(paths), [paths.join(" ")]);
+}
+
 interface TreePanelProps {
-  state: RunState;
+  name: string;
   views: readonly NodeView[];
+  talkedAbout: ReadonlySet<string>;
   selected: string | null;
   onSelect: (path: string | null) => void;
 }
 
-function TreePanel({ state, views, selected, onSelect }: TreePanelProps) {
-  const talkedAbout = useMemo(
-    () => new Set([...state.dialogues.values()].map((dialogue) => dialogue.opened.node)),
-    [state.dialogues],
-  );
+function TreePanel({ name, views, talkedAbout, selected, onSelect }: TreePanelProps) {
   const nodes = useMemo(() => nodesOfRun(views, talkedAbout), [views, talkedAbout]);
   const active = nodes.find((node) => node.kind === "behavior" && node.state === "active");
   const focus = nodes.find((node) => node.state === "in_dialogue") ?? active;
@@ -174,12 +210,12 @@ function TreePanel({ state, views, selected, onSelect }: TreePanelProps) {
       <h2>Task tree</h2>
       <TreeDrawing
         nodes={nodes}
-        label={`Task tree of ${plain(state.started.tree_name)}`}
+        label={`Task tree of ${plain(name)}`}
         selected={selected}
         focus={focus?.path ?? null}
         onSelect={(path) => onSelect(path === selected ? null : path)}
       />
-      <p class="tree-legend small quiet">↓ level, handed down · ↑ potential, handed up</p>
+      <p class="tree-legend small quiet">↓ level · ↑ potential</p>
     </section>
   );
 }
@@ -204,7 +240,8 @@ interface TimelinePanelProps {
 
 function TimelinePanel({ feed, version, onSelect, onGoTo }: TimelinePanelProps) {
   const { history, moment } = feed;
-  const end = moment.end.value;
+  // Not every frame of poses: the lanes grow in steps that nobody sees.
+  const end = useComputed(() => Math.ceil(moment.end.value / LANE_STEP_S) * LANE_STEP_S).value;
   const lanes = useMemo(() => lanesOf(history.events, end), [history, version, end]);
   const choose = (item: TimelineItem) => {
     if (item.node !== null) onSelect(item.node);
@@ -212,7 +249,7 @@ function TimelinePanel({ feed, version, onSelect, onGoTo }: TimelinePanelProps) 
   };
   return (
     <div class="panel run-timeline">
-      <Timeline lanes={lanes} end={end} time={moment.time.value} onGoTo={(time) => moment.goTo(time)} onChoose={choose} />
+      <Timeline lanes={lanes} end={end} moment={moment} onChoose={choose} />
     </div>
   );
 }

@@ -1,5 +1,6 @@
 // The timeline of a run: lanes over its clock, to be looked at closely and to jump from.
 import { useEffect, useLayoutEffect, useMemo, useRef, useState } from "preact/hooks";
+import type { Moment } from "./moment";
 import { clock } from "./run_header";
 import { type Lane, ticksOf, type TimelineItem } from "./timeline_lanes";
 import { TimelineList } from "./timeline_list";
@@ -14,14 +15,15 @@ const CHARACTER_PX = 6.8;
 const SMALLEST_SPAN_S = 1;
 /** Steps narrower than this on the average are left out: nobody could tell them apart. */
 const STEP_PX = 5;
+/** More things than this, each with less room than that, are drawn as one. */
+const CROWD = 60;
+const CROWDED_PX = 12;
 
 export interface TimelineProps {
   lanes: readonly Lane[];
   /** The newest time known. */
   end: number;
-  /** The moment that is shown. */
-  time: number;
-  onGoTo: (time: number) => void;
+  moment: Moment;
   onChoose: (item: TimelineItem) => void;
 }
 
@@ -44,7 +46,7 @@ export function Timeline(props: TimelineProps) {
   const [asList, setAsList] = useState(false);
   const whole: Span = { from: 0, to: Math.max(end, SMALLEST_SPAN_S) };
   const shown = span ?? whole;
-  const zoom = (factor: number, around = middleOf(shown, props.time)) => setSpan(zoomed(shown, factor, around, whole));
+  const zoom = (factor: number, around = middleOf(shown, props.moment.time.peek())) => setSpan(zoomed(shown, factor, around, whole));
   return (
     <section class="timeline" aria-label="Timeline">
       <div class="timeline-bar">
@@ -70,7 +72,7 @@ export function Timeline(props: TimelineProps) {
         </div>
       </div>
       {asList ? (
-        <TimelineList lanes={lanes} time={props.time} onChoose={props.onChoose} />
+        <TimelineList lanes={lanes} moment={props.moment} onChoose={props.onChoose} />
       ) : (
         <Lanes {...props} span={shown} whole={whole} setSpan={setSpan} zoom={zoom} />
       )}
@@ -101,14 +103,14 @@ interface LanesProps extends TimelineProps {
 }
 
 function Lanes(props: LanesProps) {
-  const { lanes, span, whole, setSpan, zoom, time, onGoTo, onChoose } = props;
+  const { lanes, span, whole, setSpan, zoom, moment, onChoose } = props;
   const frame = useRef<HTMLDivElement>(null);
   const width = useWidth(frame);
   const narrow = width < NARROW_PX;
   const lanePx = narrow ? LANE_NARROW_PX : LANE_PX;
   const height = AXIS_PX + lanes.length * lanePx;
   const scale = scaleOf(span, narrow ? 0 : LABELS_PX, width);
-  const pointer = usePointer(scale, whole, setSpan, onGoTo);
+  const pointer = usePointer(scale, whole, setSpan, moment.goTo);
   useWheel(frame, (x, factor) => zoom(factor, scale.time(x)));
   const walk = useWalk(lanes, span, whole, setSpan);
   return (
@@ -134,7 +136,7 @@ function Lanes(props: LanesProps) {
             </g>
           </g>
         ))}
-        <Playhead scale={scale} time={time} height={height} />
+        <Playhead scale={scale} moment={moment} height={height} />
       </svg>
     </div>
   );
@@ -168,7 +170,9 @@ function Axis({ scale, height }: { scale: Scale; height: number }) {
   );
 }
 
-function Playhead({ scale, time, height }: { scale: Scale; time: number; height: number }) {
+/** By itself: it moves while the lanes stand still. */
+function Playhead({ scale, moment, height }: { scale: Scale; moment: Moment; height: number }) {
+  const time = moment.time.value;
   if (time < scale.from || time > scale.to) return null;
   const x = scale.x(time);
   return (
@@ -191,6 +195,15 @@ interface LaneItemsProps {
 
 function LaneItems({ lane, scale, height, walk, onChoose }: LaneItemsProps) {
   const seen = lane.items.filter((item) => item.end >= scale.from && item.start <= scale.to);
+  if (seen.length > CROWD && scale.width / seen.length < CROWDED_PX) {
+    const walked = seen.find((item) => item.seq === walk.at);
+    return (
+      <>
+        <path class="crowd" d={crowd(seen, scale, height)} />
+        {walked !== undefined && <LaneItems lane={{ ...lane, items: [walked] }} {...{ scale, height, walk, onChoose }} />}
+      </>
+    );
+  }
   return (
     <>
       {seen.map((item, index) => {
@@ -224,6 +237,17 @@ function LaneItems({ lane, scale, height, walk, onChoose }: LaneItemsProps) {
       })}
     </>
   );
+}
+
+/** Things too many to be told apart, as one shape; a click on it goes to its time. */
+function crowd(items: readonly TimelineItem[], scale: Scale, height: number): string {
+  const top = 6;
+  return items
+    .map((item) => {
+      const width = Math.max(scale.x(item.end) - scale.x(item.start) - 0.5, 1);
+      return `M${scale.x(item.start).toFixed(1)} ${top}h${width.toFixed(1)}v${height - 2 * top}h${-width.toFixed(1)}z`;
+    })
+    .join("");
 }
 
 interface BarProps {

@@ -1,5 +1,6 @@
 // The timeline as a list, for those who hear it or would rather read.
 import { useState } from "preact/hooks";
+import type { Moment } from "./moment";
 import { clock } from "./run_header";
 import type { Lane, LaneKind, TimelineItem } from "./timeline_lanes";
 
@@ -15,16 +16,16 @@ const KIND_WORDS: Readonly<Record<LaneKind, string>> = {
 
 interface TimelineListProps {
   lanes: readonly Lane[];
-  time: number;
+  moment: Moment;
   onChoose: (item: TimelineItem) => void;
 }
 
-export function TimelineList({ lanes, time, onChoose }: TimelineListProps) {
+export function TimelineList({ lanes, moment, onChoose }: TimelineListProps) {
   const [most, setMost] = useState(AT_ONCE);
   const all = lanes
     .flatMap((lane) => lane.items.map((item) => ({ kind: lane.kind, item })))
     .sort((a, b) => a.item.seq - b.item.seq);
-  const current = all.findLast(({ item }) => item.start <= time)?.item.seq;
+  const current = all.findLast(({ item }) => item.start <= moment.time.value)?.item.seq;
   return (
     <ol class="timeline-list" aria-label="Timeline as a list">
       {all.slice(0, most).map(({ kind, item }) => (

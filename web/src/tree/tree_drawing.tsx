@@ -81,7 +81,10 @@ export function TreeDrawing(props: TreeDrawingProps) {
               onClick={() => walk.take(placed.node.path)}
             >
               <title>{described(placed.node, placed.hidden)}</title>
-              <NodeCard placed={placed} highest={highest} compact={compact} />
+              {/* The name says it all in words; the card's own text would be heard twice. */}
+              <g aria-hidden="true">
+                <NodeCard placed={placed} highest={highest} compact={compact} />
+              </g>
               {placed.expandable && (foldable || placed.hidden > 0) && (
                 <FoldButton placed={placed} layout={layout} onToggle={() => toggle(placed.node.path)} />
               )}
@@ -100,7 +103,7 @@ function ZoomButtons({ zoom, setZoom }: { zoom: number; setZoom: (zoom: number) 
       <button type="button" aria-label="Smaller" disabled={zoom <= MIN_ZOOM} onClick={() => change(1 / ZOOM_STEP)}>
         −
       </button>
-      <button type="button" aria-label="As wide as the panel" onClick={() => setZoom(1)}>
+      <button type="button" aria-label="Fit the panel" onClick={() => setZoom(1)}>
         Fit
       </button>
       <button type="button" aria-label="Larger" disabled={zoom >= MAX_ZOOM} onClick={() => change(ZOOM_STEP)}>

@@ -4,6 +4,7 @@ import type {
   DialogueView,
   Event,
   Intervention,
+  Layout,
   Problem as ProblemDocument,
   RobotView,
   RunRequest,
@@ -66,6 +67,14 @@ async function call<T>(
   if (response.status === 401 && path !== SESSION) whenRefused();
   if (!response.ok) throw await refusal(response);
   return (response.status === 204 ? undefined : await response.json()) as T;
+}
+
+async function read(path: string): Promise<Response> {
+  const response = await fetch(path, { cache: "no-store" }).catch(() => {
+    throw new Unreachable();
+  });
+  if (!response.ok) throw await refusal(response);
+  return response;
 }
 
 async function refusal(response: Response): Promise<Refusal> {
@@ -144,3 +153,19 @@ export const deleteTree = (name: string) => call<void>("DELETE", `/api/trees/${s
 export const picturePath = (picture: string) => `/api/pictures/${segment(picture)}`;
 export const cameraPath = (run: string, camera: string) =>
   `/api/runs/${segment(run)}/cameras/${segment(camera)}`;
+
+/** What a camera of the run's robot sees now. */
+export const cameraPicture = async (run: string, camera: string) => (await read(cameraPath(run, camera))).blob();
+
+export const layout = (run: string) => call<Layout>("GET", `/api/runs/${segment(run)}/layout`);
+
+const SPAN_HEADER = "Mend-Poses-Span";
+
+/** The frames recorded from one time of the run to another, and the first and last times recorded. */
+export async function poses(run: string, from: number, to: number) {
+  const response = await read(`/api/runs/${segment(run)}/poses?from_s=${from}&to_s=${to}`);
+  const [first, last] = response.headers.get(SPAN_HEADER)?.split(" ").map(Number) ?? [];
+  const recorded: readonly [number, number] | null =
+    first === undefined || last === undefined ? null : [first, last];
+  return { bytes: await response.arrayBuffer(), recorded };
+}
