@@ -71,7 +71,7 @@ async def first_sign_in(_: Service, open_page: OpenPage) -> Page:
 
 async def fresh_start(_: Service, open_page: OpenPage) -> Page:
     page = await open_page("/start/eket")
-    await page.get_by_label("Scenario").select_option("eket_paper")
+    await page.get_by_role("combobox", name="Scenario").select_option("eket_paper")
     return page
 
 
