@@ -5,7 +5,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 
-.PHONY: help setup demo console serve test lint bench lock clean
+.PHONY: help setup demo types console screenshots serve test lint bench lock clean
 
 help:  ## Say what there is
 	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 10
@@ -28,23 +28,31 @@ web/node_modules/.ready: web/package-lock.json $(READY)
 	cd web && PATH="$(CURDIR)/$(BIN):$$PATH" npm ci --silent
 	touch $@
 
-console: web/node_modules/.ready  ## Build the helper console into the service
+# What goes over the wire, as types: a change of the protocol so breaks the console's build.
+types: web/node_modules/.ready
 	$(BIN)/mend schema console >web/node_modules/.wire.json
 	cd web && PATH="$(CURDIR)/$(BIN):$$PATH" npm run --silent types <node_modules/.wire.json
+
+console: types  ## Build the helper console into the service
 	cd web && PATH="$(CURDIR)/$(BIN):$$PATH" npm run --silent build
 
 serve: console  ## The service with the helper console on http://127.0.0.1:8080
 	$(BIN)/mend serve
 
+screenshots: console  ## The console's pictures in docs/images, from situations that are played
+	$(BIN)/python scripts/screenshots.py
+
 test: console  ## Every test, in random order
 	cd web && PATH="$(CURDIR)/$(BIN):$$PATH" npm test --silent
-	$(BIN)/pytest -n 2 --dist worksteal
+	@command -v chromium google-chrome >/dev/null || echo 'There is no Chromium on this machine: the tests in a browser are skipped.'
+	$(BIN)/pytest -n 2 --dist worksteal -rs
 
-lint: $(READY)  ## Formatting, lint, types and the floors
+lint: types  ## Formatting, lint, types (of web/ too) and the floors
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+	cd web && PATH="$(CURDIR)/$(BIN):$$PATH" npm run --silent check
 
 bench: $(READY)  ## Every benchmark, one after the other (takes long)
 	@for each in benchmarks/*.py; do echo "== $$each"; $(BIN)/python "$$each"; done

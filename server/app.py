@@ -22,6 +22,8 @@ from server.api import (
     robots,
     runs,
     session,
+    speech,
+    speech_socket,
     trees,
 )
 from server.api import models as models_api
@@ -35,6 +37,7 @@ from server.models import RobotModels
 from server.poses.feed import PoseSource
 from server.runtime.service import RunService
 from server.settings import Settings
+from server.speech.abilities import NO_SPEECH, SpeechAbilities
 from server.trees import ScenarioLibrary, SceneShelf, TreeLibrary
 
 MAX_SOCKET_MESSAGE_BYTES = 4 * 1024 * 1024
@@ -55,6 +58,8 @@ ROUTES = (
     helper_socket,
     live_socket,
     reference,
+    speech,
+    speech_socket,
     console,
 )
 
@@ -77,6 +82,7 @@ def create_app(
     worlds: WorldList,
     models: RobotModels,
     poses: PoseSource,
+    speech_abilities: SpeechAbilities = NO_SPEECH,
     lifespan: Lifespan | None = None,
     wall_time_s: Callable[[], float] = time.time,
 ) -> FastAPI:
@@ -103,6 +109,7 @@ def create_app(
         poses,
         settings,
         access,
+        speech_abilities,
     )
     app.add_middleware(Gate, access=access)
     return app

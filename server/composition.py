@@ -36,6 +36,10 @@ from server.runtime.operator_mail import OperatorMail
 from server.runtime.runtime import Runtime
 from server.runtime.worlds import SimulatedWorlds
 from server.settings import Settings
+from server.speech.abilities import SpeechAbilities
+from server.speech.ear import choose_ears
+from server.speech.rendering import SpokenTexts, render_prompts
+from server.speech.voice import NoVoice, choose_voice
 from server.trees import JournaledTrees
 from tasks.plugins import load_plugins
 
@@ -119,6 +123,7 @@ async def _open(
         utc_now=lambda: datetime.now(UTC),
         poses=poses,
     )
+    speech = _speech(settings)
     app = create_app(
         runtime,
         journal,
@@ -129,10 +134,12 @@ async def _open(
         worlds=worlds,
         models=models,
         poses=poses,
+        speech_abilities=speech,
     )
     add_robot_route(app, registry, token)
     server = _Server(serve_config(app, settings))
     serving: asyncio.Task[None] | None = None
+    rendering = asyncio.create_task(_render_prompts(speech, journal), name="rendering")
     try:
         if recover:
             # Before it listens: a run that is not read yet would be unknown to whoever asks.
@@ -146,6 +153,7 @@ async def _open(
         await runtime.close()
         await mail.close()
         poses.shut()
+        await _stop_rendering(speech, rendering)
         if serving is not None:
             server.should_exit = True
             with suppress(asyncio.CancelledError):
@@ -175,6 +183,31 @@ def _pose_records(settings: Settings) -> PoseRecords | None:
     if not settings.record_poses or str(settings.journal_path) == IN_MEMORY:
         return None
     return PoseRecords(settings.journal_path.with_suffix(".poses"))
+
+
+def _speech(settings: Settings) -> SpeechAbilities:
+    voice = choose_voice(
+        settings.speech_voice,
+        flite_voice=settings.speech_flite_voice,
+        piper_model=settings.speech_piper_model,
+    )
+    texts = voice if isinstance(voice, NoVoice) else SpokenTexts(voice)
+    return SpeechAbilities(
+        texts, choose_ears(settings.speech_recognition, settings.speech_conversations)
+    )
+
+
+async def _render_prompts(speech: SpeechAbilities, journal: SqliteJournal) -> None:
+    if isinstance(speech.texts, SpokenTexts):
+        await render_prompts(speech.texts, journal)
+
+
+async def _stop_rendering(speech: SpeechAbilities, rendering: "asyncio.Task[None]") -> None:
+    rendering.cancel()
+    with suppress(asyncio.CancelledError):
+        await rendering
+    if isinstance(speech.texts, SpokenTexts):
+        await speech.texts.close()
 
 
 def _policy(settings: Settings) -> EscalationPolicy:

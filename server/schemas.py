@@ -10,7 +10,7 @@ from pydantic import BaseModel, TypeAdapter
 from pydantic.json_schema import models_json_schema
 
 from robots.link import messages as link
-from server.api import helper_messages
+from server.api import helper_messages, speech_messages
 from server.api.problems import Problem
 from server.app import described_app
 from server.journal.events import AnyEvent
@@ -140,16 +140,24 @@ def console() -> dict[str, Any]:
         prefix, _, model = name.partition(".")
         if prefix == "helper":
             definitions[model] = schema
+    to_speakers = speech_messages.SPEECH_SERVER_MESSAGES
+    from_speakers = _members(speech_messages.SpeechClientMessage)
+    for name, schema in _component_schemas("speech", (*to_speakers, *from_speakers)).items():
+        definitions[name.removeprefix("speech.")] = schema
     definitions["Event"] = _one_of(_members(AnyEvent))
     definitions["FromHelper"] = _one_of(_members(helper_messages.ClientMessage))
     definitions["ToHelper"] = _one_of(TO_HELPERS)
+    definitions["FromSpeaker"] = _one_of(from_speakers)
+    definitions["ToSpeaker"] = _one_of(to_speakers)
     bodies = [
         operation["requestBody"]
         for methods in rest["paths"].values()
         for operation in methods.values()
         if "requestBody" in operation
     ]
-    received = _reachable([definitions["FromHelper"], bodies], definitions)
+    received = _reachable(
+        [definitions["FromHelper"], definitions["FromSpeaker"], bodies], definitions
+    )
     for name in definitions.keys() - received:
         _require_all_fields(definitions[name])
     described = json.dumps({"$schema": DIALECT, "$defs": definitions})
@@ -158,7 +166,7 @@ def console() -> dict[str, Any]:
     return untitled
 
 
-REFERENCE = re.compile(r'"#/(?:components/schemas|[$]defs)/(?:helper\.)?')
+REFERENCE = re.compile(r'"#/(?:components/schemas|[$]defs)/(?:helper\.|speech\.)?')
 
 
 def _reachable(roots: Any, definitions: Mapping[str, Any]) -> set[str]:

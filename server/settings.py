@@ -16,6 +16,7 @@ from pydantic_settings import (
 )
 
 from server.dialogues.mail import MailSettings
+from server.speech.voice import VoiceChoice
 
 Seconds = Annotated[float, Field(gt=0, le=86_400, allow_inf_nan=False)]
 HostName = Annotated[str, Field(min_length=1, max_length=253)]
@@ -80,6 +81,15 @@ class Settings(BaseSettings):
     """How many events may wait for one slow client before it is cut off."""
     record_poses: bool = True
     """Whether to record beside the journal where everything was, for replay."""
+    speech_voice: VoiceChoice = "auto"
+    """The robot's voice; `auto` takes piper where it has a voice file, flite, or espeak-ng."""
+    speech_flite_voice: Annotated[str, Field(pattern=r"^[A-Za-z0-9_]{1,64}$")] = "slt"
+    speech_piper_model: Path | None = None
+    """A voice file for piper (`.onnx`, its `.onnx.json` beside it)."""
+    speech_recognition: bool = True
+    """Whether helpers may answer by voice."""
+    speech_conversations: Annotated[int, Field(ge=1, le=1000)] = 8
+    """How many helpers may answer by voice at once; each takes a process of about 80 MB."""
     log_level: Literal["critical", "error", "warning", "info", "debug"] = "info"
 
     @property

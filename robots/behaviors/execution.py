@@ -311,6 +311,8 @@ class Execution:
         image = view.pictures.get(detection.camera)
         if image is None or (self._step > BEFORE_FIRST_STEP and detection.camera == HEAD):
             image = self._arm.body.cameras[detection.camera].capture()
+        height, width = image.bgr.shape[:2]
+        detection = detection.model_copy(update={"size_px": (width, height)})
         self._report(
             IssueDetected(
                 execution=self.id,

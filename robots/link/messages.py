@@ -64,9 +64,14 @@ class ReachLimits(Message):
 
 
 class Detection(Message):
-    """What a monitor saw: blob centre and expected centre in pixels (u, v), blob area in px."""
+    """What a monitor saw: blob centre and expected centre in pixels (u, v), blob area in px.
+
+    `size_px` is the width and height of the camera's picture that the pixels count in; the picture
+    that is sent along may be an enlarged one.
+    """
 
     camera: str
+    size_px: tuple[int, int] | None = None
     center: tuple[float, float] | None = None
     expected: tuple[float, float] | None = None
     tolerance_px: float | None = None

@@ -17,6 +17,7 @@ from server.poses.feed import PoseSource
 from server.runtime.service import RunService
 from server.runtime.views import WorldView
 from server.settings import Settings
+from server.speech.abilities import NO_SPEECH, SpeechAbilities
 from server.trees import ScenarioLibrary, SceneShelf, TreeLibrary
 
 MAX_SEQ = 2**63 - 1
@@ -51,6 +52,7 @@ class Parts:
     poses: PoseSource
     settings: Settings
     access: Access
+    speech: SpeechAbilities = NO_SPEECH
 
 
 def parts_of(connection: HTTPConnection) -> Parts:

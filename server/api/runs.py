@@ -2,18 +2,21 @@
 
 from typing import Annotated
 
-from fastapi import APIRouter, Body, Path, Response
+from fastapi import APIRouter, Body, Path, Query, Response
 
 from server.api.parts import After, Limit, Offset, RunId, WithParts
 from server.api.problems import documented
 from server.api.strict_json import StrictJsonRoute
 from server.journal.events import AnyEvent
 from server.runtime.requests import RunRequest
-from server.runtime.views import RunSummary, RunView
+from server.runtime.views import RunStatus, RunSummary, RunView
 from tasks.intervention import Intervention
 
 router = APIRouter(prefix="/api/runs", tags=["runs"], route_class=StrictJsonRoute)
 
+Statuses = Annotated[
+    list[RunStatus] | None, Query(description="Only runs in one of these states; may be repeated.")
+]
 Camera = Annotated[str, Path(pattern=r"^[a-z][a-z0-9_]{0,31}$", examples=["head", "forearm"])]
 
 RUN_EXAMPLES = [
@@ -43,9 +46,12 @@ async def start_run(
 
 
 @router.get("", operation_id="list_runs", responses=documented(401, 421, 422))
-async def list_runs(parts: WithParts, limit: Limit = 100, offset: Offset = 0) -> list[RunSummary]:
-    """All runs, newest first."""
-    return parts.runs.runs()[offset : offset + limit]
+async def list_runs(
+    parts: WithParts, limit: Limit = 100, offset: Offset = 0, status: Statuses = None
+) -> list[RunSummary]:
+    """All runs, newest first; with `status`, those in one of these states."""
+    runs = [run for run in parts.runs.runs() if status is None or run.status in status]
+    return runs[offset : offset + limit]
 
 
 @router.get("/{run}", operation_id="get_run", responses=documented(401, 404, 421, 422))

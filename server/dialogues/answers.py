@@ -92,6 +92,8 @@ def answer_source(request: RunRequest, scenario: Scenario | None) -> AnswerSourc
             return RandomAnswers(request.seed)
         case "none":
             return NoAnswers(live=False)
+        case "live":
+            return NoAnswers(live=True)
         case list(answers):
             return ListedAnswers(tuple(answers), delay_s)
     if scenario is not None and scenario.answers:

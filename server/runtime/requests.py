@@ -10,9 +10,10 @@ from tasks.scenario import Person
 class RunRequest(BaseModel):
     """Start a run of a task tree in a world.
 
-    `answers`: a scripted helper's answers, `random` (from the seed) or `none` (nobody ever
-    answers); None means that live helpers answer. `interventions`: `random` has a simulated person
-    steal, move and block, by the seed. `robots`: the ids of connected robots, for world `live`.
+    `answers`: a scripted helper's answers, `random` (from the seed), `none` (nobody ever answers)
+    or `live` (helpers do); None means the scenario's answers, and live helpers where it has none.
+    `interventions`: `random` has a simulated person steal, move and block, by the seed. `robots`:
+    the ids of connected robots, for world `live`.
     """
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
@@ -22,7 +23,7 @@ class RunRequest(BaseModel):
     speed: Annotated[float, Field(gt=0, le=1000, allow_inf_nan=False)] | Literal["max"] = 1.0
     seed: Annotated[int, Field(ge=0, le=2**31 - 1)] = 0
     scenario: Annotated[str, Field(min_length=1, max_length=64)] | None = None
-    answers: list[Literal["yes", "no", "silence"]] | Literal["random", "none"] | None = None
+    answers: list[Literal["yes", "no", "silence"]] | Literal["random", "none", "live"] | None = None
     interventions: Literal["random"] | None = None
     person: Person | None = None
     robots: Annotated[list[str], Field(max_length=64)] = []

@@ -6,6 +6,7 @@ from typing import Literal
 from robots.link.messages import Hello
 from server.runtime.run_state import DialogueState, RunState
 from server.runtime.views import (
+    AwaitedHelp,
     DialogueView,
     NodeView,
     PromptView,
@@ -110,6 +111,8 @@ def dialogue_view(dialogue: DialogueState) -> DialogueView:
         claimed_until=dialogue.claim.until if dialogue.claim else None,
         picture=dialogue.raised.picture,
         clip=dialogue.clip,
+        detection=dialogue.raised.detection,
+        help=None if dialogue.closed else _awaited_help(dialogue),
     )
 
 
@@ -134,3 +137,10 @@ def robot_view(
         run=state_of_run.id if state_of_run else None,
         state=state,
     )
+
+
+def _awaited_help(dialogue: DialogueState) -> AwaitedHelp | None:
+    awaited = dialogue.awaiting
+    if awaited is None:
+        return None
+    return AwaitedHelp(help=awaited.help, helper=awaited.helper, until=awaited.until)

@@ -7,6 +7,8 @@ from uuid import UUID
 
 from pydantic import BaseModel, ConfigDict
 
+from dialogue.script import Help
+from robots.link.messages import Detection
 from server.journal.events import AnswerOption, ClipPicture, MissingPart
 
 
@@ -59,6 +61,14 @@ class PromptView(View):
     extensions_left: int = 0
 
 
+class AwaitedHelp(View):
+    """Physical help that `helper` promised; the robot watches until `until` (the run's clock)."""
+
+    help: Help
+    helper: str
+    until: float
+
+
 class DialogueView(View):
     """One dialogue. `prompt` is the latest; it is open while `status` is and it is an ask."""
 
@@ -78,6 +88,9 @@ class DialogueView(View):
     claimed_until: datetime | None
     picture: UUID | None
     clip: list[ClipPicture] = []
+    detection: Detection | None = None
+    """What the monitor saw in `picture`."""
+    help: AwaitedHelp | None = None
 
 
 class RunResult(View):

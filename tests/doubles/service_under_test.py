@@ -17,6 +17,7 @@ from server.models import RobotModels
 from server.poses.feed import PoseFeed
 from server.poses.record import PoseRecords
 from server.settings import Settings
+from server.speech.abilities import NO_SPEECH, SpeechAbilities
 from server.trees import JournaledTrees
 
 TOKEN = "correct-horse-battery"
@@ -44,7 +45,11 @@ class ServiceUnderTest:
 
 
 def build(
-    records: PoseRecords | None = None, models: Sequence[Any] = (), **settings: Any
+    speech: SpeechAbilities = NO_SPEECH,
+    *,
+    records: PoseRecords | None = None,
+    models: Sequence[Any] = (),
+    **settings: Any,
 ) -> ServiceUnderTest:
     """A service on an empty journal in memory; `models` are adapters that provide some."""
     journal = SqliteJournal(":memory:")
@@ -62,14 +67,17 @@ def build(
         worlds=FakeWorlds(),
         models=RobotModels(models),
         poses=poses,
+        speech_abilities=speech,
     )
     return ServiceUnderTest(app, runs, journal, chosen, poses)
 
 
 @contextlib.asynccontextmanager
-async def serving(**settings: Any) -> AsyncIterator[ServiceUnderTest]:
+async def serving(
+    speech: SpeechAbilities = NO_SPEECH, **settings: Any
+) -> AsyncIterator[ServiceUnderTest]:
     """A service behind a real socket on a free port."""
-    service = build(**settings)
+    service = build(speech, **settings)
     server = uvicorn.Server(serve_config(service.app, service.settings))
     server.config.log_level = None
     socket = server.config.bind_socket()

@@ -1,6 +1,7 @@
 """The wheel: everything that Mend reads at run time is in it, and nothing else is."""
 
 import os
+import re
 import subprocess
 import sys
 import zipfile
@@ -9,8 +10,13 @@ from pathlib import Path
 
 import pytest
 
+from server.api.console import BUILT
+
 ROOT = Path(__file__).parents[2]
 PACKAGES = ("tasks", "dialogue", "robots", "sim", "server")
+
+ASSET = re.compile(r'"/(assets/[^"]+)"')
+IMPORT = re.compile(r"""(?:\bfrom|\bimport)\s*\(?\s*["']\./([\w.-]+)["']""")
 
 pytestmark = pytest.mark.slow
 
@@ -48,10 +54,26 @@ def test_every_file_of_the_packages_is_in_the_wheel_and_no_other(wheel: Path) ->
         "tasks/library/eket.yaml",
         "tasks/scenes/eket.yaml",
         "tasks/scenarios/eket_paper.yaml",
-        "server/api/console/built/index.html",
         "server/dialogues/mail_request.txt.j2",
         "server/report/templates/report.html",
     } <= names
+
+
+@pytest.mark.skipif(
+    not (BUILT / "index.html").is_file(), reason="the console is not built (make console)"
+)
+def test_console_in_the_wheel_has_every_asset_that_it_names(wheel: Path) -> None:
+    folder = "server/api/console/built/"
+    with zipfile.ZipFile(wheel) as archive:
+        names = {name for name in archive.namelist() if name.startswith(folder)}
+        text = {name: archive.read(name).decode() for name in names if not name.endswith(".gz")}
+    assert f"{folder}icon.svg" in names
+    named = set(ASSET.findall(text[f"{folder}index.html"]))
+    assert {Path(name).suffix for name in named} == {".js", ".css"}
+    for script in (each for each in text if each.endswith(".js")):
+        named |= {f"assets/{each}" for each in IMPORT.findall(text[script])}
+    assert {f"{folder}{each}" for each in named} <= names
+    assert {f"{name}.gz" for name in text} <= names
 
 
 def test_wheel_says_its_licence_and_keeps_pybullet_an_extra(wheel: Path) -> None:

@@ -60,6 +60,21 @@ async def test_lists_come_in_pages(client: httpx.AsyncClient) -> None:
     assert (await client.get("/api/runs", params={"limit": 1001})).status_code == 422
 
 
+async def test_runs_are_listed_by_their_state(client: httpx.AsyncClient) -> None:
+    going, paused, aborted = [await start(client) for _ in range(3)]
+    await client.post(f"/api/runs/{paused}/pause")
+    await client.post(f"/api/runs/{aborted}/abort")
+
+    async def listed(*statuses: str) -> list[str]:
+        page = await client.get("/api/runs", params={"status": statuses})
+        return [run["id"] for run in page.json()]
+
+    assert await listed("running") == [going]
+    assert await listed("running", "aborted") == [aborted, going]
+    assert await listed("finished") == []
+    assert (await client.get("/api/runs", params={"status": "lost"})).status_code == 422
+
+
 async def test_run_is_paused_resumed_and_aborted(client: httpx.AsyncClient) -> None:
     run = await start(client)
     assert (await client.post(f"/api/runs/{run}/pause")).json()["status"] == "paused"

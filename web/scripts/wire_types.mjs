@@ -4,7 +4,12 @@ import { writeFile } from "node:fs/promises";
 import { text } from "node:stream/consumers";
 import { compile } from "json-schema-to-typescript";
 
-const schema = JSON.parse(await text(process.stdin));
+// The service writes tuples as JSON Schema 2020-12 does, which the compiler does not know yet.
+const schema = JSON.parse(await text(process.stdin), (_, value) => {
+  if (!Array.isArray(value?.prefixItems)) return value;
+  const { prefixItems, ...rest } = value;
+  return { ...rest, items: prefixItems };
+});
 const source = await compile(schema, "Wire", {
   additionalProperties: false,
   bannerComment: "// Made from the service's schema by `make console`; not to be edited.",

@@ -47,6 +47,10 @@ Accepted = Annotated[str, Header(alias="accept-encoding")]
 @router.get("/runs/{run}")
 @router.get("/trees")
 @router.get("/trees/{tree}")
+@router.get("/edit")
+@router.get("/edit/{tree}")
+@router.get("/start")
+@router.get("/start/{tree}")
 @router.get("/settings")
 async def view(accept_encoding: Accepted = "") -> Response:
     """The page; which view it shows is its own business."""

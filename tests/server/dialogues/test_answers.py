@@ -47,11 +47,12 @@ def test_random_answers_are_of_every_kind() -> None:
         ("none", NoAnswers(live=False)),
         (["no"], ListedAnswers(("no",), 2.0)),
         ([], ListedAnswers((), 2.0)),
+        ("live", NoAnswers(live=True)),
         (None, NoAnswers(live=True)),
     ],
 )
 def test_a_request_says_where_its_answers_come_from(
-    answers: list[Literal["yes", "no", "silence"]] | Literal["random", "none"] | None,
+    answers: list[Literal["yes", "no", "silence"]] | Literal["random", "none", "live"] | None,
     source: object,
 ) -> None:
     assert answer_source(RunRequest(tree="eket", seed=5, answers=answers), None) == source
@@ -63,6 +64,7 @@ def test_the_answers_of_a_request_come_before_those_of_its_scenario() -> None:
     assert answer_source(request, scenario) == ListedAnswers(("yes",), 4.0)
     request = RunRequest(tree="eket", answers=["no"])
     assert answer_source(request, scenario) == ListedAnswers(("no",), 4.0)
+    assert answer_source(RunRequest(tree="eket", answers="live"), scenario).live
 
 
 def test_a_scenario_without_answers_leaves_them_to_live_helpers() -> None:

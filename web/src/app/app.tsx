@@ -1,7 +1,10 @@
 // The frame of every view: who is signed in decides what is shown, the address which view.
+import { Announcer } from "../question/announcer";
+import { AskBar } from "../question/ask_bar";
 import { QuestionsView } from "../question/questions_view";
 import { SignIn } from "../sign_in/sign_in";
 import { session } from "../state/service";
+import { ConnectionBar } from "./connection_bar";
 import { Header } from "./header";
 import { later } from "./later";
 import { route } from "./router";
@@ -10,6 +13,8 @@ import "./app.css";
 const RunView = later(() => import("../run/run_view").then((module) => module.RunView));
 const RunsView = later(() => import("../run/runs_view").then((module) => module.RunsView));
 const TreesView = later(() => import("../trees/trees_view").then((module) => module.TreesView));
+const TreeEditor = later(() => import("../trees/tree_editor").then((module) => module.TreeEditor));
+const StartRun = later(() => import("../run/start_run").then((module) => module.StartRun));
 const SettingsView = later(() => import("../settings/settings_view").then((module) => module.SettingsView));
 
 export function App() {
@@ -20,7 +25,12 @@ export function App() {
       <a class="skip" href="#main">
         Skip to content
       </a>
-      <Header />
+      <div class="top">
+        <Header />
+        <ConnectionBar />
+      </div>
+      <Announcer />
+      <AskBar />
       <main id="main" tabIndex={-1}>
         <View />
       </main>
@@ -41,6 +51,10 @@ function View() {
       return <TreesView tree={null} />;
     case "tree":
       return <TreesView tree={shown.tree} />;
+    case "edit":
+      return <TreeEditor key={shown.tree} tree={shown.tree} />;
+    case "start":
+      return <StartRun key={shown.tree} tree={shown.tree} />;
     case "settings":
       return <SettingsView />;
     case "unknown":

@@ -26,10 +26,10 @@ export function Header() {
           Questions
           {count > 0 && <span class="count">{count}</span>}
         </Place>
-        <Place href="/runs" current={view === "runs" || view === "run"}>
+        <Place href="/runs" current={view === "runs" || view === "run" || view === "start"}>
           Runs
         </Place>
-        <Place href="/trees" current={view === "trees" || view === "tree"}>
+        <Place href="/trees" current={view === "trees" || view === "tree" || view === "edit"}>
           Task trees
         </Place>
       </nav>

@@ -7,6 +7,8 @@ export type Route =
   | { view: "run"; run: string }
   | { view: "trees" }
   | { view: "tree"; tree: string }
+  | { view: "edit"; tree: string | null }
+  | { view: "start"; tree: string | null }
   | { view: "settings" }
   | { view: "unknown"; path: string };
 
@@ -20,18 +22,46 @@ export function routeOf(address: string): Route {
   if (second === undefined) {
     if (first === "") return { view: "questions" };
     if (first === "runs" || first === "trees" || first === "settings") return { view: first };
+    if (first === "edit" || first === "start") return { view: first, tree: null };
   } else if (first === "runs") return { view: "run", run: second };
   else if (first === "trees") return { view: "tree", tree: second };
+  else if (first === "edit" || first === "start") return { view: first, tree: second };
   return { view: "unknown", path: address };
 }
 
+/** Asked before the view is left: calls `leave` now or later, or never. */
+type Guard = (leave: () => void) => void;
+
+let guard: Guard | null = null;
+
+/** Have `ask` decide whether this view may be left; returns how to lift that. */
+export function guardLeaving(ask: Guard): () => void {
+  guard = ask;
+  return () => {
+    if (guard === ask) guard = null;
+  };
+}
+
 export function go(address: string): void {
+  if (guard !== null && address !== path.value) guard(() => show(address));
+  else show(address);
+}
+
+function show(address: string): void {
+  guard = null;
   if (address !== location.pathname) history.pushState(null, "", address);
   path.value = location.pathname;
 }
 
 addEventListener("popstate", () => {
-  path.value = location.pathname;
+  const address = location.pathname;
+  if (guard === null || address === path.value) {
+    path.value = address;
+    return;
+  }
+  // The browser has gone already: stay where one was until it is decided.
+  history.pushState(null, "", path.value);
+  guard(() => show(address));
 });
 
 /** Follow links inside the console without loading the page again. */

@@ -1,42 +1,79 @@
-// One question with what went wrong, and the two answers with what each will do.
-import { useState } from "preact/hooks";
+// One question: what went wrong, what the robot saw, and the two answers with what each will do.
+import { useEffect, useState } from "preact/hooks";
 import type { Question } from "../state/questions";
-import { command } from "../state/service";
-import { picturePath, Refusal } from "../wire/rest";
+import { runs } from "../state/service";
+import { Answers } from "./answers";
+import { useAnswerKeys } from "./answer_keys";
+import { ClaimStrip } from "./claim_strip";
+import { actOn, release } from "./claiming";
+import { Countdown } from "./countdown";
+import { FaultPicture } from "./fault_picture";
+import { faultInWords, robotName, spoken } from "./fault_words";
+import { PausedNode } from "./paused_node";
+import { SpeechControls } from "./speech_controls";
 import "./question_card.css";
 
+/** An answer meant for a card that has just gone must not hit the one that took its place. */
+const ARMED_AFTER_MS = 500;
+
+let leftAt = Number.NEGATIVE_INFINITY;
+
 export function QuestionCard({ question }: { question: Question }) {
-  const [note, setNote] = useState("");
+  const armed = useArmed();
+  useAnswerKeys(question, armed);
+  useEffect(() => () => release(question.dialogue), [question.dialogue]);
   const { prompt } = question;
   if (prompt === null) return null;
-  const answer = async (value: "yes" | "no") => {
-    try {
-      await command({ type: "answer", dialogue: question.dialogue, prompt: prompt.prompt, answer: value });
-    } catch (error) {
-      const faster = error instanceof Refusal ? error.answeredBy : null;
-      setNote(faster === null ? String((error as Error).message) : `${faster} was faster.`);
-    }
-  };
+  const act = () => actOn(question);
+  const run = runs.value.get(question.run);
+  const titled = `question-${question.dialogue}`;
   return (
-    <article class="question panel" aria-labelledby="question-text">
-      <p class="question-about">
-        {question.robot} · {question.issue} · {question.name}
-      </p>
-      <h2 id="question-text" class="question-text">
-        {prompt.text}
-      </h2>
-      {question.picture !== null && (
-        <img class="question-picture" src={picturePath(question.picture)} alt="What the robot saw at the fault" />
-      )}
-      <div class="answers">
-        {prompt.answers.map(({ value, effect }) => (
-          <button key={value} type="button" class={`answer ${value}`} onClick={() => void answer(value)}>
-            <span class="answer-word">{value === "yes" ? "YES" : "NO"}</span>
-            <span class="answer-effect">{effect}</span>
-          </button>
-        ))}
+    <article class="question panel" aria-labelledby={titled}>
+      <header class="question-head">
+        <p class="question-about">
+          <strong>{robotName(question.robot)}</strong>
+          {run !== undefined && <a href={`/runs/${question.run}`}>{spoken(run.tree)}</a>}
+          <span class="quiet">at “{spoken(question.name)}”</span>
+        </p>
+        <Countdown question={question} />
+      </header>
+      <div class="question-words">
+        <p class="question-fault">{faultInWords(question)}</p>
+        <h2 id={titled} class="question-text">
+          {prompt.text}
+        </h2>
+        {prompt.version > 1 && <p class="quiet small">Asked for the {ordinal(prompt.version)} time.</p>}
       </div>
-      <p role="status">{note}</p>
+      <div class="question-body">
+        <div class="question-seen" onPointerDown={act} onKeyDown={act}>
+          <FaultPicture question={question} />
+        </div>
+        <div class="question-answers" onPointerMove={act} onPointerDown={act} onFocusCapture={act}>
+          <Answers question={question} armed={armed} />
+        </div>
+        <div class="question-more">
+          <SpeechControls question={question} onAct={act} />
+          <ClaimStrip question={question} />
+          <PausedNode run={question.run} node={question.node} name={question.name} />
+        </div>
+      </div>
     </article>
   );
+}
+
+function useArmed(): boolean {
+  const [armed, setArmed] = useState(() => performance.now() - leftAt > ARMED_AFTER_MS);
+  useEffect(() => {
+    const timer = window.setTimeout(() => setArmed(true), ARMED_AFTER_MS);
+    return () => {
+      window.clearTimeout(timer);
+      leftAt = performance.now();
+    };
+  }, []);
+  return armed;
+}
+
+function ordinal(count: number): string {
+  const ending = { 1: "st", 2: "nd", 3: "rd" }[count % 10];
+  return `${count}${Math.floor(count / 10) % 10 === 1 || ending === undefined ? "th" : ending}`;
 }

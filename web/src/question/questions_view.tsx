@@ -1,26 +1,58 @@
-// What the robots ask: the oldest open question large, the others in a queue.
-import { questions } from "../state/questions";
+// What the robots ask: one question large, the others in a queue, and what help is awaited.
+import { useEffect } from "preact/hooks";
+import { awaitingHelp, together } from "../state/questions";
+import { Endings } from "./endings_list";
 import { QuestionCard } from "./question_card";
+import { queue, shown, stopChoosing } from "./queue";
+import { QueueList } from "./queue_list";
+import { AwaitedHelpCard, TogetherCard } from "./waiting_cards";
 
 export function QuestionsView() {
-  const [first, ...others] = questions.value;
+  useEffect(() => stopChoosing, []);
+  const question = shown.value;
+  const waiting = awaitingHelp.value.length + together.value.length > 0;
+  const beside = queue.value.length > 1 || (question !== null && waiting);
   return (
-    <section class="page">
+    <section class={`page questions ${beside ? "with-side" : ""}`}>
       <h1 class="unseen">Questions</h1>
-      {first === undefined ? (
-        <p class="quiet">No robot asks anything. This page tells you when one does.</p>
-      ) : (
-        <QuestionCard key={first.dialogue} question={first} />
-      )}
-      {others.length > 0 && (
-        <ol aria-label="More questions">
-          {others.map((each) => (
-            <li key={each.dialogue} class="panel">
-              {each.robot}: {each.prompt?.text}
-            </li>
-          ))}
-        </ol>
+      <Endings />
+      <div class="questions-main">
+        {question !== null && <QuestionCard key={question.dialogue} question={question} />}
+        {question === null && waiting && <Waiting />}
+        {question === null && !waiting && <Nothing />}
+      </div>
+      {beside && (
+        <aside class="questions-side" aria-label="Also going on">
+          {queue.value.length > 1 && <QueueList shown={question} />}
+          {waiting && <Waiting />}
+        </aside>
       )}
     </section>
+  );
+}
+
+function Waiting() {
+  return (
+    <div class="waiting-list">
+      {awaitingHelp.value.map((each) => (
+        <AwaitedHelpCard key={each.dialogue} question={each} />
+      ))}
+      {together.value.map((each) => (
+        <TogetherCard key={each.dialogue} together={each} />
+      ))}
+    </div>
+  );
+}
+
+function Nothing() {
+  return (
+    <div class="nothing">
+      <svg viewBox="0 0 48 48" width="64" height="64" aria-hidden="true">
+        <circle cx="24" cy="24" r="21" />
+        <path d="m14 25 7 7 13-15" />
+      </svg>
+      <p class="nothing-words">No robot asks anything.</p>
+      <p class="quiet">This page tells you when one does. You can leave it open and do something else.</p>
+    </div>
   );
 }

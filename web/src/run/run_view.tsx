@@ -1,32 +1,272 @@
-// One run: its events so far, and every new one as it comes.
-import { useEffect, useState } from "preact/hooks";
-import { onEvent, onSnapshot } from "../state/service";
-import * as rest from "../wire/rest";
-import type { Event } from "../wire/types";
+// One run: where it stands or stood at a moment, as a tree, a timeline and a transcript.
+import { useComputed } from "@preact/signals";
+import { useCallback, useEffect, useMemo, useState } from "preact/hooks";
+import { later } from "../app/later";
+import { QuestionCard } from "../question/question_card";
+import { questions } from "../state/questions";
+import { TreeDrawing } from "../tree/tree_drawing";
+import { nodesOfRun } from "../tree/tree_node";
+import { plain } from "../tree/words";
+import type { NodeStarted, NodeView } from "../wire/types";
+import { Cameras } from "./cameras";
+import { ChoicePanel } from "./choice_panel";
+import { DialogueNow } from "./dialogue_now";
+import { ended, nodeViews, type RunState } from "./fold";
+import { openRun, type RunFeed } from "./run_feed";
+import { RunHeader } from "./run_header";
+import { Scrubber } from "./scrubber";
+import { Tabs, useNarrow } from "./tabs";
+import { Timeline } from "./timeline";
+import { lanesOf, type TimelineItem } from "./timeline_lanes";
+import { Transcript } from "./transcript";
+import "./run.css";
+
+const ScenePanel = later(() => import("./scene/scene_panel").then((module) => module.ScenePanel));
+
+const LANE_STEP_S = 0.5;
 
 export function RunView({ run }: { run: string }) {
-  const [events, setEvents] = useState<readonly Event[]>([]);
+  const feed = useFeed(run);
+  if (feed === null) return <p class="page quiet">Loading …</p>;
+  return <Followed feed={feed} />;
+}
+
+function useFeed(run: string): RunFeed | null {
+  const [feed, setFeed] = useState<RunFeed | null>(null);
   useEffect(() => {
-    const read = () => void rest.events(run).then(setEvents);
-    const stop = [
-      onSnapshot(read),
-      onEvent((event) => {
-        if (event.run === run) setEvents((before) => [...before, event]);
-      }),
-    ];
-    read();
-    return () => stop.forEach((each) => each());
+    const opened = openRun(run);
+    setFeed(opened);
+    return () => opened.close();
   }, [run]);
+  return feed;
+}
+
+function Followed({ feed }: { feed: RunFeed }) {
+  const { history, moment } = feed;
+  const version = feed.version.value;
+  usePlaying(feed);
+  // Time passes all along; what is drawn changes with the events alone.
+  const count = useComputed(() => {
+    if (moment.newest.value) return Infinity;
+    // More events may have come for the very time that is shown.
+    void feed.version.value;
+    return history.countAt(moment.time.value, moment.seq.value);
+  }).value;
+  const state = useMemo(() => history.stateAfter(Math.max(count, 1)), [history, count, version]);
+  const latest = history.stateAfter(history.events.length);
+  if (feed.failure.value !== null) return <NotThere reason={feed.failure.value} />;
+  if (state === null || latest === null) return <p class="page quiet">Loading …</p>;
+  return <Shown feed={feed} version={version} state={state} latest={latest} />;
+}
+
+function NotThere({ reason }: { reason: string }) {
   return (
     <section class="page">
-      <h1>Run</h1>
-      <ol>
-        {events.map((event) => (
-          <li key={event.seq}>
-            {event.time.toFixed(1)} s {event.type}
-          </li>
-        ))}
-      </ol>
+      <h1>This run cannot be shown</h1>
+      <p>{reason}</p>
+      <p>
+        <a href="/runs">To the runs</a>
+      </p>
     </section>
   );
+}
+
+interface ShownProps {
+  feed: RunFeed;
+  version: number;
+  /** The state at the moment, and that after the last event. */
+  state: RunState;
+  latest: RunState;
+}
+
+function Shown({ feed, version, state, latest }: ShownProps) {
+  const { history, moment } = feed;
+  const newest = moment.newest.value;
+  const narrow = useNarrow();
+  const [selected, setSelected] = useState<string | null>(null);
+  const goToEvent = useCallback(
+    (event: { seq: number; time: number }) => moment.goTo(event.time, event.seq),
+    [moment],
+  );
+  const step = useCallback(
+    (direction: -1 | 1) => {
+      const at = moment.newest.value
+        ? history.events.length
+        : history.countAt(moment.time.value, moment.seq.value);
+      const event = history.events[at - 1 + direction];
+      if (event === undefined) moment.goToNewest();
+      else if (at + direction >= history.events.length) moment.goToNewest();
+      else goToEvent(event);
+    },
+    [history, moment, goToEvent],
+  );
+  const views = useMemo(
+    () => nodeViews(state),
+    [state.leaves, state.abandoned, state.potentials, state.status],
+  );
+  const choices = useChoices(feed, state, selected);
+  const talkedAbout = useTalkedAbout(state);
+  // Made anew only with what it shows: most events change neither the tree nor the selection.
+  const tree = useMemo(
+    () => <TreePanel name={state.started.tree_name} views={views} talkedAbout={talkedAbout} selected={selected} onSelect={setSelected} />,
+    [views, talkedAbout, selected],
+  );
+  const choice = (
+    <ChoicePanel node={views.find((view) => view.node === selected) ?? null} choices={choices} onChoose={goToEvent} />
+  );
+  const timeline = useMemo(
+    () => <TimelinePanel feed={feed} version={version} onSelect={setSelected} onGoTo={goToEvent} />,
+    [feed, version, goToEvent],
+  );
+  const world = useMemo(
+    () => (
+      <>
+        <ScenePanel run={state.started.run} moment={moment} />
+        <Cameras run={state.started.run} moment={moment} status={latest.status} />
+      </>
+    ),
+    [state.started.run, moment, latest.status],
+  );
+  const transcript = (
+    <section class="panel run-transcript">
+      <h2>Transcript</h2>
+      <Transcript events={history.events} version={version} until={newest ? null : state.seq} onChoose={goToEvent} />
+    </section>
+  );
+  return (
+    <div class={`run-view ${newest ? "" : "in-past"}`}>
+      <RunHeader newest={latest} moment={moment} />
+      {narrow ? (
+        <>
+          <Talk state={state} newest={newest} />
+          <Tabs
+            panels={[
+              { id: "tree", name: "Tree", content: [tree, choice] },
+              { id: "world", name: "Scene", content: world },
+              { id: "timeline", name: "Timeline", content: timeline },
+              { id: "transcript", name: "Transcript", content: transcript },
+            ]}
+          />
+        </>
+      ) : (
+        <>
+          <div class="run-area world">{world}</div>
+          <div class="run-area tree">{tree}</div>
+          <div class="run-area timeline">{timeline}</div>
+          <div class="run-area side">
+            <Talk state={state} newest={newest} />
+            {choice}
+            {transcript}
+          </div>
+        </>
+      )}
+      <Scrubber moment={moment} going={!ended(latest.status)} onStep={step} />
+    </div>
+  );
+}
+
+/** The open question, or what was being talked about at a moment of the past. */
+function Talk({ state, newest }: { state: RunState; newest: boolean }) {
+  const asked = questions.value.filter((question) => question.run === state.started.run);
+  const dialogues = [...state.dialogues.values()];
+  if (newest && asked[0] !== undefined) {
+    return (
+      <div class="run-talk">
+        <QuestionCard key={asked[0].dialogue} question={asked[0]} />
+      </div>
+    );
+  }
+  if (dialogues.length === 0) return null;
+  return (
+    <div class="run-talk">
+      {!newest && asked.length > 0 && <p class="run-waiting">A question is open now: go back to live to answer it.</p>}
+      {dialogues.map((dialogue) => (
+        <DialogueNow key={dialogue.opened.dialogue} dialogue={dialogue} />
+      ))}
+    </div>
+  );
+}
+
+/** The leaves that an open dialogue is about; the same set as long as they are. */
+function useTalkedAbout(state: RunState): ReadonlySet<string> {
+  const paths = [...state.dialogues.values()].map((dialogue) => dialogue.opened.node);
+  return useMemo(() => new Set(paths), [paths.join(" ")]);
+}
+
+interface TreePanelProps {
+  name: string;
+  views: readonly NodeView[];
+  talkedAbout: ReadonlySet<string>;
+  selected: string | null;
+  onSelect: (path: string | null) => void;
+}
+
+function TreePanel({ name, views, talkedAbout, selected, onSelect }: TreePanelProps) {
+  const nodes = useMemo(() => nodesOfRun(views, talkedAbout), [views, talkedAbout]);
+  const active = nodes.find((node) => node.kind === "behavior" && node.state === "active");
+  const focus = nodes.find((node) => node.state === "in_dialogue") ?? active;
+  return (
+    <section class="panel run-tree">
+      <h2>Task tree</h2>
+      <TreeDrawing
+        nodes={nodes}
+        label={`Task tree of ${plain(name)}`}
+        selected={selected}
+        focus={focus?.path ?? null}
+        onSelect={(path) => onSelect(path === selected ? null : path)}
+      />
+      <p class="tree-legend small quiet">↓ level · ↑ potential</p>
+    </section>
+  );
+}
+
+/** The choices of a node up to a state, or the last choice of all. */
+function useChoices(feed: RunFeed, state: RunState, selected: string | null): readonly NodeStarted[] {
+  return useMemo(() => {
+    if (selected === null) return state.choice === null ? [] : [state.choice];
+    return feed.history.events.filter(
+      (event): event is NodeStarted =>
+        event.type === "node_started" && event.node === selected && event.seq <= state.seq,
+    );
+  }, [feed, state, selected]);
+}
+
+interface TimelinePanelProps {
+  feed: RunFeed;
+  version: number;
+  onSelect: (path: string) => void;
+  onGoTo: (event: { seq: number; time: number }) => void;
+}
+
+function TimelinePanel({ feed, version, onSelect, onGoTo }: TimelinePanelProps) {
+  const { history, moment } = feed;
+  // Not every frame of poses: the lanes grow in steps that nobody sees.
+  const end = useComputed(() => Math.ceil(moment.end.value / LANE_STEP_S) * LANE_STEP_S).value;
+  const lanes = useMemo(() => lanesOf(history.events, end), [history, version, end]);
+  const choose = (item: TimelineItem) => {
+    if (item.node !== null) onSelect(item.node);
+    onGoTo({ seq: item.seq, time: item.start });
+  };
+  return (
+    <div class="panel run-timeline">
+      <Timeline lanes={lanes} end={end} moment={moment} onChoose={choose} />
+    </div>
+  );
+}
+
+/** While the past is played, time passes with the frames that are drawn. */
+function usePlaying({ moment }: RunFeed): void {
+  const playing = moment.playing.value;
+  useEffect(() => {
+    if (!playing) return;
+    let before = performance.now();
+    let frame = 0;
+    const pass = (now: number) => {
+      moment.advance((now - before) / 1000);
+      before = now;
+      frame = requestAnimationFrame(pass);
+    };
+    frame = requestAnimationFrame(pass);
+    return () => cancelAnimationFrame(frame);
+  }, [moment, playing]);
 }

@@ -1,21 +1,149 @@
-// All runs, newest first.
-import { runs } from "../state/service";
+// The list of runs, newest first, by state.
+import { signal } from "@preact/signals";
+import { useEffect, useState } from "preact/hooks";
+import { questions } from "../state/questions";
+import type { RunStatus, RunSummary } from "../wire/types";
+import { useRunsPage } from "./runs_page";
+import { ago, moment, outcome, STATUS_SIGNS, STATUS_WORDS } from "./run_words";
+import "./runs.css";
+
+const AGAIN_MS = 30_000;
+
+interface Filter {
+  name: string;
+  statuses: readonly RunStatus[];
+}
+
+const ALL: Filter = { name: "All", statuses: [] };
+const FILTERS: readonly Filter[] = [
+  ALL,
+  { name: "Going on", statuses: ["running", "paused"] },
+  { name: "Finished", statuses: ["finished"] },
+  { name: "Failed", statuses: ["failed"] },
+  { name: "Aborted", statuses: ["aborted"] },
+];
+
+/** Chosen once, kept while one looks at a run and comes back. */
+const filter = signal(ALL);
+const page = signal(0);
 
 export function RunsView() {
-  const newest = [...runs.value.values()].sort((a, b) => b.started.localeCompare(a.started));
+  const { runs, more, failure } = useRunsPage(filter.value.statuses, page.value);
+  const now = useNow();
+  const none = runs !== null && runs.length === 0;
   return (
     <section class="page">
-      <h1>Runs</h1>
-      <ul>
-        {newest.map((run) => (
-          <li key={run.id}>
-            <a href={`/runs/${run.id}`}>
-              {run.tree} in {run.world}
-            </a>{" "}
-            <span class={`badge ${run.status}`}>{run.status}</span>
-          </li>
-        ))}
-      </ul>
+      <div class="page-head">
+        <h1>Runs</h1>
+        <a class="button primary" href="/start">
+          Start a run
+        </a>
+      </div>
+      <Filters />
+      <p class="mistake" role="alert">
+        {failure}
+      </p>
+      {runs === null && failure === "" && <p class="quiet">Loading …</p>}
+      {none && (filter.value === ALL && page.value === 0 ? <NoRunsYet /> : <NoneLikeThis />)}
+      {runs !== null && !none && (
+        <ol class="runs" aria-label="Runs, newest first">
+          {runs.map((run) => (
+            <Row key={run.id} run={run} now={now} />
+          ))}
+        </ol>
+      )}
+      {(more || page.value > 0) && <Paging more={more} />}
     </section>
   );
+}
+
+function Filters() {
+  return (
+    <div class="filters" role="group" aria-label="Show runs by state">
+      {FILTERS.map((each) => (
+        <button
+          key={each.name}
+          class="filter"
+          type="button"
+          aria-pressed={filter.value === each}
+          onClick={() => {
+            filter.value = each;
+            page.value = 0;
+          }}
+        >
+          {each.name}
+        </button>
+      ))}
+    </div>
+  );
+}
+
+function Row({ run, now }: { run: RunSummary; now: number }) {
+  const started = Date.parse(run.started);
+  const asks = questions.value.some((each) => each.run === run.id);
+  return (
+    <li>
+      <a class="run" href={`/runs/${run.id}`}>
+        <span class="run-state">
+          <span class={`badge ${run.status}`}>
+            <span aria-hidden="true">{STATUS_SIGNS[run.status]}</span>
+            {STATUS_WORDS[run.status]}
+          </span>
+        </span>
+        <span class="run-tree">
+          <strong>{run.tree}</strong>
+          <span class="small quiet">
+            {run.world}
+            {run.scenario !== null && ` · ${run.scenario}`}
+          </span>
+        </span>
+        <span class="run-outcome">{asks ? <strong class="run-asks">Asks a question</strong> : outcome(run)}</span>
+        <span class="run-started">
+          <span>{ago(started, now)}</span>
+          <time class="small quiet" datetime={run.started}>
+            {moment(started)}
+          </time>
+        </span>
+      </a>
+    </li>
+  );
+}
+
+function NoRunsYet() {
+  return (
+    <div class="panel empty">
+      <h2>No runs yet</h2>
+      <p class="quiet">A run is one execution of a task tree by a robot, in a simulated world or a real one.</p>
+      <a class="button" href="/start">
+        Start the first one
+      </a>
+    </div>
+  );
+}
+
+function NoneLikeThis() {
+  return <p class="panel empty quiet">No runs to show here.</p>;
+}
+
+function Paging({ more }: { more: boolean }) {
+  return (
+    <nav class="paging" aria-label="Pages of runs">
+      <button class="button" type="button" disabled={page.value === 0} onClick={() => page.value--}>
+        Newer
+      </button>
+      <span class="quiet">Page {page.value + 1}</span>
+      <button class="button" type="button" disabled={!more} onClick={() => page.value++}>
+        Older
+      </button>
+    </nav>
+  );
+}
+
+function useNow(): number {
+  const [now, setNow] = useState(Date.now);
+  useEffect(() => {
+    const timer = window.setInterval(() => setNow(Date.now()), AGAIN_MS);
+    return () => window.clearInterval(timer);
+  }, []);
+  return now;
 }

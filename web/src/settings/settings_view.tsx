@@ -1,6 +1,10 @@
 // What a helper can set on this device.
-import { helperName, type Theme, theme } from "../state/preferences";
+import { helperName, soundOn, type Theme, theme } from "../state/preferences";
 import { call, signOut, tokenRequired } from "../state/service";
+import { AnswerKeys } from "./answer_keys";
+import { Notifications } from "./notifications";
+import { VoiceChoice } from "./voice_choice";
+import "./settings.css";
 
 const THEMES: readonly (readonly [Theme, string])[] = [
   ["system", "As the device"],
@@ -14,32 +18,62 @@ export function SettingsView() {
     if (name !== "") void call(name);
   };
   return (
-    <section class="page">
+    <section class="page settings">
       <h1>Settings</h1>
+      <p class="quiet">They are kept on this device.</p>
       <div class="panel field">
         <label for="helper-name">Your name</label>
-        <input id="helper-name" value={helperName.value} maxlength={64} onChange={rename} />
+        <input
+          id="helper-name"
+          value={helperName.value}
+          maxlength={64}
+          onChange={rename}
+          aria-describedby="helper-name-hint"
+        />
+        <p id="helper-name-hint" class="small quiet">
+          The robots and the other helpers see who answered.
+        </p>
       </div>
-      <fieldset class="panel">
+      <AnswerKeys />
+      <section class="panel setting-group" aria-labelledby="arrival-title">
+        <h2 id="arrival-title">When a question comes in the background</h2>
+        <label class="choice">
+          <input
+            type="checkbox"
+            checked={soundOn.value}
+            onChange={(event) => {
+              soundOn.value = event.currentTarget.checked;
+            }}
+          />
+          Play a short sound
+        </label>
+        <Notifications />
+      </section>
+      <VoiceChoice />
+      <fieldset class="panel setting-group">
         <legend>Colours</legend>
-        {THEMES.map(([value, text]) => (
-          <label key={value}>
-            <input
-              type="radio"
-              name="theme"
-              checked={theme.value === value}
-              onChange={() => {
-                theme.value = value;
-              }}
-            />
-            {text}
-          </label>
-        ))}
+        <div class="choices">
+          {THEMES.map(([value, text]) => (
+            <label key={value} class="choice">
+              <input
+                type="radio"
+                name="theme"
+                checked={theme.value === value}
+                onChange={() => {
+                  theme.value = value;
+                }}
+              />
+              {text}
+            </label>
+          ))}
+        </div>
       </fieldset>
       {tokenRequired.value && (
-        <button class="button" type="button" onClick={() => void signOut()}>
-          Sign out
-        </button>
+        <p>
+          <button class="button" type="button" onClick={() => void signOut()}>
+            Sign out
+          </button>
+        </p>
       )}
     </section>
   );

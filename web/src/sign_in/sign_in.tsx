@@ -1,14 +1,19 @@
 // Coming in: the service's token where it wants one, and what to call this helper.
+import type { ComponentChildren } from "preact";
 import { useState } from "preact/hooks";
-import { call, session, signIn } from "../state/service";
+import { helperName } from "../state/preferences";
+import { call, session, sessionEnded, signIn } from "../state/service";
 import { Refusal } from "../wire/rest";
 import "./sign_in.css";
 
 export function SignIn() {
   return (
     <main class="sign-in" id="main">
-      <img src="/icon.svg" alt="" width="56" height="56" />
-      <h1>Mend</h1>
+      <div class="sign-in-brand">
+        <img src="/icon.svg" alt="" width="56" height="56" />
+        <h1>Mend</h1>
+        <p class="quiet">Robots ask here when they are stuck. You answer yes or no.</p>
+      </div>
       {session.value === "needs_token" ? <TokenForm /> : <NameForm />}
     </main>
   );
@@ -16,39 +21,51 @@ export function SignIn() {
 
 function TokenForm() {
   const [mistake, setMistake] = useState("");
+  const [shown, setShown] = useState(false);
+  const [busy, setBusy] = useState(false);
   const submit = async (event: SubmitEvent) => {
     event.preventDefault();
     const form = event.currentTarget as HTMLFormElement;
+    setBusy(true);
+    setMistake("");
     try {
-      await signIn(String(new FormData(form).get("token")));
+      await signIn(String(new FormData(form).get("token")).trim());
     } catch (error) {
-      setMistake(error instanceof Refusal && error.status === 401 ? "This is not the token." : String(error));
+      setMistake(error instanceof Refusal && error.status === 401 ? "This is not the token." : (error as Error).message);
       form.querySelector("input")?.select();
+    } finally {
+      setBusy(false);
     }
   };
   return (
-    <form class="panel" onSubmit={submit}>
+    <Form onSubmit={(event) => void submit(event)} button="Sign in" busy={busy}>
+      {sessionEnded.value && <p>Your session has ended, {helperName.value}. Nothing is lost: sign in and go on.</p>}
       <div class="field">
         <label for="token">Token</label>
-        <input
-          id="token"
-          name="token"
-          type="password"
-          required
-          autocomplete="current-password"
-          aria-describedby="token-hint token-mistake"
-        />
+        <div class="token-row">
+          <input
+            {...(shown ? { type: "text" } : { type: "password" })}
+            id="token"
+            name="token"
+            required
+            autocomplete="current-password"
+            autocapitalize="off"
+            spellcheck={false}
+            aria-invalid={mistake !== ""}
+            aria-describedby="token-hint token-mistake"
+          />
+          <button class="button" type="button" aria-pressed={shown} onClick={() => setShown(!shown)}>
+            Show
+          </button>
+        </div>
         <p id="token-hint" class="small quiet">
-          Whoever runs the service has it (its setting MEND_TOKEN).
+          Ask whoever runs the service: it is its setting MEND_TOKEN.
         </p>
       </div>
       <p id="token-mistake" class="mistake" role="alert">
         {mistake}
       </p>
-      <button class="button primary" type="submit">
-        Sign in
-      </button>
-    </form>
+    </Form>
   );
 }
 
@@ -59,7 +76,7 @@ function NameForm() {
     if (name !== "") void call(name);
   };
   return (
-    <form class="panel" onSubmit={submit}>
+    <Form onSubmit={submit} button="Begin" busy={false}>
       <div class="field">
         <label for="name">Your name</label>
         <input id="name" name="name" required maxlength={64} autocomplete="nickname" aria-describedby="name-hint" />
@@ -67,8 +84,23 @@ function NameForm() {
           The robots and the other helpers see who answered.
         </p>
       </div>
-      <button class="button primary" type="submit">
-        Begin
+    </Form>
+  );
+}
+
+interface FormProps {
+  onSubmit: (event: SubmitEvent) => void;
+  button: string;
+  busy: boolean;
+  children: ComponentChildren;
+}
+
+function Form({ onSubmit, button, busy, children }: FormProps) {
+  return (
+    <form class="panel" onSubmit={onSubmit}>
+      {children}
+      <button class="button primary" type="submit" disabled={busy}>
+        {button}
       </button>
     </form>
   );

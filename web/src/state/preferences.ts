@@ -3,6 +3,9 @@ import { effect, type Signal, signal } from "@preact/signals";
 
 export type Theme = "system" | "light" | "dark";
 
+/** Who says the questions: the service, or this browser where it has a voice of its own. */
+export type Voice = "service" | "browser";
+
 /** The single keys that do something while a question is open; empty switches one off. */
 export interface Keys {
   yes: string;
@@ -24,6 +27,7 @@ export const theme = kept<Theme>("theme", "system");
 export const keys = kept<Keys>("keys", DEFAULT_KEYS);
 export const keysOn = kept("keys_on", true);
 export const soundOn = kept("sound_on", true);
+export const voice = kept<Voice>("voice", "service");
 export const notificationsOn = kept("notifications_on", false);
 
 effect(() => {

@@ -1,103 +1,157 @@
-// The open dialogues across all runs, and what became of those that closed while they were shown.
+// The open dialogues across all runs, folded from the service's events.
 import { computed, signal } from "@preact/signals";
-import type { DialogueView, Event, IssueRaised } from "../wire/types";
+import type { DialogueView, Event, IssueRaised, Prompt, Resolution } from "../wire/types";
+import { closing, tellEnding, tellHowItEnded } from "./endings";
+import { readRunClock } from "./run_clock";
 
 /** One open dialogue, with all that its card shows. */
 export interface Question extends DialogueView {
   /** Of the journal: what came first is asked first. */
   opened: number;
-  /** The run's time and this page's when the prompt came, to tell how long its deadline is off. */
-  prompted: { runTime: number; at: number } | null;
-  issueRaised: IssueRaised | null;
 }
 
-/** How a question ended that did not end by this helper's answer. */
-export interface Ending {
+/** A robot that moves slowly while somebody helps it: there is nothing to answer. */
+export interface Together {
   dialogue: string;
+  run: string;
+  node: string;
+  robot: string;
+  issue: string;
+  object: string | null;
+  name: string;
+  prompt: string;
   text: string;
+  picture: string | null;
 }
+
+// How often a question may get more time is the service's rule; it corrects this with each extension.
+const EXTENSIONS = 10;
 
 const open = signal<ReadonlyMap<string, Question>>(new Map());
 const raised = new Map<string, IssueRaised>();
+const resolutions = new Map<string, Resolution>();
+
+/** Every open dialogue, oldest first. */
+export const dialogues = computed(() => [...open.value.values()].sort((a, b) => a.opened - b.opened));
 
 /** Those that wait for an answer, oldest first. */
-export const questions = computed(() =>
-  [...open.value.values()]
-    .filter((each) => each.prompt?.kind === "ask" && each.awaiting === "answer")
-    .sort((a, b) => a.opened - b.opened),
-);
+export const questions = computed(() => dialogues.value.filter(isAsked));
 
-/** Every open dialogue, also those that say something or wait for promised help. */
-export const dialogues = computed(() =>
-  [...open.value.values()].sort((a, b) => a.opened - b.opened),
-);
+/** Those in which the robot watches for promised help. */
+export const awaitingHelp = computed(() => dialogues.value.filter((each) => each.awaiting === "help"));
 
-/** The last question that was answered by somebody else, withdrawn or given up. */
-export const ending = signal<Ending | null>(null);
+/** What is being placed by robot and helper together. */
+export const together = signal<readonly Together[]>([]);
 
-export function takeDialogues(views: readonly DialogueView[], runTimes: ReadonlyMap<string, number>): void {
-  const at = performance.now();
-  const next = new Map<string, Question>();
-  for (const [index, view] of views.entries()) {
-    const before = open.value.get(view.dialogue);
-    next.set(view.dialogue, {
-      ...view,
-      opened: before?.opened ?? index - views.length,
-      prompted: { runTime: runTimes.get(view.run) ?? 0, at },
-      issueRaised: before?.issueRaised ?? null,
-    });
-  }
-  open.value = next;
+/** Whether its last word is a question: one that is open, or was answered this instant. */
+function isAsked(question: Question): boolean {
+  return question.prompt?.kind === "ask" && question.awaiting !== "help";
 }
 
-/** Fold one event into the questions. */
-export function takeDialogueEvent(event: Event, me: string): void {
-  if (event.type === "issue_raised") raised.set(event.run + event.node, event);
-  if (!("dialogue" in event)) return;
-  const before = open.value.get(event.dialogue);
-  if (event.type === "dialogue_opened") {
-    put(opened(event));
-    return;
+export function dialogueOf(id: string): Question | undefined {
+  return open.value.get(id);
+}
+
+/** Take over the service's word on what is open; `runTimes` are the clocks of the runs. */
+export function takeDialogues(views: readonly DialogueView[], runTimes: ReadonlyMap<string, number>): void {
+  for (const [run, time] of runTimes) readRunClock(run, time);
+  const before = open.value;
+  const next = new Map<string, Question>();
+  for (const [index, view] of views.entries()) {
+    const opened = before.get(view.dialogue)?.opened ?? index - views.length;
+    next.set(view.dialogue, { ...view, opened });
   }
-  if (before === undefined) return;
+  open.value = next;
+  for (const gone of before.values()) {
+    if (!next.has(gone.dialogue)) void tellHowItEnded(gone);
+  }
+}
+
+/** Fold one event into the dialogues. */
+export function takeDialogueEvent(event: Event, me: string): void {
+  readRunClock(event.run, event.time);
+  switch (event.type) {
+    case "issue_raised":
+      raised.set(event.run + event.node, event);
+      return;
+    case "dialogue_opened":
+      put(opened(event));
+      return;
+    case "node_done":
+    case "node_reset":
+      stopHelping((each) => each.run === event.run && each.node === event.node);
+      return;
+    case "run_finished":
+    case "run_failed":
+    case "run_aborted":
+      stopHelping((each) => each.run === event.run);
+      return;
+  }
+  if (!("dialogue" in event) || event.dialogue === null) return;
+  const before = open.value.get(event.dialogue);
+  if (before !== undefined) change(before, event, me);
+}
+
+function change(before: Question, event: Extract<Event, { dialogue: string | null }>, me: string): void {
   switch (event.type) {
     case "prompt":
-      put({
-        ...before,
-        prompt: event,
-        awaiting: event.kind === "ask" ? "answer" : before.awaiting,
-        prompted: { runTime: event.time, at: performance.now() },
-      });
+      put(prompted(before, event));
       return;
+    case "clip_recorded":
+      put({ ...before, clip: event.pictures });
+      return;
+    case "deadline_extended": {
+      const { deadline, extensions_left } = event;
+      if (before.prompt !== null) put({ ...before, prompt: { ...before.prompt, deadline, extensions_left } });
+      return;
+    }
     case "answered":
-      if (event.helper !== me) tell(event.dialogue, `${event.helper} answered ${event.answer}.`);
+      if (event.helper !== me) {
+        tellEnding(before, `${event.helper} answered ${event.answer.toUpperCase()}.`);
+      }
       put({ ...before, awaiting: null, answered_by: event.helper });
       return;
     case "claimed":
       put({ ...before, claimed_by: event.helper, claimed_until: event.lease_until });
       return;
     case "released":
-      put({ ...before, claimed_by: null, claimed_until: null });
+      if (before.claimed_by === event.helper) put({ ...before, claimed_by: null, claimed_until: null });
       return;
     case "help_awaited":
-      put({ ...before, awaiting: "help" });
+      put({
+        ...before,
+        awaiting: "help",
+        help: { help: event.help, helper: event.helper, until: event.until },
+      });
+      return;
+    case "help_verified":
+    case "help_not_seen":
+      put({ ...before, awaiting: null, help: null });
+      return;
+    case "resolved":
+      resolutions.set(event.dialogue, event.resolution);
       return;
     case "dialogue_closed":
-      if (event.reason in ENDINGS && before.awaiting === "answer") {
-        tell(event.dialogue, ENDINGS[event.reason] ?? "");
-      }
-      remove(event.dialogue);
+      close(before, event.reason);
       return;
     default:
       return;
   }
 }
 
-const ENDINGS: Readonly<Record<string, string>> = {
-  withdrawn: "The robot saw that it was put right. Nothing to answer any more.",
-  gave_up: "Nobody answered in time. The robot has given up this question.",
-  aborted: "The question no longer matters: the robot does something else now.",
-};
+function prompted(before: Question, event: Prompt): Question {
+  const known = before.prompt?.prompt === event.prompt ? before.prompt : null;
+  const within_s = event.deadline === null ? null : event.deadline - event.time;
+  return {
+    ...before,
+    awaiting: event.kind === "ask" ? "answer" : before.awaiting === "answer" ? null : before.awaiting,
+    prompt: {
+      ...event,
+      within_s: known?.within_s ?? within_s,
+      extensions_left: known?.extensions_left ?? (event.kind === "ask" ? EXTENSIONS : 0),
+    },
+  };
+}
 
 function opened(event: Extract<Event, { type: "dialogue_opened" }>): Question {
   const issue = raised.get(event.run + event.node) ?? null;
@@ -117,22 +171,32 @@ function opened(event: Extract<Event, { type: "dialogue_opened" }>): Question {
     claimed_by: null,
     claimed_until: null,
     picture: issue?.picture ?? null,
+    clip: [],
+    detection: issue?.detection ?? null,
+    help: null,
     opened: event.seq,
-    prompted: null,
-    issueRaised: issue,
   };
+}
+
+function close(question: Question, reason: Extract<Event, { type: "dialogue_closed" }>["reason"]): void {
+  const statement = question.prompt?.kind === "say" ? question.prompt : null;
+  if (resolutions.get(question.dialogue) === "collab_finish" && statement !== null) {
+    const { prompt, text } = statement;
+    together.value = [...together.value, { ...question, prompt, text }];
+  } else {
+    tellEnding(question, closing(reason, statement?.text ?? null));
+  }
+  resolutions.delete(question.dialogue);
+  const next = new Map(open.value);
+  next.delete(question.dialogue);
+  open.value = next;
+}
+
+/** No longer show what robot and helper do together. */
+export function stopHelping(which: (each: Together) => boolean): void {
+  if (together.value.some(which)) together.value = together.value.filter((each) => !which(each));
 }
 
 function put(question: Question): void {
   open.value = new Map(open.value).set(question.dialogue, question);
-}
-
-function remove(dialogue: string): void {
-  const next = new Map(open.value);
-  next.delete(dialogue);
-  open.value = next;
-}
-
-function tell(dialogue: string, text: string): void {
-  ending.value = { dialogue, text };
 }

@@ -9,8 +9,12 @@ import { takeDialogueEvent, takeDialogues } from "./questions";
 export type Session = "unknown" | "needs_token" | "needs_name" | "in";
 
 export const session = signal<Session>("unknown");
+/** Whether there was a session here that the service no longer knows. */
+export const sessionEnded = signal(false);
 export const tokenRequired = signal(false);
 export const connection = signal<ConnectionState>("connecting");
+/** When the connection was lost, as `Date.now()`; null while there is one. */
+export const lostSince = signal<number | null>(null);
 export const runs = signal<ReadonlyMap<string, RunSummary>>(new Map());
 
 const STATUS_AFTER: Readonly<Partial<Record<Event["type"], RunStatus>>> = {
@@ -44,7 +48,7 @@ export async function begin(): Promise<void> {
     tokenRequired.value = required;
     session.value = required && !signed_in ? "needs_token" : helperName.value === "" ? "needs_name" : "in";
   } catch {
-    connection.value = "lost";
+    becomes("lost");
     window.setTimeout(() => void begin(), 1000);
     return;
   }
@@ -53,6 +57,7 @@ export async function begin(): Promise<void> {
 
 export async function signIn(token: string): Promise<void> {
   await rest.signIn(token);
+  sessionEnded.value = false;
   await begin();
 }
 
@@ -69,6 +74,11 @@ export async function call(name: string): Promise<void> {
   await begin();
 }
 
+/** Look for the service now rather than after the next pause. */
+export function hurry(): void {
+  socket?.hurry();
+}
+
 /** Send a command over the helper's socket. */
 export function command(message: Parameters<HelperSocket["send"]>[0]): ReturnType<HelperSocket["send"]> {
   return socket === null ? Promise.reject(new rest.Unreachable()) : socket.send(message);
@@ -79,18 +89,22 @@ function connect(): void {
   socket = new HelperSocket(helperName.value, {
     snapshot: takeSnapshot,
     event: takeEvent,
-    state: (state) => {
-      connection.value = state;
-    },
+    state: becomes,
     mayReconnect,
   });
   socket.connect();
 }
 
+function becomes(state: ConnectionState): void {
+  connection.value = state;
+  if (state === "lost") lostSince.value ??= Date.now();
+  else if (state !== "connecting") lostSince.value = null;
+}
+
 async function mayReconnect(): Promise<boolean> {
   const found = await rest.session().catch(() => null);
   if (found === null || !found.required || found.signed_in) return true;
-  session.value = "needs_token";
+  endSession();
   return false;
 }
 
@@ -124,5 +138,14 @@ export async function refreshRuns(): Promise<void> {
   runs.value = next;
 }
 
+function endSession(): void {
+  if (session.value !== "in") return;
+  socket?.close();
+  socket = null;
+  sessionEnded.value = true;
+  session.value = "needs_token";
+}
+
+rest.onSignedOut(endSession);
 window.addEventListener("online", () => socket?.hurry());
 window.addEventListener("offline", () => socket?.drop());

@@ -1,25 +1,64 @@
-// The library of task trees.
+// The library of task trees: all of them in a list, and the chosen one beside it.
 import { useEffect, useState } from "preact/hooks";
+import { connection } from "../state/service";
 import * as rest from "../wire/rest";
 import type { TreeSummary } from "../wire/types";
+import { DropZone, FileButton } from "./drop_zone";
+import { TreeDetails } from "./tree_details";
+import { takeFile } from "./upload";
+import "./trees.css";
 
 export function TreesView({ tree }: { tree: string | null }) {
-  const [trees, setTrees] = useState<readonly TreeSummary[]>([]);
+  const [trees, setTrees] = useState<readonly TreeSummary[] | null>(null);
+  const [mistake, setMistake] = useState("");
+  const connected = connection.value === "connected";
   useEffect(() => {
-    void rest.trees().then(setTrees);
-  }, []);
+    rest.trees().then(setTrees, (error: Error) => setMistake(error.message));
+  }, [tree, connected]);
+  const take = (file: File) => {
+    setMistake("");
+    takeFile(file, trees ?? []).catch((error: Error) => setMistake(error.message));
+  };
+  const chosen = tree ?? trees?.[0]?.name ?? null;
   return (
-    <section class="page">
-      <h1>Task trees</h1>
-      <ul>
-        {trees.map((each) => (
-          <li key={each.name}>
-            <a href={`/trees/${each.name}`} aria-current={each.name === tree ? "page" : undefined}>
-              {each.name}
+    <DropZone onFile={take} onSeveral={() => setMistake("One task file at a time, please.")}>
+      <section class="page">
+        <div class="page-head">
+          <h1>Task trees</h1>
+          <div class="page-actions">
+            <FileButton onFile={take} />
+            <a class="button" href="/edit">
+              Write a new one
             </a>
-          </li>
-        ))}
-      </ul>
-    </section>
+          </div>
+        </div>
+        <p class="mistake" role="alert">
+          {mistake}
+        </p>
+        <div class="library">
+          <nav class="library-list" aria-label="Task trees">
+            <TreeList trees={trees} chosen={chosen} />
+            <p class="small quiet library-hint">Drop a task file (YAML or JSON) anywhere here to upload it.</p>
+          </nav>
+          {chosen !== null && <TreeDetails key={chosen} tree={chosen} />}
+        </div>
+      </section>
+    </DropZone>
+  );
+}
+
+function TreeList({ trees, chosen }: { trees: readonly TreeSummary[] | null; chosen: string | null }) {
+  if (trees === null) return <p class="quiet">Loading …</p>;
+  return (
+    <ul>
+      {trees.map(({ name, built_in }) => (
+        <li key={name}>
+          <a class="library-tree" href={`/trees/${name}`} aria-current={name === chosen ? "page" : undefined}>
+            <span class="library-name">{name}</span>
+            {built_in && <span class="badge">built in</span>}
+          </a>
+        </li>
+      ))}
+    </ul>
   );
 }

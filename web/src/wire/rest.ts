@@ -4,15 +4,20 @@ import type {
   DialogueView,
   Event,
   Intervention,
+  Layout,
   Problem as ProblemDocument,
   RobotView,
   RunRequest,
+  RunStatus,
   RunSummary,
   RunView,
   Scenario,
   SessionView,
+  SpeechView,
+  TreeCheck,
   TreeSummary,
   TreeView,
+  WorldView,
 } from "./types";
 
 /** The service refused: what it said in its problem document (RFC 9457). */
@@ -35,18 +40,41 @@ export class Unreachable extends Error {
 }
 
 const JSON_TYPE = "application/json";
+const SESSION = "/api/session";
 
-async function call<T>(method: string, path: string, body?: unknown, type = JSON_TYPE): Promise<T> {
-  const init: RequestInit = { method };
+let whenRefused: () => void = () => undefined;
+
+/** Hear when the service no longer knows this browser's session. */
+export function onSignedOut(listener: () => void): void {
+  whenRefused = listener;
+}
+
+async function call<T>(
+  method: string,
+  path: string,
+  body?: unknown,
+  { type = JSON_TYPE, signal }: { type?: string; signal?: AbortSignal } = {},
+): Promise<T> {
+  const init: RequestInit = signal === undefined ? { method } : { method, signal };
   if (body !== undefined) {
     init.headers = { "Content-Type": type };
     init.body = type === JSON_TYPE ? JSON.stringify(body) : String(body);
   }
   const response = await fetch(path, init).catch(() => {
+    signal?.throwIfAborted();
+    throw new Unreachable();
+  });
+  if (response.status === 401 && path !== SESSION) whenRefused();
+  if (!response.ok) throw await refusal(response);
+  return (response.status === 204 ? undefined : await response.json()) as T;
+}
+
+async function read(path: string): Promise<Response> {
+  const response = await fetch(path, { cache: "no-store" }).catch(() => {
     throw new Unreachable();
   });
   if (!response.ok) throw await refusal(response);
-  return (response.status === 204 ? undefined : await response.json()) as T;
+  return response;
 }
 
 async function refusal(response: Response): Promise<Refusal> {
@@ -58,12 +86,15 @@ async function refusal(response: Response): Promise<Refusal> {
 
 const segment = encodeURIComponent;
 
-export const session = () => call<SessionView>("GET", "/api/session");
-export const signIn = (token: string) => call<void>("POST", "/api/session", { token });
-export const signOut = () => call<void>("DELETE", "/api/session");
+export const session = () => call<SessionView>("GET", SESSION);
+export const signIn = (token: string) => call<void>("POST", SESSION, { token });
+export const signOut = () => call<void>("DELETE", SESSION);
 
-export const runs = (limit = 100, offset = 0) =>
-  call<RunSummary[]>("GET", `/api/runs?limit=${limit}&offset=${offset}`);
+export const runs = (limit = 100, offset = 0, statuses: readonly RunStatus[] = []) =>
+  call<RunSummary[]>(
+    "GET",
+    `/api/runs?limit=${limit}&offset=${offset}${statuses.map((status) => `&status=${status}`).join("")}`,
+  );
 export const run = (id: string) => call<RunView>("GET", `/api/runs/${segment(id)}`);
 export const startRun = (request: RunRequest) => call<RunView>("POST", "/api/runs", request);
 export const pauseRun = (id: string) => call<RunView>("POST", `/api/runs/${segment(id)}/pause`);
@@ -92,14 +123,49 @@ export const dialogue = (id: string) =>
 export const answer = (id: string, prompt: string, value: "yes" | "no", helper: string) =>
   call<Answered>("POST", `/api/dialogues/${segment(id)}/answers`, { prompt, answer: value, helper });
 
+/** Answer from a page that is being left: nobody is there any more to hear the result. */
+export function answerWhileLeaving(id: string, prompt: string, value: "yes" | "no", helper: string): void {
+  void fetch(`/api/dialogues/${segment(id)}/answers`, {
+    method: "POST",
+    headers: { "Content-Type": JSON_TYPE },
+    body: JSON.stringify({ prompt, answer: value, helper }),
+    keepalive: true,
+  });
+}
+
+export const speech = () => call<SpeechView>("GET", "/api/speech");
+export const promptSoundPath = (id: string, prompt: string) =>
+  `/api/dialogues/${segment(id)}/prompts/${segment(prompt)}/speech`;
+export const phraseSoundPath = (name: string) => `/api/speech/phrases/${segment(name)}`;
+
 export const robots = () => call<RobotView[]>("GET", "/api/robots");
+export const worlds = () => call<WorldView[]>("GET", "/api/worlds");
 export const scenarios = () => call<Scenario[]>("GET", "/api/scenarios");
 export const trees = () => call<TreeSummary[]>("GET", "/api/trees");
 export const tree = (name: string) => call<TreeView>("GET", `/api/trees/${segment(name)}`);
 export const saveTree = (text: string, name?: string) =>
   call<TreeView>("POST", "/api/trees", name === undefined ? { text } : { name, text });
+/** Check a task file without keeping it. */
+export const checkTree = (text: string, signal: AbortSignal) =>
+  call<TreeCheck>("POST", "/api/trees/check", { text }, { signal });
 export const deleteTree = (name: string) => call<void>("DELETE", `/api/trees/${segment(name)}`);
 
 export const picturePath = (picture: string) => `/api/pictures/${segment(picture)}`;
 export const cameraPath = (run: string, camera: string) =>
   `/api/runs/${segment(run)}/cameras/${segment(camera)}`;
+
+/** What a camera of the run's robot sees now. */
+export const cameraPicture = async (run: string, camera: string) => (await read(cameraPath(run, camera))).blob();
+
+export const layout = (run: string) => call<Layout>("GET", `/api/runs/${segment(run)}/layout`);
+
+const SPAN_HEADER = "Mend-Poses-Span";
+
+/** The frames recorded from one time of the run to another, and the first and last times recorded. */
+export async function poses(run: string, from: number, to: number) {
+  const response = await read(`/api/runs/${segment(run)}/poses?from_s=${from}&to_s=${to}`);
+  const [first, last] = response.headers.get(SPAN_HEADER)?.split(" ").map(Number) ?? [];
+  const recorded: readonly [number, number] | null =
+    first === undefined || last === undefined ? null : [first, last];
+  return { bytes: await response.arrayBuffer(), recorded };
+}

@@ -1,0 +1,134 @@
+"""What the robot says, as sound; and what this service can say and hear."""
+
+from typing import Annotated, Any, Literal
+from uuid import UUID
+
+from fastapi import APIRouter, Path, Response
+from pydantic import BaseModel, ConfigDict
+
+from server.api.parts import DialogueId, Parts, WithParts
+from server.api.problems import ProblemError, documented
+from server.errors import NotFoundError
+from server.speech.commands import PHRASES, Command
+from server.speech.ear import NoEars
+from server.speech.phrases import FIXED, effect_text, help_text
+from server.speech.question import find_prompt
+from server.speech.voice import NoVoice, VoiceError
+
+router = APIRouter(tags=["speech"])
+
+PromptId = Annotated[UUID, Path(description="The prompt's id.")]
+WAV: dict[int | str, dict[str, Any]] = {
+    200: {"content": {"audio/wav": {}}, "description": "The sound."}
+}
+REFUSALS = documented(401, 404, 421, 422, 503)
+
+
+class Ability(BaseModel):
+    """Something that the service can do, or why it cannot."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    available: bool
+    engine: str | None = None
+    why_not: str | None = None
+
+
+class SpeechView(BaseModel):
+    """What the service can say and hear. `phrases`: what it says besides prompts, by name."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    language: Literal["en"] = "en"
+    voice: Ability
+    recognition: Ability
+    phrases: dict[str, str]
+    commands: dict[Command, list[str]]
+
+
+@router.get("/api/speech", operation_id="get_speech", responses=documented(401, 421))
+async def get_speech(parts: WithParts) -> SpeechView:
+    """Whether there is a voice and recognition, or why not; and what can be said."""
+    texts, ears = parts.speech.texts, parts.speech.ears
+    return SpeechView(
+        voice=Ability(available=False, why_not=texts.why_not)
+        if isinstance(texts, NoVoice)
+        else Ability(available=True, engine=texts.engine),
+        recognition=Ability(available=False, why_not=ears.why_not)
+        if isinstance(ears, NoEars)
+        else Ability(available=True, engine=ears.engine),
+        phrases=dict(FIXED),
+        commands={command: list(phrases) for command, phrases in PHRASES.items()},
+    )
+
+
+@router.get(
+    "/api/speech/phrases/{name}",
+    operation_id="get_phrase_speech",
+    response_class=Response,
+    responses={**WAV, **REFUSALS},
+)
+async def get_phrase_speech(
+    name: Annotated[str, Path(pattern=r"^[a-z_]{1,32}$", examples=["sorry"])], parts: WithParts
+) -> Response:
+    """One of the fixed phrases."""
+    if name not in FIXED:
+        raise NotFoundError(f"there is no phrase '{name}'; there are {', '.join(FIXED)}")
+    return await _sound(parts, FIXED[name])
+
+
+@router.get(
+    "/api/dialogues/{dialogue}/prompts/{prompt}/speech",
+    operation_id="get_prompt_speech",
+    response_class=Response,
+    responses={**WAV, **REFUSALS},
+)
+async def get_prompt_speech(dialogue: DialogueId, prompt: PromptId, parts: WithParts) -> Response:
+    """What the robot says or asks with a prompt."""
+    found = await find_prompt(parts.runs, parts.journal, dialogue, prompt)
+    return await _sound(parts, found.text)
+
+
+@router.get(
+    "/api/dialogues/{dialogue}/prompts/{prompt}/speech/help",
+    operation_id="get_prompt_help_speech",
+    response_class=Response,
+    responses={**WAV, **REFUSALS},
+)
+async def get_prompt_help_speech(
+    dialogue: DialogueId, prompt: PromptId, parts: WithParts
+) -> Response:
+    """What yes and no will each do."""
+    found = await find_prompt(parts.runs, parts.journal, dialogue, prompt)
+    if not found.answers:
+        raise NotFoundError(f"the prompt {prompt} asks nothing")
+    return await _sound(parts, help_text(found.answers))
+
+
+@router.get(
+    "/api/dialogues/{dialogue}/prompts/{prompt}/speech/{answer}",
+    operation_id="get_prompt_effect_speech",
+    response_class=Response,
+    responses={**WAV, **REFUSALS},
+)
+async def get_prompt_effect_speech(
+    dialogue: DialogueId, prompt: PromptId, answer: Literal["yes", "no"], parts: WithParts
+) -> Response:
+    """What one answer will do; said while it can still be taken back."""
+    found = await find_prompt(parts.runs, parts.journal, dialogue, prompt)
+    for option in found.answers:
+        if option.value == answer:
+            return await _sound(parts, effect_text(option))
+    raise NotFoundError(f"the prompt {prompt} cannot be answered '{answer}'")
+
+
+async def _sound(parts: Parts, text: str) -> Response:
+    texts = parts.speech.texts
+    if isinstance(texts, NoVoice):
+        raise ProblemError(503, f"this service has no voice: {texts.why_not}")
+    try:
+        sound = await texts.wav(text)
+    except VoiceError as error:
+        raise ProblemError(503, str(error)) from error
+    headers = {"Cache-Control": "private, max-age=3600"}
+    return Response(sound, media_type="audio/wav", headers=headers)

@@ -1,0 +1,111 @@
+"""What a helper's speech socket carries besides sound."""
+
+from typing import Annotated, Literal
+from uuid import UUID
+
+from pydantic import BaseModel, Field, TypeAdapter
+
+from server.api.helper_messages import Auth, HelperMessage, ServerMessage
+from server.speech.commands import Command
+from server.speech.conversation import EndReason, Saying
+
+
+class Listen(HelperMessage):
+    """Begin a conversation about an open question; one that is going on is replaced."""
+
+    type: Literal["listen"]
+    dialogue: UUID
+    prompt: UUID
+
+
+class Spoken(HelperMessage):
+    """What was to be said has been played to its end."""
+
+    type: Literal["spoken"]
+
+
+class Cancel(HelperMessage):
+    """End the conversation, if there is one."""
+
+    type: Literal["cancel"]
+
+
+SpeechClientMessage = Annotated[Auth | Listen | Spoken | Cancel, Field(discriminator="type")]
+
+speech_client_message: TypeAdapter[Auth | Listen | Spoken | Cancel] = TypeAdapter(
+    SpeechClientMessage
+)
+
+
+class Say(ServerMessage):
+    """Play this, show the text, then send `spoken`. `audio` None: there is no voice."""
+
+    type: Literal["say"] = "say"
+    what: Saying
+    text: str
+    audio: str | None
+
+
+class Listening(ServerMessage):
+    """Speak now."""
+
+    type: Literal["listening"] = "listening"
+
+
+class Hearing(ServerMessage):
+    """Somebody has begun to speak."""
+
+    type: Literal["hearing"] = "hearing"
+
+
+class HeardMessage(ServerMessage):
+    """An utterance has ended; `command` None where it is not one."""
+
+    type: Literal["heard"] = "heard"
+    command: Command | None
+    phrase: str | None
+    latency_ms: float
+
+
+class GaveUp(ServerMessage):
+    """Too much was not understood: show the buttons."""
+
+    type: Literal["gave_up"] = "gave_up"
+
+
+class Ended(ServerMessage):
+    """The conversation is over."""
+
+    type: Literal["ended"] = "ended"
+    reason: EndReason
+
+
+class SpeechError(ServerMessage):
+    """What was sent cannot be done; the connection stays."""
+
+    type: Literal["error"] = "error"
+    id: str | int | None = None
+    status: int
+    title: str
+    detail: str
+    errors: list[str] | None = None
+
+
+SPEECH_SERVER_MESSAGES: tuple[type[BaseModel], ...] = (
+    Say,
+    Listening,
+    Hearing,
+    HeardMessage,
+    GaveUp,
+    Ended,
+    SpeechError,
+)
+
+SpeechServerMessage = Annotated[
+    Say | Listening | Hearing | HeardMessage | GaveUp | Ended | SpeechError,
+    Field(discriminator="type"),
+]
+
+speech_server_message: TypeAdapter[
+    Say | Listening | Hearing | HeardMessage | GaveUp | Ended | SpeechError
+] = TypeAdapter(SpeechServerMessage)

@@ -1,0 +1,1 @@
+"""Speech: what the robot says aloud, and what a person answers by voice."""

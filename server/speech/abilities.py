@@ -1,0 +1,18 @@
+"""What this service can say and hear."""
+
+from dataclasses import dataclass
+
+from server.speech.ear import Ears, NoEars
+from server.speech.rendering import SpokenTexts
+from server.speech.voice import NoVoice
+
+
+@dataclass(frozen=True, slots=True)
+class SpeechAbilities:
+    """The robot's voice and its ears, or why there are none."""
+
+    texts: SpokenTexts | NoVoice
+    ears: Ears | NoEars
+
+
+NO_SPEECH = SpeechAbilities(NoVoice("this service has no speech"), NoEars("it has no speech"))

@@ -1,0 +1,218 @@
+"""One spoken conversation about one question, as a pure state machine: no sound, no sockets.
+
+It is half duplex: while the robot speaks, and a moment longer, nothing is listened to.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import StrEnum
+
+from server.speech.commands import Command
+from server.speech.phrases import SORRY
+
+PAUSE_S = 0.2
+"""Between the end of what the robot says and listening: the room has to fall silent."""
+
+MAX_APOLOGIES = 2
+
+
+class State(StrEnum):
+    """Where a conversation is, and so what may come next."""
+
+    NEW = "new"
+    SAYING = "saying"
+    PAUSING = "pausing"
+    LISTENING = "listening"
+    HEARING = "hearing"
+    ENDED = "ended"
+
+
+class EndReason(StrEnum):
+    """Why a conversation ended."""
+
+    HEARD = "heard"
+    """Yes, no or stop."""
+    GAVE_UP = "gave_up"
+    CANCELLED = "cancelled"
+    REPLACED = "replaced"
+    """Another conversation has begun."""
+    ANSWERED = "answered"
+    """Somebody has answered the question."""
+    CLOSED = "closed"
+    """The dialogue has closed, or asks something else now."""
+    LOST = "lost"
+    """The recognizer has failed."""
+
+
+class Saying(StrEnum):
+    """What the robot says."""
+
+    QUESTION = "question"
+    HELP = "help"
+    SORRY = "sorry"
+
+
+@dataclass(frozen=True, slots=True)
+class Say:
+    """Say this; `spoken` is to be called at its end."""
+
+    what: Saying
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Listen:
+    """From now on the microphone counts."""
+
+
+@dataclass(frozen=True, slots=True)
+class Hear:
+    """Somebody has begun to speak."""
+
+
+@dataclass(frozen=True, slots=True)
+class Understood:
+    """An utterance has ended; `command` None where it is not one.
+
+    `latency_s` is the time since its last sound.
+    """
+
+    command: Command | None
+    phrase: str | None
+    latency_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class GiveUp:
+    """Nothing more is tried by voice."""
+
+
+@dataclass(frozen=True, slots=True)
+class End:
+    """The conversation is over."""
+
+    reason: EndReason
+
+
+Act = Say | Listen | Hear | Understood | GiveUp | End
+
+_LEGAL_CALLS = {
+    State.NEW: ("open", "end"),
+    State.SAYING: ("spoken", "end"),
+    State.PAUSING: ("pause_over", "end"),
+    State.LISTENING: ("speech_began", "end"),
+    State.HEARING: ("utterance", "nothing_said", "end"),
+    State.ENDED: (),
+}
+
+
+class IllegalTransitionError(Exception):
+    """A call came that the conversation's state does not allow; nothing was changed."""
+
+    def __init__(self, state: State, came: str, expected: tuple[str, ...]) -> None:
+        wanted = " or ".join(expected) if expected else "nothing more"
+        super().__init__(f"the spoken conversation is {state}: expected {wanted}, but {came} came")
+        self.state = state
+        self.came = came
+        self.expected = expected
+
+
+class Conversation:
+    """Asks one question aloud until it has heard a command, or has apologized often enough.
+
+    Every call returns what is to be done, in order; one that the state does not allow raises
+    `IllegalTransitionError`. `now_s` is a clock that never goes back.
+    """
+
+    def __init__(self, question: str, help_text: str, now_s: Callable[[], float]) -> None:
+        self._texts = {
+            Saying.QUESTION: question,
+            Saying.HELP: help_text,
+            Saying.SORRY: SORRY,
+        }
+        self._now_s = now_s
+        self._state = State.NEW
+        self._listens_at_s = 0.0
+        self._apologies_left = MAX_APOLOGIES
+
+    @property
+    def state(self) -> State:
+        return self._state
+
+    @property
+    def listens(self) -> bool:
+        """Whether the microphone counts now."""
+        return self._state in (State.LISTENING, State.HEARING)
+
+    @property
+    def pause_left_s(self) -> float | None:
+        """Seconds until `pause_over` may be called; None unless pausing."""
+        if self._state is not State.PAUSING:
+            return None
+        return max(0.0, self._listens_at_s - self._now_s())
+
+    def open(self) -> list[Act]:
+        """Begin: ask the question."""
+        self._require("open")
+        return self._say(Saying.QUESTION)
+
+    def spoken(self) -> list[Act]:
+        """What was said has been played to its end."""
+        self._require("spoken")
+        self._state = State.PAUSING
+        self._listens_at_s = self._now_s() + PAUSE_S
+        return []
+
+    def pause_over(self) -> list[Act]:
+        """Listen, if the pause is over; nothing before."""
+        self._require("pause_over")
+        if self._now_s() < self._listens_at_s:
+            return []
+        self._state = State.LISTENING
+        return [Listen()]
+
+    def speech_began(self) -> list[Act]:
+        self._require("speech_began")
+        self._state = State.HEARING
+        return [Hear()]
+
+    def utterance(self, command: Command | None, phrase: str | None, latency_s: float) -> list[Act]:
+        """Somebody has said something; `command` None where it is not a command."""
+        self._require("utterance")
+        heard = Understood(command, phrase, latency_s)
+        match command:
+            case Command.YES | Command.NO | Command.STOP:
+                return [heard, *self._end(EndReason.HEARD)]
+            case Command.REPEAT:
+                return [heard, *self._say(Saying.QUESTION)]
+            case Command.HELP:
+                return [heard, *self._say(Saying.HELP)]
+            case None if self._apologies_left > 0:
+                self._apologies_left -= 1
+                return [heard, *self._say(Saying.SORRY)]
+            case None:
+                return [heard, GiveUp(), *self._end(EndReason.GAVE_UP)]
+
+    def nothing_said(self) -> list[Act]:
+        """What began was no speech after all."""
+        self._require("nothing_said")
+        self._state = State.LISTENING
+        return [Listen()]
+
+    def end(self, reason: EndReason) -> list[Act]:
+        """End it for a reason outside of it."""
+        self._require("end")
+        return self._end(reason)
+
+    def _say(self, what: Saying) -> list[Act]:
+        self._state = State.SAYING
+        return [Say(what, self._texts[what])]
+
+    def _end(self, reason: EndReason) -> list[Act]:
+        self._state = State.ENDED
+        return [End(reason)]
+
+    def _require(self, call: str) -> None:
+        expected = _LEGAL_CALLS[self._state]
+        if call not in expected:
+            raise IllegalTransitionError(self._state, call, expected)

@@ -1,0 +1,52 @@
+"""The child process of an ear: sound on standard input, one JSON line per report on the output."""
+
+import os
+import signal
+import sys
+import time
+from typing import BinaryIO
+
+from server.speech.ear import HEADER, Report
+from server.speech.recognizer import Heard, Recognizer, SpeechBegan, SphinxDecoder
+
+
+def main() -> None:
+    """Listen until the input ends."""
+    # Ctrl-C at a terminal reaches the whole group; the service decides when this ends.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    sound, reports = sys.stdin.buffer, os.fdopen(os.dup(1), "wb", buffering=0)
+    # Whatever a library prints must not come between the reports.
+    os.dup2(2, 1)
+    recognizer = Recognizer(SphinxDecoder())
+    _tell(reports, Report(kind="ready"))
+    interruptions = 0
+    while header := sound.read(HEADER.size):
+        came_s, size = HEADER.unpack(header)
+        if size == 0:
+            recognizer.interrupt()
+            interruptions += 1
+            continue
+        for heard in recognizer.feed(sound.read(size)):
+            _tell(reports, report_of(heard, time.monotonic() - came_s, interruptions))
+
+
+def report_of(heard: Heard, since_sound_s: float, interruptions: int) -> Report:
+    """What a recognizer heard, `since_sound_s` after the sound that ended it came."""
+    if isinstance(heard, SpeechBegan):
+        return Report(kind="began", interruptions=interruptions)
+    return Report(
+        kind="utterance",
+        command=heard.command,
+        phrase=heard.phrase,
+        words=heard.words,
+        latency_s=heard.hangover_s + since_sound_s,
+        interruptions=interruptions,
+    )
+
+
+def _tell(reports: BinaryIO, report: Report) -> None:
+    reports.write(report.model_dump_json().encode() + b"\n")
+
+
+if __name__ == "__main__":
+    main()

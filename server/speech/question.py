@@ -1,0 +1,74 @@
+"""The question that a conversation is about: finding it, and noticing that it is over."""
+
+from uuid import UUID
+
+from server.errors import ConflictError, NotFoundError
+from server.journal.events import Answered, DialogueClosed, Prompt, any_event
+from server.journal.journal import Journal, JournalClosedError
+from server.journal.subscriptions import SubscriptionOverflowError
+from server.runtime.service import RunService
+from server.runtime.views import PromptView
+from server.speech.conversation import EndReason
+
+PAGE = 500
+
+
+async def find_prompt(
+    runs: RunService, journal: Journal, dialogue: UUID, prompt: UUID
+) -> PromptView | Prompt:
+    """A prompt of a dialogue, open or long over. Raises `NotFoundError`."""
+    view = runs.dialogue(dialogue)
+    if view.prompt is not None and view.prompt.prompt == prompt:
+        return view.prompt
+    after = 0
+    while events := await journal.read(after, PAGE, view.run):
+        for event in events:
+            if isinstance(event, Prompt) and (event.dialogue, event.prompt) == (dialogue, prompt):
+                return event
+        after = events[-1].seq
+    raise NotFoundError(f"there is no prompt {prompt} in the dialogue {dialogue}")
+
+
+def open_question(runs: RunService, dialogue: UUID, prompt: UUID) -> PromptView:
+    """The open question of a dialogue. Raises `NotFoundError`, `ConflictError` if it is another."""
+    view = runs.dialogue(dialogue)
+    if view.status == "closed" or view.awaiting != "answer" or view.prompt is None:
+        raise ConflictError("this dialogue waits for no answer")
+    if view.prompt.prompt != prompt:
+        raise ConflictError(f"the prompt {prompt} is not the open question of this dialogue")
+    return view.prompt
+
+
+async def wait_until_over(
+    runs: RunService, journal: Journal, dialogue: UUID, prompt: UUID, capacity: int
+) -> EndReason:
+    """Return once the question waits for no answer any more, and why."""
+    while True:
+        # Followed before it is looked at, so that nothing happens in between.
+        with journal.subscribe(journal.head, capacity) as subscription:
+            try:
+                open_question(runs, dialogue, prompt)
+            except ConflictError:
+                return EndReason.CLOSED
+            try:
+                async for record in subscription:
+                    if str(dialogue) in record.text:
+                        reason = _end_in(record.text, dialogue, prompt)
+                        if reason is not None:
+                            return reason
+            except SubscriptionOverflowError:
+                continue
+            except JournalClosedError:
+                pass
+            return EndReason.CLOSED
+
+
+def _end_in(text: str, dialogue: UUID, prompt: UUID) -> EndReason | None:
+    match any_event.validate_json(text):
+        case Answered(dialogue=of, prompt=answered) if of == dialogue and answered == prompt:
+            return EndReason.ANSWERED
+        case DialogueClosed(dialogue=of) if of == dialogue:
+            return EndReason.CLOSED
+        case Prompt(dialogue=of, prompt=asked) if of == dialogue and asked != prompt:
+            return EndReason.CLOSED
+    return None

@@ -1,0 +1,164 @@
+"""PocketSphinx over a stream of sound: what an utterance means."""
+
+from collections import deque
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Protocol
+
+import numpy as np
+import pocketsphinx
+
+from server.speech.commands import Command
+from server.speech.endpointing import FRAME_S, FRAME_SAMPLES, Edge, Endpointer
+from server.speech.language_model import Weights, command_in, write_language_model
+
+FRAME_BYTES = FRAME_SAMPLES * 2
+
+NOISE_DBFS = -60.0
+"""Exact zeros, as a muted microphone sends, ruin the features: so much noise is laid under."""
+
+LEAD_S = 0.4
+"""Decoded from before speech was noticed: the weak sounds at its beginning."""
+
+LONGEST_UTTERANCE_S = 5.0
+"""Longer than any phrase: what is cut off here is no command."""
+
+
+@dataclass(frozen=True, slots=True)
+class SpeechBegan:
+    """Somebody has begun to speak."""
+
+
+@dataclass(frozen=True, slots=True)
+class Utterance:
+    """What was said from one silence to the next; `command` None where it is not one.
+
+    `words` says whether there were any: noise has none. `hangover_s` is the sound that came
+    after its end and before it was known to have ended.
+    """
+
+    command: Command | None
+    phrase: str | None
+    words: bool
+    hangover_s: float
+
+
+Heard = SpeechBegan | Utterance
+
+
+class Decoder(Protocol):
+    """What turns the sound of one utterance into words."""
+
+    def start(self) -> None: ...
+
+    def decode(self, pcm: bytes) -> None: ...
+
+    def finish(self) -> str:
+        """The words; phrases of commands are one word each."""
+        ...
+
+
+class Recognizer:
+    """One conversation's ear. Feed it sound; it tells when speech begins and what was said."""
+
+    def __init__(self, decoder: Decoder) -> None:
+        self._decoder = decoder
+        self._noise = _Noise()
+        self._rest = b""
+        self._lead: deque[bytes] = deque(maxlen=round(LEAD_S / FRAME_S))
+        self._endpointer = Endpointer()
+        self._frames = 0
+
+    def feed(self, pcm: bytes) -> Iterator[Heard]:
+        """Take sound (PCM16, mono, 16 kHz) in pieces of any size."""
+        sound = self._rest + pcm
+        whole = len(sound) // FRAME_BYTES * FRAME_BYTES
+        self._rest = sound[whole:]
+        for start in range(0, whole, FRAME_BYTES):
+            yield from self._take(self._noise.under(sound[start : start + FRAME_BYTES]))
+
+    def interrupt(self) -> None:
+        """Forget an utterance that was going on: what comes next does not follow it."""
+        if self._frames:
+            self._finish()
+        self._rest = b""
+        self._lead.clear()
+        self._endpointer.interrupt()
+
+    def _take(self, frame: bytes) -> Iterator[Heard]:
+        edge = self._endpointer.take(frame)
+        if edge is Edge.BEGAN:
+            self._decoder.start()
+            self._decode(b"".join([*self._lead, frame]))
+            yield SpeechBegan()
+            return
+        self._lead.append(frame)
+        if not self._frames:
+            return
+        self._decode(frame)
+        if edge is Edge.ENDED:
+            yield self._utterance(self._finish())
+        elif self._frames * FRAME_S > LONGEST_UTTERANCE_S:
+            self._finish()
+            self._endpointer.interrupt()
+            yield Utterance(None, None, words=True, hangover_s=0.0)
+
+    def _decode(self, pcm: bytes) -> None:
+        self._frames += len(pcm) // FRAME_BYTES
+        self._decoder.decode(pcm)
+
+    def _finish(self) -> str:
+        self._frames = 0
+        return self._decoder.finish()
+
+    def _utterance(self, hypothesis: str) -> Utterance:
+        found = command_in(hypothesis)
+        command, phrase = found if found is not None else (None, None)
+        hangover_s = self._endpointer.quiet_frames * FRAME_S
+        return Utterance(command, phrase, bool(hypothesis), hangover_s)
+
+
+class SphinxDecoder:
+    """PocketSphinx with a language model of one's own."""
+
+    def __init__(self, weights: Weights | None = None) -> None:
+        model = Path(pocketsphinx.get_model_path("en-us"))
+        with TemporaryDirectory(prefix="mend-speech-") as folder:
+            dictionary, language_model = write_language_model(
+                Path(folder), model / "cmudict-en-us.dict", weights
+            )
+            self._decoder = pocketsphinx.Decoder(
+                hmm=str(model / "en-us"),
+                dict=str(dictionary),
+                lm=str(language_model),
+                loglevel="FATAL",
+            )
+
+    def start(self) -> None:
+        self._decoder.start_utt()
+
+    def decode(self, pcm: bytes) -> None:
+        self._decoder.process_raw(pcm)
+
+    def finish(self) -> str:
+        self._decoder.end_utt()
+        found = self._decoder.hyp()
+        return str(found.hypstr) if found is not None else ""
+
+
+class _Noise:
+    """A little noise, the same for every conversation."""
+
+    def __init__(self) -> None:
+        amplitude = 32768 * 10 ** (NOISE_DBFS / 20)
+        frames = np.random.default_rng(0).normal(0.0, amplitude, (251, FRAME_SAMPLES))
+        self._frames = np.round(frames).astype(np.int32)
+        self._next = 0
+
+    def under(self, frame: bytes) -> bytes:
+        noisy = np.frombuffer(frame, np.int16) + self._frames[self._next]
+        self._next = (self._next + 1) % len(self._frames)
+        sound: bytes = np.clip(noisy, -32768, 32767).astype(np.int16).tobytes()
+        return sound

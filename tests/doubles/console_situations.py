@@ -1,0 +1,159 @@
+"""Situations that the console is looked at in: each plays a run, and opens the view that shows it."""
+
+from collections.abc import Awaitable, Callable
+from uuid import UUID
+
+from console_in_browser import OpenPage
+from playwright.async_api import Page, expect
+
+from server.composition import Service
+from server.runtime.requests import RunRequest
+from tasks.intervention import Intervention
+from tasks.scenario import Person
+
+STEAL = Intervention.model_validate({"act": "steal", "object": "green_leg"})
+PATIENCE_MS = 30_000
+
+
+async def ask(service: Service, world: str = "tabletop") -> UUID:
+    """Start a run whose first part is stolen, so that its robot asks live helpers."""
+    request = RunRequest(tree="eket", world=world, speed=5.0, person=Person(acts=False))
+    run = await service.runtime.start_run(request)
+    await service.runtime.intervene(run.id, STEAL)
+    return run.id
+
+
+async def no_question(_: Service, open_page: OpenPage) -> Page:
+    page = await open_page("/")
+    await expect(page.get_by_text("No robot asks")).to_be_visible()
+    return page
+
+
+async def open_question(service: Service, open_page: OpenPage) -> Page:
+    page = await open_page("/")
+    await ask(service)
+    await expect(page.get_by_role("button", name="YES")).to_be_visible(timeout=PATIENCE_MS)
+    return page
+
+
+async def waiting_for_help(service: Service, open_page: OpenPage) -> Page:
+    page = await open_question(service, open_page)
+    await page.get_by_role("button", name="YES").click()
+    await expect(page.get_by_text("There is nothing to press")).to_be_visible(timeout=PATIENCE_MS)
+    return page
+
+
+async def no_runs(_: Service, open_page: OpenPage) -> Page:
+    page = await open_page("/runs")
+    await expect(page.get_by_text("No runs yet")).to_be_visible()
+    return page
+
+
+async def runs(service: Service, open_page: OpenPage) -> Page:
+    await ask(service)
+    page = await finished_run(service, open_page)
+    await page.goto("/runs")
+    await expect(page.get_by_text("The task is done")).to_be_visible()
+    await expect(page.get_by_text("Asks a question")).to_be_visible(timeout=PATIENCE_MS)
+    return page
+
+
+async def live_run(service: Service, open_page: OpenPage) -> Page:
+    run = await ask(service)
+    page = await open_page(f"/runs/{run}")
+    await expect(page.get_by_role("link", name="Questions 1")).to_be_visible(timeout=PATIENCE_MS)
+    await expect(page.get_by_role("main").get_by_text("Loading …")).to_have_count(0)
+    return page
+
+
+async def finished_run(service: Service, open_page: OpenPage) -> Page:
+    request = RunRequest(tree="eket", world="tabletop", speed="max", scenario="eket_paper")
+    run = await service.runtime.start_run(request)
+    page = await open_page("/runs")
+    row = page.get_by_role("listitem").filter(has_text="eket_paper")
+    await expect(row.get_by_text("Finished")).to_be_visible(timeout=PATIENCE_MS)
+    await page.goto(f"/runs/{run.id}")
+    main = page.get_by_role("main")
+    await expect(main.get_by_role("heading", level=1)).to_be_visible(timeout=PATIENCE_MS)
+    await expect(main.get_by_text("Loading …")).to_have_count(0, timeout=PATIENCE_MS)
+    return page
+
+
+async def trees(_: Service, open_page: OpenPage) -> Page:
+    page = await open_page("/trees")
+    await expect(page.get_by_role("tree")).to_be_visible()
+    return page
+
+
+async def wrong_tree(_: Service, open_page: OpenPage) -> Page:
+    page = await open_page("/edit/eket")
+    text = page.get_by_label("The file of the task tree")
+    await text.fill((await text.input_value()).replace("object: pink_bar", "object: pink_ber"))
+    await expect(page.get_by_role("button", name="Line 9")).to_be_visible()
+    return page
+
+
+async def delete_tree(service: Service, open_page: OpenPage) -> Page:
+    await service.trees.save(
+        "shelf", "name: shelf\ntree: {behavior: pick_and_place, object: a, place: b}\n"
+    )
+    page = await open_page("/trees/shelf")
+    await page.get_by_role("button", name="Delete").click()
+    await expect(page.get_by_role("dialog")).to_be_visible()
+    return page
+
+
+async def start_run(_: Service, open_page: OpenPage) -> Page:
+    page = await open_page("/start/eket")
+    await page.get_by_role("spinbutton", name="Seed").fill("-1")
+    await page.get_by_role("button", name="Start the run").click()
+    await expect(page.get_by_role("alert").filter(has_text="greater than or equal")).to_be_visible()
+    return page
+
+
+async def settings(_: Service, open_page: OpenPage) -> Page:
+    page = await open_page("/settings")
+    await expect(page.get_by_role("heading", name="Settings")).to_be_visible()
+    return page
+
+
+async def unknown(_: Service, open_page: OpenPage) -> Page:
+    page = await open_page("/runs")
+    await page.evaluate(
+        "history.replaceState(null, '', '/nowhere'); dispatchEvent(new Event('popstate'))"
+    )
+    await expect(page.get_by_role("heading", name="There is nothing")).to_be_visible()
+    return page
+
+
+async def sign_in(_: Service, open_page: OpenPage) -> Page:
+    page = await open_page("/")
+    await page.context.clear_cookies()
+    await page.reload()
+    await page.get_by_label("Token").fill("wrong")
+    await page.get_by_role("button", name="Sign in").click()
+    await expect(page.get_by_role("alert")).to_have_text("This is not the token.")
+    return page
+
+
+Situation = Callable[[Service, OpenPage], Awaitable[Page]]
+
+SITUATIONS: dict[str, Situation] = {
+    each.__name__: each
+    for each in (
+        no_question,
+        open_question,
+        waiting_for_help,
+        no_runs,
+        runs,
+        live_run,
+        finished_run,
+        trees,
+        wrong_tree,
+        delete_tree,
+        start_run,
+        settings,
+        unknown,
+        sign_in,
+    )
+}

@@ -1,0 +1,106 @@
+"""Prints random runs with what the service says of them after every event, for the console's tests.
+
+    python tests/doubles/folded_runs.py [SEED ...]
+
+One line of JSON per run: `events`, and as many `states` with the nodes, status and open
+dialogues. Leaf potentials are those of the last choice in which the leaf was a candidate: what a
+robot has seen since then is in no event.
+"""
+
+# ruff: noqa: T201
+
+import asyncio
+import json
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from recorded_service import recorded_events
+
+from dialogue.registry import load_scripts
+from server.composition import open_service
+from server.journal import events as ev
+from server.journal.sqlite import IN_MEMORY
+from server.runtime.requests import RunRequest
+from server.runtime.run_state import RunState
+from server.runtime.run_views import dialogue_view, node_views
+from server.settings import Settings
+from tasks.random_task import random_task
+from tasks.scenario import Person
+
+LEAVES = 12
+PAUSED_EVERY = 7
+
+
+async def random_events(seed: int) -> Sequence[ev.Event]:
+    """The events of a run of a random tree, with random mischief and random answers."""
+    task = random_task(np.random.default_rng(seed), LEAVES)
+    request = RunRequest(
+        tree="random",
+        world="tabletop",
+        speed="max",
+        seed=seed,
+        answers="random" if seed % 2 else "none",
+        interventions="random",
+        person=Person(never=0.3),
+        max_attempts=1 + seed % 3,
+    )
+    settings = Settings(port=0, journal=Path(IN_MEMORY), log_level="error")
+    async with open_service(settings) as service:
+        await service.trees.save("random", json.dumps(task))
+        run = await service.runtime.start_run(request)
+        await service.runtime.wait_for_end(run.id)
+        return _paused(await service.journal.read(0, 100_000, run.id))
+
+
+def _paused(events: Sequence[ev.Event]) -> list[ev.Event]:
+    """The same run as if somebody had paused it every now and then."""
+    paused: list[ev.Event] = []
+    for number, event in enumerate(events, start=1):
+        paused.append(event)
+        if number % PAUSED_EVERY == 0 and number < len(events):
+            stamp = {"time": event.time, "wall_time": event.wall_time, "run": event.run}
+            paused += [ev.RunPaused(**stamp), ev.RunResumed(**stamp)]
+    return [event.model_copy(update={"seq": seq}) for seq, event in enumerate(paused, start=1)]
+
+
+def states(events: Sequence[ev.Event]) -> list[dict[str, Any]]:
+    """What the service says after each event."""
+    assert isinstance(events[0], ev.RunStarted)
+    state = RunState(events[0], load_scripts())
+    potentials: dict[int, float] = {}
+    said = []
+    for event in events:
+        if event is not events[0]:
+            state.fold(event)
+        if isinstance(event, ev.NodeStarted):
+            for each in event.candidates:
+                potentials[state.tree.index_of(each.node)] = each.potential
+        said.append(
+            {
+                "status": state.status,
+                "result": state.result.model_dump(mode="json") if state.result else None,
+                "nodes": [each.model_dump(mode="json") for each in node_views(state, potentials)],
+                "dialogues": [
+                    dialogue_view(each).model_dump(
+                        mode="json", include={"dialogue", "node", "awaiting", "claimed_by"}
+                    )
+                    for each in state.open_dialogues
+                ],
+            }
+        )
+    return said
+
+
+def main() -> None:
+    """Print the recorded run of the paper's scenario, then one for each seed."""
+    runs = [recorded_events(), *(asyncio.run(random_events(int(each))) for each in sys.argv[1:])]
+    for events in runs:
+        told = [event.model_dump(mode="json") for event in events]
+        print(json.dumps({"events": told, "states": states(events)}))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,68 @@
+"""What the tests of the run view share: what its page shows, and what it should."""
+
+import json
+from collections.abc import Sequence
+from typing import Any
+
+from playwright.async_api import Page
+
+from server.journal import events as ev
+from server.runtime.run_state import RunState
+from server.runtime.run_views import node_views
+from server.runtime.views import NodeView
+
+SHOWN = """() => JSON.stringify([...document.querySelectorAll('[role=treeitem]')].map((node) => ({
+    node: node.dataset.path,
+    state: node.dataset.state,
+    level: node.getAttribute('aria-label').match(/level ([0-9.]+)/)[1],
+})))"""
+"""A JavaScript function that tells what the page's tree shows."""
+
+WAIT_MS = 20_000
+
+
+def node_state(view: NodeView, talked_about: set[str]) -> str:
+    """The word for a node's state in the page."""
+    if view.done:
+        return "done"
+    if view.abandoned:
+        return "abandoned"
+    if view.node in talked_about:
+        return "in_dialogue"
+    if view.active:
+        return "active"
+    return "eligible" if view.activation_level > 0 else "waiting"
+
+
+def told(views: Sequence[NodeView], talked_about: set[str]) -> list[dict[str, Any]]:
+    """What the page's tree must show of a run."""
+    return [
+        {
+            "node": each.node,
+            "state": node_state(each, talked_about),
+            "level": f"{each.activation_level:.2f}",
+        }
+        for each in views
+    ]
+
+
+def told_after(state: RunState) -> list[dict[str, Any]]:
+    """What the page's tree must show after the events that `state` has folded."""
+    return told(node_views(state, {}), {each.opened.node for each in state.open_dialogues})
+
+
+async def wait_for_tree(page: Page, expected: list[dict[str, Any]]) -> None:
+    """Wait until the page's tree shows what it must."""
+    text = json.dumps(expected, separators=(",", ":"))
+    await page.wait_for_function(f"(text) => ({SHOWN})() === text", arg=text, timeout=WAIT_MS)
+
+
+def texts_in_order(events: Sequence[ev.Event]) -> list[str]:
+    """What was said and answered in a run."""
+    texts = []
+    for event in events:
+        if isinstance(event, ev.Prompt):
+            texts.append(event.text)
+        elif isinstance(event, ev.Answered):
+            texts.append("Yes." if event.answer == "yes" else "No.")
+    return texts

@@ -1,0 +1,100 @@
+"""Ears that hear what a test tells them to, and a voice that any machine has."""
+
+import asyncio
+import io
+import wave
+from dataclasses import dataclass, field
+
+from server.speech.commands import Command
+from server.speech.ear import Ear, EarLostError, Report, TooManyConversationsError
+from server.speech.voice import VoiceError
+
+
+class ScriptedEar:
+    """Implements `server.speech.ear.Ear`; hears an utterance at each word of `hears`.
+
+    Sound whose first byte is 1 begins an utterance, and whose first byte is 2 ends it.
+    """
+
+    def __init__(self, hears: list[str | None]) -> None:
+        self._hears = hears
+        self._reports: asyncio.Queue[Report | EarLostError] = asyncio.Queue()
+        self._interruptions = 0
+        self.heard = b""
+        self.closed = False
+
+    def hear(self, pcm: bytes) -> None:
+        self.heard += pcm
+        if pcm[0] == 1:
+            self._tell(Report(kind="began", interruptions=self._interruptions))
+        elif pcm[0] == 2:
+            self._tell(self._utterance(self._hears.pop(0)))
+
+    def interrupt(self) -> None:
+        self._interruptions += 1
+
+    def lose(self) -> None:
+        """Fail."""
+        self._reports.put_nowait(EarLostError("the recognizer has ended"))
+
+    async def report(self) -> Report:
+        report = await self._reports.get()
+        if isinstance(report, EarLostError):
+            raise report
+        return report
+
+    async def close(self) -> None:
+        self.closed = True
+
+    def _tell(self, report: Report) -> None:
+        self._reports.put_nowait(report)
+
+    def _utterance(self, phrase: str | None) -> Report:
+        return Report(
+            kind="utterance",
+            command=None if phrase in (None, "") else Command(phrase),
+            phrase=phrase or None,
+            words=phrase != "",
+            latency_s=0.25,
+            interruptions=self._interruptions,
+        )
+
+
+@dataclass
+class ScriptedEars:
+    """Implements `server.speech.ear.Ears`: a command's name, None for another, '' for noise."""
+
+    hears: list[str | None] = field(default_factory=list)
+    at_once: int = 8
+    opened: list[ScriptedEar] = field(default_factory=list)
+    engine: str = "scripted"
+
+    def check_room(self) -> None:
+        if sum(not ear.closed for ear in self.opened) >= self.at_once:
+            raise TooManyConversationsError("too many spoken conversations are going on already")
+
+    async def open(self) -> Ear:
+        self.check_room()
+        self.opened.append(ScriptedEar(self.hears))
+        return self.opened[-1]
+
+
+@dataclass
+class ToneVoice:
+    """Implements `server.speech.voice.Voice`: as many samples as the text has letters."""
+
+    rendered: list[str] = field(default_factory=list)
+    engine: str = "tone"
+    broken: bool = False
+
+    async def render(self, text: str) -> bytes:
+        if self.broken:
+            raise VoiceError("tone failed")
+        self.rendered.append(text)
+        written = io.BytesIO()
+        with wave.open(written, "wb") as sound:
+            sound.setnchannels(1)
+            sound.setsampwidth(2)
+            sound.setframerate(16_000)
+            sound.writeframes(b"\0\1" * len(text))
+        return written.getvalue()

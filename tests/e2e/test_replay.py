@@ -1,0 +1,200 @@
+"""Any moment of a run that has ended: its tree, its transcript and its choices."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import pytest
+from console_in_browser import OpenPage
+from playwright.async_api import Locator, Page, expect
+from run_page import WAIT_MS, texts_in_order, told_after, wait_for_tree
+
+from dialogue.registry import load_scripts
+from server.composition import Service
+from server.journal import events as ev
+from server.runtime.requests import RunRequest
+from server.runtime.run_state import RunState
+
+# One event loop for all tests of the console, and so one browser.
+pytestmark = pytest.mark.asyncio(loop_scope="session")
+
+
+@dataclass(frozen=True)
+class Replay:
+    """The page of a run of the paper's scenario that has ended, and its events."""
+
+    page: Page
+    events: Sequence[ev.Event]
+
+    @property
+    def slider(self) -> Locator:
+        return self.page.get_by_role("slider", name="Moment of the run")
+
+    def first(self, kind: type[ev.Event]) -> ev.Event:
+        return next(each for each in self.events if isinstance(each, kind))
+
+
+async def replay(service: Service, open_page: OpenPage) -> Replay:
+    run = await service.runtime.start_run(
+        RunRequest(tree="eket", world="tabletop", speed="max", scenario="eket_paper", seed=7)
+    )
+    await service.runtime.wait_for_end(run.id)
+    events = await service.journal.read(0, 10_000, run.id)
+    page = await open_page(f"/runs/{run.id}")
+    await expect(page.get_by_role("tree")).to_be_visible()
+    return Replay(page, events)
+
+
+def folded(events: Sequence[ev.Event]) -> RunState:
+    started = events[0]
+    assert isinstance(started, ev.RunStarted)
+    state = RunState(started, load_scripts())
+    for event in events[1:]:
+        state.fold(event)
+    return state
+
+
+async def test_tree_is_right_after_every_event(service: Service, open_page: OpenPage) -> None:
+    shown = await replay(service, open_page)
+    await shown.slider.press("Home")
+    # Several events may share the first moment; from the first one on, one at a time.
+    first = next(i for i, each in enumerate(shown.events) if each.time > shown.events[0].time)
+    for count in range(first, len(shown.events) + 1):
+        await wait_for_tree(shown.page, told_after(folded(shown.events[:count])))
+        if count < len(shown.events):
+            await shown.page.get_by_role("button", name="One event on").click()
+    await expect(shown.page.get_by_text("The end", exact=True)).to_be_visible()
+
+
+async def test_scrubbing_shows_what_had_happened_by_then(
+    service: Service, open_page: OpenPage
+) -> None:
+    shown = await replay(service, open_page)
+    end = shown.events[-1].time
+    for share in (0.8, 0.33, 0.5):
+        time = round(end * share, 1)
+        await shown.slider.fill(str(time))
+        await expect(shown.page.get_by_text("You are looking at")).to_be_visible()
+        past = [each for each in shown.events if each.time <= time]
+        await wait_for_tree(shown.page, told_after(folded(past)))
+    await shown.page.get_by_role("button", name="To the end").click()
+    await expect(shown.page.get_by_text("You are looking at")).to_have_count(0)
+    await wait_for_tree(shown.page, told_after(folded(shown.events)))
+
+
+async def test_a_click_on_a_fault_goes_to_its_moment(service: Service, open_page: OpenPage) -> None:
+    shown = await replay(service, open_page)
+    lane = shown.page.get_by_role("group", name="Faults")
+    await lane.get_by_role("button").first.click()
+    fault = shown.first(ev.IssueRaised)
+    past = [each for each in shown.events if each.seq <= fault.seq]
+    await wait_for_tree(shown.page, told_after(folded(past)))
+    await expect(shown.page.locator(".line[aria-current]")).to_contain_text("dropped")
+
+
+async def test_a_click_on_the_timeline_goes_to_its_time(
+    service: Service, open_page: OpenPage
+) -> None:
+    shown = await replay(service, open_page)
+    ground = shown.page.locator(".timeline .ground")
+    box = await ground.bounding_box()
+    assert box is not None
+    await shown.page.mouse.click(box["x"] + box["width"] / 2, box["y"] + 3)
+    time = float(await shown.slider.input_value())
+    assert abs(time - shown.events[-1].time / 2) < 1.0
+
+
+async def test_candidates_behind_every_choice_are_shown(
+    service: Service, open_page: OpenPage
+) -> None:
+    shown = await replay(service, open_page)
+    choices = [
+        each
+        for each in shown.events
+        if isinstance(each, ev.NodeStarted) and len(each.candidates) > 1
+    ]
+    assert choices
+    for choice in choices:
+        start = shown.page.locator(f".timeline [data-seq='{choice.seq}']")
+        await start.focus()
+        await shown.page.keyboard.press("Enter")
+        panel = shown.page.get_by_role("region", name="Choice")
+        rows = panel.get_by_role("rowgroup").nth(1).get_by_role("row")
+        await expect(rows).to_have_count(len(choice.candidates))
+        for row, candidate in zip(await rows.all(), choice.candidates, strict=True):
+            await expect(row).to_contain_text(candidate.name.replace("_", " "))
+            await expect(row.get_by_role("cell").nth(0)).to_have_text(f"{candidate.level:.2f}")
+            await expect(row.get_by_role("cell").nth(1)).to_have_text(f"{candidate.potential:.2f}")
+            await expect(row.get_by_role("cell").nth(2)).to_have_text(str(candidate.attempts))
+        await expect(panel).to_contain_text("had the highest potential")
+
+
+async def test_transcript_has_all_that_was_said_in_order(
+    service: Service, open_page: OpenPage
+) -> None:
+    shown = await replay(service, open_page)
+    text = await shown.page.get_by_role("log").text_content() or ""
+    position = 0
+    for said in texts_in_order(shown.events):
+        position = text.index(said, position) + len(said)
+    await expect(shown.page.get_by_role("log").locator(".line.fault")).to_have_count(6)
+
+
+async def test_a_line_of_the_transcript_goes_to_its_moment(
+    service: Service, open_page: OpenPage
+) -> None:
+    shown = await replay(service, open_page)
+    answered = shown.first(ev.Answered)
+    line = shown.page.locator(".line.answered").first
+    await line.get_by_role("button").click()
+    await expect(line).to_have_attribute("aria-current", "time")
+    past = [each for each in shown.events if each.seq <= answered.seq]
+    await wait_for_tree(shown.page, told_after(folded(past)))
+
+
+async def test_playing_comes_to_the_end(service: Service, open_page: OpenPage) -> None:
+    shown = await replay(service, open_page)
+    await shown.page.get_by_label("Speed").select_option("8")
+    await shown.slider.fill(str(round(shown.events[-1].time - 4, 1)))
+    await shown.page.get_by_role("button", name="Play").click()
+    await expect(shown.page.get_by_text("The end", exact=True)).to_be_visible(timeout=WAIT_MS)
+    await expect(shown.page.get_by_role("button", name="Play")).to_be_visible()
+    await wait_for_tree(shown.page, told_after(folded(shown.events)))
+
+
+async def test_everything_can_be_reached_with_the_keyboard(
+    service: Service, open_page: OpenPage
+) -> None:
+    shown = await replay(service, open_page)
+    page = shown.page
+    await page.get_by_role("treeitem").first.focus()
+    for key in ("ArrowRight", "ArrowDown", "ArrowRight", "Enter"):
+        await page.keyboard.press(key)
+    pink_bar = page.get_by_role("treeitem", name="pink bar")
+    await expect(pink_bar).to_be_focused()
+    await expect(pink_bar).to_have_attribute("aria-selected", "true")
+    await expect(page.get_by_role("region", name="Choice")).to_contain_text("pink bar")
+    await page.get_by_role("group", name="Steps").get_by_role("button").first.focus()
+    await page.keyboard.press("ArrowRight")
+    await page.keyboard.press("ArrowDown")
+    await expect(
+        page.get_by_role("group", name="Faults").get_by_role("button").first
+    ).to_be_focused()
+    await page.keyboard.press("Enter")
+    await expect(page.get_by_text("You are looking at")).to_be_visible()
+    before = float(await shown.slider.input_value())
+    await shown.slider.focus()
+    await page.keyboard.press("ArrowRight")
+    assert float(await shown.slider.input_value()) > before
+    await page.keyboard.press("End")
+    await expect(page.get_by_text("The end", exact=True)).to_be_visible()
+
+
+async def test_timeline_is_a_list_for_those_who_hear_it(
+    service: Service, open_page: OpenPage
+) -> None:
+    shown = await replay(service, open_page)
+    await shown.page.get_by_role("button", name="As a list").click()
+    entries = shown.page.get_by_role("list", name="Timeline as a list").get_by_role("button")
+    await entries.filter(has_text="Fault").first.click()
+    await expect(shown.page.get_by_text("You are looking at")).to_be_visible()
+    await expect(shown.page.locator(".timeline-list [aria-current]")).to_have_count(1)

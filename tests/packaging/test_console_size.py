@@ -1,0 +1,52 @@
+"""What a helper's browser has to fetch before a question can be answered."""
+
+import gzip
+import re
+from pathlib import Path
+
+import pytest
+
+from server.api.console import BUILT
+
+MAX_BYTES = 45 * 1024
+
+# Bare, as in `import"./x.js"` and `from"./x.js"`: what is imported when it is needed has a bracket.
+STATIC_IMPORT = re.compile(rb"""(?:\bfrom|\bimport)\s*["']\./([\w.-]+\.js)["']""")
+ENTRY = re.compile(rb"""(?:src|href)="/(assets/[\w.-]+\.(?:js|css))\"""")
+
+
+def answering_path(built: Path) -> set[Path]:
+    """The page, what it names, and all that these import before they run."""
+    page = built / "index.html"
+    found = {page}
+    waiting = [built / name.decode() for name in ENTRY.findall(page.read_bytes())]
+    while waiting:
+        file = waiting.pop()
+        if file in found:
+            continue
+        found.add(file)
+        if file.suffix == ".js":
+            names = STATIC_IMPORT.findall(file.read_bytes())
+            waiting += [built / "assets" / name.decode() for name in names]
+    return found
+
+
+def test_static_imports_are_followed_and_lazy_ones_are_not(tmp_path: Path) -> None:
+    assets = tmp_path / "assets"
+    assets.mkdir()
+    page = '<script src="/assets/a.js"></script><link href="/assets/a.css" rel="stylesheet">'
+    (tmp_path / "index.html").write_text(page)
+    (assets / "a.js").write_text('import{b}from"./b.js";import"./c.js";b(()=>import("./later.js"))')
+    (assets / "b.js").write_text('export*from"./c.js"')
+    (assets / "c.js").write_text("")
+    names = {path.name for path in answering_path(tmp_path)}
+    assert names == {"index.html", "a.js", "a.css", "b.js", "c.js"}
+
+
+@pytest.mark.skipif(
+    not (BUILT / "index.html").is_file(), reason="the console is not built (make console)"
+)
+def test_answering_path_is_at_most_45_kib() -> None:
+    sizes = {path.name: len(gzip.compress(path.read_bytes(), 9)) for path in answering_path(BUILT)}
+    assert {Path(name).suffix for name in sizes} == {".html", ".js", ".css"}
+    assert sum(sizes.values()) <= MAX_BYTES, sizes

@@ -1,0 +1,42 @@
+// The keys that answer: single letters that a helper can change or switch off.
+import { useEffect } from "preact/hooks";
+import { keys, keysOn } from "../state/preferences";
+import { type Question } from "../state/questions";
+import { answer, undo } from "./answering";
+import { repeat } from "./repeating";
+
+const TYPING = "input, textarea, select, [contenteditable]";
+
+export type KeyAction = "yes" | "no" | "repeat" | "undo";
+
+/** What a pressed key does; Escape takes back an answer even where the letters are off. */
+export function actionOf(
+  pressed: Pick<KeyboardEvent, "key" | "ctrlKey" | "metaKey" | "altKey" | "repeat">,
+  set: { yes: string; no: string; repeat: string },
+  on: boolean,
+): KeyAction | null {
+  if (pressed.ctrlKey || pressed.metaKey || pressed.altKey || pressed.repeat) return null;
+  if (pressed.key === "Escape") return "undo";
+  const key = pressed.key.toLowerCase();
+  if (!on) return null;
+  if (key === set.yes) return "yes";
+  if (key === set.no) return "no";
+  return key === set.repeat ? "repeat" : null;
+}
+
+/** Let the keys answer this question while its card is shown. */
+export function useAnswerKeys(question: Question, mayAnswer: boolean): void {
+  useEffect(() => {
+    const pressed = (event: KeyboardEvent) => {
+      const target = event.target as Element;
+      const isRange = target instanceof HTMLInputElement && target.type === "range";
+      if (event.defaultPrevented || (target.closest(TYPING) !== null && !isRange)) return;
+      const action = actionOf(event, keys.value, keysOn.value);
+      if (action === "undo") undo();
+      else if (action === "repeat") repeat(question);
+      else if (action !== null && mayAnswer) answer(question, action);
+    };
+    window.addEventListener("keydown", pressed);
+    return () => window.removeEventListener("keydown", pressed);
+  });
+}

@@ -1,0 +1,101 @@
+// Giving an answer: at once, or, where it cannot be taken back otherwise, after three seconds in
+// which it can be undone. Buttons, keys and speech all come through here.
+import { effect, signal } from "@preact/signals";
+import { tellEnding } from "../state/endings";
+import { dialogueOf, type Question } from "../state/questions";
+import { helperName } from "../state/preferences";
+import { command } from "../state/service";
+import { answerWhileLeaving, Refusal } from "../wire/rest";
+
+export type Answer = "yes" | "no";
+
+export const UNDO_MS = 3_000;
+
+/** An answer that has not been sent yet. */
+export interface Held {
+  question: Question;
+  prompt: string;
+  answer: Answer;
+  effect: string;
+}
+
+export const held = signal<Held | null>(null);
+/** The prompts whose answer is on its way. */
+export const sending = signal<ReadonlySet<string>>(new Set());
+/** What was wrong with the last answer, by prompt. */
+export const mistakes = signal<ReadonlyMap<string, string>>(new Map());
+
+let timer = 0;
+
+/** Answer the open question of a dialogue. */
+export function answer(question: Question, value: Answer): void {
+  const { prompt } = question;
+  if (prompt === null || question.awaiting !== "answer" || sending.value.has(prompt.prompt)) return;
+  if (held.value?.prompt === prompt.prompt && held.value.answer === value) return;
+  const option = prompt.answers.find((each) => each.value === value);
+  if (option === undefined) return;
+  if (held.value?.prompt === prompt.prompt) undo();
+  else sendHeld();
+  note(prompt.prompt, null);
+  if (!option.final) {
+    void send(question, prompt.prompt, value);
+    return;
+  }
+  held.value = { question, prompt: prompt.prompt, answer: value, effect: option.effect };
+  timer = window.setTimeout(sendHeld, UNDO_MS);
+}
+
+/** Take back the answer that is being held. */
+export function undo(): void {
+  window.clearTimeout(timer);
+  held.value = null;
+}
+
+/** Send the answer that is being held, without waiting longer. */
+export function sendHeld(): void {
+  const waiting = held.value;
+  undo();
+  if (waiting !== null) void send(waiting.question, waiting.prompt, waiting.answer);
+}
+
+async function send(question: Question, prompt: string, value: Answer): Promise<void> {
+  sending.value = new Set([...sending.value, prompt]);
+  try {
+    await command({ type: "answer", dialogue: question.dialogue, prompt, answer: value });
+  } catch (error) {
+    const faster = error instanceof Refusal ? error.answeredBy : null;
+    if (faster === null) {
+      note(prompt, `Your ${value.toUpperCase()} was not sent: ${(error as Error).message}`);
+    } else if (faster !== helperName.value) {
+      tellEnding(question, `${faster} was faster; your ${value.toUpperCase()} does not count.`);
+    }
+  } finally {
+    sending.value = new Set([...sending.value].filter((each) => each !== prompt));
+  }
+}
+
+function note(prompt: string, text: string | null): void {
+  const next = new Map(mistakes.value);
+  next.delete(prompt);
+  if (text !== null) next.set(prompt, text);
+  mistakes.value = next;
+}
+
+// Whoever else answers, and a robot that helps itself, make an answer that was held meaningless.
+effect(() => {
+  const waiting = held.value;
+  if (waiting === null) return;
+  const now = dialogueOf(waiting.question.dialogue);
+  if (now?.prompt?.prompt === waiting.prompt && now.awaiting === "answer") return;
+  const by = now?.answered_by ?? null;
+  undo();
+  const why = by === null ? "the question was closed first" : `${by} answered first`;
+  tellEnding(waiting.question, `Your ${waiting.answer.toUpperCase()} was not sent: ${why}.`);
+});
+
+window.addEventListener("pagehide", () => {
+  const waiting = held.value;
+  undo();
+  if (waiting === null) return;
+  answerWhileLeaving(waiting.question.dialogue, waiting.prompt, waiting.answer, helperName.value);
+});

@@ -1,0 +1,25 @@
+// On every other view: that a robot asks, and the way to its question.
+import { route } from "../app/router";
+import { faultInWords, robotName } from "./fault_words";
+import { shown } from "./queue";
+import { questions } from "../state/questions";
+
+export function AskBar() {
+  const question = shown.value;
+  const place = route.value;
+  if (question === null || place.view === "questions") return null;
+  // The run's own view shows its question itself.
+  if (place.view === "run" && questions.value.every((each) => each.run === place.run)) return null;
+  const others = questions.value.length - 1;
+  return (
+    <aside class="ask-bar" aria-label="A robot asks">
+      <p>
+        <strong>{robotName(question.robot)} asks for help.</strong> {faultInWords(question)}
+        {others > 0 && <span class="quiet"> And {others} more.</span>}
+      </p>
+      <a class="button primary" href="/">
+        Answer
+      </a>
+    </aside>
+  );
+}

@@ -1,0 +1,38 @@
+// Who is on a question, for everybody to see.
+import { helperName } from "../state/preferences";
+import type { Question } from "../state/questions";
+import { claim, release } from "./claiming";
+
+export function ClaimStrip({ question }: { question: Question }) {
+  const { claimed_by: by, dialogue } = question;
+  if (by === null) {
+    return (
+      <div class="claim">
+        <p class="quiet">Nobody is on it yet.</p>
+        <button type="button" class="button" onClick={() => void claim(dialogue, false)}>
+          I am on it
+        </button>
+      </div>
+    );
+  }
+  const mine = by === helperName.value;
+  return (
+    <div class={`claim ${mine ? "mine" : "others"}`}>
+      <p>
+        <span class="who-dot" aria-hidden="true">
+          {by.slice(0, 1).toUpperCase()}
+        </span>
+        {mine ? "You are on it; the others see so." : `${by} is answering.`}
+      </p>
+      {mine ? (
+        <button type="button" class="button" onClick={() => release(dialogue)}>
+          Let go
+        </button>
+      ) : (
+        <button type="button" class="button" onClick={() => void claim(dialogue, true)}>
+          Take over
+        </button>
+      )}
+    </div>
+  );
+}

@@ -1,0 +1,72 @@
+// How long a question waits: told calmly, and out loud only once, before it is too late.
+import { useEffect, useState } from "preact/hooks";
+import type { Question } from "../state/questions";
+import { runs } from "../state/service";
+import { command } from "../state/service";
+import { runTime } from "../state/run_clock";
+
+/** The warning comes this long before the end, so that there is time to ask for more. */
+const WARN_S = 25;
+
+export function Countdown({ question }: { question: Question }) {
+  const left = useSecondsLeft(question);
+  const [mistake, setMistake] = useState("");
+  const { prompt } = question;
+  if (left === null || prompt === null) return null;
+  const more = () => {
+    setMistake("");
+    command({ type: "extend", dialogue: question.dialogue, prompt: prompt.prompt }).catch((error: Error) =>
+      setMistake(error.message),
+    );
+  };
+  const late = left <= WARN_S;
+  return (
+    <div class={`countdown ${late ? "late" : ""}`}>
+      <p class="countdown-time" role="timer" aria-live="off">
+        <svg viewBox="0 0 20 20" width="20" height="20" aria-hidden="true">
+          <circle cx="10" cy="10" r="8" class="ring" />
+          <circle cx="10" cy="10" r="8" class="ring-left" pathLength="100" stroke-dasharray={dashes(left, prompt.within_s)} />
+        </svg>
+        <span class="unseen">The robot waits for </span>
+        {clock(left)}
+        <span class="unseen"> more.</span>
+      </p>
+      <p class="unseen" role="status">
+        {late && left > 0 ? "Less than 25 seconds are left to answer. You can ask for more time." : ""}
+      </p>
+      {prompt.extensions_left > 0 && (
+        <button type="button" class="button" onClick={more}>
+          More time
+        </button>
+      )}
+      {mistake !== "" && (
+        <p class="mistake small" role="status">
+          {mistake}
+        </p>
+      )}
+    </div>
+  );
+}
+
+function useSecondsLeft(question: Question): number | null {
+  const [, tick] = useState(0);
+  useEffect(() => {
+    const timer = window.setInterval(() => tick((count) => count + 1), 1000);
+    return () => window.clearInterval(timer);
+  }, []);
+  const deadline = question.prompt?.deadline ?? null;
+  if (deadline === null) return null;
+  const run = runs.value.get(question.run);
+  if (run?.status === "paused") return null;
+  return Math.max(0, Math.ceil(deadline - runTime(question.run, run?.speed ?? 1)));
+}
+
+function dashes(left: number, within: number | null): string {
+  const part = within === null || within <= 0 ? 1 : Math.min(1, left / within);
+  return `${(part * 100).toFixed(1)} 100`;
+}
+
+/** Minutes and seconds, as on a kitchen timer. */
+export function clock(seconds: number): string {
+  return `${Math.floor(seconds / 60)}:${String(seconds % 60).padStart(2, "0")}`;
+}

@@ -1,0 +1,31 @@
+// What went wrong, in a sentence for somebody who has never seen the robot.
+import type { DialogueView } from "../wire/types";
+
+type About = Pick<DialogueView, "issue" | "object" | "name" | "robot">;
+
+const SENTENCES: Readonly<Record<string, (part: string) => string>> = {
+  missed: (part) => `The gripper closed, but the ${part} is not in it.`,
+  dropped: (part) => `The ${part} is no longer in the gripper.`,
+  unreachable: (part) => `The ${part} is where the arm cannot grasp it.`,
+  positioning: (part) => `The ${part} needs a second hand while the robot places it.`,
+  missing: (part) => `The robot looked for the ${part} and cannot see it anywhere.`,
+  blocked: () => "Something is in the way of the robot's arm.",
+};
+
+/** One sentence about the fault; a kind that the console does not know gets a general one. */
+export function faultInWords(about: About): string {
+  const sentence = SENTENCES[about.issue];
+  if (sentence !== undefined) return sentence(spoken(about.object ?? about.name));
+  return `The robot could not go on with “${spoken(about.name)}” (${spoken(about.issue)}).`;
+}
+
+/** A name of the scene or the tree as people say it. */
+export function spoken(identifier: string): string {
+  return identifier.replaceAll(/[_-]/g, " ");
+}
+
+/** A robot's name without the number of its run. */
+export function robotName(robot: string): string {
+  const [name = robot, ...rest] = robot.split("-");
+  return rest.length > 0 && /^[0-9a-f]{8}$/.test(rest.join("-")) ? name.toUpperCase() : spoken(robot);
+}

@@ -1,0 +1,77 @@
+// Hearing the question and answering it by voice: a switch here, the code when it is switched on.
+import { useState } from "preact/hooks";
+import { keys, keysOn } from "../state/preferences";
+import type { Question } from "../state/questions";
+import { lastHeard, type SpeechPhase, speechLacks, speechPhase } from "../speech/speech_state";
+import { repeat } from "./repeating";
+
+const PHASES: Readonly<Record<SpeechPhase, string>> = {
+  off: "",
+  starting: "Starting …",
+  idle: "Ready to speak",
+  speaking: "The robot speaks",
+  listening: "Speak now: yes or no",
+  hearing: "Listening to you …",
+  gave_up: "Not understood. Please use the buttons.",
+};
+
+let stop: (() => void) | null = null;
+
+export function SpeechControls({ question, onAct }: { question: Question; onAct(): void }) {
+  const [failed, setFailed] = useState(false);
+  const phase = speechPhase.value;
+  const on = phase !== "off";
+  const toggle = () => {
+    onAct();
+    setFailed(false);
+    if (on) switchOff();
+    else switchOn().catch(() => setFailed(true));
+  };
+  const heard = lastHeard.value;
+  return (
+    <div class="speech">
+      <button type="button" class="button mic" aria-pressed={on} onClick={toggle}>
+        <svg viewBox="0 0 20 20" width="20" height="20" aria-hidden="true">
+          <rect x="7" y="2" width="6" height="10" rx="3" />
+          <path d="M4 9.5a6 6 0 0 0 12 0M10 15.5V18" />
+        </svg>
+        Listen and speak
+      </button>
+      <button
+        type="button"
+        class="button"
+        onClick={() => {
+          onAct();
+          repeat(question);
+        }}
+      >
+        Repeat
+        {keysOn.value && keys.value.repeat !== "" && <kbd aria-hidden="true">{keys.value.repeat.toUpperCase()}</kbd>}
+      </button>
+      <p class={`speech-phase ${phase}`} role="status">
+        {PHASES[phase]}
+        {heard !== null && (
+          <span class="heard">{heard.phrase === null ? "That was no yes or no." : `Heard: “${heard.phrase}”`}</span>
+        )}
+        {failed && "The spoken side could not be loaded. Is the service there?"}
+      </p>
+      {speechLacks.value !== "" && <p class="speech-lacks small">{speechLacks.value}</p>}
+    </div>
+  );
+}
+
+async function switchOn(): Promise<void> {
+  speechPhase.value = "starting";
+  try {
+    const { beginToSpeak } = await import("../speech/spoken_dialogue");
+    stop = await beginToSpeak();
+  } catch (error) {
+    speechPhase.value = "off";
+    throw error;
+  }
+}
+
+function switchOff(): void {
+  stop?.();
+  stop = null;
+}

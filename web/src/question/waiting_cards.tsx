@@ -1,0 +1,58 @@
+// While a robot watches for help that was promised, or is being helped: calm cards, nothing to answer.
+import { helperName } from "../state/preferences";
+import { type Question, stopHelping, type Together } from "../state/questions";
+import type { Help } from "../wire/types";
+import { robotName, spoken } from "./fault_words";
+import { PausedNode } from "./paused_node";
+
+const PROMISES: Readonly<Record<Help, (part: string) => string>> = {
+  place: (part) => `would place the ${part}`,
+  put_back: (part) => `would put the ${part} back on the table`,
+  hand_over: (part) => `would hand over the ${part}`,
+  clear_way: () => "would clear the way",
+};
+
+const EXPECTED: Readonly<Record<Help, (part: string) => string>> = {
+  place: (part) => `The robot watches for the ${part} at its place.`,
+  put_back: (part) => `The robot watches for the ${part} on the table, within its reach.`,
+  hand_over: (part) => `The robot watches for the ${part} between its fingers, and then grips it.`,
+  clear_way: () => "The robot watches until nothing is in the way of its arm.",
+};
+
+export function AwaitedHelpCard({ question }: { question: Question }) {
+  const { help } = question;
+  const part = spoken(question.object ?? question.name);
+  return (
+    <article class="waiting panel" aria-label={`${robotName(question.robot)} awaits help`}>
+      <p class="question-about">
+        <strong>{robotName(question.robot)}</strong>
+        <a href={`/runs/${question.run}`}>Look at the run</a>
+      </p>
+      {question.prompt?.kind === "say" && <p class="waiting-said">{question.prompt.text}</p>}
+      {help !== null && (
+        <p>
+          {help.helper === helperName.value ? "You said you" : `${help.helper} said they`}{" "}
+          {PROMISES[help.help](part)}. {EXPECTED[help.help](part)}
+        </p>
+      )}
+      <p class="watching quiet small">It goes on by itself as soon as it sees that. There is nothing to press.</p>
+      <PausedNode run={question.run} node={question.node} name={question.name} />
+    </article>
+  );
+}
+
+export function TogetherCard({ together }: { together: Together }) {
+  return (
+    <article class="waiting panel" aria-label={`${robotName(together.robot)} needs a hand now`}>
+      <p class="question-about">
+        <strong>{robotName(together.robot)}</strong>
+        <a href={`/runs/${together.run}`}>Look at the run</a>
+      </p>
+      <p class="waiting-said">{together.text}</p>
+      <p class="quiet small">The robot has slowed down and goes on meanwhile. There is nothing to answer.</p>
+      <button type="button" class="button" onClick={() => stopHelping((each) => each === together)}>
+        Seen
+      </button>
+    </article>
+  );
+}

@@ -1,0 +1,83 @@
+// The node that is looked at, and the candidates behind the choice of it.
+import { KIND_MEANINGS, plain } from "../tree/words";
+import type { NodeStarted, NodeView } from "../wire/types";
+import { whyChosen } from "./choice";
+import { clock } from "./run_header";
+
+const SHOWN_AT_MOST = 12;
+
+interface ChoicePanelProps {
+  /** The node that is selected; null for none. */
+  node: NodeView | null;
+  /** Every choice of the node up to the moment, or of any node while none is selected. */
+  choices: readonly NodeStarted[];
+  onChoose: (choice: NodeStarted) => void;
+}
+
+export function ChoicePanel({ node, choices, onChoose }: ChoicePanelProps) {
+  const last = choices.at(-1) ?? null;
+  return (
+    <section class="panel choice-panel" aria-label="Choice">
+      <h2>{node === null ? "The last choice" : `${plain(node.name)} (${KIND_MEANINGS[node.kind]})`}</h2>
+      {last === null ? (
+        <p class="quiet small">{node?.kind === "behavior" || node === null ? "Not started yet." : goalText(node)}</p>
+      ) : (
+        <Choice choice={last} />
+      )}
+      {node !== null && choices.length > 1 && (
+        <p class="small choice-earlier">
+          Earlier:{" "}
+          {choices.slice(-9, -1).map((choice) => (
+            <button key={choice.seq} type="button" class="link" onClick={() => onChoose(choice)}>
+              attempt {choice.attempt} at {clock(choice.time)}
+            </button>
+          ))}
+        </p>
+      )}
+    </section>
+  );
+}
+
+function goalText(node: NodeView): string {
+  if (node.done) return "Done.";
+  if (node.abandoned) return "Given up.";
+  return node.activation_level > 0 ? "What is under it may be started now." : "Nothing under it may be started now.";
+}
+
+function Choice({ choice }: { choice: NodeStarted }) {
+  const shown = choice.candidates.slice(0, SHOWN_AT_MOST);
+  const more = choice.candidates.length - shown.length;
+  return (
+    <>
+      <p class="small">
+        {clock(choice.time)}, {choice.robot}, attempt {choice.attempt}: {whyChosen(choice)}
+      </p>
+      <div class="choice-table" role="region" aria-label="Candidates" tabIndex={0}>
+        <table>
+          <thead>
+            <tr>
+              <th scope="col">Candidate</th>
+              <th scope="col">Level</th>
+              <th scope="col">Potential</th>
+              <th scope="col">Failed</th>
+            </tr>
+          </thead>
+          <tbody>
+            {shown.map((candidate) => (
+              <tr key={candidate.node} class={candidate.node === choice.node ? "won" : undefined}>
+                <th scope="row">
+                  {candidate.node === choice.node && <span aria-label="taken: ">✓ </span>}
+                  {plain(candidate.name)}
+                </th>
+                <td>{candidate.level.toFixed(2)}</td>
+                <td>{candidate.potential.toFixed(2)}</td>
+                <td>{candidate.attempts}</td>
+              </tr>
+            ))}
+          </tbody>
+        </table>
+      </div>
+      {more > 0 && <p class="quiet small">and {more} more</p>}
+    </>
+  );
+}

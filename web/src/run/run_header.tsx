@@ -1,0 +1,109 @@
+// The head of a run: what it is, how it goes, and pause, resume and abort.
+import { useRef, useState } from "preact/hooks";
+import { plain } from "../tree/words";
+import * as rest from "../wire/rest";
+import { ended, type RunState } from "./fold";
+import type { Moment } from "./moment";
+
+const STATUS_WORDS = {
+  running: "running",
+  paused: "paused",
+  finished: "finished",
+  failed: "failed",
+  aborted: "aborted",
+} as const;
+
+export function RunHeader({ newest, moment }: { newest: RunState; moment: Moment }) {
+  const { started, status, result } = newest;
+  return (
+    <header class="run-header">
+      <div class="run-title">
+        <h1>
+          {plain(started.tree_name)} <span class="quiet">in {plain(started.world)}</span>
+        </h1>
+        <p class="run-facts">
+          <span class={`badge ${status}`}>{STATUS_WORDS[status]}</span>
+          <RunClock moment={moment} />
+          <span class="quiet">
+            {started.robots.map((robot) => (newest.lost.has(robot) ? `${robot} (lost)` : robot)).join(", ")}
+          </span>
+          {started.scenario !== null && <span class="quiet">scenario {plain(started.scenario)}</span>}
+        </p>
+        {result !== null && status !== "finished" && <p class="mistake">{result.reason}</p>}
+        {result !== null && result.missing.length > 0 && (
+          <p class="mistake">
+            At the end the robot did not see {result.missing.map((part) => plain(part.object)).join(", ")} at its place.
+          </p>
+        )}
+      </div>
+      {!ended(status) && <RunControls run={started.run} paused={status === "paused"} />}
+    </header>
+  );
+}
+
+/** By itself: it runs while all the rest stands still. */
+function RunClock({ moment }: { moment: Moment }) {
+  return (
+    <span class="run-clock">
+      <span class="unseen">Run clock </span>
+      {clock(moment.end.value)}
+    </span>
+  );
+}
+
+function RunControls({ run, paused }: { run: string; paused: boolean }) {
+  const [note, setNote] = useState("");
+  const [busy, setBusy] = useState(false);
+  const sure = useRef<HTMLDialogElement>(null);
+  const ask = async (request: (id: string) => Promise<unknown>) => {
+    setBusy(true);
+    setNote("");
+    try {
+      await request(run);
+    } catch (error) {
+      setNote((error as Error).message);
+    }
+    setBusy(false);
+  };
+  return (
+    <div class="run-controls">
+      <p role="status" class="mistake small">
+        {note}
+      </p>
+      {paused ? (
+        <button class="button primary" type="button" disabled={busy} onClick={() => void ask(rest.resumeRun)}>
+          Resume
+        </button>
+      ) : (
+        <button class="button" type="button" disabled={busy} onClick={() => void ask(rest.pauseRun)}>
+          Pause
+        </button>
+      )}
+      <button class="button danger" type="button" disabled={busy} onClick={() => sure.current?.showModal()}>
+        Abort …
+      </button>
+      <dialog ref={sure} class="run-sure" aria-labelledby="run-sure-text">
+        <form method="dialog">
+          <h2 id="run-sure-text">Abort this run for good?</h2>
+          <p>The robot stops, and the run cannot be taken up again.</p>
+          <div class="run-sure-answers">
+            <button class="button" type="submit">
+              Let it go on
+            </button>
+            <button class="button danger" type="submit" onClick={() => void ask(rest.abortRun)}>
+              Abort the run
+            </button>
+          </div>
+        </form>
+      </dialog>
+    </div>
+  );
+}
+
+/** A time of the run's clock as people read it: 7.4 s, 2:07.4. */
+export function clock(time: number): string {
+  const tenths = Math.round(time * 10);
+  if (tenths < 600) return `${(tenths / 10).toFixed(1)} s`;
+  const seconds = tenths % 600;
+  return `${Math.floor(tenths / 600)}:${(seconds / 10).toFixed(1).padStart(4, "0")}`;
+}

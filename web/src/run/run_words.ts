@@ -1,0 +1,50 @@
+// How the console says what state a run is in, and when something was.
+import type { RunStatus, RunSummary } from "../wire/types";
+
+export const STATUS_WORDS: Readonly<Record<RunStatus, string>> = {
+  running: "Running",
+  paused: "Paused",
+  finished: "Finished",
+  failed: "Failed",
+  aborted: "Aborted",
+};
+
+/** Beside the word and the colour, a sign for those who do not tell colours. */
+export const STATUS_SIGNS: Readonly<Record<RunStatus, string>> = {
+  running: "▶",
+  paused: "‖",
+  finished: "✓",
+  failed: "✕",
+  aborted: "■",
+};
+
+/** What came of a run, in a sentence; empty while it goes on. */
+export function outcome({ result }: RunSummary): string {
+  if (result === null) return "";
+  const missing = result.missing.map((part) => part.object).join(", ");
+  const reason = result.reason.charAt(0).toUpperCase() + result.reason.slice(1);
+  return missing === "" ? reason : `${reason}; not at its place at the end: ${missing}`;
+}
+
+const UNITS: readonly (readonly [Intl.RelativeTimeFormatUnit, number])[] = [
+  ["day", 86_400],
+  ["hour", 3_600],
+  ["minute", 60],
+];
+
+const RELATIVE = new Intl.RelativeTimeFormat("en", { numeric: "auto" });
+const MOMENT = new Intl.DateTimeFormat("en-GB", { dateStyle: "medium", timeStyle: "short" });
+
+/** "5 minutes ago"; both times in ms since 1970. */
+export function ago(then: number, now: number): string {
+  const seconds = (now - then) / 1000;
+  for (const [unit, length] of UNITS) {
+    if (seconds >= length) return RELATIVE.format(-Math.floor(seconds / length), unit);
+  }
+  return "just now";
+}
+
+/** "21 Nov 2026, 14:03" */
+export function moment(then: number): string {
+  return MOMENT.format(then);
+}

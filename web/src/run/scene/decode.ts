@@ -1,0 +1,92 @@
+// The binary frames of poses, as docs/console_api.md lays them out.
+
+/** x, y, z and the quaternion's x, y, z, w. */
+export type PoseValues = Float32Array;
+
+export interface ShownObject {
+  readonly pose: PoseValues;
+  readonly held: boolean;
+  readonly gone: boolean;
+  readonly hidden: boolean;
+}
+
+/** Where everything is at one moment of a run; poses but the base's are in the robot's base frame. */
+export interface Frame {
+  /** Seconds of the run's clock. */
+  readonly time: number;
+  readonly number: number;
+  /** Radians, in the order of the layout's joints. */
+  readonly joints: Float32Array;
+  readonly base: PoseValues;
+  readonly tool: PoseValues;
+  /** Metres between the finger tips. */
+  readonly opening: number;
+  /** In the order of the layout's objects. */
+  readonly objects: readonly ShownObject[];
+}
+
+const HEAD_BYTES = 16;
+const FIXED_BYTES = 76;
+const OBJECT_BYTES = 32;
+const LENGTH_BYTES = 4;
+const POSE_VALUES = 7;
+const HELD = 1;
+const GONE = 2;
+const HIDDEN = 4;
+
+/** Read one frame. Throws `RangeError` for bytes that are none. */
+export function decodeFrame(bytes: ArrayBuffer, start = 0, length = bytes.byteLength - start): Frame {
+  if (length < FIXED_BYTES) throw new RangeError(`a frame of poses has at least 76 bytes, not ${length}`);
+  const view = new DataView(bytes, start, length);
+  const jointCount = view.getUint16(12, true);
+  const objectCount = view.getUint16(14, true);
+  const expected = FIXED_BYTES + 4 * jointCount + OBJECT_BYTES * objectCount;
+  if (length !== expected) {
+    throw new RangeError(
+      `a frame of ${jointCount} joints and ${objectCount} objects has ${expected} bytes, not ${length}`,
+    );
+  }
+  const base = HEAD_BYTES + 4 * jointCount;
+  const objects = FIXED_BYTES + 4 * jointCount;
+  return {
+    time: view.getFloat64(0, true),
+    number: view.getUint32(8, true),
+    joints: floats(view, HEAD_BYTES, jointCount),
+    base: floats(view, base, POSE_VALUES),
+    tool: floats(view, base + 4 * POSE_VALUES, POSE_VALUES),
+    opening: view.getFloat32(base + 8 * POSE_VALUES, true),
+    objects: Array.from({ length: objectCount }, (_, index) => object(view, objects + OBJECT_BYTES * index)),
+  };
+}
+
+/** Read recorded frames, each after its length; one that is torn off at the end is left out. */
+export function decodeFrames(bytes: ArrayBuffer): Frame[] {
+  const frames: Frame[] = [];
+  const view = new DataView(bytes);
+  let at = 0;
+  while (at + LENGTH_BYTES <= bytes.byteLength) {
+    const length = view.getUint32(at, true);
+    at += LENGTH_BYTES;
+    if (at + length > bytes.byteLength) break;
+    frames.push(decodeFrame(bytes, at, length));
+    at += length;
+  }
+  return frames;
+}
+
+function object(view: DataView, at: number): ShownObject {
+  const flags = view.getUint32(at + 4 * POSE_VALUES, true);
+  return {
+    pose: floats(view, at, POSE_VALUES),
+    held: (flags & HELD) !== 0,
+    gone: (flags & GONE) !== 0,
+    hidden: (flags & HIDDEN) !== 0,
+  };
+}
+
+// A Float32Array over the bytes themselves would need a little-endian machine and aligned frames.
+function floats(view: DataView, at: number, count: number): Float32Array {
+  const values = new Float32Array(count);
+  for (let index = 0; index < count; index += 1) values[index] = view.getFloat32(at + 4 * index, true);
+  return values;
+}

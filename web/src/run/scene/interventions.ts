@@ -1,0 +1,72 @@
+// What the simulated person can be told to do with an object or with the arm.
+import type { Intervention } from "../../wire/types";
+
+export interface ObjectTarget {
+  readonly kind: "object";
+  readonly name: string;
+  readonly held: boolean;
+  readonly gone: boolean;
+}
+
+export interface ArmTarget {
+  readonly kind: "arm";
+  readonly blocked: boolean;
+}
+
+export type Target = ObjectTarget | ArmTarget;
+
+export interface Offer {
+  readonly label: string;
+  readonly hint: string;
+  /** What to do; `where` wants a spot on the table or a place first. */
+  readonly act: Intervention | "where";
+}
+
+/** What is worth doing now; `places` are the names of the scene's places. */
+export function offersFor(target: Target, places: readonly string[]): Offer[] {
+  return target.kind === "arm" ? offersForArm(target) : offersForObject(target, places);
+}
+
+function offersForArm({ blocked }: ArmTarget): Offer[] {
+  return blocked
+    ? [{ label: "Release", hint: "Get out of the arm’s way", act: { act: "release" } }]
+    : [{ label: "Block", hint: "Stand in the arm’s way", act: { act: "block" } }];
+}
+
+function offersForObject({ name: object, held, gone }: ObjectTarget, places: readonly string[]): Offer[] {
+  const offers: Offer[] = [];
+  if (!gone) offers.push({ label: "Steal", hint: "Take it away at once", act: { act: "steal", object } });
+  if (held) {
+    const act: Intervention = { act: "steal", object, manner: "pull" };
+    offers.push({ label: "Pull out", hint: "Pull it out of the gripper and take it away", act });
+  }
+  offers.push({ label: "Put back", hint: "To where it started", act: { act: "put_back", object } });
+  if (places.includes(object)) {
+    offers.push({ label: "Place", hint: "At its final place", act: { act: "place", object, place: object } });
+  }
+  if (!held) {
+    offers.push({ label: "Hand over", hint: "Hold it between the fingers", act: { act: "hand_over", object } });
+  }
+  offers.push({ label: "Move …", hint: "To a spot on the table or another place", act: "where" });
+  return offers;
+}
+
+const DONE: Readonly<Record<Intervention["act"], (object: string) => string>> = {
+  steal: (object) => `The ${object} is taken away.`,
+  put_back: (object) => `The ${object} is back where it started.`,
+  place: (object) => `The ${object} is placed.`,
+  hand_over: (object) => `The ${object} is held out to the robot.`,
+  move: (object) => `The ${object} is moved.`,
+  block: () => "Somebody stands in the arm’s way.",
+  release: () => "The arm’s way is free.",
+};
+
+/** One sentence on what was done. */
+export function sentenceOn({ act, object }: Intervention): string {
+  return DONE[act](plain(object ?? ""));
+}
+
+/** A name of the scene as people read it. */
+export function plain(name: string): string {
+  return name.replaceAll("_", " ");
+}

@@ -1,0 +1,75 @@
+// The objects as a list: where each is, and what can be done with it, without the 3-D picture.
+import { useState } from "preact/hooks";
+import { offersFor, type Offer, plain, type Target } from "./interventions";
+import { OfferMenu } from "./offer_menu";
+import type { Whereabouts } from "./pose_source";
+
+interface Props {
+  whereabouts: readonly Whereabouts[];
+  places: readonly string[];
+  /** Whether anything can be done now. */
+  offered: boolean;
+  onChoose(offer: Offer, target: Target): void;
+  onPoint(name: string | null): void;
+}
+
+export function ObjectList({ whereabouts, places, offered, onChoose, onPoint }: Props) {
+  const [open, setOpen] = useState<string | null>(null);
+  const row = (key: string, title: string, where: string, target: Target) => (
+    <li key={key} class="scene-row" onPointerEnter={() => onPoint(key)} onPointerLeave={() => onPoint(null)}>
+      <span class="scene-row-name">{title}</span>
+      <span class="scene-row-where small quiet">{where}</span>
+      {offered && (
+        <button
+          type="button"
+          class="button"
+          aria-haspopup="menu"
+          aria-expanded={open === key}
+          aria-label={`Intervene: ${title}`}
+          onFocus={() => onPoint(key)}
+          onBlur={() => onPoint(null)}
+          onClick={() => setOpen(open === key ? null : key)}
+        >
+          Intervene
+        </button>
+      )}
+      {offered && open === key && (
+        <OfferMenu
+          label={title}
+          offers={offersFor(target, places)}
+          onClose={() => setOpen(null)}
+          onChoose={(offer) => {
+            setOpen(null);
+            onChoose(offer, target);
+          }}
+        />
+      )}
+    </li>
+  );
+  return (
+    <ul class="scene-list" aria-label="Objects and the arm">
+      {whereabouts
+        .filter((each) => each.kind === "object")
+        .map((each) => row(each.name, plain(each.name), wordsFor(each), { ...each, kind: "object" }))}
+      {row(ARM, "the arm’s way", armIsBlocked(whereabouts) ? "blocked" : "free", armTarget(whereabouts))}
+    </ul>
+  );
+}
+
+// No name of a scene begins so.
+const ARM = "*arm";
+
+function wordsFor({ held, gone, hidden }: Whereabouts): string {
+  if (gone) return "taken away";
+  if (held) return "held by the robot";
+  if (hidden) return "not to be seen now";
+  return "in sight";
+}
+
+export function armTarget(whereabouts: readonly Whereabouts[]): Target {
+  return { kind: "arm", blocked: armIsBlocked(whereabouts) };
+}
+
+function armIsBlocked(whereabouts: readonly Whereabouts[]): boolean {
+  return whereabouts.some((each) => each.kind === "obstacle" && !each.gone && !each.hidden);
+}

@@ -1,0 +1,130 @@
+// The stage of the 3-D scene: renderer, light, ground and camera, drawing only when there is reason to.
+import {
+  CircleGeometry,
+  DirectionalLight,
+  HemisphereLight,
+  LineSegments,
+  LineBasicMaterial,
+  Mesh,
+  MeshLambertMaterial,
+  BufferGeometry,
+  Float32BufferAttribute,
+  Fog,
+  PCFShadowMap,
+  PerspectiveCamera,
+  Scene,
+  WebGLRenderer,
+} from "three";
+import { createOrbit, type Orbit } from "./orbit";
+import type { Palette } from "./palette";
+import { release } from "./release";
+
+const HIGHEST_PIXEL_RATIO = 2;
+const GROUND_M = 8;
+const GRID_STEP_M = 0.5;
+
+export interface Stage {
+  readonly scene: Scene;
+  readonly camera: PerspectiveCamera;
+  readonly orbit: Orbit;
+  /** Draw again soon. */
+  invalidate(): void;
+  paint(palette: Palette): void;
+  dispose(): void;
+}
+
+/** What happens before each drawing; true asks for another one right after it. */
+export type Before = (now: number) => boolean;
+
+/** Throws where the browser has no WebGL. */
+export function createStage(canvas: HTMLCanvasElement, before: Before, after: () => void): Stage {
+  const renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: "low-power" });
+  renderer.shadowMap.enabled = true;
+  renderer.shadowMap.type = PCFShadowMap;
+  const scene = new Scene();
+  const camera = new PerspectiveCamera(38, 1, 0.05, 30);
+  const ground = createGround();
+  const grid = createGrid();
+  scene.add(ground, grid, ...createLights());
+
+  let request = 0;
+  const draw = (now: number) => {
+    request = 0;
+    const again = before(now);
+    const turning = orbit.update();
+    renderer.render(scene, camera);
+    after();
+    if (again || turning) invalidate();
+  };
+  const invalidate = () => {
+    if (request === 0) request = requestAnimationFrame(draw);
+  };
+  const orbit = createOrbit(camera, canvas, invalidate);
+
+  const fit = () => {
+    const { clientWidth: width, clientHeight: height } = canvas;
+    if (width === 0 || height === 0) return;
+    renderer.setPixelRatio(Math.min(devicePixelRatio, HIGHEST_PIXEL_RATIO));
+    renderer.setSize(width, height, false);
+    camera.aspect = width / height;
+    camera.updateProjectionMatrix();
+    orbit.fit(camera.aspect);
+    invalidate();
+  };
+  const observer = new ResizeObserver(fit);
+  observer.observe(canvas);
+  canvas.addEventListener("webglcontextrestored", invalidate);
+  fit();
+
+  return {
+    scene,
+    camera,
+    orbit,
+    invalidate,
+    paint(palette) {
+      renderer.setClearColor(palette.ground);
+      scene.fog = new Fog(palette.ground, 3.5, GROUND_M);
+      ground.material.color.copy(palette.ground);
+      grid.material.color.copy(palette.grid);
+      invalidate();
+    },
+    dispose() {
+      cancelAnimationFrame(request);
+      observer.disconnect();
+      canvas.removeEventListener("webglcontextrestored", invalidate);
+      orbit.dispose();
+      release(scene);
+      renderer.dispose();
+    },
+  };
+}
+
+function createLights() {
+  const ambient = new HemisphereLight(0xffffff, 0xb8bcc4, 2.1);
+  ambient.position.set(0, 0, 1);
+  const key = new DirectionalLight(0xffffff, 1.5);
+  key.position.set(1.2, 1.6, 3.4);
+  key.target.position.set(0.5, -0.1, 0.5);
+  key.castShadow = true;
+  key.shadow.mapSize.set(1024, 1024);
+  key.shadow.radius = 4;
+  key.shadow.bias = -0.0005;
+  key.shadow.normalBias = 0.01;
+  const { camera } = key.shadow;
+  [camera.left, camera.right, camera.bottom, camera.top] = [-1.6, 1.6, -1.6, 1.6];
+  [camera.near, camera.far] = [0.5, 7];
+  return [ambient, key, key.target] as const;
+}
+
+function createGround() {
+  const ground = new Mesh(new CircleGeometry(GROUND_M, 48), new MeshLambertMaterial());
+  ground.receiveShadow = true;
+  return ground;
+}
+
+function createGrid() {
+  const ends: number[] = [];
+  for (let at = -4; at <= 4; at += GRID_STEP_M) ends.push(at, -4, 0.002, at, 4, 0.002, -4, at, 0.002, 4, at, 0.002);
+  const geometry = new BufferGeometry().setAttribute("position", new Float32BufferAttribute(ends, 3));
+  return new LineSegments(geometry, new LineBasicMaterial());
+}

@@ -1,0 +1,89 @@
+// The bar that moves the shown moment: a slider over the run's time, play, and the way back.
+import { clock } from "./run_header";
+import { type Moment, SPEEDS } from "./moment";
+
+const STEP_S = 0.1;
+
+interface ScrubberProps {
+  moment: Moment;
+  /** Whether the run goes on. */
+  going: boolean;
+  /** Go to the event before or after the moment. */
+  onStep: (direction: -1 | 1) => void;
+}
+
+export function Scrubber({ moment, going, onStep }: ScrubberProps) {
+  const time = moment.time.value;
+  const end = moment.end.value;
+  const newest = moment.newest.value;
+  const playing = moment.playing.value;
+  // Whole steps up to the end, so that the slider's last step is not before it.
+  const last = Math.max(Math.ceil(end / STEP_S), 1) * STEP_S;
+  return (
+    <section class={`scrubber ${newest ? "newest" : "past"}`} aria-label="Moment">
+      <div class="scrubber-buttons">
+        <button type="button" class="icon-button" aria-label="One event back" onClick={() => onStep(-1)}>
+          <Icon d="M14 4l-8 6 8 6zM4 4v12" />
+        </button>
+        <button
+          type="button"
+          class="icon-button"
+          aria-label={playing ? "Stop playing" : "Play"}
+          onClick={() => (playing ? moment.pause() : moment.play())}
+        >
+          <Icon d={playing ? "M6 4v12M14 4v12" : "M6 3l11 7-11 7z"} />
+        </button>
+        <button type="button" class="icon-button" aria-label="One event on" disabled={newest} onClick={() => onStep(1)}>
+          <Icon d="M6 4l8 6-8 6zM16 4v12" />
+        </button>
+      </div>
+      <input
+        type="range"
+        aria-label="Moment of the run"
+        aria-valuetext={`${time.toFixed(1)} of ${end.toFixed(1)} seconds`}
+        min={0}
+        max={last}
+        step={STEP_S}
+        value={newest ? last : time}
+        onInput={(event) => moment.goTo(Number(event.currentTarget.value))}
+      />
+      <label class="scrubber-speed">
+        <span class="unseen">Speed</span>
+        <select
+          value={String(moment.speed.value)}
+          onChange={(event) => moment.playAt(Number(event.currentTarget.value))}
+        >
+          {SPEEDS.map((speed) => (
+            <option key={speed} value={String(speed)}>
+              {speed}×
+            </option>
+          ))}
+        </select>
+      </label>
+      <p class="scrubber-where">
+        {newest ? (
+          <>
+            {going ? <b class="live">Live</b> : <b>The end</b>} {clock(end)}
+          </>
+        ) : (
+          <>
+            You are looking at <b>{clock(time)}</b> of {clock(end)}
+          </>
+        )}
+      </p>
+      {!newest && (
+        <button type="button" class="button primary scrubber-back" onClick={moment.goToNewest}>
+          {going ? "Back to live" : "To the end"}
+        </button>
+      )}
+    </section>
+  );
+}
+
+function Icon({ d }: { d: string }) {
+  return (
+    <svg viewBox="0 0 20 20" width="20" height="20" aria-hidden="true">
+      <path d={d} />
+    </svg>
+  );
+}

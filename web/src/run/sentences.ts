@@ -1,0 +1,203 @@
+// The transcript of a run: each event as the lines that a person reads.
+import type { Act, CloseReason, Event, Help, Intervention, NodeStarted, Resolution } from "../wire/types";
+import { plain } from "../tree/words";
+
+/** What kind of news a line brings; each has its own look. */
+export type Tone =
+  | "run"
+  | "choice"
+  | "step"
+  | "fault"
+  | "said"
+  | "asked"
+  | "answered"
+  | "watched"
+  | "deed"
+  | "resolved"
+  | "done"
+  | "setback"
+  | "finished"
+  | "failed";
+
+export interface Line {
+  seq: number;
+  time: number;
+  /** Who acts or speaks; empty for the run itself. */
+  speaker: string;
+  text: string;
+  tone: Tone;
+  /** Lines of the same thread that follow each other are one. */
+  thread?: string;
+}
+
+const DEEDS: Readonly<Record<Act, string>> = {
+  steal: "takes {object} away",
+  put_back: "puts {object} back",
+  place: "puts {object} to its place",
+  hand_over: "hands {object} over",
+  move: "moves {object}",
+  block: "stands in the arm's way",
+  release: "gets out of the arm's way",
+};
+
+const PROMISES: Readonly<Record<Help, string>> = {
+  place: "{object} at its place",
+  put_back: "{object} back within reach",
+  hand_over: "{object} between the fingers",
+  clear_way: "the way clear",
+};
+
+const RESOLUTIONS: Readonly<Record<Resolution, string>> = {
+  human_finish: "the human finished {object}",
+  robot_finish: "the robot goes on with {object}",
+  collab_finish: "both finish {object} together",
+  robot_retry: "the robot will try {object} again",
+};
+
+const CLOSINGS: Readonly<Partial<Record<CloseReason, string>>> = {
+  withdrawn: "the question is withdrawn: it was put right",
+  gave_up: "the question is given up: nobody helped",
+  aborted: "the question lapses: it no longer matters",
+};
+
+const DOERS = { robot: " by the robot", human: " by the human", both: " by robot and human together" } as const;
+
+/** What a person does, as the end of a sentence that begins with who it is. */
+export function deed(intervention: Intervention): string {
+  const { act, object, manner } = intervention;
+  const name = plain(object ?? "");
+  return act === "steal" && manner === "pull" ? `pulls ${name} out of the gripper` : about(DEEDS[act], name);
+}
+
+/** The lines of an event; none for those that others already tell. */
+export function linesOf(event: Event): Line[] {
+  const line = (tone: Tone, text: string, speaker = ""): Line[] => [
+    { seq: event.seq, time: event.time, speaker, text, tone },
+  ];
+  switch (event.type) {
+    case "run_started":
+      return line("run", `The run of ${plain(event.tree_name)} in ${plain(event.world)} begins.`);
+    case "run_paused":
+      return line("run", "The run is paused.");
+    case "run_resumed":
+      return line("run", "The run goes on.");
+    case "run_finished":
+      return [
+        ...event.missing.flatMap((part) =>
+          line("setback", `The last look misses ${plain(part.object)} at ${plain(part.place)}.`),
+        ),
+        ...line("finished", "The run has finished: the task is done."),
+      ];
+    case "run_failed":
+      return line("failed", `The run has failed: ${event.reason}`);
+    case "run_aborted":
+      return line("failed", `The run was aborted: ${event.reason || "by a person"}.`);
+    case "node_started":
+      return line("choice", `starts ${plain(event.name)}${attempt(event)}${comparison(event)}.`, event.robot);
+    case "step_started":
+      return [
+        {
+          seq: event.seq,
+          time: event.time,
+          speaker: plain(event.name),
+          text: `${event.step} ${plain(event.step_name)}`,
+          tone: "step",
+          thread: event.execution,
+        },
+      ];
+    case "node_done":
+      return line("done", `${plain(event.name)} is done${DOERS[event.by]}.`);
+    case "node_reset": {
+      const failed = event.failed_attempt ? ", a failed attempt" : "";
+      return line("setback", `${plain(event.name)} is put back${failed}: ${event.reason}.`);
+    }
+    case "node_abandoned":
+      return line("setback", `The alternative ${plain(event.name)} is abandoned: ${event.reason}.`);
+    case "issue_raised": {
+      const where = event.step > 0 ? `in step ${event.step}` : "before the first step";
+      return line("fault", `notices: ${plain(event.issue)}, ${plain(event.object ?? event.name)}, ${where}.`, event.robot);
+    }
+    case "prompt": {
+      const again = event.version > 1 ? " (asked again)" : "";
+      const to = event.to === null ? "" : ` (to ${event.to})`;
+      return line(event.kind === "ask" ? "asked" : "said", `${event.text}${again}${to}`, event.robot);
+    }
+    case "claimed":
+      return line("watched", "is on it.", event.helper);
+    case "released":
+      return line(
+        "watched",
+        event.expired ? "has been silent too long, anybody may answer." : "lets it go.",
+        event.helper,
+      );
+    case "answered":
+      return line("answered", event.answer === "yes" ? "Yes." : "No.", event.helper);
+    case "escalated":
+      return line(
+        "setback",
+        `Nobody answered: ${event.channel === "mail" ? "a mail goes to" : "the question goes to"} ${event.to}.`,
+      );
+    case "help_awaited":
+      return line("watched", `looks for ${promised(event)} until ${event.until.toFixed(1)} s.`, event.robot);
+    case "help_verified":
+      return line("watched", `sees ${promised(event)}.`, event.robot);
+    case "help_not_seen":
+      return line("setback", `does not see ${promised(event)}.`, event.robot);
+    case "resolved":
+      return line("resolved", `Resolved: ${about(RESOLUTIONS[event.resolution], plain(event.name))}.`);
+    case "dialogue_closed": {
+      const text = CLOSINGS[event.reason];
+      return text === undefined ? [] : line("setback", `${capital(text)}.`);
+    }
+    case "intervention":
+      return line(
+        "deed",
+        `${deed(event.intervention)}${event.ok ? "" : `: in vain, ${event.detail}`}.`,
+        `person (${event.by})`,
+      );
+    case "robot_lost":
+      return line("setback", `is lost: ${event.reason}.`, event.robot);
+    case "robot_back":
+      return line("run", `is back and ${event.continues ? "goes on where it was" : "begins anew"}.`, event.robot);
+    case "robot_holding":
+      return line("watched", `stops and holds ${held(event.at)}.`, event.robot);
+    case "robot_resumed":
+      return line("watched", `moves again, at step ${event.step}.`, event.robot);
+    default:
+      return [];
+  }
+}
+
+/** Put a line behind those that there are, joined to the last one if both are of one thread. */
+export function joined(lines: Line[], line: Line): void {
+  const last = lines.at(-1);
+  if (last === undefined || line.thread === undefined || last.thread !== line.thread) lines.push(line);
+  else lines[lines.length - 1] = { ...last, text: `${last.text} · ${line.text}` };
+}
+
+function attempt(event: NodeStarted): string {
+  return event.attempt > 1 ? `, attempt ${event.attempt}` : "";
+}
+
+function comparison(event: NodeStarted): string {
+  const others = event.candidates.length - 1;
+  if (others < 1) return "";
+  return `, chosen among ${event.candidates.length}`;
+}
+
+function promised(event: { help: Help; object: string | null; name: string }): string {
+  return about(PROMISES[event.help], plain(event.object ?? event.name));
+}
+
+function held(at: string): string {
+  if (at === "in_place") return "where it is";
+  return at === "hand_over" ? "where a person can reach it" : `at ${plain(at)}`;
+}
+
+function about(text: string, object: string): string {
+  return text.replace("{object}", object);
+}
+
+function capital(text: string): string {
+  return text.charAt(0).toUpperCase() + text.slice(1);
+}

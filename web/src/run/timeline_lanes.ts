@@ -1,0 +1,152 @@
+// What stands on the lanes of a run's timeline.
+import { plain } from "../tree/words";
+import type { DialogueClosed, Event, NodeDone, NodeReset, Resolution } from "../wire/types";
+import { deed } from "./sentences";
+
+export type LaneKind = "steps" | "faults" | "dialogues" | "people" | "resolutions";
+
+/** One thing on a lane; `start` equals `end` for what takes no time. Seconds of the run's clock. */
+export interface TimelineItem {
+  /** The event that it begins with. */
+  seq: number;
+  start: number;
+  end: number;
+  /** The words on it, where they have room. */
+  word: string;
+  /** What it is, in full. */
+  title: string;
+  look: string;
+  node: string | null;
+  parts: readonly TimelineItem[];
+}
+
+export interface Lane {
+  kind: LaneKind;
+  name: string;
+  items: readonly TimelineItem[];
+}
+
+export const RESOLUTION_WORDS: Readonly<Record<Resolution, string>> = {
+  human_finish: "human finished",
+  robot_finish: "robot goes on",
+  collab_finish: "both finish",
+  robot_retry: "tries again",
+};
+
+interface Growing extends TimelineItem {
+  parts: Growing[];
+}
+
+/** The lanes of a run's first `count` events; what goes on still ends at `now`. */
+export function lanesOf(events: readonly Event[], now: number): Lane[] {
+  const started = events[0];
+  if (started?.type !== "run_started") return [];
+  const steps = new Map<string, Growing[]>(started.robots.map((robot) => [robot, []]));
+  const lanes: Record<Exclude<LaneKind, "steps">, Growing[]> = { faults: [], dialogues: [], people: [], resolutions: [] };
+  const running = new Map<string, Growing>();
+  const open = new Map<string, Growing>();
+  for (const event of events) {
+    switch (event.type) {
+      case "node_started": {
+        const name = plain(event.name);
+        const item = bar(event, now, name, `${name}, attempt ${event.attempt}`, "execution", event.node);
+        running.set(event.node, item);
+        steps.get(event.robot)?.push(item);
+        break;
+      }
+      case "step_started": {
+        const parts = running.get(event.node)?.parts;
+        closePart(parts, event.time);
+        const word = `${event.step} ${plain(event.step_name)}`;
+        parts?.push(bar(event, now, word, `step ${word} of ${plain(event.name)}`, "step", event.node));
+        break;
+      }
+      case "node_done":
+      case "node_reset":
+        endExecution(running, event);
+        break;
+      case "issue_raised": {
+        const about = plain(event.object ?? event.name);
+        lanes.faults.push(point(event, plain(event.issue), `${plain(event.issue)}, ${about}`, "fault", event.node));
+        break;
+      }
+      case "dialogue_opened": {
+        const title = `dialogue about ${plain(event.issue)}, ${plain(event.object ?? event.name)}`;
+        const item = bar(event, now, plain(event.object ?? event.name), title, "dialogue", event.node);
+        open.set(event.dialogue, item);
+        lanes.dialogues.push(item);
+        break;
+      }
+      case "dialogue_closed":
+        closeDialogue(open, event);
+        break;
+      case "intervention":
+        lanes.people.push(
+          point(
+            event,
+            plain(event.act),
+            `${event.by}: ${deed(event.intervention)}${event.ok ? "" : ", in vain"}`,
+            event.ok ? "deed" : "deed vain",
+            null,
+          ),
+        );
+        break;
+      case "resolved": {
+        const word = RESOLUTION_WORDS[event.resolution];
+        lanes.resolutions.push(point(event, word, `${plain(event.name)}: ${word}`, "resolution", event.node));
+        break;
+      }
+      default:
+        break;
+    }
+  }
+  const several = started.robots.length > 1;
+  return [
+    ...[...steps].map(([robot, items]): Lane => ({ kind: "steps", name: several ? robot : "Steps", items })),
+    { kind: "faults", name: "Faults", items: lanes.faults },
+    { kind: "dialogues", name: "Dialogues", items: lanes.dialogues },
+    { kind: "people", name: "People", items: lanes.people },
+    { kind: "resolutions", name: "Resolutions", items: lanes.resolutions },
+  ];
+}
+
+function bar(event: Event, end: number, word: string, title: string, look: string, node: string | null): Growing {
+  return { seq: event.seq, start: event.time, end: Math.max(end, event.time), word, title, look, node, parts: [] };
+}
+
+function point(event: Event, word: string, title: string, look: string, node: string | null): Growing {
+  return bar(event, event.time, word, title, look, node);
+}
+
+function closePart(parts: Growing[] | undefined, time: number): void {
+  const last = parts?.at(-1);
+  if (last !== undefined) last.end = time;
+}
+
+function endExecution(running: Map<string, Growing>, event: NodeDone | NodeReset): void {
+  const item = running.get(event.node);
+  if (item === undefined) return;
+  running.delete(event.node);
+  closePart(item.parts, event.time);
+  item.end = event.time;
+  item.look = event.type === "node_done" ? "execution done" : "execution put-back";
+  item.title += event.type === "node_done" ? ", done" : ", put back";
+}
+
+function closeDialogue(open: Map<string, Growing>, event: DialogueClosed): void {
+  const item = open.get(event.dialogue);
+  if (item === undefined) return;
+  open.delete(event.dialogue);
+  item.end = event.time;
+  item.title += `, ${plain(event.reason)}`;
+}
+
+/** Times for the axis, so far apart that their words do not touch. */
+export function ticksOf(from: number, to: number, atMost: number): number[] {
+  const least = (to - from) / Math.max(atMost, 1);
+  const magnitude = 10 ** Math.floor(Math.log10(Math.max(least, 0.01)));
+  const every = ([1, 2, 5, 10].find((factor) => factor * magnitude >= least) ?? 10) * magnitude;
+  const ticks: number[] = [];
+  for (let index = Math.ceil(from / every); index * every <= to; index++) ticks.push(index * every);
+  return ticks;
+}

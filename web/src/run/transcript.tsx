@@ -1,0 +1,124 @@
+// The transcript: everything that was said and done, with the moment that is shown marked in it.
+import { useEffect, useMemo, useRef } from "preact/hooks";
+import type { Event } from "../wire/types";
+import { clock } from "./run_header";
+import { joined, type Line, linesOf } from "./sentences";
+
+/** So many lines are drawn together, and skipped together while nothing of them is in sight. */
+const PORTION = 40;
+
+interface TranscriptProps {
+  events: readonly Event[];
+  /** Counts up with `events`, which is the same array all along. */
+  version: number;
+  /** The last event that has happened at the moment shown; null follows the newest. */
+  until: number | null;
+  onChoose: (line: Line) => void;
+}
+
+export function Transcript({ events, version, until, onChoose }: TranscriptProps) {
+  const portions = usePortions(events, version);
+  const list = useRef<HTMLDivElement>(null);
+  const last = portions.at(-1)?.at(-1)?.seq ?? 0;
+  const current = until ?? last;
+  useFollowing(list, current, until === null);
+  return (
+    <div class="transcript" ref={list} role="log" aria-label="Transcript" tabIndex={0}>
+      {portions.map((lines, index) => {
+        const first = lines[0]?.seq ?? 0;
+        const end = portions[index + 1]?.[0]?.seq ?? Infinity;
+        const within = current >= first && current < end;
+        return (
+          <Portion
+            key={index}
+            lines={lines}
+            until={within ? current : current < first ? -1 : Infinity}
+            marked={until !== null && within}
+            onChoose={onChoose}
+          />
+        );
+      })}
+    </div>
+  );
+}
+
+/** The lines so far in portions; portions that are full stay the same arrays. */
+function usePortions(events: readonly Event[], version: number): readonly (readonly Line[])[] {
+  const kept = useRef<{ lines: Line[]; taken: number; portions: Line[][] }>({ lines: [], taken: 0, portions: [] });
+  return useMemo(() => {
+    const { lines, portions } = kept.current;
+    // The last line may have grown, and the last portion with it.
+    const changedFrom = Math.floor(Math.max(lines.length - 1, 0) / PORTION);
+    for (; kept.current.taken < events.length; kept.current.taken++) {
+      for (const line of linesOf(events[kept.current.taken] as Event)) joined(lines, line);
+    }
+    for (let index = changedFrom; index * PORTION < lines.length; index++) {
+      portions[index] = lines.slice(index * PORTION, (index + 1) * PORTION);
+    }
+    return [...portions];
+  }, [events, version]);
+}
+
+interface PortionProps {
+  lines: readonly Line[];
+  until: number;
+  marked: boolean;
+  onChoose: (line: Line) => void;
+}
+
+/** Drawn anew only when something in it has changed: a long transcript has hundreds of these. */
+function Portion({ lines, until, marked, onChoose }: PortionProps) {
+  return useMemo(() => {
+    const current = marked ? lines.findLast((line) => line.seq <= until) : undefined;
+    return (
+      <ol class="transcript-portion">
+        {lines.map((line, index) => (
+          <li
+            key={`${line.seq} ${index}`}
+            class={`line ${line.tone} ${line.seq > until ? "later" : ""}`}
+            aria-current={line === current ? "time" : undefined}
+          >
+            <button type="button" onClick={() => onChoose(line)} aria-label={`Go to ${clock(line.time)}`}>
+              {clock(line.time)}
+            </button>
+            <p>
+              {line.speaker !== "" && <b>{line.speaker} </b>}
+              {line.tone === "said" || line.tone === "asked" ? `“${line.text}”` : line.text}
+            </p>
+          </li>
+        ))}
+      </ol>
+    );
+  }, [lines, until, marked, onChoose]);
+}
+
+const NEAR_THE_END_PX = 80;
+
+/** Keep the newest line in sight while somebody is at the end; bring a chosen moment into sight. */
+function useFollowing(list: { current: HTMLElement | null }, current: number, newest: boolean): void {
+  const atEnd = useRef(true);
+  useEffect(() => {
+    const scrolled = list.current;
+    if (scrolled === null) return;
+    const look = () => {
+      atEnd.current = scrolled.scrollHeight - scrolled.scrollTop - scrolled.clientHeight < NEAR_THE_END_PX;
+    };
+    scrolled.addEventListener("scroll", look, { passive: true });
+    return () => scrolled.removeEventListener("scroll", look);
+  }, []);
+  useEffect(() => {
+    if (newest) atEnd.current = true;
+  }, [newest]);
+  useEffect(() => {
+    const scrolled = list.current;
+    if (scrolled === null) return;
+    if (newest) {
+      if (atEnd.current) scrolled.scrollTop = scrolled.scrollHeight;
+      return;
+    }
+    const line = scrolled.querySelector<HTMLElement>("[aria-current]");
+    if (line === null) return;
+    const off = line.getBoundingClientRect().top - scrolled.getBoundingClientRect().top;
+    scrolled.scrollTop += off - scrolled.clientHeight / 2;
+  }, [current, newest]);
+}

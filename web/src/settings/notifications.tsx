@@ -1,0 +1,38 @@
+// Desktop notifications: the browser is asked for leave only when the helper asks for them.
+import { useState } from "preact/hooks";
+import { notificationsOn } from "../state/preferences";
+
+export function Notifications() {
+  const available = "Notification" in window;
+  const [allowed, setAllowed] = useState(available ? Notification.permission : "denied");
+  if (!available) return <p class="small quiet">This browser has no desktop notifications.</p>;
+  const ask = async () => {
+    const answer = await Notification.requestPermission();
+    setAllowed(answer);
+    notificationsOn.value = answer === "granted";
+  };
+  if (allowed === "granted") {
+    return (
+      <label class="choice">
+        <input
+          type="checkbox"
+          checked={notificationsOn.value}
+          onChange={(event) => {
+            notificationsOn.value = event.currentTarget.checked;
+          }}
+        />
+        Show a desktop notification
+      </label>
+    );
+  }
+  return (
+    <div class="setting-row">
+      <button type="button" class="button" disabled={allowed === "denied"} onClick={() => void ask()}>
+        Allow desktop notifications
+      </button>
+      <p class="small quiet" role="status">
+        {allowed === "denied" && "This browser does not let this page notify you. Its site settings can change that."}
+      </p>
+    </div>
+  );
+}

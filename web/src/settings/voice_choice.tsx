@@ -1,0 +1,47 @@
+// Who says the questions when they are spoken.
+import { useEffect, useState } from "preact/hooks";
+import { type Voice, voice } from "../state/preferences";
+import { browserVoices } from "../speech/browser_voice";
+
+const VOICES: readonly (readonly [Voice, string])[] = [
+  ["service", "The service's voice"],
+  ["browser", "This browser's own voice"],
+];
+
+export function VoiceChoice() {
+  const own = useOwnVoice();
+  return (
+    <fieldset class="panel setting-group">
+      <legend>Voice of the robots</legend>
+      <div class="choices">
+        {VOICES.map(([value, text]) => (
+          <label key={value} class="choice">
+            <input
+              type="radio"
+              name="voice"
+              checked={voice.value === value}
+              disabled={value === "browser" && !own}
+              onChange={() => {
+                voice.value = value;
+              }}
+            />
+            {text}
+          </label>
+        ))}
+      </div>
+      {!own && <p class="small quiet">This browser has no voice of its own.</p>}
+    </fieldset>
+  );
+}
+
+/** Some browsers find their voices only some time after they are first asked for them. */
+function useOwnVoice(): boolean {
+  const [own, setOwn] = useState(() => browserVoices().length > 0);
+  useEffect(() => {
+    if (!("speechSynthesis" in window)) return;
+    const look = () => setOwn(browserVoices().length > 0);
+    speechSynthesis.addEventListener("voiceschanged", look);
+    return () => speechSynthesis.removeEventListener("voiceschanged", look);
+  }, []);
+  return own;
+}

@@ -1,0 +1,57 @@
+// What became of questions that are gone: said for some seconds, or until dismissed.
+import { signal } from "@preact/signals";
+import * as rest from "../wire/rest";
+import type { CloseReason, DialogueView } from "../wire/types";
+
+export interface Ending {
+  id: number;
+  dialogue: string;
+  run: string;
+  robot: string;
+  text: string;
+}
+
+const SHOWN_MS = 15_000;
+const MOST = 3;
+
+export const endings = signal<readonly Ending[]>([]);
+
+let count = 0;
+
+/** Say how a question ended, or what became of an answer to it. */
+export function tellEnding(about: Pick<DialogueView, "dialogue" | "run" | "robot">, text: string): void {
+  const ending = { id: ++count, dialogue: about.dialogue, run: about.run, robot: about.robot, text };
+  // One line a dialogue: what came last says all.
+  const others = endings.value.filter((each) => each.dialogue !== about.dialogue);
+  endings.value = [...others, ending].slice(-MOST);
+  window.setTimeout(() => dismissEnding(ending.id), SHOWN_MS);
+}
+
+export function dismissEnding(id: number): void {
+  if (endings.value.some((each) => each.id === id)) {
+    endings.value = endings.value.filter((each) => each.id !== id);
+  }
+}
+
+/** Find out what became of a question that closed while nobody listened, and say it. */
+export async function tellHowItEnded(gone: DialogueView): Promise<void> {
+  const found = await rest.dialogue(gone.dialogue).catch(() => null);
+  const by = found?.answered_by ?? null;
+  if (found?.reason === "resolved" && by !== null) tellEnding(gone, `It was closed meanwhile; ${by} had answered.`);
+  else tellEnding(gone, closing((found?.reason ?? "aborted") as CloseReason, null));
+}
+
+/** Why a dialogue closed, in words; `statement` is what the robot said last. */
+export function closing(reason: CloseReason, statement: string | null): string {
+  const said = statement === null ? "" : ` “${statement}”`;
+  switch (reason) {
+    case "resolved":
+      return `Settled.${said}`;
+    case "withdrawn":
+      return "No longer needed: the robot saw that it was put right.";
+    case "gave_up":
+      return "Closed without help: the robot will try again later.";
+    case "aborted":
+      return "No longer needed: the robot has stopped this task.";
+  }
+}

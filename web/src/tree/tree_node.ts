@@ -1,0 +1,100 @@
+// One node of a task tree as it is drawn: from a run at some moment, or from a definition alone.
+import type { NodeView } from "../wire/types";
+
+export type NodeKind = NodeView["kind"];
+
+export type NodeState = "waiting" | "eligible" | "active" | "in_dialogue" | "done" | "abandoned";
+
+/** Nodes stand depth first; `path` is that of child indices from the root (`/` is the root). */
+export interface TreeNode {
+  path: string;
+  kind: NodeKind;
+  name: string;
+  behavior: string | null;
+  /** Null in a tree that does not run: neither are there a level, a potential or an owner then. */
+  state: NodeState | null;
+  level: number | null;
+  potential: number | null;
+  owner: string | null;
+  /** Attempts that have failed. */
+  attempts: number;
+}
+
+/** The nodes of a run, from what the service or the fold says of them. */
+export function nodesOfRun(views: readonly NodeView[], inDialogue: ReadonlySet<string>): TreeNode[] {
+  return views.map((view) => ({
+    path: view.node,
+    kind: view.kind,
+    name: view.name,
+    behavior: view.behavior,
+    state: stateOf(view, inDialogue),
+    level: view.activation_level,
+    potential: view.activation_potential,
+    owner: view.owner,
+    attempts: view.attempts,
+  }));
+}
+
+function stateOf(view: NodeView, inDialogue: ReadonlySet<string>): NodeState {
+  if (view.done) return "done";
+  if (view.abandoned) return "abandoned";
+  if (inDialogue.has(view.node)) return "in_dialogue";
+  if (view.active) return "active";
+  return view.activation_level > 0 ? "eligible" : "waiting";
+}
+
+/** The nodes of a checked definition in its JSON form, as of `TreeView.definition`. */
+export function nodesOfDefinition(definition: Readonly<Record<string, unknown>>): TreeNode[] {
+  const nodes = definition.nodes as readonly DefinedNode[];
+  const paths = pathsOf(nodes.map((node) => node.parent ?? null));
+  return nodes.map((node, index) => ({
+    path: paths[index] as string,
+    kind: node.kind,
+    name: node.name,
+    behavior: node.behavior ?? null,
+    state: null,
+    level: null,
+    potential: null,
+    owner: null,
+    attempts: 0,
+  }));
+}
+
+/** A node in the JSON form of a definition; parents come before their children. */
+export interface DefinedNode {
+  kind: NodeKind;
+  parent: number | null;
+  name: string;
+  behavior?: string;
+  parameters?: Readonly<Record<string, unknown>>;
+}
+
+/** The path of every node, from the indices of the parents. */
+export function pathsOf(parents: readonly (number | null)[]): string[] {
+  const children = new Map<number, number>();
+  const paths: string[] = [];
+  for (const parent of parents) {
+    if (parent === null) {
+      paths.push("/");
+      continue;
+    }
+    const position = children.get(parent) ?? 0;
+    children.set(parent, position + 1);
+    const above = paths[parent] as string;
+    paths.push(above === "/" ? `/${position}` : `${above}/${position}`);
+  }
+  return paths;
+}
+
+/** The path of the node above; null for the root. */
+export function parentOf(path: string): string | null {
+  if (path === "/") return null;
+  return path.slice(0, path.lastIndexOf("/")) || "/";
+}
+
+/** The paths above a node, the nearest first. */
+export function pathsAbove(path: string): string[] {
+  const above: string[] = [];
+  for (let parent = parentOf(path); parent !== null; parent = parentOf(parent)) above.push(parent);
+  return above;
+}

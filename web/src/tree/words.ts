@@ -1,0 +1,55 @@
+// The words for what a task tree shows.
+import type { NodeKind, NodeState, TreeNode } from "./tree_node";
+
+export const KIND_WORDS: Readonly<Record<NodeKind, string>> = {
+  then: "THEN",
+  and: "AND",
+  or: "OR",
+  behavior: "behavior",
+};
+
+/** What has to be done of the children. */
+export const KIND_RULES: Readonly<Record<Exclude<NodeKind, "behavior">, string>> = {
+  then: "all, in this order",
+  and: "all, in any order",
+  or: "exactly one",
+};
+
+export const KIND_MEANINGS: Readonly<Record<NodeKind, string>> = {
+  then: `THEN, ${KIND_RULES.then}`,
+  and: `AND, ${KIND_RULES.and}`,
+  or: `OR, ${KIND_RULES.or}`,
+  behavior: "behavior",
+};
+
+export const STATE_WORDS: Readonly<Record<NodeState, string>> = {
+  waiting: "waiting",
+  eligible: "eligible",
+  active: "active",
+  in_dialogue: "in dialogue",
+  done: "done",
+  abandoned: "abandoned",
+};
+
+/** A name as people write it. */
+export function plain(name: string): string {
+  return name.replaceAll("_", " ");
+}
+
+/** What is left of a text where only so many characters have room. */
+export function shortened(text: string, characters: number): string {
+  return text.length <= characters ? text : `${text.slice(0, Math.max(characters - 1, 1))}…`;
+}
+
+/** Everything about a node in one sentence, for those who hear the drawing. */
+export function described(node: TreeNode, hidden: number): string {
+  const parts = [plain(node.name), KIND_MEANINGS[node.kind]];
+  if (node.behavior !== null) parts[1] = plain(node.behavior);
+  if (node.state !== null) parts.push(STATE_WORDS[node.state]);
+  if (node.owner !== null) parts.push(`held by ${node.owner}`);
+  if (node.level !== null) parts.push(`level ${node.level.toFixed(2)}`);
+  if (node.potential !== null) parts.push(`potential ${node.potential.toFixed(2)}`);
+  if (node.attempts > 0) parts.push(`${node.attempts} failed`);
+  if (hidden > 0) parts.push(`${hidden} nodes under it are folded away`);
+  return parts.join(", ");
+}

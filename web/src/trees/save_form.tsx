@@ -1,0 +1,90 @@
+// Under which name a text is saved, and whether it may take another's place.
+import { useState } from "preact/hooks";
+import { Confirm } from "../app/confirm";
+import * as rest from "../wire/rest";
+import type { TreeSummary } from "../wire/types";
+
+interface SaveFormProps {
+  tree: string | null;
+  text: string;
+  name: string;
+  trees: readonly TreeSummary[];
+  changed: boolean;
+  onName: (name: string) => void;
+  onSaved: (name: string) => void;
+  onDiscard: () => void;
+}
+
+export function SaveForm({ tree, text, name, trees, changed, onName, onSaved, onDiscard }: SaveFormProps) {
+  const [mistake, setMistake] = useState("");
+  const [asking, setAsking] = useState<"replace" | "discard" | null>(null);
+  const [saving, setSaving] = useState(false);
+  const save = async () => {
+    setAsking(null);
+    setSaving(true);
+    try {
+      onSaved((await rest.saveTree(text, name)).name);
+    } catch (error) {
+      setMistake(
+        error instanceof rest.Refusal && error.errors.length > 1
+          ? "It was not saved: put the mistakes right first."
+          : `It was not saved: ${(error as Error).message}`,
+      );
+      setSaving(false);
+    }
+  };
+  const submit = (event: SubmitEvent) => {
+    event.preventDefault();
+    setMistake("");
+    const other = name !== tree && trees.some((each) => each.name === name && !each.built_in);
+    if (other) setAsking("replace");
+    else void save();
+  };
+  return (
+    <form class="save-form" onSubmit={submit}>
+      <div class="field">
+        <label for="save-name">Name</label>
+        <input
+          id="save-name"
+          class="mono"
+          value={name}
+          required
+          maxlength={64}
+          spellcheck={false}
+          autocomplete="off"
+          aria-describedby="save-mistake"
+          onInput={(event) => onName(event.currentTarget.value)}
+        />
+      </div>
+      <div class="page-actions">
+        {changed && (
+          <button class="button" type="button" onClick={() => setAsking("discard")}>
+            Discard changes
+          </button>
+        )}
+        <button class="button primary" type="submit" disabled={saving}>
+          Save
+        </button>
+      </div>
+      <p id="save-mistake" class="mistake" role="alert">
+        {mistake}
+      </p>
+      {asking === "replace" && (
+        <Confirm title={`Replace '${name}'?`} confirm="Replace it" onConfirm={() => void save()} onCancel={() => setAsking(null)}>
+          There is another task tree of this name. Its file is lost when this one takes its place.
+        </Confirm>
+      )}
+      {asking === "discard" && (
+        <Confirm
+          title="Discard your changes?"
+          confirm="Discard"
+          cancel="Keep editing"
+          onConfirm={onDiscard}
+          onCancel={() => setAsking(null)}
+        >
+          What you have written since it was last saved is lost.
+        </Confirm>
+      )}
+    </form>
+  );
+}

@@ -1,0 +1,99 @@
+// One task tree of the library: its drawing, its file, and what can be done with it.
+import { useEffect, useState } from "preact/hooks";
+import { Confirm } from "../app/confirm";
+import { go } from "../app/router";
+import { connection } from "../state/service";
+import * as rest from "../wire/rest";
+import type { TreeView } from "../wire/types";
+import { DefinitionDrawing } from "./definition_drawing";
+import { dropDraft } from "./draft";
+
+export function TreeDetails({ tree }: { tree: string }) {
+  const [found, setFound] = useState<TreeView | null>(null);
+  const [mistake, setMistake] = useState("");
+  const connected = connection.value === "connected";
+  useEffect(() => {
+    rest.tree(tree).then(setFound, (error: Error) => setMistake(error.message));
+  }, [tree, connected]);
+  if (found === null) return <p class={mistake === "" ? "quiet" : "mistake"}>{mistake || "Loading …"}</p>;
+  const { name, description, scene, nodes } = described(found);
+  return (
+    <article class="panel tree-details" aria-labelledby="tree-name">
+      <div class="page-head">
+        <h2 id="tree-name">{name}</h2>
+        <TreeActions tree={found} />
+      </div>
+      {description !== null && <p>{description}</p>}
+      <p class="small quiet">
+        {nodes === 1 ? "1 node" : `${nodes} nodes`}
+        {scene !== null && <> · scene {scene}</>}
+        {found.built_in && <> · built in: copy it to change it</>}
+      </p>
+      <div class="tree-frame">
+        <DefinitionDrawing definition={found.definition} label={`Drawing of ${name}`} />
+      </div>
+      <details>
+        <summary>Its file</summary>
+        <pre class="tree-file" tabIndex={0} aria-label={`The file of ${name}`}>
+          {found.text}
+        </pre>
+      </details>
+    </article>
+  );
+}
+
+function TreeActions({ tree }: { tree: TreeView }) {
+  const [asking, setAsking] = useState(false);
+  const [mistake, setMistake] = useState("");
+  const remove = async () => {
+    setAsking(false);
+    try {
+      await rest.deleteTree(tree.name);
+      dropDraft(tree.name);
+      go("/trees");
+    } catch (error) {
+      setMistake((error as Error).message);
+    }
+  };
+  return (
+    <div class="page-actions">
+      {!tree.built_in && (
+        <button class="button danger" type="button" onClick={() => setAsking(true)}>
+          Delete
+        </button>
+      )}
+      <a class="button" href={`/edit/${tree.name}`}>
+        {tree.built_in ? "Copy and edit" : "Edit"}
+      </a>
+      <a class="button primary" href={`/start/${tree.name}`}>
+        Start a run
+      </a>
+      {mistake !== "" && (
+        <p class="mistake" role="alert">
+          {mistake}
+        </p>
+      )}
+      {asking && (
+        <Confirm
+          title={`Delete '${tree.name}'?`}
+          confirm="Delete"
+          cancel="Keep it"
+          onConfirm={() => void remove()}
+          onCancel={() => setAsking(false)}
+        >
+          The task tree goes from the library for everybody. Runs that were started with it go on.
+        </Confirm>
+      )}
+    </div>
+  );
+}
+
+function described({ name, definition }: TreeView) {
+  const { description, scene, nodes } = definition;
+  return {
+    name,
+    description: typeof description === "string" ? description : null,
+    scene: typeof scene === "string" ? scene : null,
+    nodes: Array.isArray(nodes) ? nodes.length : 0,
+  };
+}

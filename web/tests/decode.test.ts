@@ -1,0 +1,45 @@
+import { describe, expect, it } from "vitest";
+import { decodeFrame, decodeFrames } from "../src/run/scene/decode";
+import { frameBytes } from "./frame_bytes";
+
+describe("decodeFrame", () => {
+  it("reads every field where the service writes it", () => {
+    const frame = decodeFrame(
+      frameBytes({ time: 12.5, number: 7, joints: [0.25, -1.5], opening: 0.0625, objects: [{ x: 0.5, flags: 5 }] }),
+    );
+    expect(frame.time).toBe(12.5);
+    expect(frame.number).toBe(7);
+    expect([...frame.joints]).toEqual([0.25, -1.5]);
+    expect([...frame.base]).toEqual([0, 0, 0, 0, 0, 0, 1]);
+    expect([...frame.tool]).toEqual([0.5, -0.25, 0.75, 0, 0, 0, 1]);
+    expect(frame.opening).toBe(0.0625);
+    expect(frame.objects).toHaveLength(1);
+    expect(frame.objects[0]).toMatchObject({ held: true, gone: false, hidden: true });
+    expect(frame.objects[0]?.pose[0]).toBe(0.5);
+  });
+
+  it("refuses what is shorter or longer than it says", () => {
+    const bytes = frameBytes({ joints: [0], objects: [{}] });
+    expect(() => decodeFrame(bytes.slice(0, 40))).toThrow(RangeError);
+    expect(() => decodeFrame(bytes.slice(0, bytes.byteLength - 4))).toThrow("has 112 bytes, not 108");
+  });
+});
+
+describe("decodeFrames", () => {
+  it("reads frames at any offset, and leaves out a torn one", () => {
+    const one = new Uint8Array(frameBytes({ time: 1, joints: [1] }));
+    const two = new Uint8Array(frameBytes({ time: 2, joints: [] }));
+    const bytes = new Uint8Array(8 + one.length + two.length + 10);
+    const view = new DataView(bytes.buffer);
+    view.setUint32(0, one.length, true);
+    bytes.set(one, 4);
+    view.setUint32(4 + one.length, two.length, true);
+    bytes.set(two, 8 + one.length);
+    view.setUint32(8 + one.length + two.length, 76, true);
+    expect(decodeFrames(bytes.buffer).map((each) => each.time)).toEqual([1, 2]);
+  });
+
+  it("finds nothing in nothing", () => {
+    expect(decodeFrames(new ArrayBuffer(0))).toEqual([]);
+  });
+});

@@ -1,0 +1,17 @@
+import type { DialogueView, Event, NodeView, RunResult, RunStatus } from "../src/wire/types";
+
+/** What the service says of a run after one of its events. */
+export interface Said {
+  status: RunStatus;
+  result: RunResult | null;
+  nodes: NodeView[];
+  dialogues: Pick<DialogueView, "dialogue" | "node" | "awaiting" | "claimed_by">[];
+}
+
+/** A run's events, and as many states. */
+export interface FoldedRun {
+  events: Event[];
+  states: Said[];
+}
+
+export function foldedRuns(seeds: readonly string[]): FoldedRun[];

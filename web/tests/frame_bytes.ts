@@ -1,0 +1,31 @@
+// Frames of poses as the service would send them.
+interface Wanted {
+  time?: number;
+  number?: number;
+  joints?: number[];
+  opening?: number;
+  objects?: { x?: number; y?: number; yaw?: number; flags?: number }[];
+}
+
+export function frameBytes({ time = 0, number = 0, joints = [], opening = 0, objects = [] }: Wanted): ArrayBuffer {
+  const bytes = new ArrayBuffer(76 + 4 * joints.length + 32 * objects.length);
+  const view = new DataView(bytes);
+  view.setFloat64(0, time, true);
+  view.setUint32(8, number, true);
+  view.setUint16(12, joints.length, true);
+  view.setUint16(14, objects.length, true);
+  let at = 16;
+  const put = (...values: number[]) => {
+    for (const value of values) {
+      view.setFloat32(at, value, true);
+      at += 4;
+    }
+  };
+  put(...joints, 0, 0, 0, 0, 0, 0, 1, 0.5, -0.25, 0.75, 0, 0, 0, 1, opening);
+  for (const { x = 0, y = 0, yaw = 0, flags = 0 } of objects) {
+    put(x, y, 0.7, 0, 0, Math.sin(yaw / 2), Math.cos(yaw / 2));
+    view.setUint32(at, flags, true);
+    at += 4;
+  }
+  return bytes;
+}

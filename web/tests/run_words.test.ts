@@ -1,0 +1,35 @@
+import { describe, expect, it } from "vitest";
+import { ago, outcome } from "../src/run/run_words";
+import type { RunResult, RunSummary } from "../src/wire/types";
+
+const MINUTE = 60_000;
+
+describe("how long ago a run began", () => {
+  it.each([
+    [0, "just now"],
+    [-5000, "just now"],
+    [59_000, "just now"],
+    [MINUTE, "1 minute ago"],
+    [59 * MINUTE, "59 minutes ago"],
+    [60 * MINUTE, "1 hour ago"],
+    [24 * 60 * MINUTE, "yesterday"],
+    [72 * 60 * MINUTE, "3 days ago"],
+  ])("%d ms is %j", (past, words) => {
+    expect(ago(1e12 - past, 1e12)).toBe(words);
+  });
+});
+
+describe("what came of a run", () => {
+  const run = (result: RunResult | null) => ({ result }) as RunSummary;
+
+  it("is nothing while it goes on", () => {
+    expect(outcome(run(null))).toBe("");
+  });
+
+  it("names what is not at its place", () => {
+    const missing = [{ node: "/0", name: "a", object: "pink_bar", place: "left" }];
+    expect(outcome(run({ reason: "the task is done", node: null, missing }))).toBe(
+      "The task is done; not at its place at the end: pink_bar",
+    );
+  });
+});

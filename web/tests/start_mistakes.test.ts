@@ -1,0 +1,30 @@
+import { describe, expect, it } from "vitest";
+import { atTheirFields } from "../src/run/start_mistakes";
+
+describe("a refused start", () => {
+  it.each([
+    ["body.seed: Input should be greater than or equal to 0", "seed"],
+    ["body.max_attempts: Input should be a valid integer", "max_attempts"],
+    ["body.speed.float: Input should be greater than 0", "speed"],
+    ["body.robots.0: Input should be a valid string", "robots"],
+    ["there is no world 'moon'; there are 'tabletop'", "world"],
+    ["a run in the world 'live' needs 'robots': the ids of connected ones", "robots"],
+    ["the robot 'r1' is busy with run 7", "robots"],
+    ["no robot 'r1' is connected", "robots"],
+    ["scenario 'eket_paper' is for the tree 'eket', not 'tea_table'", "scenario"],
+    ["there is no scenario 'x'", "scenario"],
+    ["there is no tree 'x'", "tree"],
+    ["tree 'x' names no scene, and the world 'w' needs one", "tree"],
+    ["the journal cannot be written", "form"],
+    ["body.unknown: Extra inputs are not permitted", "form"],
+  ])("%j is said at %s", (sentence, field) => {
+    expect(Object.keys(atTheirFields([sentence]))).toEqual([field]);
+  });
+
+  it("says every mistake as a sentence", () => {
+    expect(atTheirFields(["body.seed: too small", "body.seed: not whole", "no room"])).toEqual({
+      seed: "Too small. Not whole.",
+      form: "No room.",
+    });
+  });
+});
