@@ -7,7 +7,7 @@ from pydantic import BaseModel, TypeAdapter
 from pydantic.json_schema import models_json_schema
 
 from robots.link import messages as link
-from server.api import helper_messages
+from server.api import helper_messages, speech_messages
 from server.api.problems import Problem
 from server.app import described_app
 from server.journal.events import AnyEvent
@@ -24,6 +24,8 @@ DIALECT = "https://json-schema.org/draft/2020-12/schema"
 SCHEMAS: dict[str, Any] = {
     "event": AnyEvent,
     "helper_message": helper_messages.ClientMessage,
+    "speech_client_message": speech_messages.SpeechClientMessage,
+    "speech_server_message": speech_messages.SpeechServerMessage,
     "robot_message": link.RobotMessage,
     "service_message": link.ServiceMessage,
     "run_request": RunRequest,
@@ -51,7 +53,7 @@ def json_schemas() -> dict[str, dict[str, Any]]:
 
 
 def asyncapi() -> dict[str, Any]:
-    """The two WebSockets as AsyncAPI 3, from the service's point of view."""
+    """The WebSockets as AsyncAPI 3, from the service's point of view."""
     to_helpers: Models = (
         helper_messages.SnapshotMessage,
         helper_messages.Result,
@@ -59,11 +61,14 @@ def asyncapi() -> dict[str, Any]:
         *_members(AnyEvent),
     )
     from_helpers = _members(helper_messages.ClientMessage)
+    to_microphones = _members(speech_messages.SpeechServerMessage)
+    from_microphones = _members(speech_messages.SpeechClientMessage)
     to_robots = _members(link.ServiceMessage)
     from_robots = _members(link.RobotMessage)
     # A robot's messages and the events share class names, so each socket has its own prefix.
     sockets: dict[str, Models] = {
         "helper": (*to_helpers, *from_helpers),
+        "speech": (*to_microphones, *from_microphones),
         "robot": (*to_robots, *from_robots),
     }
     schemas: dict[str, Any] = {}
@@ -74,7 +79,8 @@ def asyncapi() -> dict[str, Any]:
         "info": {
             "title": "Mend",
             "version": version("mend"),
-            "description": "The WebSockets of helpers and robots. All messages are JSON text.",
+            "description": "The WebSockets of helpers and robots. All messages are JSON text; "
+            "a microphone's sound is binary.",
         },
         "servers": {"local": {"host": "127.0.0.1:8080", "protocol": "ws"}},
         "channels": {
@@ -83,6 +89,13 @@ def asyncapi() -> dict[str, Any]:
                 "description": "A snapshot, then every event after it; answers and claims.",
                 "messages": _message_references("helper", sockets["helper"]),
                 "bindings": {"ws": {"query": HELPER_QUERY}},
+            },
+            "speech": {
+                "address": "/ws/speech",
+                "description": "A helper's microphone (binary: PCM16, mono, 16 kHz), and the "
+                "spoken conversations about questions.",
+                "messages": _message_references("speech", sockets["speech"]),
+                "bindings": {"ws": {"query": SPEECH_QUERY}},
             },
             "robot": {
                 "address": "/ws/robot",
@@ -93,6 +106,8 @@ def asyncapi() -> dict[str, Any]:
         "operations": {
             "sendToHelper": _operation("send", "helper", to_helpers),
             "receiveFromHelper": _operation("receive", "helper", from_helpers),
+            "sendToSpeech": _operation("send", "speech", to_microphones),
+            "receiveFromSpeech": _operation("receive", "speech", from_microphones),
             "sendToRobot": _operation("send", "robot", to_robots),
             "receiveFromRobot": _operation("receive", "robot", from_robots),
         },
@@ -112,11 +127,19 @@ def asyncapi() -> dict[str, Any]:
     }
 
 
+HELPER_NAME = {"type": "string", "minLength": 1, "maxLength": 64}
+
+SPEECH_QUERY = {
+    "type": "object",
+    "required": ["helper"],
+    "properties": {"helper": HELPER_NAME},
+}
+
 HELPER_QUERY = {
     "type": "object",
     "required": ["helper"],
     "properties": {
-        "helper": {"type": "string", "minLength": 1, "maxLength": 64},
+        "helper": HELPER_NAME,
         "after": {"type": "integer", "minimum": 0, "description": "The last event seen."},
     },
 }

@@ -105,7 +105,7 @@ AMBIGUOUS: tuple[str, ...] = (
     "nothing", "knowing", "known", "now", "new", "snow", "show", "so", "nose", "note", "yellow",
     "yet", "guess", "less", "dress", "mess", "chess", "us", "ask", "step", "stopped", "stopping",
     "helped", "held", "helping", "he", "shop", "top", "start", "short", "shore", "share", "shirt",
-    "repeated", "report", "oh", "ah", "year", "ear", "go", "going", "go on", "i can hear you",
+    "report", "oh", "ah", "year", "ear", "go", "going", "go on", "i can hear you",
     "i say", "they say", "he said", "she said", "do you",
 )  # fmt: skip
 """Phrases that are near to a command in sound or words, and must not be taken for one."""

@@ -53,11 +53,11 @@ MORE_PRONUNCIATIONS: Mapping[str, tuple[str, ...]] = {
 class Weights:
     """How probable commands are against everything else; set by `benchmarks/speech.py`."""
 
-    command: float = 0.5
+    command: float = 0.98
     """Of an utterance that is the shortest of phrases."""
     per_word: float = 0.15
     """Less probable by this for each further word of a phrase, whose sounds say more already."""
-    decoy: float = 0.5
+    decoy: float = 0.05
     competitors: int = 1000
     end: float = 0.3
     """That an utterance ends after a competing word."""

@@ -8,6 +8,7 @@ from tempfile import TemporaryDirectory
 from typing import Protocol
 
 import numpy as np
+import numpy.typing as npt
 import pocketsphinx
 
 from server.speech.commands import Command
@@ -24,6 +25,23 @@ LEAD_S = 0.4
 
 LONGEST_UTTERANCE_S = 5.0
 """Longer than any phrase: what is cut off here is no command."""
+
+
+Cepstrum = npt.NDArray[np.float64]
+
+USUAL_MEAN: Cepstrum = np.array(
+    [46.0, -3.0, 9.0, 12.0, 1.0, 0.5, 3.0, -6.0, -5.0, -5.0, 5.0, 1.3, 1.8]
+)
+"""The mean of the cepstra over the voices that the language model's weights were set with."""
+
+USUAL_WEIGHT = 100.0
+"""In frames: an utterance of a second counts as much."""
+
+PRIOR_FRAMES = 500.0
+"""How many frames the mean that PocketSphinx is given counts for."""
+
+CEPSTRUM_BYTES = 320
+"""Of sound, from one frame of cepstra to the next (10 ms)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,16 +154,45 @@ class SphinxDecoder:
                 loglevel="FATAL",
             )
 
+        self._sound = bytearray()
+
     def start(self) -> None:
-        self._decoder.start_utt()
+        self._sound.clear()
 
     def decode(self, pcm: bytes) -> None:
-        self._decoder.process_raw(pcm)
+        # Decoded as a whole in `finish`: the mean has to be known before the search begins.
+        self._sound += pcm
 
     def finish(self) -> str:
-        self._decoder.end_utt()
+        sound = bytes(self._sound)
+        self._decoder.set_cmn(_text_of(self._mean_of(sound)))
+        self._pass_over(sound, no_search=False)
         found = self._decoder.hyp()
         return str(found.hypstr) if found is not None else ""
+
+    def _mean_of(self, sound: bytes) -> Cepstrum:
+        """The mean of this utterance's cepstra, drawn towards the usual one while it is short.
+
+        The decoder's own estimate moves so slowly that the first answers in a conversation, which
+        are mostly the only ones, would be matched against a stranger's microphone.
+        """
+        self._decoder.set_cmn(_text_of(USUAL_MEAN))
+        self._pass_over(sound, no_search=True)
+        blended = np.array([float(each) for each in self._decoder.get_cmn(False).split(",")])
+        frames = max(1.0, len(sound) / CEPSTRUM_BYTES)
+        own = blended + (blended - USUAL_MEAN) * (PRIOR_FRAMES / frames)
+        mean: Cepstrum = (USUAL_MEAN * USUAL_WEIGHT + own * frames) / (USUAL_WEIGHT + frames)
+        return mean
+
+    def _pass_over(self, sound: bytes, *, no_search: bool) -> None:
+        self._decoder.start_utt()
+        for start in range(0, len(sound), FRAME_BYTES):
+            self._decoder.process_raw(sound[start : start + FRAME_BYTES], no_search=no_search)
+        self._decoder.end_utt()
+
+
+def _text_of(mean: Cepstrum) -> str:
+    return ",".join(f"{each:.3f}" for each in mean)
 
 
 class _Noise:

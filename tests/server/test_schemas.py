@@ -58,8 +58,10 @@ def test_asyncapi_names_every_message_by_its_type() -> None:
     assert names["helper.SnapshotMessage"] == "snapshot"
     assert names["helper.Answer"] == "answer"
     assert names["helper.StepStarted"] == "step_started"
+    assert names["speech.HeardMessage"] == "heard"
+    assert names["speech.Listen"] == "listen"
     assert names["robot.Hello"] == "hello"
-    assert set(document["channels"]) == {"helper", "robot"}
+    assert set(document["channels"]) == {"helper", "robot", "speech"}
     for operation in document["operations"].values():
         channel = resolve(document, operation["channel"]["$ref"])
         for message in operation["messages"]:
