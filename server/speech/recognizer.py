@@ -69,11 +69,7 @@ Heard = SpeechBegan | Utterance
 class Decoder(Protocol):
     """What turns the sound of one utterance into words."""
 
-    def start(self) -> None: ...
-
-    def decode(self, pcm: bytes) -> None: ...
-
-    def finish(self) -> str:
+    def decode(self, sound: bytes) -> str:
         """The words; phrases of commands are one word each."""
         ...
 
@@ -87,7 +83,7 @@ class Recognizer:
         self._rest = b""
         self._lead: deque[bytes] = deque(maxlen=round(LEAD_S / FRAME_S))
         self._endpointer = Endpointer()
-        self._frames = 0
+        self._utterance: list[bytes] = []
 
     def feed(self, pcm: bytes) -> Iterator[Heard]:
         """Take sound (PCM16, mono, 16 kHz) in pieces of any size."""
@@ -99,8 +95,7 @@ class Recognizer:
 
     def interrupt(self) -> None:
         """Forget an utterance that was going on: what comes next does not follow it."""
-        if self._frames:
-            self._finish()
+        self._utterance = []
         self._rest = b""
         self._lead.clear()
         self._endpointer.interrupt()
@@ -108,33 +103,25 @@ class Recognizer:
     def _take(self, frame: bytes) -> Iterator[Heard]:
         edge = self._endpointer.take(frame)
         if edge is Edge.BEGAN:
-            self._decoder.start()
-            self._decode(b"".join([*self._lead, frame]))
+            self._utterance = [*self._lead]
             yield SpeechBegan()
-            return
         self._lead.append(frame)
-        if not self._frames:
+        if not self._utterance:
             return
-        self._decode(frame)
+        self._utterance.append(frame)
         if edge is Edge.ENDED:
-            yield self._utterance(self._finish())
-        elif self._frames * FRAME_S > LONGEST_UTTERANCE_S:
-            self._finish()
+            yield self._ended()
+        elif len(self._utterance) * FRAME_S > LONGEST_UTTERANCE_S:
+            self._utterance = []
             self._endpointer.interrupt()
             yield Utterance(None, None, words=True, hangover_s=0.0)
 
-    def _decode(self, pcm: bytes) -> None:
-        self._frames += len(pcm) // FRAME_BYTES
-        self._decoder.decode(pcm)
-
-    def _finish(self) -> str:
-        self._frames = 0
-        return self._decoder.finish()
-
-    def _utterance(self, hypothesis: str) -> Utterance:
+    def _ended(self) -> Utterance:
+        hangover_s = self._endpointer.quiet_frames * FRAME_S
+        sound, self._utterance = b"".join(self._utterance), []
+        hypothesis = self._decoder.decode(sound)
         found = command_in(hypothesis)
         command, phrase = found if found is not None else (None, None)
-        hangover_s = self._endpointer.quiet_frames * FRAME_S
         return Utterance(command, phrase, bool(hypothesis), hangover_s)
 
 
@@ -154,17 +141,8 @@ class SphinxDecoder:
                 loglevel="FATAL",
             )
 
-        self._sound = bytearray()
-
-    def start(self) -> None:
-        self._sound.clear()
-
-    def decode(self, pcm: bytes) -> None:
-        # Decoded as a whole in `finish`: the mean has to be known before the search begins.
-        self._sound += pcm
-
-    def finish(self) -> str:
-        sound = bytes(self._sound)
+    def decode(self, sound: bytes) -> str:
+        # As a whole, not as it comes: the mean has to be known before the search begins.
         self._decoder.set_cmn(_text_of(self._mean_of(sound)))
         self._pass_over(sound, no_search=False)
         found = self._decoder.hyp()
