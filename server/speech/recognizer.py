@@ -149,7 +149,7 @@ class SphinxDecoder:
                 hmm=str(model / "en-us"),
                 dict=str(dictionary),
                 lm=str(language_model),
-                # The second search over the words found changes no answer, and takes a third longer.
+                # A second search changes no answer, and takes a third of the time.
                 fwdflat=False,
                 loglevel="FATAL",
             )
