@@ -9,6 +9,8 @@ import httpx
 from pydantic import TypeAdapter, ValidationError
 
 from server.api.problems import Problem, problem
+from server.api.speech import SpeechView
+from server.client_speech import SpeechStream
 from server.client_stream import EventStream
 from server.journal.events import (
     Answered,
@@ -178,6 +180,20 @@ class MendClient:
 
     async def robots(self) -> list[RobotView]:
         return await self._get("/api/robots", list[RobotView])
+
+    # --- speech -------------------------------------------------------------------------------
+
+    async def speech(self) -> SpeechView:
+        """What the service can say and hear."""
+        return await self._get("/api/speech", SpeechView)
+
+    async def sound(self, address: str) -> bytes:
+        """What a `say` message names, as a WAV file."""
+        return (await self._request("GET", address)).content
+
+    def talk(self, helper: str) -> SpeechStream:
+        """A microphone, to answer questions by voice."""
+        return SpeechStream(self._url, self._headers, helper)
 
     # --- events as they come ------------------------------------------------------------------
 

@@ -1,8 +1,5 @@
 """The wire, described for machines: OpenAPI, AsyncAPI and JSON Schema, as dicts."""
 
-import json
-import re
-from collections.abc import Mapping
 from importlib.metadata import version
 from typing import Any, get_args
 
@@ -29,6 +26,8 @@ DIALECT = "https://json-schema.org/draft/2020-12/schema"
 SCHEMAS: dict[str, Any] = {
     "event": AnyEvent,
     "helper_message": helper_messages.ClientMessage,
+    "speech_client_message": speech_messages.SpeechClientMessage,
+    "speech_server_message": speech_messages.SpeechServerMessage,
     "robot_message": link.RobotMessage,
     "service_message": link.ServiceMessage,
     "run_request": RunRequest,
@@ -61,13 +60,16 @@ def json_schemas() -> dict[str, dict[str, Any]]:
 def asyncapi() -> dict[str, Any]:
     """The WebSockets as AsyncAPI 3, from the service's point of view."""
     to_helpers = TO_HELPERS
-    from_helpers = _members(helper_messages.ClientMessage)
-    to_robots = _members(link.ServiceMessage)
-    from_robots = _members(link.RobotMessage)
+    from_helpers = members_of(helper_messages.ClientMessage)
+    to_microphones = members_of(speech_messages.SpeechServerMessage)
+    from_microphones = members_of(speech_messages.SpeechClientMessage)
+    to_robots = members_of(link.ServiceMessage)
+    from_robots = members_of(link.RobotMessage)
     # A robot's messages and the events share class names, so each socket has its own prefix.
     sockets: dict[str, Models] = {
         "helper": (*to_helpers, *from_helpers),
         "live": (Layout, helper_messages.Error, helper_messages.Auth),
+        "speech": (*to_microphones, *from_microphones),
         "robot": (*to_robots, *from_robots),
     }
     schemas: dict[str, Any] = {}
@@ -79,7 +81,7 @@ def asyncapi() -> dict[str, Any]:
             "title": "Mend",
             "version": version("mend"),
             "description": "The WebSockets of helpers and robots. All messages are JSON text, "
-            "but for the poses of a run that is watched.",
+            "but for the poses of a run that is watched and a microphone's sound.",
         },
         "servers": {"local": {"host": "127.0.0.1:8080", "protocol": "ws"}},
         "channels": {
@@ -99,6 +101,13 @@ def asyncapi() -> dict[str, Any]:
                 },
                 "bindings": {"ws": {"query": LIVE_QUERY}},
             },
+            "speech": {
+                "address": "/ws/speech",
+                "description": "A helper's microphone (binary: PCM16, mono, 16 kHz), and the "
+                "spoken conversations about questions.",
+                "messages": _message_references("speech", sockets["speech"]),
+                "bindings": {"ws": {"query": SPEECH_QUERY}},
+            },
             "robot": {
                 "address": "/ws/robot",
                 "description": "Commands to a robot, and what it reports.",
@@ -112,6 +121,8 @@ def asyncapi() -> dict[str, Any]:
                 "send", "live", (Layout, helper_messages.Error), more=("Frame",)
             ),
             "receiveFromWatcher": _operation("receive", "live", (helper_messages.Auth,)),
+            "sendToSpeech": _operation("send", "speech", to_microphones),
+            "receiveFromSpeech": _operation("receive", "speech", from_microphones),
             "sendToRobot": _operation("send", "robot", to_robots),
             "receiveFromRobot": _operation("receive", "robot", from_robots),
         },
@@ -132,77 +143,19 @@ def asyncapi() -> dict[str, Any]:
     }
 
 
-def console() -> dict[str, Any]:
-    """All that goes between the service and the console, as one JSON Schema of definitions."""
-    rest = openapi()
-    definitions = dict(rest["components"]["schemas"])
-    for name, schema in asyncapi()["components"]["schemas"].items():
-        prefix, _, model = name.partition(".")
-        if prefix == "helper":
-            definitions[model] = schema
-    to_speakers = speech_messages.SPEECH_SERVER_MESSAGES
-    from_speakers = _members(speech_messages.SpeechClientMessage)
-    for name, schema in _component_schemas("speech", (*to_speakers, *from_speakers)).items():
-        definitions[name.removeprefix("speech.")] = schema
-    definitions["Event"] = _one_of(_members(AnyEvent))
-    definitions["FromHelper"] = _one_of(_members(helper_messages.ClientMessage))
-    definitions["ToHelper"] = _one_of(TO_HELPERS)
-    definitions["FromSpeaker"] = _one_of(from_speakers)
-    definitions["ToSpeaker"] = _one_of(to_speakers)
-    bodies = [
-        operation["requestBody"]
-        for methods in rest["paths"].values()
-        for operation in methods.values()
-        if "requestBody" in operation
-    ]
-    received = _reachable(
-        [definitions["FromHelper"], definitions["FromSpeaker"], bodies], definitions
-    )
-    for name in definitions.keys() - received:
-        _require_all_fields(definitions[name])
-    described = json.dumps({"$schema": DIALECT, "$defs": definitions})
-    rooted = REFERENCE.sub('"#/$defs/', described)
-    untitled: dict[str, Any] = json.loads(rooted, object_hook=_without_title)
-    return untitled
+HELPER_NAME = {"type": "string", "minLength": 1, "maxLength": 64}
 
-
-REFERENCE = re.compile(r'"#/(?:components/schemas|[$]defs)/(?:helper\.|speech\.)?')
-
-
-def _reachable(roots: Any, definitions: Mapping[str, Any]) -> set[str]:
-    """The names of all definitions that `roots` refer to, directly or through others."""
-    found: set[str] = set()
-    waiting = [json.dumps(roots)]
-    while waiting:
-        for name in re.findall(REFERENCE.pattern + r'(\w+)"', waiting.pop()):
-            if name not in found:
-                found.add(name)
-                waiting.append(json.dumps(definitions[name]))
-    return found
-
-
-def _require_all_fields(schema: dict[str, Any]) -> None:
-    """What the service sends has every field, also those that have a default."""
-    if "properties" in schema:
-        schema["required"] = list(schema["properties"])
-
-
-def _one_of(models: Models) -> dict[str, Any]:
-    return {"oneOf": [{"$ref": f"#/$defs/{model.__name__}"} for model in models]}
-
-
-def _without_title(schema: dict[str, Any]) -> dict[str, Any]:
-    """A schema without the titles that would give each field a type of its own."""
-    if isinstance(schema.get("title"), str):
-        schema.pop("title")
-    return schema
-
+SPEECH_QUERY = {
+    "type": "object",
+    "required": ["helper"],
+    "properties": {"helper": HELPER_NAME},
+}
 
 HELPER_QUERY = {
     "type": "object",
     "required": ["helper"],
     "properties": {
-        "helper": {"type": "string", "minLength": 1, "maxLength": 64},
+        "helper": HELPER_NAME,
         "after": {"type": "integer", "minimum": 0, "description": "The last event seen."},
     },
 }
@@ -213,7 +166,7 @@ LIVE_QUERY = {
     "required": ["run", "helper"],
     "properties": {
         "run": {"type": "string", "format": "uuid"},
-        "helper": {"type": "string", "minLength": 1, "maxLength": 64},
+        "helper": HELPER_NAME,
     },
 }
 
@@ -231,7 +184,7 @@ FRAME = {
 }
 
 
-def _members(union: Any) -> Models:
+def members_of(union: Any) -> Models:
     """The models of a discriminated union."""
     models: Models = get_args(get_args(union)[0])
     return models
@@ -241,7 +194,7 @@ TO_HELPERS: Models = (
     helper_messages.SnapshotMessage,
     helper_messages.Result,
     helper_messages.Error,
-    *_members(AnyEvent),
+    *members_of(AnyEvent),
 )
 
 

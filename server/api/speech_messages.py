@@ -3,7 +3,7 @@
 from typing import Annotated, Literal
 from uuid import UUID
 
-from pydantic import BaseModel, Field, TypeAdapter
+from pydantic import Field, TypeAdapter
 
 from server.api.helper_messages import Auth, HelperMessage, ServerMessage
 from server.speech.commands import Command
@@ -91,21 +91,8 @@ class SpeechError(ServerMessage):
     errors: list[str] | None = None
 
 
-SPEECH_SERVER_MESSAGES: tuple[type[BaseModel], ...] = (
-    Say,
-    Listening,
-    Hearing,
-    HeardMessage,
-    GaveUp,
-    Ended,
-    SpeechError,
-)
+AnySpeechServerMessage = Say | Listening | Hearing | HeardMessage | GaveUp | Ended | SpeechError
 
-SpeechServerMessage = Annotated[
-    Say | Listening | Hearing | HeardMessage | GaveUp | Ended | SpeechError,
-    Field(discriminator="type"),
-]
+SpeechServerMessage = Annotated[AnySpeechServerMessage, Field(discriminator="type")]
 
-speech_server_message: TypeAdapter[
-    Say | Listening | Hearing | HeardMessage | GaveUp | Ended | SpeechError
-] = TypeAdapter(SpeechServerMessage)
+speech_server_message: TypeAdapter[AnySpeechServerMessage] = TypeAdapter(SpeechServerMessage)

@@ -15,6 +15,7 @@ from server.cli.run import run
 from server.cli.scenarios import scenarios
 from server.cli.schema import schema
 from server.cli.serve import serve
+from server.cli.talk import talk
 from server.cli.train_colors import train_colors
 from server.cli.trees import trees
 
@@ -50,6 +51,7 @@ def common_options(
 COMMANDS: dict[str, tuple[Callable[..., None], str]] = {
     "run": (run, "Run a task tree and print what happens."),
     "serve": (serve, "Serve the API, the helper console, the robots."),
+    "talk": (talk, "Answer a robot by voice, from a terminal."),
     "check": (check, "Find the mistakes of a file."),
     "trees": (trees, "List the task trees that there are."),
     "scenarios": (scenarios, "List the scenarios that there are."),

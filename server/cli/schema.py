@@ -56,7 +56,7 @@ def _asyncapi() -> dict[str, Any]:
 
 
 def _console() -> dict[str, Any]:
-    from server.schemas import console
+    from server.console_schema import console
 
     return console()
 

@@ -24,7 +24,7 @@ MORE_PRONUNCIATIONS: Mapping[str, tuple[str, ...]] = {
     "yes": ("Y IH S", "Y EH S S", "Y AE S"),
     "yeah": ("Y EH AH", "Y EH", "Y AA"),
     "yep": ("Y AE P",),
-    "no": ("N AO", "N AH W", "N OW W"),
+    "no": ("N AO", "N AH W", "N UH"),
     "nope": ("N AO P",),
     "nah": ("N AA", "N AE"),
     "sure": ("SH AO R", "SH ER", "SH AO"),
@@ -32,8 +32,11 @@ MORE_PRONUNCIATIONS: Mapping[str, tuple[str, ...]] = {
     "don't": ("D OW N", "D AO N T"),
     "can't": ("K AA N T",),
     "stop": ("S T AO P", "S T AA B", "S T AA"),
-    "help": ("HH EH P", "HH AE L P", "EH L P"),
+    "help": ("HH EH P", "HH AE L P", "EH L P", "HH EH W P"),
     "please": ("P L IY S",),
+    "thanks": ("TH AA NG K S", "F AE NG K S"),
+    "thank": ("TH AA NG K", "F AE NG K"),
+    "that": ("DH AA T",),
     "pardon": ("P AA D AH N",),
     "repeat": ("R IH P IY",),
     "what": ("W AO T",),
@@ -53,11 +56,11 @@ MORE_PRONUNCIATIONS: Mapping[str, tuple[str, ...]] = {
 class Weights:
     """How probable commands are against everything else; set by `benchmarks/speech.py`."""
 
-    command: float = 0.5
+    command: float = 0.98
     """Of an utterance that is the shortest of phrases."""
     per_word: float = 0.15
     """Less probable by this for each further word of a phrase, whose sounds say more already."""
-    decoy: float = 0.5
+    decoy: float = 0.05
     competitors: int = 1000
     end: float = 0.3
     """That an utterance ends after a competing word."""

@@ -74,10 +74,10 @@ class SpokenTexts:
 
 async def render_prompts(texts: SpokenTexts, journal: Journal) -> None:
     """Render every prompt when it is published, until the journal closes."""
-    await _render_all(texts, FIXED.values())
     while True:
         with journal.subscribe(journal.head) as subscription:
             try:
+                await _render_all(texts, FIXED.values())
                 async for record in subscription:
                     if '"type":"prompt"' in record.text:
                         await _render_prompt(texts, record.text)

@@ -86,11 +86,19 @@ class ToneVoice:
     rendered: list[str] = field(default_factory=list)
     engine: str = "tone"
     broken: bool = False
+    _changed: asyncio.Condition = field(default_factory=asyncio.Condition)
+
+    async def has_rendered(self, count: int) -> None:
+        """Wait until it has rendered so many texts."""
+        async with self._changed:
+            await self._changed.wait_for(lambda: len(self.rendered) >= count)
 
     async def render(self, text: str) -> bytes:
         if self.broken:
             raise VoiceError("tone failed")
         self.rendered.append(text)
+        async with self._changed:
+            self._changed.notify_all()
         written = io.BytesIO()
         with wave.open(written, "wb") as sound:
             sound.setnchannels(1)

@@ -140,7 +140,7 @@ async def test_noise_is_no_answer(
 
 
 async def test_it_ends_when_somebody_else_answers(
-    service: ServiceUnderTest, ears: ScriptedEars, question: DialogueView
+    service: ServiceUnderTest, question: DialogueView
 ) -> None:
     assert question.prompt is not None
     async with microphone(service) as socket:
@@ -175,7 +175,7 @@ async def test_a_recognizer_that_fails_is_said_to_be_lost(
         assert await receive(socket) == {"type": "ended", "reason": "lost"}
 
 
-async def test_one_conversation_too_many_is_refused(question: DialogueView) -> None:
+async def test_one_conversation_too_many_is_refused() -> None:
     abilities = SpeechAbilities(NoVoice("no voice here"), ScriptedEars(at_once=1))
     async with serving(abilities) as service:
         run = await service.runs.start_run(REQUEST)

@@ -60,8 +60,10 @@ def test_asyncapi_names_every_message_by_its_type() -> None:
     assert names["helper.StepStarted"] == "step_started"
     assert names["live.Layout"] == "layout"
     assert names["live.Frame"] == "frame"
+    assert names["speech.HeardMessage"] == "heard"
+    assert names["speech.Listen"] == "listen"
     assert names["robot.Hello"] == "hello"
-    assert set(document["channels"]) == {"helper", "live", "robot"}
+    assert set(document["channels"]) == {"helper", "live", "robot", "speech"}
     for operation in document["operations"].values():
         channel = resolve(document, operation["channel"]["$ref"])
         for message in operation["messages"]:

@@ -133,13 +133,11 @@ async def test_a_prompt_is_rendered_when_it_is_published(
     texts = service.app.state.parts.speech.texts
     rendering = asyncio.create_task(render_prompts(texts, service.journal))
     run = await service.runs.start_run(RunRequest(tree="eket", world="tabletop", speed="max"))
-    while not service.journal.subscribers:
-        await asyncio.sleep(0)
-    view = await service.runs.raise_issue(run.id)
-    assert view.prompt is not None
     async with asyncio.timeout(10):
-        while len(voice.rendered) < len(FIXED) + 2:
-            await asyncio.sleep(0)
+        await voice.has_rendered(len(FIXED))
+        view = await service.runs.raise_issue(run.id)
+        await voice.has_rendered(len(FIXED) + 2)
+    assert view.prompt is not None
     assert voice.rendered[len(FIXED)] == view.prompt.text
     rendering.cancel()
     await asyncio.gather(rendering, return_exceptions=True)

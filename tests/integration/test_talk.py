@@ -1,0 +1,113 @@
+"""A spoken helper against a service: it hears, is heard, and its answer goes the usual way."""
+
+import asyncio
+import shutil
+from collections.abc import AsyncIterator
+
+import pytest
+from scripted_ears import ToneVoice
+from service_under_test import ServiceUnderTest, serving
+from wav_device import WavDevice
+
+from server.cli.spoken_helper import SpokenHelper
+from server.client import MendClient
+from server.journal.events import Answered, DialogueClosed, RunPaused
+from server.runtime.requests import RunRequest
+from server.speech.abilities import SpeechAbilities
+from server.speech.ear import NoEars, ProcessEars, choose_ears
+from server.speech.rendering import SpokenTexts
+from server.speech.voice import CommandVoice, choose_voice
+
+REQUEST = RunRequest(tree="eket", world="tabletop", speed="max")
+
+
+@pytest.fixture
+def voice() -> CommandVoice:
+    """A person: flite's voice."""
+    if shutil.which("flite") is None:
+        pytest.skip("flite is not installed, and nobody else can speak here")
+    person = choose_voice("flite", flite_voice="slt", piper_model=None)
+    assert isinstance(person, CommandVoice)
+    return person
+
+
+@pytest.fixture
+async def service() -> AsyncIterator[ServiceUnderTest]:
+    ears = choose_ears(True, 2)
+    if isinstance(ears, NoEars):
+        pytest.skip(ears.why_not)
+    async with serving(SpeechAbilities(SpokenTexts(ToneVoice()), ears)) as service:
+        yield service
+
+
+async def help_by_voice(
+    service: ServiceUnderTest, device: WavDevice, wanted: type
+) -> tuple[object, list[str]]:
+    """Ask a question, have a helper say something to it, and return the event that follows."""
+    told: list[str] = []
+    run = await service.runs.start_run(REQUEST)
+    async with MendClient(service.url) as client, asyncio.timeout(60):
+        helping = asyncio.create_task(SpokenHelper(client, "anna", device, told.append).run())
+        await service.runs.raise_issue(run.id)
+        async with client.follow("watcher", after=0) as events:
+            async for event in events:
+                if isinstance(event, wanted):
+                    break
+        helping.cancel()
+        await asyncio.gather(helping, return_exceptions=True)
+    return event, told
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("says", "answer"), [("yes please", "yes"), ("no thank you", "no")])
+async def test_a_spoken_answer_is_an_answer(
+    service: ServiceUnderTest, voice: CommandVoice, says: str, answer: str
+) -> None:
+    device = WavDevice(await voice.render(says))
+    event, told = await help_by_voice(service, device, Answered)
+    assert isinstance(event, Answered)
+    assert (event.answer, event.helper) == (answer, "anna")
+    assert "I dropped the pink bar. Shall I pick it up again?" in told
+    assert f'You: "{says}"' in told
+    assert device.played[0].startswith(b"RIFF")
+
+
+@pytest.mark.slow
+async def test_a_spoken_stop_pauses_the_run(service: ServiceUnderTest, voice: CommandVoice) -> None:
+    device = WavDevice(await voice.render("stop the robot"))
+    event, _ = await help_by_voice(service, device, RunPaused)
+    assert isinstance(event, RunPaused)
+
+
+async def test_a_service_without_speech_is_read_instead() -> None:
+    told: list[str] = []
+    async with serving() as service, MendClient(service.url) as client, asyncio.timeout(20):
+        helping = asyncio.create_task(
+            SpokenHelper(
+                client, "anna", WavDevice(await ToneVoice().render("-")), told.append
+            ).run()
+        )
+        run = await service.runs.start_run(REQUEST)
+        view = await service.runs.raise_issue(run.id)
+        assert view.prompt is not None
+        await client.answer(view.dialogue, view.prompt.prompt, "yes", "ben")
+        async with client.follow("watcher", after=0) as events:
+            async for event in events:
+                if isinstance(event, DialogueClosed):
+                    break
+        helping.cancel()
+        await asyncio.gather(helping, return_exceptions=True)
+    assert told[0].startswith("The service has no voice")
+    assert told[1].startswith("The service hears nothing")
+
+
+@pytest.mark.slow
+async def test_there_is_room_for_so_many_ears_and_no_more() -> None:
+    if isinstance(choose_ears(True, 1), NoEars):
+        pytest.skip("pocketsphinx is not installed")
+    ears = ProcessEars(1)
+    ear = await ears.open()
+    with pytest.raises(Exception, match="1 spoken conversations are going on already"):
+        await ears.open()
+    await ear.close()
+    ears.check_room()

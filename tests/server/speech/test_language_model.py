@@ -1,0 +1,61 @@
+"""The dictionary and language model: whole, sound, and never in doubt about a phrase's command."""
+
+from collections import Counter
+from pathlib import Path
+
+import pytest
+
+from server.speech.commands import AMBIGUOUS, PHRASES, Command, phrase_commands
+from server.speech.language_model import Weights, command_in, write_language_model
+
+WORDS = sorted({word for each in (*phrase_commands(), *AMBIGUOUS) for word in each.split()})
+
+
+@pytest.fixture
+def files(tmp_path: Path) -> tuple[list[str], list[str]]:
+    """The lines of a dictionary and a language model; how the words sound does not matter."""
+    dictionary = tmp_path / "words.dict"
+    common = Path(write_language_model.__code__.co_filename).with_name("common_words.txt")
+    words = {*WORDS, *(line.split()[0] for line in common.read_text().splitlines())}
+    dictionary.write_text("".join(f"{word} AH\n{word}(2) EH\n" for word in sorted(words)))
+    written = write_language_model(tmp_path, dictionary, Weights(competitors=50))
+    first, second = (path.read_text().splitlines() for path in written)
+    return first, second
+
+
+def test_no_phrase_means_two_things() -> None:
+    phrases = [phrase for each in PHRASES.values() for phrase in each]
+    assert Counter([*phrases, *AMBIGUOUS]).most_common(1)[0][1] == 1
+
+
+def test_every_phrase_is_one_word_of_the_dictionary(files: tuple[list[str], list[str]]) -> None:
+    words = [line.split()[0] for line in files[0]]
+    assert len(set(words)) == len(words)
+    assert {"c_" + phrase.replace(" ", "_") for phrase in phrase_commands()} <= set(words)
+    assert {"x_" + phrase.replace(" ", "_") for phrase in AMBIGUOUS} <= set(words)
+
+
+def test_the_model_has_as_many_ngrams_as_it_says(files: tuple[list[str], list[str]]) -> None:
+    lines = files[1]
+    first, second = lines.index("\\1-grams:"), lines.index("\\2-grams:")
+    assert f"ngram 1={second - first - 2}" in lines
+    assert f"ngram 2={lines.index(chr(92) + 'end' + chr(92)) - second - 2}" in lines
+
+
+@pytest.mark.parametrize(
+    ("hypothesis", "heard"),
+    [
+        ("c_yes_please", (Command.YES, "yes please")),
+        ("c_yes_please(3)", (Command.YES, "yes please")),
+        ("c_no c_no_thanks", (Command.NO, "no no thanks")),
+        ("c_yes c_no", None),
+        ("c_yes the", None),
+        ("x_maybe", None),
+        ("the weather", None),
+        ("", None),
+    ],
+)
+def test_only_a_whole_utterance_of_one_command_counts(
+    hypothesis: str, heard: tuple[Command, str] | None
+) -> None:
+    assert command_in(hypothesis) == heard

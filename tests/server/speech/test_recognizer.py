@@ -1,0 +1,103 @@
+"""The recognizer around a decoder that is told what it hears."""
+
+import numpy as np
+import pytest
+
+pytest.importorskip("pocketsphinx", reason="pocketsphinx is not installed")
+
+from server.speech.commands import Command
+from server.speech.endpointing import SAMPLE_RATE_HZ
+from server.speech.recognizer import (
+    FRAME_BYTES,
+    LEAD_S,
+    Heard,
+    Recognizer,
+    SpeechBegan,
+    Utterance,
+)
+
+
+class ToldDecoder:
+    """Implements `server.speech.recognizer.Decoder`."""
+
+    def __init__(self, hears: str) -> None:
+        self.hears = hears
+        self.sound = b""
+
+    def decode(self, sound: bytes) -> str:
+        self.sound = sound
+        return self.hears
+
+
+def noise(duration_s: float, level: float) -> bytes:
+    samples = np.random.default_rng(0).normal(0, level, round(duration_s * SAMPLE_RATE_HZ))
+    return samples.astype(np.int16).tobytes()
+
+
+def silence(duration_s: float) -> bytes:
+    return bytes(round(duration_s * SAMPLE_RATE_HZ) * 2)
+
+
+def word(duration_s: float = 0.5) -> bytes:
+    return silence(1.0) + noise(duration_s, 3000) + silence(0.5)
+
+
+def heard(recognizer: Recognizer, sound: bytes, piece: int = FRAME_BYTES) -> list[Heard]:
+    return [
+        each
+        for start in range(0, len(sound), piece)
+        for each in recognizer.feed(sound[start : start + piece])
+    ]
+
+
+def test_an_utterance_is_told_when_it_begins_and_when_it_has_ended() -> None:
+    began, utterance = heard(Recognizer(ToldDecoder("c_yes_please")), word())
+    assert began == SpeechBegan()
+    assert isinstance(utterance, Utterance)
+    assert (utterance.command, utterance.phrase) == (Command.YES, "yes please")
+    assert utterance.hangover_s == pytest.approx(0.3, abs=0.05)
+
+
+@pytest.mark.parametrize("piece", [2, 320, 1000, 10**6])
+def test_sound_may_come_in_pieces_of_any_size(piece: int) -> None:
+    assert heard(Recognizer(ToldDecoder("c_no")), word(), piece) == heard(
+        Recognizer(ToldDecoder("c_no")), word()
+    )
+
+
+def test_the_weak_beginning_of_a_word_is_decoded_too() -> None:
+    decoder = ToldDecoder("c_yes")
+    heard(Recognizer(decoder), word())
+    before_and_after_s = len(decoder.sound) / 2 / SAMPLE_RATE_HZ - 0.5
+    assert before_and_after_s > LEAD_S / 2 + 0.1
+
+
+def test_what_is_longer_than_any_phrase_is_no_command() -> None:
+    decoder = ToldDecoder("c_yes")
+    chopped = b"".join(noise(0.2, 3000) + noise(0.1, 30) for _ in range(30))
+    found = heard(Recognizer(decoder), silence(1.0) + chopped)
+    assert found[1] == Utterance(None, None, words=True, hangover_s=0.0)
+    assert decoder.sound == b""
+
+
+def test_a_pause_within_an_utterance_does_not_cut_it_in_two() -> None:
+    decoder = ToldDecoder("c_no_thanks")
+    sound = silence(1.0) + noise(0.4, 3000) + silence(0.22) + noise(0.4, 3000) + silence(0.5)
+    assert [type(each) for each in heard(Recognizer(decoder), sound)] == [SpeechBegan, Utterance]
+    assert len(decoder.sound) / 2 / SAMPLE_RATE_HZ > 0.4 + 0.22 + 0.4
+
+
+def test_an_interrupted_utterance_is_never_told() -> None:
+    decoder = ToldDecoder("c_yes")
+    recognizer = Recognizer(decoder)
+    assert heard(recognizer, silence(1.0) + noise(0.3, 3000)) == [SpeechBegan()]
+    recognizer.interrupt()
+    assert heard(recognizer, silence(1.0)) == []
+    assert decoder.sound == b""
+
+
+def test_digital_silence_gets_a_little_noise() -> None:
+    decoder = ToldDecoder("c_yes")
+    heard(Recognizer(decoder), word())
+    samples = np.frombuffer(decoder.sound, np.int16)
+    assert np.count_nonzero(samples) > 0.9 * len(samples)
