@@ -1,4 +1,4 @@
-"""What can happen to a question besides an answer: undo, withdrawal, silence, more time, a queue."""
+"""What can happen to a question besides an answer: undo, withdrawal, silence, a queue."""
 
 import re
 

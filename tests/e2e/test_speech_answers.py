@@ -19,7 +19,8 @@ from service_under_test import serving
 from server.runtime.requests import RunRequest
 from server.speech.abilities import NO_SPEECH, SpeechAbilities
 from server.speech.ear import choose_ears
-from server.speech.voice import choose_voice
+from server.speech.rendering import SpokenTexts
+from server.speech.voice import NoVoice, choose_voice
 
 pytestmark = [
     pytest.mark.asyncio(loop_scope="session"),
@@ -37,9 +38,9 @@ Spoken = Callable[..., Awaitable[tuple[PlayedDialogues, UUID, Page]]]
 def utter(text: str, folder: Path) -> Path:
     """A microphone's sound: some silence, the words, and silence again; the browser repeats it."""
     said, file = folder / "said.wav", folder / "microphone.wav"
-    subprocess.run(["flite", "-voice", "slt", "-t", text, "-o", said], check=True)  # noqa: S607
+    subprocess.run(["flite", "-voice", "slt", "-t", text, "-o", said], check=True)
     subprocess.run(
-        ["sox", said, "-r", "48000", "-b", "16", file, "pad", str(SILENCE_S), str(SILENCE_S)],  # noqa: S607
+        ["sox", said, "-r", "48000", "-b", "16", file, "pad", str(SILENCE_S), str(SILENCE_S)],
         check=True,
     )
     return file
@@ -55,7 +56,9 @@ async def spoken(tmp_path: Path) -> AsyncIterator[Spoken]:
         ) -> tuple[PlayedDialogues, UUID, Page]:
             speech = NO_SPEECH
             if ears:
-                speech = SpeechAbilities(choose_voice("none"), choose_ears(True, 2))
+                voice = choose_voice("flite", flite_voice="slt", piper_model=None)
+                assert not isinstance(voice, NoVoice)
+                speech = SpeechAbilities(SpokenTexts(voice), choose_ears(wanted=True, at_once=2))
             service = await stack.enter_async_context(
                 serving(speech, runs_in=PlayedDialogues, token=TOKEN)
             )
