@@ -14,6 +14,7 @@ from conftest import CHROMIUM
 from console_in_browser import TOKEN
 from played_dialogues import PlayedDialogues
 from playwright.async_api import Page, async_playwright, expect
+from scripted_ears import MishearingEars
 from service_under_test import serving
 
 from server.runtime.requests import RunRequest
@@ -30,7 +31,6 @@ pytestmark = [
 ]
 
 SILENCE_S = 3.0
-UNRELATED = "the meeting is on the third floor"
 
 Spoken = Callable[..., Awaitable[tuple[PlayedDialogues, UUID, Page]]]
 
@@ -52,10 +52,9 @@ async def spoken(tmp_path: Path) -> AsyncIterator[Spoken]:
     async with AsyncExitStack() as stack:
 
         async def open_spoken(
-            words: str, *, ears: bool = True
+            words: str, speech: SpeechAbilities | None = None
         ) -> tuple[PlayedDialogues, UUID, Page]:
-            speech = NO_SPEECH
-            if ears:
+            if speech is None:
                 voice = choose_voice("flite", flite_voice="slt", piper_model=None)
                 assert not isinstance(voice, NoVoice)
                 speech = SpeechAbilities(SpokenTexts(voice), choose_ears(wanted=True, at_once=2))
@@ -107,15 +106,19 @@ async def test_no_answers_every_question_until_the_dialogue_closes(spoken: Spoke
 
 
 async def test_what_is_not_understood_ends_at_the_buttons(spoken: Spoken) -> None:
-    runs, dialogue, page = await spoken(UNRELATED)
-    await expect(page.get_by_text("Please use the buttons")).to_be_visible(timeout=90_000)
+    runs, dialogue, page = await spoken(
+        "something else", SpeechAbilities(NoVoice("no voice here"), MishearingEars())
+    )
+    await expect(page.get_by_text("Not understood. Please use the buttons.")).to_be_visible(
+        timeout=40_000
+    )
     assert runs.dialogue(dialogue).awaiting == "answer"
     await page.locator(".answer.yes").click()
     await expect(page.get_by_text("The robot watches for")).to_be_visible()
 
 
 async def test_console_says_what_it_cannot_hear_or_say(spoken: Spoken) -> None:
-    _, _, page = await spoken("yes", ears=False)
+    _, _, page = await spoken("yes", NO_SPEECH)
     await expect(page.get_by_text("please use the buttons")).to_be_visible()
     await expect(page.get_by_text("questions are shown")).to_be_visible()
     await page.locator(".answer.yes").click()
