@@ -1,10 +1,22 @@
 """What tests of the console share: the service's token, and how a page is opened."""
 
 from collections.abc import Awaitable, Callable
+from dataclasses import dataclass
+from uuid import UUID
 
+from played_dialogues import PlayedDialogues
 from playwright.async_api import Page
 
 TOKEN = "correct-horse-battery"
 
 OpenPage = Callable[..., Awaitable[Page]]
 """`await open_page(path, helper=name, **context_options)`: a helper who has signed in."""
+
+
+@dataclass(frozen=True, slots=True)
+class Stage:
+    """A service without robots, on which a test plays one; `run` is a run that is going on."""
+
+    runs: PlayedDialogues
+    run: UUID
+    open_page: OpenPage

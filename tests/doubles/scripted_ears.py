@@ -106,3 +106,32 @@ class ToneVoice:
             sound.setframerate(16_000)
             sound.writeframes(b"\0\1" * len(text))
         return written.getvalue()
+
+
+FRAMES_AN_UTTERANCE = 25
+"""Half a second of 20 ms frames."""
+
+
+class MishearingEar(ScriptedEar):
+    """Takes any half second of sound for an utterance, and understands none."""
+
+    def __init__(self) -> None:
+        super().__init__([])
+        self._frames = 0
+
+    def hear(self, pcm: bytes) -> None:
+        self.heard += pcm
+        self._frames += 1
+        if self._frames % FRAMES_AN_UTTERANCE == 0:
+            self._tell(Report(kind="began", interruptions=self._interruptions))
+            self._tell(self._utterance(None))
+
+
+@dataclass
+class MishearingEars(ScriptedEars):
+    """Ears to which nothing is a command."""
+
+    async def open(self) -> Ear:
+        self.check_room()
+        self.opened.append(MishearingEar())
+        return self.opened[-1]

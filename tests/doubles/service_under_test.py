@@ -1,7 +1,7 @@
 """The whole service around a fake runtime, in this process or behind real sockets."""
 
 import contextlib
-from collections.abc import AsyncIterator, Sequence
+from collections.abc import AsyncIterator, Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -47,13 +47,14 @@ class ServiceUnderTest:
 def build(
     speech: SpeechAbilities = NO_SPEECH,
     *,
+    runs_in: Callable[[SqliteJournal], FakeRuns] = FakeRuns,
     records: PoseRecords | None = None,
     models: Sequence[Any] = (),
     **settings: Any,
 ) -> ServiceUnderTest:
     """A service on an empty journal in memory; `models` are adapters that provide some."""
     journal = SqliteJournal(":memory:")
-    runs = FakeRuns(journal)
+    runs = runs_in(journal)
     chosen = Settings(port=0, **settings)
     trees = JournaledTrees(journal, TREES, check_tree)
     poses = PoseFeed(lambda *_: None, lambda _: None, records)
@@ -74,10 +75,10 @@ def build(
 
 @contextlib.asynccontextmanager
 async def serving(
-    speech: SpeechAbilities = NO_SPEECH, **settings: Any
+    speech: SpeechAbilities = NO_SPEECH, **arguments: Any
 ) -> AsyncIterator[ServiceUnderTest]:
     """A service behind a real socket on a free port."""
-    service = build(speech, **settings)
+    service = build(speech, **arguments)
     server = uvicorn.Server(serve_config(service.app, service.settings))
     server.config.log_level = None
     socket = server.config.bind_socket()

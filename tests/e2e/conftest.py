@@ -1,16 +1,20 @@
 """A real browser on a real service: what every test of the console starts from."""
 
+import contextlib
 import shutil
 from collections.abc import AsyncIterator
 from pathlib import Path
 
 import pytest
 import pytest_asyncio
-from console_in_browser import TOKEN, OpenPage
+from console_in_browser import TOKEN, OpenPage, Stage
+from played_dialogues import PlayedDialogues
 from playwright.async_api import Browser, BrowserContext, ConsoleMessage, Page, async_playwright
+from service_under_test import serving
 
 from server.api.console import BUILT
 from server.composition import Service, open_service
+from server.runtime.requests import RunRequest
 from server.settings import Settings
 
 CHROMIUM = shutil.which("chromium") or shutil.which("google-chrome")
@@ -51,11 +55,29 @@ async def service(tmp_path: Path) -> AsyncIterator[Service]:
 @pytest_asyncio.fixture(loop_scope="session")
 async def open_page(browser: Browser, service: Service) -> AsyncIterator[OpenPage]:
     """Opens the console as a helper who is signed in; nothing may go wrong in its scripts."""
+    async with _opening_pages(browser, service.url) as open_page:
+        yield open_page
+
+
+@pytest_asyncio.fixture(loop_scope="session")
+async def stage(browser: Browser) -> AsyncIterator[Stage]:
+    """A service on which a test plays the robot, and the consoles at it."""
+    async with (
+        serving(runs_in=PlayedDialogues, token=TOKEN) as service,
+        _opening_pages(browser, service.url) as open_page,
+    ):
+        assert isinstance(service.runs, PlayedDialogues)
+        run = await service.runs.start_run(RunRequest(tree="eket", world="tabletop"))
+        yield Stage(service.runs, run.id, open_page)
+
+
+@contextlib.asynccontextmanager
+async def _opening_pages(browser: Browser, url: str) -> AsyncIterator[OpenPage]:
     mistakes: list[str] = []
     contexts: list[BrowserContext] = []
 
     async def open_page(path: str = "/", helper: str = "anna", **options: object) -> Page:
-        context = await browser.new_context(base_url=service.url, **options)
+        context = await browser.new_context(base_url=url, **options)
         contexts.append(context)
         signed_in = await context.request.post("/api/session", data={"token": TOKEN})
         assert signed_in.status == 204

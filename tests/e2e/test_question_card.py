@@ -1,5 +1,7 @@
 """The question card: what a helper sees and does while a robot waits."""
 
+import json
+
 import pytest
 from console_in_browser import OpenPage
 from playwright.async_api import expect
@@ -24,3 +26,31 @@ async def test_question_is_shown_and_answered_with_a_button(
     await expect(page.get_by_role("heading", level=2)).to_contain_text("green leg", timeout=20_000)
     await page.get_by_role("button", name="YES").click()
     await expect(page.get_by_role("heading", level=2)).to_be_hidden()
+
+
+@pytest.mark.parametrize(
+    ("step", "words"),
+    [
+        (5, "The pink bar is no longer in the gripper."),
+        (2, "The gripper closed, but the pink bar is not in it."),
+    ],
+    ids=["dropped", "missed"],
+)
+async def test_fault_of_a_robot_is_told_in_plain_words_with_its_picture(
+    service: Service, open_page: OpenPage, step: int, words: str
+) -> None:
+    page = await open_page()
+    part = "pink_bar"
+    steal = Intervention.model_validate({"act": "steal", "object": part})
+    with service.journal.subscribe(service.journal.head, 10_000) as events:
+        run = await service.runtime.start_run(RunRequest(tree="eket", world="tabletop", speed=1.0))
+        async for record in events:
+            event = json.loads(record.text)
+            if event["type"] == "step_started" and (event["name"], event["step"]) == (part, step):
+                await service.runtime.intervene(run.id, steal)
+                break
+    await expect(page.get_by_text(words)).to_be_visible(timeout=30_000)
+    await expect(page.get_by_role("img", name="forearm camera")).to_be_visible()
+    await expect(page.locator(".overlay .expected")).to_be_visible()
+    await expect(page.get_by_role("tree")).to_contain_text("pink bar")
+    await expect(page.get_by_role("slider", name="Moment before the fault")).to_be_visible()

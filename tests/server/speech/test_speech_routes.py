@@ -80,6 +80,14 @@ async def test_a_prompt_and_its_help_can_be_heard(
     assert "If you say yes: The robot tries again." in voice.rendered[1]
 
 
+async def test_what_an_answer_will_do_can_be_heard(
+    client: httpx.AsyncClient, question: DialogueView, voice: ToneVoice
+) -> None:
+    assert (await client.get(address(question) + "/no")).status_code == 200
+    assert voice.rendered == ["No. You put the pink bar to its place."]
+    assert (await client.get(address(question) + "/maybe")).status_code == 422
+
+
 async def test_an_old_prompt_can_still_be_heard(
     service: ServiceUnderTest, client: httpx.AsyncClient, question: DialogueView
 ) -> None:

@@ -22,7 +22,7 @@ export function ClaimStrip({ question }: { question: Question }) {
         <span class="who-dot" aria-hidden="true">
           {by.slice(0, 1).toUpperCase()}
         </span>
-        {mine ? "You are on it; the others see so." : `${by} is answering.`}
+        {mine ? "You are on it." : `${by} is answering.`}
       </p>
       {mine ? (
         <button type="button" class="button" onClick={() => release(dialogue)}>

@@ -1,0 +1,225 @@
+"""A runtime without robots whose dialogues follow the real scripts; a test says what is seen."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from typing import Any, Literal
+from uuid import UUID, uuid4
+
+import cv2
+import numpy as np
+from fake_runs import FakeRuns
+
+from dialogue.registry import load_scripts
+from robots.link.messages import Detection
+from server.errors import ConflictError, LostRaceError
+from server.journal import events as ev
+from server.journal.journal import Entry, Journal
+from server.runtime.dialogue_events import DialogueEvents
+from server.runtime.run_state import rehearse
+from server.runtime.views import AwaitedHelp, DialogueView, PromptView
+
+WIDTH_PX, HEIGHT_PX = 320, 240
+DETECTION = Detection(
+    camera="forearm",
+    size_px=(WIDTH_PX // 2, HEIGHT_PX // 2),
+    center=(40.0, 80.0),
+    expected=(80.0, 60.0),
+    tolerance_px=12.0,
+    area_px=150,
+    explanation="yellow_bar is not where it must be between the fingers",
+)
+
+
+@dataclass
+class Played:
+    """One dialogue: its script's calls so far, and the question that is open."""
+
+    raised: ev.IssueRaised
+    make: DialogueEvents
+    calls: list[str] = field(default_factory=list)
+    asked: ev.Prompt | None = None
+    helper: str = ""
+
+
+class PlayedDialogues(FakeRuns):
+    """A `RunService` in which an issue opens the dialogue that it would open on a robot."""
+
+    def __init__(self, journal: Journal) -> None:
+        super().__init__(journal)
+        self._scripts = load_scripts()
+        self._played: dict[UUID, Played] = {}
+        self._won: dict[UUID, str] = {}
+        self.deadline_s = 60.0
+
+    async def open(self, run: UUID, kind: str, part: str = "yellow_bar") -> UUID:
+        """A robot detects a fault of `kind`, with a picture and a clip; the dialogue's id."""
+        pictures = [uuid4() for _ in range(4)]
+        raised = ev.IssueRaised(
+            **_stamp(run),
+            node="/0",
+            name=part,
+            robot="pr2-0a1b2c3d",
+            issue=kind,
+            object=part,
+            place=f"{part}_place",
+            execution=uuid4(),
+            step=5,
+            interrupts=True,
+            detection=DETECTION,
+            picture=pictures[-1],
+        )
+        dialogue = uuid4()
+        played = Played(raised, DialogueEvents(lambda: _stamp(run), dialogue, raised))
+        self._played[dialogue] = played
+        self._dialogues[dialogue] = _view(dialogue, raised)
+        clip = ev.ClipRecorded(
+            **_stamp(run),
+            **raised.model_dump(include={"node", "name", "robot", "issue", "execution"}),
+            dialogue=dialogue,
+            pictures=[
+                ev.ClipPicture(time=0.2 * number, picture=picture)
+                for number, picture in enumerate(pictures[:-1])
+            ],
+        )
+        jpegs = {each: _jpeg(number) for number, each in enumerate(pictures)}
+        await self._journal.append(Entry(events=(raised,), pictures=jpegs))
+        self._change(dialogue, clip=clip.pictures)
+        await self._go_on(dialogue, "open", [played.make.opened()])
+        await self.commit(clip)
+        return dialogue
+
+    async def answer(
+        self, dialogue: UUID, prompt: UUID, answer: Literal["yes", "no"], helper: str
+    ) -> ev.Answered:
+        self.dialogue(dialogue)
+        played = self._played[dialogue]
+        if prompt in self._won:
+            raise LostRaceError(prompt, self._won[prompt])
+        if played.asked is None or played.asked.prompt != prompt:
+            raise ConflictError("this prompt does not wait for an answer")
+        self._won[prompt] = helper
+        played.helper = helper
+        answered = played.make.answered(played.asked, answer, helper)
+        committed = await self._go_on(dialogue, answer, [answered])
+        assert isinstance(committed[0], ev.Answered)
+        return committed[0]
+
+    async def see(self, dialogue: UUID, *, fulfilled: bool = True) -> None:
+        """The robot sees the promised help, or has waited for it in vain."""
+        played = self._played[dialogue]
+        awaited = self.dialogue(dialogue).help
+        assert awaited is not None, "no help is awaited"
+        event = ev.HelpVerified if fulfilled else ev.HelpNotSeen
+        seen = event(**_of(dialogue, played.raised), help=awaited.help)
+        await self._go_on(dialogue, "seen" if fulfilled else "not_seen", [seen])
+
+    async def call(self, dialogue: UUID, call: str) -> None:
+        """Anything else that moves a conversation on: `silence`, `put_right:...`, `abort`."""
+        await self._go_on(dialogue, call, [])
+
+    async def ask_again(self, dialogue: UUID) -> None:
+        """Nobody answered in time: the same question with a new deadline."""
+        played = self._played[dialogue]
+        assert played.asked is not None, "nothing is asked"
+        await self._commit(dialogue, [played.make.repeat(played.asked, self._deadline(), None)])
+
+    async def release_expired(self, dialogue: UUID, helper: str) -> None:
+        """A helper's lease has run out."""
+        raised = self._played[dialogue].raised
+        await self.commit(ev.Released(**_of(dialogue, raised), helper=helper, expired=True))
+        self._change(dialogue, claimed_by=None, claimed_until=None)
+
+    async def finish_leaf(self, dialogue: UUID) -> None:
+        """The robot is through with what the dialogue was about."""
+        raised = self._played[dialogue].raised
+        await self.commit(
+            ev.NodeDone(
+                **_stamp(raised.run),
+                node=raised.node,
+                name=raised.name,
+                robot=raised.robot,
+                by="both",
+            )
+        )
+
+    async def _go_on(
+        self, dialogue: UUID, call: str, before: Sequence[ev.Event]
+    ) -> Sequence[ev.Event]:
+        played = self._played[dialogue]
+        played.calls.append(call)
+        turns = rehearse(self._scripts[played.raised.issue], played.raised, played.calls)
+        events = played.make.of_turns(
+            turns,
+            ask_deadline=self._deadline(),
+            to=None,
+            help_until=self._deadline(),
+            helper=played.helper,
+            can_go_on=True,
+        )
+        if call == "abort":
+            events = [played.make.aborted()]
+        return await self._commit(dialogue, [*before, *events])
+
+    async def _commit(self, dialogue: UUID, events: Sequence[ev.Event]) -> Sequence[ev.Event]:
+        for event in events:
+            self._note(dialogue, event)
+        return await self.commit(*events)
+
+    def _note(self, dialogue: UUID, event: ev.Event) -> None:
+        played = self._played[dialogue]
+        match event:
+            case ev.Prompt():
+                played.asked = event if event.kind == "ask" else None
+                fields = event.model_dump(include=set(PromptView.model_fields))
+                prompt = PromptView(**fields, within_s=self.deadline_s, extensions_left=10)
+                awaiting = "answer" if event.kind == "ask" else None
+                self._change(dialogue, prompt=prompt, awaiting=awaiting, help=None)
+            case ev.HelpAwaited(help=help_, helper=helper, until=until):
+                awaited = AwaitedHelp(help=help_, helper=helper, until=until)
+                self._change(dialogue, awaiting="help", help=awaited)
+            case ev.Answered(helper=helper):
+                played.asked = None
+                self._change(dialogue, awaiting=None, answered_by=helper)
+            case ev.DialogueClosed(reason=reason):
+                played.asked = None
+                self._change(dialogue, status="closed", reason=reason, awaiting=None)
+
+    def _deadline(self) -> float:
+        return _TIME_S + self.deadline_s
+
+
+_TIME_S = 1.0
+
+
+def _stamp(run: UUID) -> dict[str, Any]:
+    return {"time": _TIME_S, "wall_time": datetime.now(UTC), "run": run}
+
+
+def _of(dialogue: UUID, raised: ev.IssueRaised) -> dict[str, Any]:
+    fields = raised.model_dump(include={"node", "name", "robot", "issue", "object"})
+    return {**_stamp(raised.run), **fields, "dialogue": dialogue}
+
+
+def _view(dialogue: UUID, raised: ev.IssueRaised) -> DialogueView:
+    fields = raised.model_dump(include={"run", "node", "name", "robot", "issue", "object"})
+    return DialogueView(
+        **fields,
+        dialogue=dialogue,
+        status="open",
+        reason=None,
+        prompt=None,
+        awaiting=None,
+        answered_by=None,
+        claimed_by=None,
+        claimed_until=None,
+        picture=raised.picture,
+        detection=raised.detection,
+    )
+
+
+def _jpeg(number: int) -> bytes:
+    bgr = np.full((HEIGHT_PX, WIDTH_PX, 3), 90 + 20 * number, np.uint8)
+    ok, data = cv2.imencode(".jpg", bgr)
+    assert ok, "a grey picture can be a JPEG"
+    return data.tobytes()

@@ -1,0 +1,83 @@
+"""Every branch of every dialogue, taken in a real browser by button and by key."""
+
+from collections.abc import Awaitable, Callable
+from uuid import UUID
+
+import pytest
+from console_in_browser import Stage
+from dialogue_paths import every_branch
+from playwright.async_api import Page, expect
+
+from dialogue.conversation import Conversation
+from dialogue.registry import load_scripts
+from dialogue.script import Ask, AwaitHelp, Close, Say, Turn
+from server.runtime.run_state import converse
+from tasks.issue import Issue
+
+pytestmark = pytest.mark.asyncio(loop_scope="session")
+
+SCRIPTS = load_scripts()
+
+Answer = Callable[[Page, str], Awaitable[None]]
+
+
+async def by_button(page: Page, answer: str) -> None:
+    await page.locator(f".answer.{answer}").click()
+
+
+async def by_key(page: Page, answer: str) -> None:
+    # Enabled: a key right after another question's card would not count.
+    button = page.locator(f".answer.{answer}")
+    await expect(button).to_be_enabled()
+    await page.keyboard.press(answer[0])
+
+
+@pytest.mark.parametrize("answer", [by_button, by_key], ids=["button", "key"])
+@pytest.mark.parametrize("kind", sorted(SCRIPTS))
+async def test_every_branch_of_a_dialogue(stage: Stage, kind: str, answer: Answer) -> None:
+    page = await stage.open_page()
+    # Answers that are held back for a moment are sent as soon as the test says so.
+    await page.clock.install()
+    issue = Issue(kind, "pr2", "/0", "yellow_bar", "yellow_bar", "yellow_bar_place", 5)
+    for path in every_branch(SCRIPTS[kind], issue):
+        conversation = Conversation(SCRIPTS[kind], issue)
+        dialogue = await stage.runs.open(stage.run, kind)
+        turns = conversation.open()
+        for call in path:
+            await expect_shown(page, turns)
+            await make(stage, page, dialogue, call, answer)
+            turns = converse(conversation, call)
+        await expect_shown(page, turns)
+        await stage.runs.finish_leaf(dialogue)
+        await expect(page.get_by_text("No robot asks anything")).to_be_visible()
+
+
+async def make(stage: Stage, page: Page, dialogue: UUID, call: str, answer: Answer) -> None:
+    if call in ("seen", "not_seen"):
+        await stage.runs.see(dialogue, fulfilled=call == "seen")
+        return
+    prompt = stage.runs.dialogue(dialogue).prompt
+    assert prompt is not None
+    final = next(each.final for each in prompt.answers if each.value == call)
+    await answer(page, call)
+    held = page.get_by_role("button", name="Undo")
+    if final:
+        await expect(held).to_be_visible()
+        await page.clock.fast_forward(3_100)
+    await expect(held).to_be_hidden()
+
+
+async def expect_shown(page: Page, turns: list[Turn]) -> None:
+    """The page shows what the robot says, and whether it asks, waits or is through."""
+    for turn in turns:
+        match turn:
+            case Ask(text=text, yes_effect=yes, no_effect=no):
+                await expect(page.get_by_role("heading", name=text)).to_be_visible()
+                await expect(page.locator(".answer.yes")).to_contain_text(yes)
+                await expect(page.locator(".answer.no")).to_contain_text(no)
+            case Say(text=text):
+                await expect(page.get_by_text(text).first).to_be_visible()
+            case AwaitHelp():
+                await expect(page.get_by_text("There is nothing to press")).to_be_visible()
+            case Close():
+                await expect(page.locator(".answer")).to_have_count(0)

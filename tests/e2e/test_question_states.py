@@ -1,0 +1,164 @@
+"""What can happen to a question besides an answer: undo, withdrawal, silence, a queue."""
+
+import re
+
+import pytest
+from console_in_browser import Stage
+from playwright.async_api import Page, expect
+
+pytestmark = pytest.mark.asyncio(loop_scope="session")
+
+
+async def to_the_final_question(page: Page) -> None:
+    """Refuse the first offer: what is asked then cannot be taken back."""
+    await page.locator(".answer.no").click()
+    await expect(page.get_by_role("heading", name="Will you place the yellow bar")).to_be_visible()
+
+
+async def test_final_answer_can_be_undone(stage: Stage) -> None:
+    page = await stage.open_page()
+    dialogue = await stage.runs.open(stage.run, "dropped")
+    await page.clock.install()
+    await to_the_final_question(page)
+    await page.locator(".answer.no").click()
+    await page.get_by_role("button", name="Undo").click()
+    await page.clock.fast_forward(10_000)
+    await expect(page.get_by_role("button", name="Undo")).to_be_hidden()
+    assert stage.runs.dialogue(dialogue).awaiting == "answer"
+    await page.keyboard.press("n")
+    await expect(page.get_by_role("button", name="Undo")).to_be_visible()
+    await page.keyboard.press("Escape")
+    await expect(page.get_by_role("button", name="Undo")).to_be_hidden()
+    await page.locator(".answer.no").click()
+    await page.clock.fast_forward(3_100)
+    await expect(page.get_by_text("I will try again later")).to_be_visible()
+    assert stage.runs.dialogue(dialogue).answered_by == "anna"
+
+
+async def test_held_answer_is_sent_when_the_page_is_left(stage: Stage) -> None:
+    page = await stage.open_page()
+    other = await stage.open_page(helper="bob")
+    await stage.runs.open(stage.run, "dropped")
+    await to_the_final_question(page)
+    await page.clock.install()
+    await page.locator(".answer.no").click()
+    await page.goto("/icon.svg")
+    await expect(other.get_by_text("No robot asks anything")).to_be_visible()
+
+
+async def test_held_answer_is_dropped_when_somebody_else_answers(stage: Stage) -> None:
+    page = await stage.open_page()
+    dialogue = await stage.runs.open(stage.run, "dropped")
+    await to_the_final_question(page)
+    await page.clock.install()
+    await page.locator(".answer.no").click()
+    await expect(page.get_by_role("button", name="Undo")).to_be_visible()
+    prompt = stage.runs.dialogue(dialogue).prompt
+    assert prompt is not None
+    await stage.runs.answer(dialogue, prompt.prompt, "yes", "bob")
+    await expect(page.get_by_text("Your NO was not sent: bob answered first.")).to_be_visible()
+    await page.clock.fast_forward(10_000)
+    await expect(page.get_by_text("The robot watches for the yellow bar")).to_be_visible()
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        ("put_right:in_reach", "the robot saw that it was put right"),
+        ("silence", "Closed without help"),
+        ("abort", "the robot has stopped this task"),
+    ],
+)
+async def test_card_closes_by_itself_and_says_why(stage: Stage, call: str, words: str) -> None:
+    page = await stage.open_page()
+    dialogue = await stage.runs.open(stage.run, "dropped")
+    await expect(page.locator(".answer.yes")).to_be_visible()
+    await stage.runs.call(dialogue, call)
+    told = page.get_by_role("status", name="What became of questions")
+    await expect(told).to_contain_text(words)
+    await expect(page.locator(".answer")).to_have_count(0)
+    await told.get_by_role("button", name="Dismiss").click()
+    await expect(told).to_be_empty()
+
+
+async def test_more_time_moves_the_deadline(stage: Stage) -> None:
+    page = await stage.open_page()
+    stage.runs.deadline_s = 24.0
+    await stage.runs.open(stage.run, "dropped")
+    await expect(page.get_by_text("Less than 25 seconds are left")).to_be_attached()
+    await page.get_by_role("button", name="More time").click()
+    await expect(page.get_by_role("timer")).to_contain_text(re.compile(r"0:[345]\d"))
+    await expect(page.get_by_text("Less than 25 seconds are left")).not_to_be_attached()
+
+
+async def test_questions_queue_and_another_one_can_be_chosen(stage: Stage) -> None:
+    page = await stage.open_page()
+    await stage.runs.open(stage.run, "dropped", "yellow_bar")
+    await stage.runs.open(stage.run, "missed", "blue_leg")
+    await expect(page).to_have_title("(2) Mend")
+    await expect(page.get_by_role("heading", name="I dropped the yellow bar")).to_be_visible()
+    await page.get_by_role("button", name="the blue leg is not in it").click()
+    await expect(page.get_by_role("heading", name="I missed the blue leg")).to_be_visible()
+    await expect(page.get_by_role("heading", name="I dropped the yellow bar")).to_be_hidden()
+
+
+async def test_other_views_lead_to_the_question(stage: Stage) -> None:
+    page = await stage.open_page("/settings")
+    await stage.runs.open(stage.run, "dropped")
+    await expect(page.get_by_role("alert").filter(has_text="Shall I try again?")).to_be_attached()
+    await page.get_by_role("link", name="Answer").click()
+    await expect(page.get_by_role("heading", name="I dropped the yellow bar")).to_be_visible()
+
+
+async def test_keys_can_be_changed_and_switched_off(stage: Stage) -> None:
+    page = await stage.open_page("/settings")
+    await page.get_by_label("Yes", exact=True).fill("j")
+    await page.get_by_label("Yes", exact=True).press("Tab")
+    await page.get_by_role("navigation").get_by_role("link", name="Questions").click()
+    dialogue = await stage.runs.open(stage.run, "dropped")
+    await expect(page.locator(".answer.yes")).to_be_enabled()
+    await page.keyboard.press("y")
+    await page.keyboard.press("j")
+    await expect(page.get_by_text("There is nothing to press")).to_be_visible()
+    await page.get_by_role("link", name="anna").click()
+    await page.get_by_label("Answer with single keys").uncheck()
+    await page.get_by_role("navigation").get_by_role("link", name="Questions").click()
+    await stage.runs.see(dialogue, fulfilled=False)
+    await expect(page.locator(".answer.yes")).to_be_enabled()
+    await page.keyboard.press("j")
+    await page.keyboard.press("n")
+    await page.locator(".answer.no").focus()
+    assert stage.runs.dialogue(dialogue).awaiting == "answer"
+
+
+async def test_seconds_before_the_fault_can_be_scrubbed_by_key(stage: Stage) -> None:
+    page = await stage.open_page()
+    await stage.runs.open(stage.run, "dropped")
+    slider = page.get_by_role("slider", name="Moment before the fault")
+    picture = page.get_by_role("img", name="camera saw")
+    await expect(slider).to_have_attribute("aria-valuetext", "the moment of the fault")
+    at_fault = await picture.get_attribute("src")
+    await expect(page.locator(".overlay .seen")).to_be_visible()
+    await slider.press("ArrowLeft")
+    await expect(slider).to_have_attribute("aria-valuetext", "0.2 seconds before the fault")
+    await expect(picture).not_to_have_attribute("src", str(at_fault))
+    await expect(page.locator(".overlay")).to_have_count(0)
+    await page.get_by_role("button", name="Play the seconds before").click()
+    await expect(slider).to_have_attribute("aria-valuetext", "the moment of the fault")
+
+
+@pytest.mark.parametrize(("width", "height"), [(360, 640), (390, 844)])
+async def test_phone_shows_question_picture_and_answers_at_once(
+    stage: Stage, width: int, height: int
+) -> None:
+    page = await stage.open_page(viewport={"width": width, "height": height})
+    await stage.runs.open(stage.run, "dropped")
+    await expect(page.get_by_role("heading", name="I dropped")).to_be_in_viewport(ratio=1)
+    await expect(page.get_by_role("img", name="camera saw")).to_be_in_viewport(ratio=0.7)
+    for answer in ("yes", "no"):
+        button = page.locator(f".answer.{answer}")
+        await expect(button).to_be_in_viewport(ratio=1)
+        box = await button.bounding_box()
+        assert box is not None
+        assert min(box["width"], box["height"]) >= 96
+    assert await page.evaluate("document.documentElement.scrollWidth") <= width

@@ -1,0 +1,125 @@
+"""Answering by voice: a real browser whose microphone is a sound file."""
+
+import shutil
+import subprocess
+from collections.abc import AsyncIterator, Awaitable, Callable
+from contextlib import AsyncExitStack
+from importlib.util import find_spec
+from pathlib import Path
+from uuid import UUID
+
+import pytest
+import pytest_asyncio
+from conftest import CHROMIUM
+from console_in_browser import TOKEN
+from played_dialogues import PlayedDialogues
+from playwright.async_api import Page, async_playwright, expect
+from scripted_ears import MishearingEars
+from service_under_test import serving
+
+from server.runtime.requests import RunRequest
+from server.speech.abilities import NO_SPEECH, SpeechAbilities
+from server.speech.ear import choose_ears
+from server.speech.rendering import SpokenTexts
+from server.speech.voice import NoVoice, choose_voice
+
+pytestmark = [
+    pytest.mark.asyncio(loop_scope="session"),
+    pytest.mark.skipif(shutil.which("flite") is None, reason="flite is not installed"),
+    pytest.mark.skipif(shutil.which("sox") is None, reason="sox is not installed"),
+    pytest.mark.skipif(find_spec("pocketsphinx") is None, reason="pocketsphinx is not installed"),
+]
+
+SILENCE_S = 3.0
+
+Spoken = Callable[..., Awaitable[tuple[PlayedDialogues, UUID, Page]]]
+
+
+def utter(text: str, folder: Path) -> Path:
+    """A microphone's sound: some silence, the words, and silence again; the browser repeats it."""
+    said, file = folder / "said.wav", folder / "microphone.wav"
+    subprocess.run(["flite", "-voice", "slt", "-t", text, "-o", said], check=True)
+    subprocess.run(
+        ["sox", said, "-r", "48000", "-b", "16", file, "pad", str(SILENCE_S), str(SILENCE_S)],
+        check=True,
+    )
+    return file
+
+
+@pytest_asyncio.fixture(loop_scope="session")
+async def spoken(tmp_path: Path) -> AsyncIterator[Spoken]:
+    """Opens a console whose helper says the same words again and again."""
+    async with AsyncExitStack() as stack:
+
+        async def open_spoken(
+            words: str, speech: SpeechAbilities | None = None
+        ) -> tuple[PlayedDialogues, UUID, Page]:
+            if speech is None:
+                voice = choose_voice("flite", flite_voice="slt", piper_model=None)
+                assert not isinstance(voice, NoVoice)
+                speech = SpeechAbilities(SpokenTexts(voice), choose_ears(wanted=True, at_once=2))
+            service = await stack.enter_async_context(
+                serving(speech, runs_in=PlayedDialogues, token=TOKEN)
+            )
+            playwright = await stack.enter_async_context(async_playwright())
+            browser = await playwright.chromium.launch(
+                executable_path=CHROMIUM,
+                headless=True,
+                args=[
+                    "--no-sandbox",
+                    "--use-fake-device-for-media-stream",
+                    "--use-fake-ui-for-media-stream",
+                    f"--use-file-for-fake-audio-capture={utter(words, tmp_path)}",
+                    "--autoplay-policy=no-user-gesture-required",
+                ],
+            )
+            stack.push_async_callback(browser.close)
+            context = await browser.new_context(base_url=service.url)
+            await context.request.post("/api/session", data={"token": TOKEN})
+            await context.add_init_script("localStorage.setItem('mend.helper', '\"anna\"')")
+            page = await context.new_page()
+            await page.goto("/")
+            await page.get_by_role("status").filter(has_text="Connected").wait_for()
+            runs = service.runs
+            assert isinstance(runs, PlayedDialogues)
+            run = await runs.start_run(RunRequest(tree="eket", world="tabletop"))
+            dialogue = await runs.open(run.id, "dropped")
+            await page.get_by_role("button", name="Listen and speak").click()
+            return runs, dialogue, page
+
+        yield open_spoken
+
+
+async def test_yes_is_heard_and_answers(spoken: Spoken) -> None:
+    runs, dialogue, page = await spoken("yes please")
+    await expect(page.get_by_text("The robot watches for")).to_be_visible(timeout=40_000)
+    assert runs.dialogue(dialogue).answered_by == "anna"
+    assert runs.dialogue(dialogue).help is not None
+
+
+async def test_no_answers_every_question_until_the_dialogue_closes(spoken: Spoken) -> None:
+    runs, dialogue, page = await spoken("no")
+    # The second no is final: it is held back like that of a button, and then sent.
+    await expect(page.get_by_role("button", name="Undo")).to_be_visible(timeout=60_000)
+    await expect(page.get_by_text("No robot asks anything")).to_be_visible(timeout=20_000)
+    assert runs.dialogue(dialogue).reason == "resolved"
+
+
+async def test_what_is_not_understood_ends_at_the_buttons(spoken: Spoken) -> None:
+    runs, dialogue, page = await spoken(
+        "something else", SpeechAbilities(NoVoice("no voice here"), MishearingEars())
+    )
+    await expect(page.get_by_text("Not understood. Please use the buttons.")).to_be_visible(
+        timeout=40_000
+    )
+    assert runs.dialogue(dialogue).awaiting == "answer"
+    await page.locator(".answer.yes").click()
+    await expect(page.get_by_text("The robot watches for")).to_be_visible()
+
+
+async def test_console_says_what_it_cannot_hear_or_say(spoken: Spoken) -> None:
+    _, _, page = await spoken("yes", NO_SPEECH)
+    await expect(page.get_by_text("please use the buttons")).to_be_visible()
+    await expect(page.get_by_text("questions are shown")).to_be_visible()
+    await page.locator(".answer.yes").click()
+    await expect(page.get_by_text("The robot watches for")).to_be_visible()

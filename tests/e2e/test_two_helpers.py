@@ -1,0 +1,64 @@
+"""Two helpers at the same question: who is on it, who takes it over, who is faster."""
+
+import asyncio
+
+import pytest
+from console_in_browser import Stage
+from playwright.async_api import expect
+
+pytestmark = pytest.mark.asyncio(loop_scope="session")
+
+
+async def test_others_see_who_is_answering_and_can_take_over(stage: Stage) -> None:
+    anna, bob = await stage.open_page(), await stage.open_page(helper="bob")
+    dialogue = await stage.runs.open(stage.run, "dropped")
+    await anna.locator(".answer.yes").focus()
+    await expect(anna.get_by_text("You are on it")).to_be_visible()
+    await expect(bob.get_by_text("anna is answering.")).to_be_visible()
+    await bob.get_by_role("button", name="Take over").click()
+    await expect(bob.get_by_text("You are on it")).to_be_visible()
+    await expect(anna.get_by_text("bob is answering.")).to_be_visible()
+    await stage.runs.release_expired(dialogue, "bob")
+    await expect(anna.get_by_text("Nobody is on it yet.")).to_be_visible()
+
+
+async def test_claimed_question_steps_behind_for_the_others(stage: Stage) -> None:
+    anna, bob = await stage.open_page(), await stage.open_page(helper="bob")
+    await stage.runs.open(stage.run, "dropped", "yellow_bar")
+    await stage.runs.open(stage.run, "missed", "blue_leg")
+    await anna.get_by_role("button", name="I am on it").click()
+    await expect(bob.get_by_role("heading", name="I missed the blue leg")).to_be_visible()
+    await expect(anna.get_by_role("heading", name="I dropped the yellow bar")).to_be_visible()
+    await expect(bob.get_by_role("button", name="anna is on it")).to_be_visible()
+
+
+async def test_claim_never_keeps_anybody_from_answering(stage: Stage) -> None:
+    anna, bob = await stage.open_page(), await stage.open_page(helper="bob")
+    dialogue = await stage.runs.open(stage.run, "dropped")
+    await anna.get_by_role("button", name="I am on it").click()
+    await expect(bob.get_by_text("anna is answering.")).to_be_visible()
+    await bob.locator(".answer.yes").click()
+    await expect(anna.get_by_text("bob answered YES.")).to_be_visible()
+    assert stage.runs.dialogue(dialogue).answered_by == "bob"
+
+
+async def test_of_two_helpers_who_race_one_wins_and_the_other_is_told(stage: Stage) -> None:
+    anna, bob = await stage.open_page(), await stage.open_page(helper="bob")
+    for _ in range(3):
+        dialogue = await stage.runs.open(stage.run, "dropped")
+        for page in (anna, bob):
+            await expect(page.locator(".answer.yes")).to_be_enabled()
+        await asyncio.gather(
+            anna.evaluate("document.querySelector('.answer.yes')?.click()"),
+            bob.evaluate("document.querySelector('.answer.yes')?.click()"),
+        )
+        winner = {"anna": bob, "bob": anna}
+        for page in (anna, bob):
+            await expect(page.get_by_text("The robot watches for the yellow bar")).to_be_visible()
+        by = stage.runs.dialogue(dialogue).answered_by
+        assert by is not None
+        told = winner[by].get_by_role("status", name="What became of questions")
+        await expect(told).to_contain_text(f"{by} ")
+        await stage.runs.see(dialogue)
+        for page in (anna, bob):
+            await expect(page.get_by_text("No robot asks anything")).to_be_visible()
