@@ -67,7 +67,6 @@ export function TreeDrawing(props: TreeDrawingProps) {
               key={placed.node.path}
               ref={walk.refOf(placed.node.path)}
               role="treeitem"
-              aria-label={described(placed.node, placed.hidden)}
               aria-level={placed.depth}
               aria-posinset={placed.position}
               aria-setsize={placed.siblings}
@@ -100,7 +99,7 @@ function ZoomButtons({ zoom, setZoom }: { zoom: number; setZoom: (zoom: number) 
       <button type="button" aria-label="Smaller" disabled={zoom <= MIN_ZOOM} onClick={() => change(1 / ZOOM_STEP)}>
         −
       </button>
-      <button type="button" aria-label="As wide as the panel" onClick={() => setZoom(1)}>
+      <button type="button" aria-label="Fit the width" onClick={() => setZoom(1)}>
         Fit
       </button>
       <button type="button" aria-label="Larger" disabled={zoom >= MAX_ZOOM} onClick={() => change(ZOOM_STEP)}>
