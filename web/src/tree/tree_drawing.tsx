@@ -73,7 +73,7 @@ export function TreeDrawing(props: TreeDrawingProps) {
               aria-selected={placed.node.path === selected}
               aria-expanded={placed.expandable ? placed.hidden === 0 : undefined}
               tabindex={placed.node.path === walk.at ? 0 : -1}
-              class={`node ${placed.node.kind} ${placed.node.state ?? "defined"} ${placed.node.path === focus ? "in-focus" : ""}`}
+              class={`node ${placed.node.kind} ${placed.node.state ?? "defined"}`}
               data-path={placed.node.path}
               data-state={placed.node.state ?? undefined}
               transform={`translate(${placed.x} ${placed.y})`}
