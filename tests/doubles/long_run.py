@@ -1,4 +1,4 @@
-"""The events of a long run of a large tree, made up: for what a page does with thousands of them."""
+"""The made-up events of a long run of a large tree, for what a page does with thousands."""
 
 from collections.abc import Iterator
 from datetime import UTC, datetime

@@ -14,7 +14,7 @@ from server.runtime.views import NodeView
 SHOWN = """() => JSON.stringify([...document.querySelectorAll('[role=treeitem]')].map((node) => ({
     node: node.dataset.path,
     state: node.dataset.state,
-    level: node.getAttribute('aria-label').match(/level ([0-9.]+)/)[1],
+    level: node.querySelector('title').textContent.match(/level ([0-9.]+)/)[1],
 })))"""
 """A JavaScript function that tells what the page's tree shows."""
 

@@ -5,12 +5,14 @@ from dataclasses import dataclass
 
 import pytest
 from console_in_browser import OpenPage
+from long_run import long_run
 from playwright.async_api import Locator, Page, expect
 from run_page import WAIT_MS, texts_in_order, told_after, wait_for_tree
 
 from dialogue.registry import load_scripts
 from server.composition import Service
 from server.journal import events as ev
+from server.journal.journal import Entry
 from server.runtime.requests import RunRequest
 from server.runtime.run_state import RunState
 
@@ -198,3 +200,22 @@ async def test_timeline_is_a_list_for_those_who_hear_it(
     await entries.filter(has_text="Fault").first.click()
     await expect(shown.page.get_by_text("You are looking at")).to_be_visible()
     await expect(shown.page.locator(".timeline-list [aria-current]")).to_have_count(1)
+
+
+async def test_a_long_run_of_a_large_tree_stays_readable(
+    service: Service, open_page: OpenPage
+) -> None:
+    events = long_run(groups=21, leaves=20)
+    last = events[-1]
+    finished = ev.RunFinished(time=last.time, wall_time=last.wall_time, run=last.run, missing=[])
+    await service.journal.append(Entry(events=[*events, finished]))
+    page = await open_page(f"/runs/{last.run}")
+    await expect(page.get_by_text("The end", exact=True)).to_be_visible(timeout=WAIT_MS)
+    await expect(page.locator(".line.choice")).to_have_count(420, timeout=WAIT_MS)
+    # Folded away but for what fits, and open where the run is at the moment.
+    assert await page.get_by_role("treeitem").count() <= 121
+    await page.get_by_role("slider", name="Moment of the run").fill("4104.5")
+    at_work = page.get_by_role("treeitem", name="part 410,")
+    await expect(at_work).to_have_attribute("data-state", "active", timeout=WAIT_MS)
+    await expect(at_work).to_be_in_viewport()
+    await expect(page.locator(".line[aria-current]")).to_be_in_viewport()

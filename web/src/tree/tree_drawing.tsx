@@ -67,14 +67,13 @@ export function TreeDrawing(props: TreeDrawingProps) {
               key={placed.node.path}
               ref={walk.refOf(placed.node.path)}
               role="treeitem"
-              aria-label={described(placed.node, placed.hidden)}
               aria-level={placed.depth}
               aria-posinset={placed.position}
               aria-setsize={placed.siblings}
               aria-selected={placed.node.path === selected}
               aria-expanded={placed.expandable ? placed.hidden === 0 : undefined}
               tabindex={placed.node.path === walk.at ? 0 : -1}
-              class={`node ${placed.node.kind} ${placed.node.state ?? "defined"} ${placed.node.path === focus ? "in-focus" : ""}`}
+              class={`node ${placed.node.kind} ${placed.node.state ?? "defined"}`}
               data-path={placed.node.path}
               data-state={placed.node.state ?? undefined}
               transform={`translate(${placed.x} ${placed.y})`}

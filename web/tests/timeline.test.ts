@@ -1,0 +1,83 @@
+// What timeline and transcript make of the recorded run of the paper's scenario.
+import { beforeAll, describe, expect, it } from "vitest";
+import { joined, type Line, linesOf } from "../src/run/sentences";
+import { lanesOf, ticksOf } from "../src/run/timeline_lanes";
+import type { Event } from "../src/wire/types";
+import { foldedRuns } from "./folded_runs.mjs";
+
+let events: Event[] = [];
+
+beforeAll(() => {
+  events = foldedRuns([])[0]?.events ?? [];
+}, 120_000);
+
+const of = (type: Event["type"]) => events.filter((event) => event.type === type);
+
+describe("lanes", () => {
+  it("hold every start, fault, dialogue, deed and resolution once", () => {
+    const lanes = lanesOf(events, 100);
+    const counts = Object.fromEntries(lanes.map((lane) => [lane.kind, lane.items.length]));
+    expect(counts).toEqual({
+      steps: of("node_started").length,
+      faults: of("issue_raised").length,
+      dialogues: of("dialogue_opened").length,
+      people: of("intervention").length,
+      resolutions: of("resolved").length,
+    });
+  });
+
+  it("end what has ended when it did, and what goes on now", () => {
+    const whole = lanesOf(events, 100);
+    const end = events.at(-1)?.time ?? 0;
+    for (const item of whole.flatMap((lane) => lane.items)) expect(item.end).toBeLessThanOrEqual(end);
+    const opened = events.findIndex((event) => event.type === "dialogue_opened");
+    const cut = lanesOf(events.slice(0, opened + 1), 50);
+    expect(cut.find((lane) => lane.kind === "dialogues")?.items.at(-1)?.end).toBe(50);
+  });
+
+  it("put one step after the other", () => {
+    for (const item of lanesOf(events, 100)[0]?.items ?? []) {
+      for (const [index, step] of item.parts.slice(1).entries()) {
+        expect(step.start).toBe(item.parts[index]?.end);
+      }
+    }
+  });
+});
+
+describe("ticks", () => {
+  it.each([
+    [0, 74.1, 8],
+    [12.3, 13.3, 5],
+    [0, 4200, 10],
+  ])("from %d to %d s are at most %d, or one more, and within", (from, to, most) => {
+    const ticks = ticksOf(from, to, most);
+    expect(ticks.length).toBeGreaterThan(1);
+    expect(ticks.length).toBeLessThanOrEqual(most + 1);
+    for (const tick of ticks) expect(tick >= from && tick <= to).toBe(true);
+  });
+});
+
+describe("transcript", () => {
+  it("tells what was said, asked and answered word for word and in order", () => {
+    const told = events.flatMap(linesOf).filter(({ tone }) => tone === "said" || tone === "asked" || tone === "answered");
+    const expected = events.flatMap((event) =>
+      event.type === "prompt" ? [event.text] : event.type === "answered" ? [event.answer === "yes" ? "Yes." : "No."] : [],
+    );
+    expect(told.map((line) => line.text)).toEqual(expected);
+  });
+
+  it("joins the steps of one start", () => {
+    const lines: Line[] = [];
+    for (const line of events.slice(0, 11).flatMap(linesOf)) joined(lines, line);
+    const steps = lines.filter((line) => line.tone === "step");
+    expect(steps).toHaveLength(1);
+    expect(steps[0]?.text).toMatch(/^1 above pick · 2 pick · .* · 8 above place$/);
+  });
+
+  it("leaves no placeholder and no empty sentence", () => {
+    for (const line of events.flatMap(linesOf)) {
+      expect(line.text).not.toMatch(/[{}]|undefined|null/);
+      expect(line.text.length).toBeGreaterThan(1);
+    }
+  });
+});
