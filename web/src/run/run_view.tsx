@@ -6,11 +6,13 @@ import { TreeDrawing } from "../tree/tree_drawing";
 import { nodesOfRun } from "../tree/tree_node";
 import { plain } from "../tree/words";
 import type { NodeStarted, NodeView } from "../wire/types";
+import { Cameras } from "./cameras";
 import { ChoicePanel } from "./choice_panel";
 import { DialogueNow } from "./dialogue_now";
 import { ended, nodeViews, type RunState } from "./fold";
 import { openRun, type RunFeed } from "./run_feed";
 import { RunHeader } from "./run_header";
+import { ScenePanel } from "./scene/scene_panel";
 import { Scrubber } from "./scrubber";
 import { Tabs, useNarrow } from "./tabs";
 import { Timeline } from "./timeline";
@@ -102,6 +104,9 @@ function Shown({ feed, version, state, latest }: ShownProps) {
       <Transcript events={history.events} version={version} until={newest ? null : state.seq} onChoose={goToEvent} />
     </section>
   );
+  const { run } = state.started;
+  const scene = <ScenePanel key={run} run={run} moment={moment} />;
+  const cameras = <Cameras run={run} moment={moment} status={latest.status} />;
   return (
     <div class={`run-view ${newest ? "" : "in-past"}`}>
       <RunHeader newest={latest} time={moment.end.value} />
@@ -111,6 +116,7 @@ function Shown({ feed, version, state, latest }: ShownProps) {
           <Tabs
             panels={[
               { id: "tree", name: "Tree", content: [tree, choice] },
+              { id: "scene", name: "Scene", content: [scene, cameras] },
               { id: "timeline", name: "Timeline", content: timeline },
               { id: "transcript", name: "Transcript", content: transcript },
             ]}
@@ -119,6 +125,8 @@ function Shown({ feed, version, state, latest }: ShownProps) {
       ) : (
         <>
           <div class="run-area tree">{tree}</div>
+          <div class="run-area scene-area">{scene}</div>
+          <div class="run-area cameras-area">{cameras}</div>
           <div class="run-area timeline">{timeline}</div>
           <div class="run-area side">
             <Talk state={state} newest={newest} />
