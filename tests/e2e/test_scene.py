@@ -20,7 +20,9 @@ from server.runtime.requests import RunRequest
 # One event loop for all tests of the console, and so one browser.
 pytestmark = pytest.mark.asyncio(loop_scope="session")
 
-LONG_MS = 30_000
+# A part that the robot comes to late, so that there is time to open the page before.
+LATE = "blue leg"
+LONG_MS = 60_000
 CANVAS = "canvas.scene-canvas[data-drawn=true]"
 CLEARLY_MOVED_PX = 8
 LOOKS = 600
@@ -112,23 +114,23 @@ async def test_part_is_stolen_by_a_click_on_it(service: Service, open_page: Open
     page = await open_page(f"/runs/{run}")
     canvas = await drawn_canvas(page)
     await page.get_by_role("button", name="Names").click()
-    x, y = await place_of_name(page, "pink bar")
+    x, y = await place_of_name(page, LATE)
     await canvas.click(position={"x": x, "y": y})
-    menu = page.get_by_role("menu", name="pink bar")
+    menu = page.get_by_role("menu", name=LATE)
     await menu.get_by_role("menuitem", name="Steal").click()
-    await expect(page.get_by_role("status").filter(has_text="pink bar")).to_have_text(
-        "The pink bar is taken away."
+    await expect(page.get_by_role("status").filter(has_text=LATE)).to_have_text(
+        f"The {LATE} is taken away."
     )
-    await expect(page.locator(".scene-row", has_text="pink bar")).to_contain_text("taken away")
+    await expect(page.locator(".scene-row", has_text=LATE)).to_contain_text("taken away")
     await raised_issue(service, run, page)
 
 
 async def test_part_is_stolen_from_the_list_with_keys(
     service: Service, open_page: OpenPage
 ) -> None:
-    run = await start(service, 2.0)
+    run = await start(service, 1.0)
     page = await open_page(f"/runs/{run}")
-    button = page.get_by_role("button", name="Intervene: green leg")
+    button = page.get_by_role("button", name=f"Intervene: {LATE}")
     await button.focus(timeout=LONG_MS)
     await page.keyboard.press("Enter")
     await expect(page.get_by_role("menuitem", name="Steal")).to_be_focused()
@@ -136,7 +138,7 @@ async def test_part_is_stolen_from_the_list_with_keys(
     await expect(button).to_be_focused()
     await page.keyboard.press("Enter")
     await page.keyboard.press("Enter")
-    await expect(page.locator(".scene-row", has_text="green leg")).to_contain_text("taken away")
+    await expect(page.locator(".scene-row", has_text=LATE)).to_contain_text("taken away")
     await raised_issue(service, run, page)
 
 
@@ -146,7 +148,7 @@ async def test_refused_intervention_says_why(service: Service, open_page: OpenPa
     await page.get_by_role("button", name="Intervene: the arm’s way").click(timeout=LONG_MS)
     await page.get_by_role("menuitem", name="Block").click()
     await expect(page.locator(".scene-row", has_text="arm’s way")).to_contain_text("blocked")
-    await page.get_by_role("button", name="Intervene: blue leg").click()
+    await page.get_by_role("button", name=f"Intervene: {LATE}").click()
     await page.get_by_role("menuitem", name="Hand over").click()
     await expect(page.locator(".scene-note")).to_contain_text("held out")
     await page.get_by_role("button", name="Intervene: orange top").click()
