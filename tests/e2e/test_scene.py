@@ -137,6 +137,7 @@ async def test_part_is_stolen_from_the_list_with_keys(
     await page.keyboard.press("Escape")
     await expect(button).to_be_focused()
     await page.keyboard.press("Enter")
+    await expect(page.get_by_role("menuitem", name="Steal")).to_be_focused()
     await page.keyboard.press("Enter")
     await expect(page.locator(".scene-row", has_text=LATE)).to_contain_text("taken away")
     await raised_issue(service, run, page)
@@ -206,6 +207,8 @@ async def test_without_webgl_the_cameras_and_the_list_remain(
     await page.add_init_script("localStorage.setItem('mend.helper', '\"anna\"')")
     await page.goto(f"/runs/{run}")
     await expect(page.get_by_text("cannot draw in 3-D")).to_be_visible(timeout=LONG_MS)
+    # Pictures are asked for only while they can be seen.
+    await page.locator(".cameras").scroll_into_view_if_needed()
     await expect(page.get_by_role("img", name="Head camera, live")).to_be_visible(timeout=LONG_MS)
     await page.get_by_role("button", name="Intervene: green leg").click()
     await page.get_by_role("menuitem", name="Steal").click()
