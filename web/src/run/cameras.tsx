@@ -141,7 +141,7 @@ function follow(run: string, camera: string, show: (picture: Blob) => void, miss
 }
 
 function sentenceOn(error: unknown): string {
-  if (error instanceof rest.Refusal && error.status === GONE) return "This robot has no such camera.";
+  if (error instanceof rest.Refusal && error.status === GONE) return "No picture: the robot is not there yet, or has no such camera.";
   return "The robot sends no picture now.";
 }
 

@@ -1,5 +1,5 @@
 // A menu of interventions, by pointer and by key.
-import { useEffect, useRef } from "preact/hooks";
+import { useLayoutEffect, useRef } from "preact/hooks";
 import type { Offer } from "./interventions";
 
 interface Props {
@@ -12,8 +12,9 @@ interface Props {
 
 export function OfferMenu({ label, offers, style = {}, onChoose, onClose }: Props) {
   const menu = useRef<HTMLDivElement>(null);
-  useEffect(() => {
+  useLayoutEffect(() => {
     const before = document.activeElement;
+    menu.current?.scrollIntoView({ block: "nearest" });
     itemsOf(menu.current)[0]?.focus({ preventScroll: true });
     const outside = ({ target }: PointerEvent) => {
       if (!menu.current?.contains(target as Node)) onClose();

@@ -1,5 +1,5 @@
 // The objects in the scene: boxes with their knobs, where a frame says, with an outline round one of them.
-import { BackSide, BoxGeometry, Color, Group, Mesh, MeshBasicMaterial, MeshLambertMaterial } from "three";
+import { BackSide, BoxGeometry, Color, Group, Mesh, MeshBasicMaterial, MeshLambertMaterial, SRGBColorSpace } from "three";
 import type { ObjectLayout } from "../../wire/types";
 import type { Frame } from "./decode";
 import type { Palette } from "./palette";
@@ -46,7 +46,8 @@ export function createParts(objects: readonly ObjectLayout[]): Parts {
 }
 
 function createPart(layout: ObjectLayout, rimMaterial: MeshBasicMaterial): Part {
-  const material = new MeshLambertMaterial({ color: new Color().fromArray(layout.color) });
+  // Linear by the document, but the cameras show the numbers as they are; the two must look alike.
+  const material = new MeshLambertMaterial({ color: new Color().setRGB(...layout.color, SRGBColorSpace) });
   const [root, rim] = [new Group(), new Group()];
   let bottom = 0;
   for (const size of [layout.size_m, layout.knob_m]) {

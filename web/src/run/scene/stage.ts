@@ -16,6 +16,7 @@ import {
   WebGLRenderer,
 } from "three";
 import { createOrbit, type Orbit } from "./orbit";
+import { createPace } from "./pace";
 import type { Palette } from "./palette";
 import { release } from "./release";
 
@@ -45,15 +46,24 @@ export function createStage(canvas: HTMLCanvasElement, before: Before, after: ()
   const camera = new PerspectiveCamera(38, 1, 0.05, 30);
   const ground = createGround();
   const grid = createGrid();
-  scene.add(ground, grid, ...createLights());
+  const [ambient, key] = createLights();
+  scene.add(ground, grid, ambient, key, key.target);
 
+  const pace = createPace();
   let request = 0;
+  let pixels = 1;
   const draw = (now: number) => {
     request = 0;
     const again = before(now);
     const turning = orbit.update();
     renderer.render(scene, camera);
     after();
+    const less = pace(now);
+    if (less !== null) {
+      pixels = less.pixels;
+      key.castShadow = less.shadows;
+      fit();
+    }
     if (again || turning) invalidate();
   };
   const invalidate = () => {
@@ -64,7 +74,7 @@ export function createStage(canvas: HTMLCanvasElement, before: Before, after: ()
   const fit = () => {
     const { clientWidth: width, clientHeight: height } = canvas;
     if (width === 0 || height === 0) return;
-    renderer.setPixelRatio(Math.min(devicePixelRatio, HIGHEST_PIXEL_RATIO));
+    renderer.setPixelRatio(pixels * Math.min(devicePixelRatio, HIGHEST_PIXEL_RATIO));
     renderer.setSize(width, height, false);
     camera.aspect = width / height;
     camera.updateProjectionMatrix();
@@ -113,7 +123,7 @@ function createLights() {
   const { camera } = key.shadow;
   [camera.left, camera.right, camera.bottom, camera.top] = [-1.6, 1.6, -1.6, 1.6];
   [camera.near, camera.far] = [0.5, 7];
-  return [ambient, key, key.target] as const;
+  return [ambient, key] as const;
 }
 
 function createGround() {

@@ -1,0 +1,215 @@
+"""The run's scene in 3-D: it draws, it moves, and a person can intervene in it."""
+
+import math
+import shutil
+from collections.abc import AsyncIterator
+from typing import Literal
+from uuid import UUID
+
+import cv2
+import numpy as np
+import pytest
+import pytest_asyncio
+from console_in_browser import TOKEN, OpenPage
+from numpy.typing import NDArray
+from playwright.async_api import Browser, Locator, Page, async_playwright, expect
+
+from server.composition import Service
+from server.runtime.requests import RunRequest
+
+# One event loop for all tests of the console, and so one browser.
+pytestmark = pytest.mark.asyncio(loop_scope="session")
+
+# A part that the robot comes to late, so that there is time to open the page before.
+LATE = "blue leg"
+LONG_MS = 60_000
+CANVAS = "canvas.scene-canvas[data-drawn=true]"
+CLEARLY_MOVED_PX = 8
+LOOKS = 600
+NEXT_PICTURE = "() => new Promise((done) => requestAnimationFrame(() => setTimeout(done, 50)))"
+# Relative to the 3-D view, so that scrolling the page moves nothing.
+SPOT = """each => {
+    const view = each.parentElement.getBoundingClientRect();
+    const { x, y } = each.getBoundingClientRect();
+    return [x - view.x, y - view.y];
+}"""
+
+
+async def start(service: Service, speed: float | Literal["max"]) -> UUID:
+    run = await service.runtime.start_run(
+        RunRequest(tree="eket", world="tabletop", speed=speed, seed=1)
+    )
+    return run.id
+
+
+async def drawn_canvas(page: Page) -> Locator:
+    canvas = page.locator(CANVAS)
+    await expect(canvas).to_be_visible(timeout=LONG_MS)
+    await canvas.scroll_into_view_if_needed()
+    return canvas
+
+
+async def pixels(canvas: Locator) -> NDArray[np.int16]:
+    encoded = np.frombuffer(await canvas.screenshot(), np.uint8)
+    picture = cv2.imdecode(encoded, cv2.IMREAD_COLOR)
+    assert picture is not None
+    return picture.astype(np.int16)
+
+
+def green_pixels(picture: NDArray[np.int16]) -> int:
+    blue, green, red = (picture[..., channel] for channel in range(3))
+    return int(((green > red + 40) & (green > blue + 40)).sum())
+
+
+async def place_of_name(page: Page, name: str) -> tuple[float, float]:
+    """Where the middle of an object is on the page: its name is put there."""
+    mark = page.locator(".scene-name", has_text=name)
+    await expect(mark.locator("span")).to_be_visible(timeout=LONG_MS)
+    x, y = await mark.evaluate(SPOT)
+    return x, y
+
+
+async def wait_for_motion(page: Page, name: str, before: tuple[float, float]) -> None:
+    """Wait until an object is drawn elsewhere in the 3-D view than it was."""
+    for _ in range(LOOKS):
+        if math.dist(await place_of_name(page, name), before) > CLEARLY_MOVED_PX:
+            return
+        await page.evaluate(NEXT_PICTURE)
+    pytest.fail(f"{name} is still drawn at {before}")
+
+
+async def raised_issue(service: Service, run: UUID, page: Page) -> None:
+    """Wait until the robot has noticed and asks."""
+    await expect(page.get_by_role("button", name="YES")).to_be_visible(timeout=LONG_MS)
+    events = await service.journal.read_records(0, 1000, run)
+    assert any('"type":"issue_raised"' in each.text for each in events)
+
+
+async def test_scene_draws_the_parts_in_their_colours(
+    service: Service, open_page: OpenPage
+) -> None:
+    run = await start(service, 0.5)
+    page = await open_page(f"/runs/{run}")
+    canvas = await drawn_canvas(page)
+    await page.get_by_role("button", name="Names").click()
+    await place_of_name(page, "green leg")
+    picture = await pixels(canvas)
+    assert picture.std() > 8
+    assert green_pixels(picture) > 100
+
+
+async def test_held_part_moves_in_the_picture(service: Service, open_page: OpenPage) -> None:
+    run = await start(service, 1.0)
+    page = await open_page(f"/runs/{run}")
+    await drawn_canvas(page)
+    await page.get_by_role("button", name="Names").click()
+    held = page.locator(".scene-name.held")
+    await expect(held.locator("span")).to_be_visible(timeout=LONG_MS)
+    name = await held.inner_text()
+    await wait_for_motion(page, name, await place_of_name(page, name))
+
+
+async def test_part_is_stolen_by_a_click_on_it(service: Service, open_page: OpenPage) -> None:
+    run = await start(service, 1.0)
+    page = await open_page(f"/runs/{run}")
+    canvas = await drawn_canvas(page)
+    await page.get_by_role("button", name="Names").click()
+    x, y = await place_of_name(page, LATE)
+    await canvas.click(position={"x": x, "y": y})
+    menu = page.get_by_role("menu", name=LATE)
+    await menu.get_by_role("menuitem", name="Steal").click()
+    await expect(page.get_by_role("status").filter(has_text=LATE)).to_have_text(
+        f"The {LATE} is taken away."
+    )
+    await expect(page.locator(".scene-row", has_text=LATE)).to_contain_text("taken away")
+    await raised_issue(service, run, page)
+
+
+async def test_part_is_stolen_from_the_list_with_keys(
+    service: Service, open_page: OpenPage
+) -> None:
+    run = await start(service, 1.0)
+    page = await open_page(f"/runs/{run}")
+    button = page.get_by_role("button", name=f"Intervene: {LATE}")
+    await button.focus(timeout=LONG_MS)
+    await page.keyboard.press("Enter")
+    await expect(page.get_by_role("menuitem", name="Steal")).to_be_focused()
+    await page.keyboard.press("Escape")
+    await expect(button).to_be_focused()
+    await page.keyboard.press("Enter")
+    await expect(page.get_by_role("menuitem", name="Steal")).to_be_focused()
+    await page.keyboard.press("Enter")
+    await expect(page.locator(".scene-row", has_text=LATE)).to_contain_text("taken away")
+    await raised_issue(service, run, page)
+
+
+async def test_refused_intervention_says_why(service: Service, open_page: OpenPage) -> None:
+    run = await start(service, 0.5)
+    page = await open_page(f"/runs/{run}")
+    await page.get_by_role("button", name="Intervene: the arm’s way").click(timeout=LONG_MS)
+    await page.get_by_role("menuitem", name="Block").click()
+    await expect(page.locator(".scene-row", has_text="arm’s way")).to_contain_text("blocked")
+    await page.get_by_role("button", name=f"Intervene: {LATE}").click()
+    await page.get_by_role("menuitem", name="Hand over").click()
+    await expect(page.locator(".scene-note")).to_contain_text("held out")
+    await page.get_by_role("button", name="Intervene: orange top").click()
+    await page.get_by_role("menuitem", name="Hand over").click()
+    await expect(page.locator(".scene-note")).to_contain_text("already")
+
+
+async def test_part_is_moved_by_a_click_on_the_table(service: Service, open_page: OpenPage) -> None:
+    run = await start(service, 0.5)
+    page = await open_page(f"/runs/{run}")
+    canvas = await drawn_canvas(page)
+    await page.get_by_role("button", name="Names").click()
+    before = await place_of_name(page, "orange top")
+    await page.get_by_role("button", name="Intervene: orange top").click()
+    await page.get_by_role("menuitem", name="Move").click()
+    box = await canvas.bounding_box()
+    assert box is not None
+    # The near part of the table is in the lower middle of the picture, and free.
+    await canvas.click(position={"x": 0.5 * box["width"], "y": 0.6 * box["height"]})
+    await expect(page.locator(".scene-note")).to_have_text("The orange top is moved.")
+    await wait_for_motion(page, "orange top", before)
+
+
+async def test_replay_shows_where_everything_was(service: Service, open_page: OpenPage) -> None:
+    run = await start(service, "max")
+    page = await open_page(f"/runs/{run}")
+    await expect(page.get_by_text("The end", exact=True)).to_be_visible(timeout=LONG_MS)
+    await drawn_canvas(page)
+    await page.get_by_role("button", name="Names").click()
+    at_the_end = await place_of_name(page, "green leg")
+    await page.get_by_label("Moment of the run").fill("0")
+    await wait_for_motion(page, "green leg", at_the_end)
+    await expect(page.get_by_role("button", name="Intervene: green leg")).to_have_count(0)
+
+
+@pytest_asyncio.fixture(loop_scope="session")
+async def browser_without_webgl() -> AsyncIterator[Browser]:
+    path = shutil.which("chromium") or shutil.which("google-chrome")
+    async with async_playwright() as playwright:
+        browser = await playwright.chromium.launch(
+            executable_path=path,
+            headless=True,
+            args=["--no-sandbox", "--disable-gpu", "--disable-webgl", "--disable-3d-apis"],
+        )
+        yield browser
+        await browser.close()
+
+
+async def test_without_webgl_the_cameras_and_the_list_remain(
+    service: Service, browser_without_webgl: Browser
+) -> None:
+    run = await start(service, 0.5)
+    page = await browser_without_webgl.new_page(base_url=service.url)
+    await page.request.post("/api/session", data={"token": TOKEN})
+    await page.add_init_script("localStorage.setItem('mend.helper', '\"anna\"')")
+    await page.goto(f"/runs/{run}")
+    await expect(page.get_by_text("cannot draw in 3-D")).to_be_visible(timeout=LONG_MS)
+    # Pictures are asked for only while they can be seen.
+    await page.locator(".cameras").scroll_into_view_if_needed()
+    await expect(page.get_by_role("img", name="Head camera, live")).to_be_visible(timeout=LONG_MS)
+    await page.get_by_role("button", name="Intervene: green leg").click()
+    await page.get_by_role("menuitem", name="Steal").click()
+    await expect(page.locator(".scene-row", has_text="green leg")).to_contain_text("taken away")
