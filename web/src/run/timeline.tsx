@@ -217,7 +217,6 @@ function LaneItems({ lane, scale, height, walk, onChoose }: LaneItemsProps) {
             ref={walk.refOf(item.seq)}
             role="button"
             class={`item ${item.look}`}
-            aria-label={`${clock(item.start)}: ${item.title}`}
             tabindex={item.seq === walk.at ? 0 : -1}
             data-seq={item.seq}
             onClick={(event) => {
