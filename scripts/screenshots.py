@@ -4,7 +4,7 @@
 `.venv/bin/python scripts/screenshots.py [NAME ...]`; without names all of them, into docs/images.
 """
 
-# ruff: noqa: T201
+# ruff: noqa: E402, T201
 import asyncio
 import shutil
 import sys

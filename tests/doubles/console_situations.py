@@ -1,4 +1,4 @@
-"""Situations that the console is looked at in: each plays a run, and opens the view that shows it."""
+"""Situations that the console is looked at in: each plays a run, and opens its view."""
 
 from collections.abc import Awaitable, Callable
 from uuid import UUID

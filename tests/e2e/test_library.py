@@ -6,8 +6,6 @@ import pytest
 from console_in_browser import OpenPage
 from playwright.async_api import Locator, Page, Route, expect
 
-from server.composition import Service
-
 # One event loop for all tests of the console, and so one browser.
 pytestmark = pytest.mark.asyncio(loop_scope="session")
 
@@ -28,7 +26,8 @@ DROP = """([name, bytes]) => {
     files.items.add(new File([new Uint8Array(bytes)], name));
     const target = document.querySelector("main h1");
     for (const type of ["dragenter", "dragover", "drop"]) {
-        target.dispatchEvent(new DragEvent(type, {bubbles: true, cancelable: true, dataTransfer: files}));
+        const event = {bubbles: true, cancelable: true, dataTransfer: files};
+        target.dispatchEvent(new DragEvent(type, event));
     }
 }"""
 
@@ -36,7 +35,8 @@ DROP = """([name, bytes]) => {
 OFFSETS = """frame => {
     const text = frame.querySelector("textarea").getBoundingClientRect();
     const number = [...frame.querySelectorAll("li")].find((each) => each.textContent === "1501");
-    const line = frame.querySelectorAll(".line")[[...number.parentElement.children].indexOf(number)];
+    const index = [...number.parentElement.children].indexOf(number);
+    const line = frame.querySelectorAll(".line")[index];
     const [beside, drawn] = [number, line].map((each) => each.getBoundingClientRect());
     return [drawn.top - (text.top + 24 * 1500), beside.top - drawn.top, drawn.left - text.left];
 }"""
@@ -227,7 +227,7 @@ async def test_refused_save_keeps_the_text(open_page: OpenPage) -> None:
     await expect(text_of(page)).to_have_value(CORRECT)
 
 
-async def test_tree_is_deleted_after_one_question(open_page: OpenPage, service: Service) -> None:
+async def test_tree_is_deleted_after_one_question(open_page: OpenPage) -> None:
     page = await open_library(open_page)
     await by_button(page, "shelf.yaml", CORRECT.encode())
     await page.get_by_role("button", name="Delete").click()

@@ -79,11 +79,9 @@ export function TreeDrawing(props: TreeDrawingProps) {
               transform={`translate(${placed.x} ${placed.y})`}
               onClick={() => walk.take(placed.node.path)}
             >
+              {/* The name, in words; one of its own beside the visible text would contradict that. */}
               <title>{described(placed.node, placed.hidden)}</title>
-              {/* The name says it all in words; the card's own text would be heard twice. */}
-              <g aria-hidden="true">
-                <NodeCard placed={placed} highest={highest} compact={compact} />
-              </g>
+              <NodeCard placed={placed} highest={highest} compact={compact} />
               {placed.expandable && (foldable || placed.hidden > 0) && (
                 <FoldButton placed={placed} layout={layout} onToggle={() => toggle(placed.node.path)} />
               )}
