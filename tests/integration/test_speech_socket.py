@@ -199,7 +199,7 @@ async def test_one_conversation_too_many_is_refused() -> None:
         (b"\0" * 17_000, 413),
         (b"\0\0\0", 422),
     ],
-    ids=str,
+    ids=["no_json", "unknown", "too_much", "too_early", "no_dialogue", "long", "loud", "odd"],
 )
 async def test_what_cannot_be_done_gets_an_error_and_the_connection_stays(
     service: ServiceUnderTest, message: str | bytes, status: int
