@@ -55,6 +55,10 @@ class Camera(Protocol):
         """How often it takes a picture, in seconds of the world's clock."""
         ...
 
+    def pose(self) -> Matrix4:
+        """Where it is now: its optical frame in the base frame."""
+        ...
+
     def capture(self) -> CameraImage:
         """Take a picture now."""
         ...

@@ -177,7 +177,7 @@ class Senses:
     def _own_arm(self) -> Segment:
         """From the tool point back through the forearm camera, which is mounted on the arm."""
         tool = self._body.tool_pose()[:3, 3]
-        along = self._body.cameras[FOREARM].capture().pose[:3, 3] - tool
+        along = self._body.cameras[FOREARM].pose()[:3, 3] - tool
         return tool, tool + along / max(float(np.linalg.norm(along)), 1e-6) * _ARM_LENGTH_M
 
     def _understand(self, image: CameraImage) -> _Seen:

@@ -61,6 +61,10 @@ class WorkcellCamera:
     def period_s(self) -> float:
         return self._optics.period_s
 
+    def pose(self) -> Matrix4:
+        """Where it is now: its optical frame in the base frame."""
+        return self._pose()
+
     def capture(self) -> CameraImage:
         """Take a picture now; while neither time passes nor anything moves it is the same one."""
         now = self._arrangement()
@@ -71,7 +75,7 @@ class WorkcellCamera:
     def capture_with_bodies(self) -> tuple[CameraImage, Rendering]:
         """A picture and what it was rendered to, for training and for tests to judge by."""
         optics = self._optics
-        view = View(self._pose(), optics.size, optics.focal_px, optics.near_m)
+        view = View(self.pose(), optics.size, optics.focal_px, optics.near_m)
         rendering = self._renderer.render(view, self._lighting.light)
         image = CameraImage(
             bgr=self._lighting.expose(rendering.bgr),

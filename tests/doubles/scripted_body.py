@@ -5,7 +5,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from drawn_scene import PARTS, TABLE_Z, DrawnScene, Resting
+from drawn_scene import HEAD_POSE, PARTS, TABLE_Z, DrawnScene, Resting
 
 from robots.body import CameraImage, Reach, ToolPose
 from robots.catalogue import Catalogue
@@ -40,13 +40,16 @@ class ScriptedCamera:
     def period_s(self) -> float:
         return self._period_s
 
+    def pose(self) -> np.ndarray:
+        return HEAD_POSE if self._name == "head" else forearm_pose(self._body.tool_pose())
+
     def capture(self) -> CameraImage:
         self.pictures_taken += 1
         scene = DrawnScene(self._body.placed(), self._body.grey_boxes)
         if self._name == "head":
             return scene.picture(time=self._body.time_s())
         return scene.picture(
-            pose=forearm_pose(self._body.tool_pose()),
+            pose=self.pose(),
             width=160,
             height=120,
             focal_px=80.0,

@@ -2,7 +2,7 @@
 import { useComputed } from "@preact/signals";
 import { useCallback, useEffect, useMemo, useState } from "preact/hooks";
 import { later } from "../app/later";
-import { QuestionCard } from "../question/question_card";
+import { RunQuestion } from "../question/run_question";
 import { questions } from "../state/questions";
 import { TreeDrawing } from "../tree/tree_drawing";
 import { nodesOfRun } from "../tree/tree_node";
@@ -172,7 +172,7 @@ function Talk({ state, newest }: { state: RunState; newest: boolean }) {
   if (newest && asked[0] !== undefined) {
     return (
       <div class="run-talk">
-        <QuestionCard key={asked[0].dialogue} question={asked[0]} />
+        <RunQuestion run={state.started.run} />
       </div>
     );
   }
