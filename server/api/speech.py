@@ -21,7 +21,7 @@ PromptId = Annotated[UUID, Path(description="The prompt's id.")]
 WAV: dict[int | str, dict[str, Any]] = {
     200: {"content": {"audio/wav": {}}, "description": "The sound."}
 }
-REFUSALS = documented(401, 404, 421, 422, 503)
+REFUSALS = documented(401, 404, 409, 421, 422)
 
 
 class Ability(BaseModel):
@@ -125,10 +125,10 @@ async def get_prompt_effect_speech(
 async def _sound(parts: Parts, text: str) -> Response:
     texts = parts.speech.texts
     if isinstance(texts, NoVoice):
-        raise ProblemError(503, f"this service has no voice: {texts.why_not}")
+        raise ProblemError(409, f"this service has no voice: {texts.why_not}")
     try:
         sound = await texts.wav(text)
     except VoiceError as error:
-        raise ProblemError(503, str(error)) from error
+        raise ProblemError(409, str(error)) from error
     headers = {"Cache-Control": "private, max-age=3600"}
     return Response(sound, media_type="audio/wav", headers=headers)

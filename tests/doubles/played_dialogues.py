@@ -155,7 +155,7 @@ class PlayedDialogues(FakeRuns):
             to=None,
             help_until=self._deadline(),
             helper=played.helper,
-            can_go_on=True,
+            stopped=None,
         )
         if call == "abort":
             events = [played.make.aborted()]

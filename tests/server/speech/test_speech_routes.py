@@ -62,7 +62,7 @@ async def test_a_service_without_speech_says_why_not() -> None:
         assert told["voice"]["why_not"]
         assert not told["recognition"]["available"]
         refused = await client.get("/api/speech/phrases/sorry")
-    assert refused.status_code == 503
+    assert refused.status_code == 409
     assert "no voice" in refused.json()["detail"]
     service.journal.close()
 
@@ -131,7 +131,7 @@ async def test_a_voice_that_fails_is_a_problem(
 ) -> None:
     voice.broken = True
     response = await client.get(address(question))
-    assert response.status_code == 503
+    assert response.status_code == 409
     assert response.json()["detail"] == "tone failed"
 
 

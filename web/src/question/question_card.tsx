@@ -18,7 +18,13 @@ const ARMED_AFTER_MS = 500;
 
 let leftAt = Number.NEGATIVE_INFINITY;
 
-export function QuestionCard({ question }: { question: Question }) {
+interface QuestionCardProps {
+  question: Question;
+  /** Beside the run's own drawing of the tree, which shows the paused node already. */
+  besideTree?: boolean;
+}
+
+export function QuestionCard({ question, besideTree = false }: QuestionCardProps) {
   const armed = useArmed();
   useAnswerKeys(question, armed);
   useEffect(() => () => release(question.dialogue), [question.dialogue]);
@@ -54,7 +60,7 @@ export function QuestionCard({ question }: { question: Question }) {
         <div class="question-more">
           <SpeechControls question={question} onAct={act} />
           <ClaimStrip question={question} />
-          <PausedNode run={question.run} node={question.node} name={question.name} />
+          {!besideTree && <PausedNode run={question.run} node={question.node} name={question.name} />}
         </div>
       </div>
     </article>

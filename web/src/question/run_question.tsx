@@ -10,7 +10,7 @@ export function RunQuestion({ run }: { run: string }) {
   return (
     <section class="run-question" aria-label="What this run asks">
       <Endings run={run} />
-      {question !== undefined && <QuestionCard key={question.dialogue} question={question} />}
+      {question !== undefined && <QuestionCard key={question.dialogue} question={question} besideTree />}
       {awaitingHelp.value
         .filter((each) => each.run === run)
         .map((each) => (
