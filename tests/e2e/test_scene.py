@@ -16,6 +16,7 @@ from playwright.async_api import Browser, Locator, Page, async_playwright, expec
 
 from server.composition import Service
 from server.runtime.requests import RunRequest
+from tasks.intervention import Intervention
 
 # One event loop for all tests of the console, and so one browser.
 pytestmark = pytest.mark.asyncio(loop_scope="session")
@@ -148,18 +149,27 @@ async def test_part_is_stolen_from_the_list_with_keys(
 
 
 async def test_refused_intervention_says_why(service: Service, open_page: OpenPage) -> None:
-    # Slow, as nobody holds a part out to a robot for ever.
-    run = await start(service, 0.05)
+    run = await start(service, 0.5)
+    # A robot that waits for an answer closes its gripper on nothing that is held out to it.
+    await service.runtime.intervene(
+        run, Intervention.model_validate({"act": "steal", "object": "green_leg"})
+    )
     page = await open_page(f"/runs/{run}")
-    await page.get_by_role("button", name="Intervene: the arm’s way").click(timeout=LONG_MS)
-    await page.get_by_role("menuitem", name="Block").click()
-    await expect(page.locator(".scene-row", has_text="arm’s way")).to_contain_text("blocked")
+    await raised_issue(service, run, page)
     await page.get_by_role("button", name=f"Intervene: {LATE}").click()
     await page.get_by_role("menuitem", name="Hand over").click()
     await expect(page.locator(".scene-note")).to_contain_text("held out")
     await page.get_by_role("button", name="Intervene: orange top").click()
     await page.get_by_role("menuitem", name="Hand over").click()
     await expect(page.locator(".scene-note")).to_contain_text("already")
+
+
+async def test_arm_is_blocked_from_the_list(service: Service, open_page: OpenPage) -> None:
+    run = await start(service, 0.5)
+    page = await open_page(f"/runs/{run}")
+    await page.get_by_role("button", name="Intervene: the arm’s way").click(timeout=LONG_MS)
+    await page.get_by_role("menuitem", name="Block").click()
+    await expect(page.locator(".scene-row", has_text="arm’s way")).to_contain_text("blocked")
 
 
 async def test_part_is_moved_by_a_click_on_the_table(service: Service, open_page: OpenPage) -> None:

@@ -1,7 +1,7 @@
 // The run's scene: robot and objects in 3-D at the moment that is shown, and what a person may do there.
 import { useEffect, useMemo, useState } from "preact/hooks";
 import { helperName } from "../../state/preferences";
-import { runs } from "../../state/service";
+import { onEvent, runs } from "../../state/service";
 import * as rest from "../../wire/rest";
 import type { Intervention } from "../../wire/types";
 import type { Moment } from "../moment";
@@ -36,11 +36,19 @@ export function ScenePanel({ run, moment }: { run: string; moment: Moment }) {
   const offered = layout?.simulated === true && running && moment.live.value;
   const choosing = offered && putting !== null;
 
+  // The service passes an intervention on at once; whether the world could do it comes as an event.
+  useEffect(
+    () =>
+      onEvent((event) => {
+        if (event.type !== "intervention" || event.run !== run) return;
+        setNote(event.ok ? sentenceOn(event.intervention) : `That could not be done: ${event.detail}.`);
+      }),
+    [run],
+  );
   const intervene = async (intervention: Intervention) => {
     setPutting(null);
     try {
       await rest.intervene(run, intervention);
-      setNote(sentenceOn(intervention));
     } catch (error) {
       setNote((error as Error).message);
     }
