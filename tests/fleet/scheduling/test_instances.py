@@ -1,17 +1,15 @@
 """Readers of published instances: small ones here, and all that are in the data folder."""
 
-import os
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from benchmark_instances import DATA
 
 from fleet.scheduling.instances.li_lim import read_li_lim
 from fleet.scheduling.instances.numbers import InstanceError
 from fleet.scheduling.instances.transfer_benchmark import read_transfer_benchmark
 from fleet.scheduling.problem import Window
-
-DATA = Path(os.environ.get("MEND_DATA", Path(__file__).parents[4] / "shared/data")) / "scheduling"
 
 LI_LIM = """\
 2\t10\t1
