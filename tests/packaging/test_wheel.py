@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-PACKAGES = ("tasks", "dialogue", "robots", "sim", "server")
+PACKAGES = ("tasks", "maps", "dialogue", "robots", "fleet", "sim", "server")
 
 pytestmark = pytest.mark.slow
 
