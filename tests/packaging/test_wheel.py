@@ -13,7 +13,7 @@ import pytest
 from server.api.console import BUILT
 
 ROOT = Path(__file__).parents[2]
-PACKAGES = ("tasks", "dialogue", "robots", "sim", "server")
+PACKAGES = ("tasks", "maps", "dialogue", "robots", "fleet", "sim", "server")
 
 ASSET = re.compile(r'"/(assets/[^"]+)"')
 IMPORT = re.compile(r"""(?:\bfrom|\bimport)\s*\(?\s*["']\./([\w.-]+)["']""")

@@ -1,0 +1,1 @@
+"""Many robots and many helpers: scheduling with transfers, and whom to ask for help."""

@@ -1,0 +1,1 @@
+"""Scheduling deliveries over several robots, with transfers between them. Pure algorithms."""

@@ -1,0 +1,73 @@
+"""The constraints of a schedule by name, and the sentence that says what one demands."""
+
+from enum import StrEnum
+from typing import NamedTuple
+
+from fleet.scheduling.problem import Problem
+from fleet.scheduling.schedule import Task
+
+
+class ConstraintKind(StrEnum):
+    """What a constraint is about."""
+
+    SHIFT_BEGIN = "shift_begin"
+    SHIFT_END = "shift_end"
+    DURATION = "duration"
+    TRAVEL = "travel"
+    HOMEWARD = "homeward"
+    WINDOW_BEGIN = "window_begin"
+    WINDOW_END = "window_end"
+    ON_BOARD = "on_board"
+    TRANSFER = "transfer"
+
+
+class Constraint(NamedTuple):
+    """One constraint: of a robot, of a task, or between two."""
+
+    kind: ConstraintKind
+    robot: int | None = None
+    task: Task | None = None
+
+
+def sentence(problem: Problem, constraint: Constraint) -> str:
+    """What the constraint demands, for a person."""
+    robot = problem.robots[constraint.robot] if constraint.robot is not None else None
+    item = problem.items[constraint.task.item] if constraint.task is not None else None
+    what = _task_words(problem, constraint.task)
+    match constraint.kind:
+        case ConstraintKind.SHIFT_BEGIN:
+            assert robot is not None
+            return f"{robot.name} starts at {robot.shift.earliest_s:g} s"
+        case ConstraintKind.SHIFT_END:
+            assert robot is not None
+            return f"the shift of {robot.name} ends at {robot.shift.latest_s:g} s"
+        case ConstraintKind.DURATION:
+            assert robot is not None
+            return f"{robot.name} may be away for {robot.max_duration_s:g} s"
+        case ConstraintKind.TRAVEL:
+            assert robot is not None
+            return f"{robot.name} has to get there to {what}"
+        case ConstraintKind.HOMEWARD:
+            assert robot is not None
+            return f"{robot.name} has to get to its end"
+        case ConstraintKind.WINDOW_BEGIN | ConstraintKind.WINDOW_END:
+            assert item is not None
+            assert constraint.task is not None
+            loading = constraint.task.action.loads
+            window = (item.pickup if loading else item.delivery).window
+            begins = constraint.kind is ConstraintKind.WINDOW_BEGIN
+            if begins:
+                return f"nobody can {what} before {window.earliest_s:g} s"
+            return f"to {what} must begin by {window.latest_s:g} s"
+        case ConstraintKind.ON_BOARD:
+            assert item is not None
+            return f"{item.name} may be on board for {item.max_on_board_s:g} s"
+        case ConstraintKind.TRANSFER:
+            assert item is not None
+            return f"{item.name} can be taken only after it was given"
+
+
+def _task_words(problem: Problem, task: Task | None) -> str:
+    if task is None:
+        return ""
+    return f"{task.action} {problem.items[task.item].name} at {problem.places[task.place]}"

@@ -1,0 +1,1 @@
+"""Optimal schedules with transfers, by constraint programming (OR-Tools CP-SAT)."""

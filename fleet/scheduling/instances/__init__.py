@@ -1,0 +1,1 @@
+"""Readers of published benchmark instances, and the generator of buildings."""

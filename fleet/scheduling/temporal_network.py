@@ -1,0 +1,212 @@
+"""A simple temporal network (Dechter, Meiri and Pearl 1991): events and bounds between them.
+
+Every constraint says that one event is at least so long after another. Earliest and latest times
+are kept while constraints come; a trial can be undone; a conflict names the constraints that
+cannot hold together.
+"""
+
+from collections import deque
+from collections.abc import Hashable
+from dataclasses import dataclass
+from math import inf
+from typing import Generic, TypeVar
+
+Reason = TypeVar("Reason", bound=Hashable)
+"""What a constraint is called in explanations."""
+
+ORIGIN = 0
+"""The event at time 0 from which all times count."""
+
+TOLERANCE_S = 1e-7
+"""Rounding may not turn a chain that just fits into a conflict."""
+
+
+@dataclass(frozen=True)
+class Conflict(Generic[Reason]):
+    """Constraints that together ask for more time than there is, by `excess_s`."""
+
+    reasons: tuple[Reason, ...]
+    excess_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class _Edge(Generic[Reason]):
+    """Event `later` is at least `gap_s` after `earlier`."""
+
+    earlier: int
+    later: int
+    gap_s: float
+    reason: Reason
+
+
+class TemporalNetwork(Generic[Reason]):
+    """Events, numbered from 1, with their earliest and latest times in seconds."""
+
+    def __init__(self) -> None:
+        self._earliest = [0.0]
+        self._latest = [0.0]
+        self._out: list[list[_Edge[Reason]]] = [[]]
+        self._in: list[list[_Edge[Reason]]] = [[]]
+        self._trail: list[tuple[list[float], int, float] | _Edge[Reason]] = []
+
+    def __len__(self) -> int:
+        return len(self._earliest)
+
+    def add_event(self) -> int:
+        """A new event, not before the origin; returns its number. It cannot be undone."""
+        self._earliest.append(0.0)
+        self._latest.append(inf)
+        self._out.append([])
+        self._in.append([])
+        return len(self._earliest) - 1
+
+    def earliest_s(self, event: int) -> float:
+        """The earliest time at which an event can be."""
+        return self._earliest[event]
+
+    def latest_s(self, event: int) -> float:
+        """The latest time at which an event can be, if all else gives way."""
+        return self._latest[event]
+
+    def slack_s(self, event: int) -> float:
+        """By how much an event may be late before a constraint breaks."""
+        return self._latest[event] - self._earliest[event]
+
+    # --- constraints --------------------------------------------------------------------------
+
+    def after(
+        self, later: int, earlier: int, gap_s: float, reason: Reason
+    ) -> Conflict[Reason] | None:
+        """`later` is at least `gap_s` after `earlier` (negative: may be that much before).
+
+        Returns the conflict when that cannot be; the network is then as it was.
+        """
+        if gap_s == -inf:
+            return None
+        mark = self.mark()
+        edge = _Edge(earlier, later, gap_s, reason)
+        self._out[earlier].append(edge)
+        self._in[later].append(edge)
+        self._trail.append(edge)
+        conflict = self._push_earliest(edge)
+        if conflict is None:
+            self._push_latest(edge)
+        else:
+            self.undo(mark)
+        return conflict
+
+    def not_before(self, event: int, time_s: float, reason: Reason) -> Conflict[Reason] | None:
+        """`event` is at `time_s` or later."""
+        return self.after(event, ORIGIN, time_s, reason)
+
+    def not_after(self, event: int, time_s: float, reason: Reason) -> Conflict[Reason] | None:
+        """`event` is at `time_s` or earlier."""
+        return self.after(ORIGIN, event, -time_s, reason)
+
+    def within(
+        self, later: int, earlier: int, span_s: float, reason: Reason
+    ) -> Conflict[Reason] | None:
+        """`later` is at most `span_s` after `earlier`."""
+        return self.after(earlier, later, -span_s, reason)
+
+    # --- trials -------------------------------------------------------------------------------
+
+    def mark(self) -> int:
+        """Where the network stands now, to come back to with `undo`."""
+        return len(self._trail)
+
+    def undo(self, mark: int) -> None:
+        """Take back every constraint that was added since `mark`."""
+        while len(self._trail) > mark:
+            entry = self._trail.pop()
+            if isinstance(entry, _Edge):
+                self._out[entry.earlier].pop()
+                self._in[entry.later].pop()
+            else:
+                times, event, before = entry
+                times[event] = before
+
+    # --- propagation --------------------------------------------------------------------------
+
+    def _push_earliest(self, edge: _Edge[Reason]) -> Conflict[Reason] | None:
+        """Move what must be later now; a way back to where the edge begins is a conflict."""
+        earliest = self._earliest
+        if earliest[edge.earlier] + edge.gap_s <= earliest[edge.later] + TOLERANCE_S:
+            return None
+        cause: dict[int, _Edge[Reason]] = {}
+        waiting = deque((edge,))
+        while waiting:
+            pushing = waiting.popleft()
+            time_s = earliest[pushing.earlier] + pushing.gap_s
+            if time_s <= earliest[pushing.later] + TOLERANCE_S:
+                continue
+            if pushing.later in (edge.earlier, ORIGIN):
+                return self._explain(pushing, edge, cause)
+            cause[pushing.later] = pushing
+            self._set(earliest, pushing.later, time_s)
+            waiting.extend(self._out[pushing.later])
+        return None
+
+    def _push_latest(self, edge: _Edge[Reason]) -> None:
+        latest = self._latest
+        waiting = deque((edge,))
+        while waiting:
+            pulling = waiting.popleft()
+            time_s = latest[pulling.later] - pulling.gap_s
+            if time_s >= latest[pulling.earlier] - TOLERANCE_S or pulling.earlier == ORIGIN:
+                continue
+            self._set(latest, pulling.earlier, time_s)
+            waiting.extend(self._in[pulling.earlier])
+
+    def _set(self, times: list[float], event: int, time_s: float) -> None:
+        self._trail.append((times, event, times[event]))
+        times[event] = time_s
+
+    def _explain(
+        self, last: _Edge[Reason], added: _Edge[Reason], cause: dict[int, _Edge[Reason]]
+    ) -> Conflict[Reason]:
+        """The constraints from `last` back to `added`, and from there to the cycle's begin.
+
+        When the origin is what cannot move, the way from the origin to the added constraint
+        belongs to the conflict too.
+        """
+        reasons = [last.reason]
+        length_s = last.gap_s
+        event = last.earlier
+        while event in cause and cause[event] is not added:
+            edge = cause[event]
+            reasons.append(edge.reason)
+            length_s += edge.gap_s
+            event = edge.earlier
+        if last is not added:
+            reasons.append(added.reason)
+            length_s += added.gap_s
+        if last.later == ORIGIN and added.earlier != ORIGIN:
+            tail, tail_s = self._tight_path_to(added.earlier)
+            reasons.extend(tail)
+            length_s += tail_s
+        return Conflict(tuple(dict.fromkeys(reversed(reasons))), length_s)
+
+    def _tight_path_to(self, event: int) -> tuple[list[Reason], float]:
+        """The chain of constraints that makes an event as early as it can be, latest first."""
+        reasons: list[Reason] = []
+        length_s = 0.0
+        seen = {event}
+        while event != ORIGIN:
+            tight = next(
+                (
+                    edge
+                    for edge in self._in[event]
+                    if edge.earlier not in seen
+                    and abs(self._earliest[edge.earlier] + edge.gap_s - self._earliest[event])
+                    <= 10 * TOLERANCE_S
+                ),
+                None,
+            )
+            if tight is None:
+                break
+            reasons.append(tight.reason)
+            length_s += tight.gap_s
+            event = tight.earlier
+            seen.add(event)
+        return reasons, length_s

@@ -1,0 +1,159 @@
+"""From routes to a schedule: the earliest times that all constraints allow."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+from fleet.scheduling.constraint import Constraint, ConstraintKind, sentence
+from fleet.scheduling.item_way import Leg, item_ways
+from fleet.scheduling.problem import Problem, Window
+from fleet.scheduling.schedule import Action, RobotSchedule, Route, Schedule, Stop, Task
+from fleet.scheduling.temporal_network import ORIGIN, Conflict, TemporalNetwork
+
+
+@dataclass(frozen=True, slots=True)
+class Untimeable:
+    """Why routes cannot be given times: the constraints that cannot hold together."""
+
+    constraints: tuple[Constraint, ...]
+
+    def sentence(self, problem: Problem) -> str:
+        """The reason as one sentence."""
+        parts = [sentence(problem, each) for each in self.constraints]
+        return f"these cannot hold together: {'; '.join(parts)}"
+
+
+def earliest_schedule(problem: Problem, routes: Sequence[Route]) -> Schedule | Untimeable:
+    """The earliest times for the routes. Raises `BrokenWayError` where an item's way breaks."""
+    timed = TimedRoutes(problem, routes)
+    if timed.conflict is not None:
+        return Untimeable(timed.conflict.reasons)
+    return timed.schedule()
+
+
+class TimedRoutes:
+    """The temporal network of some routes, and which of its events is which.
+
+    `leaves` and `ends` by robot, `begins` by robot and number of the task. Raises `BrokenWayError`.
+    """
+
+    def __init__(self, problem: Problem, routes: Sequence[Route]) -> None:
+        self.problem = problem
+        self.routes = tuple(routes)
+        self.network: TemporalNetwork[Constraint] = TemporalNetwork()
+        self.leaves: list[int] = []
+        self.ends: list[int] = []
+        self.begins: list[list[int]] = []
+        self.conflict: Conflict[Constraint] | None = None
+        ways = item_ways(problem, routes)
+        for robot in range(len(problem.robots)):
+            self._add_robot(robot)
+        for item, legs in ways.items():
+            self._join(item, legs)
+
+    def schedule(self) -> Schedule:
+        """The earliest schedule. Raises `ValueError` when there is a conflict."""
+        if self.conflict is not None:
+            raise ValueError("routes with a conflict have no schedule")
+        return Schedule(tuple(self._robot_schedule(robot) for robot in range(len(self.routes))))
+
+    def _demand(self, later: int, earlier: int, gap_s: float, reason: Constraint) -> None:
+        if self.conflict is None:
+            self.conflict = self.network.after(later, earlier, gap_s, reason)
+
+    def _add_robot(self, robot: int) -> None:
+        described = self.problem.robots[robot]
+        leaves = self.network.add_event()
+        shift_begin = Constraint(ConstraintKind.SHIFT_BEGIN, robot)
+        self._demand(leaves, ORIGIN, described.shift.earliest_s, shift_begin)
+        begins: list[int] = []
+        before, place, busy_s = leaves, described.start, 0.0
+        for task in self.routes[robot]:
+            begin = self.network.add_event()
+            gap_s = busy_s + self.problem.travel_time_s(robot, place, task.place)
+            self._demand(begin, before, gap_s, Constraint(ConstraintKind.TRAVEL, robot, task))
+            self._demand_window(begin, task)
+            begins.append(begin)
+            before, place, busy_s = begin, task.place, service_s(self.problem, task)
+        ends = self.network.add_event()
+        gap_s = busy_s
+        if described.end is not None:
+            gap_s += self.problem.travel_time_s(robot, place, described.end)
+        shift_end = Constraint(ConstraintKind.SHIFT_END, robot)
+        duration = Constraint(ConstraintKind.DURATION, robot)
+        self._demand(ends, before, gap_s, Constraint(ConstraintKind.HOMEWARD, robot))
+        self._demand(ORIGIN, ends, -described.shift.latest_s, shift_end)
+        self._demand(leaves, ends, -described.max_duration_s, duration)
+        self.leaves.append(leaves)
+        self.begins.append(begins)
+        self.ends.append(ends)
+
+    def _demand_window(self, begin: int, task: Task) -> None:
+        window = task_window(self.problem, task)
+        if window is not None:
+            opens = Constraint(ConstraintKind.WINDOW_BEGIN, None, task)
+            closes = Constraint(ConstraintKind.WINDOW_END, None, task)
+            self._demand(begin, ORIGIN, window.earliest_s, opens)
+            self._demand(ORIGIN, begin, -window.latest_s, closes)
+
+    def _join(self, item: int, legs: Sequence[Leg]) -> None:
+        """Bind an item's tasks on different robots: give before take, and its time on board."""
+        transfers = self.problem.transfers
+        for giving, taking in pairwise(legs):
+            assert taking.load is not None
+            give = self.begins[giving.robot][giving.unload]
+            take = self.begins[taking.robot][taking.load]
+            task = self.routes[taking.robot][taking.load]
+            reason = Constraint(ConstraintKind.TRANSFER, taking.robot, task)
+            self._demand(take, give, 0.0 if transfers.together else transfers.service_s, reason)
+            if transfers.together:
+                self._demand(give, take, 0.0, reason)
+        described = self.problem.items[item]
+        first, last = legs[0], legs[-1]
+        loaded, loading_s = ORIGIN, 0.0
+        if first.load is not None:
+            loaded = self.begins[first.robot][first.load]
+            loading_s = described.pickup.service_s
+        drop = self.begins[last.robot][last.unload]
+        reason = Constraint(
+            ConstraintKind.ON_BOARD, last.robot, self.routes[last.robot][last.unload]
+        )
+        self._demand(loaded, drop, -described.max_on_board_s - loading_s, reason)
+
+    def _robot_schedule(self, robot: int) -> RobotSchedule:
+        earliest_s = self.network.earliest_s
+        place = self.problem.robots[robot].start
+        free_s = leaves_s = earliest_s(self.leaves[robot])
+        stops: list[Stop] = []
+        for task, event in zip(self.routes[robot], self.begins[robot], strict=True):
+            arrival_s = free_s + self.problem.travel_time_s(robot, place, task.place)
+            begin_s = max(arrival_s, earliest_s(event))
+            free_s = begin_s + service_s(self.problem, task)
+            stops.append(Stop(task, arrival_s, begin_s, free_s))
+            place = task.place
+        end = self.problem.robots[robot].end
+        homeward_s = 0.0 if end is None else self.problem.travel_time_s(robot, place, end)
+        return RobotSchedule(tuple(stops), leaves_s, free_s + homeward_s)
+
+
+def task_window(problem: Problem, task: Task) -> Window | None:
+    """When a task may begin; None where any time will do."""
+    match task.action:
+        case Action.PICK:
+            return problem.items[task.item].pickup.window
+        case Action.DROP:
+            return problem.items[task.item].delivery.window
+        case Action.GIVE | Action.TAKE:
+            return None
+
+
+def service_s(problem: Problem, task: Task) -> float:
+    """How long a task takes, in seconds."""
+    item = problem.items[task.item]
+    match task.action:
+        case Action.PICK:
+            return item.pickup.service_s
+        case Action.DROP:
+            return item.delivery.service_s
+        case Action.GIVE | Action.TAKE:
+            return problem.transfers.service_s

@@ -1,0 +1,1 @@
+"""Maps that robots find their way with: vector maps, and navigation graphs of buildings."""

@@ -1,0 +1,156 @@
+"""Navigation graphs of buildings: places on floors, ways between them, doors that open and close.
+
+Distances are metres, times seconds from an origin that whoever uses the graph chooses.
+"""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from math import hypot, inf
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_matrix
+from scipy.sparse.csgraph import dijkstra
+
+Matrix = NDArray[np.float64]
+
+
+class WayKind(StrEnum):
+    """What leads from place to place."""
+
+    CORRIDOR = "corridor"
+    DOOR = "door"
+    ELEVATOR = "elevator"
+
+
+class NavigationError(Exception):
+    """A graph that makes no sense; raised with one sentence per mistake."""
+
+    def __init__(self, mistakes: list[str]) -> None:
+        super().__init__("; ".join(mistakes))
+        self.mistakes = mistakes
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """A named point on a floor (metres in the floor's frame)."""
+
+    name: str
+    x_m: float
+    y_m: float
+    floor: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Way:
+    """A way between two places, in both directions.
+
+    `length_m` None: the straight line. `delay_s` comes on top of driving it (an elevator's ride, a
+    door's opening). `open_s`: when it may be passed, as pairs of times; always when empty.
+    """
+
+    a: str
+    b: str
+    kind: WayKind = WayKind.CORRIDOR
+    length_m: float | None = None
+    delay_s: float = 0.0
+    open_s: tuple[tuple[float, float], ...] = ()
+    closed: bool = False
+
+    def passable(self, from_s: float, until_s: float) -> bool:
+        """Whether it may be passed at every moment of a span of time."""
+        if self.closed:
+            return False
+        return not self.open_s or any(a <= from_s and until_s <= b for a, b in self.open_s)
+
+
+class NavigationGraph:
+    """Places and the ways between them. Raises `NavigationError` where they contradict."""
+
+    def __init__(self, places: Sequence[Place], ways: Iterable[Way]) -> None:
+        self.places = tuple(places)
+        self.ways = tuple(ways)
+        self._index = {place.name: number for number, place in enumerate(self.places)}
+        mistakes = self._mistakes()
+        if mistakes:
+            raise NavigationError(mistakes)
+
+    def index(self, name: str) -> int:
+        """The number of a place. Raises `KeyError`."""
+        return self._index[name]
+
+    def shortest(
+        self, speed_m_s: float, *, from_s: float = 0.0, until_s: float = inf
+    ) -> tuple[Matrix, Matrix]:
+        """Distance (metres) and time (seconds) between all places, along the quickest ways.
+
+        Only ways that are passable from `from_s` until `until_s` count; infinite where there is
+        none.
+        """
+        count = len(self.places)
+        rows, columns, seconds, metres = self._edges(speed_m_s, from_s, until_s)
+        times = csr_matrix((seconds, (rows, columns)), shape=(count, count))
+        time_s, before = dijkstra(times, directed=False, return_predecessors=True)
+        lengths = {
+            (row, column): metre for row, column, metre in zip(rows, columns, metres, strict=True)
+        }
+        distance_m = np.full((count, count), inf)
+        for origin in range(count):
+            distance_m[origin, origin] = 0.0
+            for place in np.argsort(time_s[origin]):
+                previous = before[origin, place]
+                if previous >= 0:
+                    key = (min(previous, place), max(previous, place))
+                    distance_m[origin, place] = distance_m[origin, previous] + lengths[key]
+        return distance_m, np.asarray(time_s, dtype=np.float64)
+
+    def changes_s(self) -> list[float]:
+        """The times at which a way opens or closes, in order."""
+        return sorted({time_s for way in self.ways for span in way.open_s for time_s in span})
+
+    def _edges(
+        self, speed_m_s: float, from_s: float, until_s: float
+    ) -> tuple[list[int], list[int], list[float], list[float]]:
+        """The quickest passable way between each two places that have one."""
+        best: dict[tuple[int, int], tuple[float, float]] = {}
+        for way in self.ways:
+            if not way.passable(from_s, until_s):
+                continue
+            a, b = sorted((self._index[way.a], self._index[way.b]))
+            metres = self._length_m(way)
+            # A way that takes no time would be no edge at all to scipy.
+            seconds = max(metres / speed_m_s + way.delay_s, 1e-9)
+            if (a, b) not in best or seconds < best[a, b][0]:
+                best[a, b] = (seconds, metres)
+        rows, columns = [a for a, _ in best], [b for _, b in best]
+        return rows, columns, [s for s, _ in best.values()], [m for _, m in best.values()]
+
+    def _length_m(self, way: Way) -> float:
+        if way.length_m is not None:
+            return way.length_m
+        a, b = self.places[self._index[way.a]], self.places[self._index[way.b]]
+        return hypot(a.x_m - b.x_m, a.y_m - b.y_m)
+
+    def _mistakes(self) -> list[str]:
+        mistakes = []
+        if len(self._index) < len(self.places):
+            names = [place.name for place in self.places]
+            double = sorted({name for name in names if names.count(name) > 1})
+            mistakes.append(f"places share a name: {', '.join(double)}")
+        for way in self.ways:
+            what = f"the way between '{way.a}' and '{way.b}'"
+            missing = [name for name in (way.a, way.b) if name not in self._index]
+            if missing:
+                mistakes.append(f"{what}: there is no place '{missing[0]}'")
+                continue
+            if way.a == way.b:
+                mistakes.append(f"{what} leads nowhere")
+            if not 0 <= way.delay_s < inf or not 0 <= (way.length_m or 0.0) < inf:
+                mistakes.append(f"{what}: length and delay must be at least 0")
+            if any(not a <= b for a, b in way.open_s):
+                mistakes.append(f"{what} closes before it opens")
+            floors = {self.places[self._index[name]].floor for name in (way.a, way.b)}
+            if len(floors) > 1 and way.kind is not WayKind.ELEVATOR:
+                mistakes.append(f"{what} joins two floors, but is no elevator")
+        return mistakes
