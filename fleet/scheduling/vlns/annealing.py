@@ -1,4 +1,4 @@
-"""Simulated annealing: remove some items, insert them again, keep the better, at times the worse."""
+"""Simulated annealing: remove items, insert them again, keep the better, at times the worse."""
 
 from math import inf, log
 from typing import NamedTuple
@@ -87,7 +87,7 @@ def take_step(
                     chosen[count - 1 - other] = item
     if count == 0:
         return False
-    manner = _manner(problem, dice, most)
+    manner = _manner(dice, most)
     left = insert_all(
         problem, trial, times, search.ways, dice, chosen, count, manner,
         limit - max(0, banked - TRIED) * problem.penalty,
@@ -103,7 +103,7 @@ def take_step(
 
 
 @compiled
-def _manner(problem: ProblemArrays, dice: Dice, most: int) -> Manner:
+def _manner(dice: Dice, most: int) -> Manner:
     """How the next items are inserted: mostly plainly, at times with chains of transfers."""
     bold = throw(dice)
     allowed = 0

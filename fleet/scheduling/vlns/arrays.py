@@ -16,6 +16,7 @@ from fleet.scheduling.vlns.compiled import compiled
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
+Flags = NDArray[np.bool_]
 
 PICK, DROP, GIVE, TAKE = 0, 1, 2, 3
 NOWHERE = -1
@@ -52,6 +53,10 @@ class ProblemArrays(NamedTuple):
     max_on_board_s: Floats
     aboard: Integers
     transfer_place: Integers
+    exchange: Flags
+    """By place: whether it is a transfer place."""
+    fastest: float
+    """The speed of the fastest robot."""
     transfer_s: float
     together: bool
     chain: int
@@ -144,6 +149,8 @@ def problem_arrays(problem: Problem, chain: int) -> ProblemArrays:
         max_on_board_s=on_board,
         aboard=aboard,
         transfer_place=np.array(transfers.places, np.int64),
+        exchange=np.isin(np.arange(len(problem.places)), transfers.places),
+        fastest=max(robot.speed for robot in robots),
         transfer_s=float(transfers.service_s),
         together=transfers.together,
         chain=chain,
@@ -210,11 +217,14 @@ def copy_plan(origin: Plan, copy: Plan) -> None:
         length = origin.length[k]
         copy.length[k] = length
         for at in range(length):
-            copy.route[k, at] = origin.route[k, at]
-    copy.place[:] = origin.place
-    copy.robot[:] = origin.robot
-    copy.transfers[:] = origin.transfers
-    copy.value[:] = origin.value
+            node = origin.route[k, at]
+            copy.route[k, at] = node
+            copy.place[node] = origin.place[node]
+            copy.robot[node] = k
+    for item in range(origin.transfers.size):
+        copy.transfers[item] = origin.transfers[item]
+    copy.value[TOTAL] = origin.value[TOTAL]
+    copy.value[DISTANCE] = origin.value[DISTANCE]
 
 
 @compiled

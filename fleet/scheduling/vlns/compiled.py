@@ -11,6 +11,6 @@ Kernel = TypeVar("Kernel", bound=Callable[..., Any])
 def compiled(function: Kernel) -> Kernel:
     """Compile on the first call, keeping the result where some cache folder can be written."""
     try:
-        return cast(Kernel, numba.njit(cache=True)(function))
+        return cast(Kernel, numba.njit(cache=True, _nrt=False)(function))
     except RuntimeError:
-        return cast(Kernel, numba.njit(function))
+        return cast(Kernel, numba.njit(_nrt=False)(function))

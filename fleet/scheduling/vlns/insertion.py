@@ -47,10 +47,10 @@ def insert(
     Times must be those of the plan, and are so again afterwards.
     """
     find_ways(problem, plan, times, ways, dice, item, most, alone, blink)
-    if ways.count[1] == 0:
+    if ways.known[1] == 0:
         return False
     best, chosen = inf, NONE
-    for number in range(ways.count[1]):
+    for number in range(ways.known[1]):
         if follow(problem, plan, ways, item, number):
             possible = find_times(problem, plan, times)
             if possible:
@@ -106,8 +106,8 @@ def _most_urgent_first(
             problem, plan, times, ways, dice, items[other], manner.most, True, manner.blink
         )  # fmt: skip
         regret = problem.penalty
-        if ways.count[1] > 0:
-            for number in range(1, ways.count[1]):
+        if ways.known[1] > 0:
+            for number in range(1, ways.known[1]):
                 if ways.last[number, 1] != ways.last[0, 1]:
                     regret = ways.extra[number] - ways.extra[0]
                     break

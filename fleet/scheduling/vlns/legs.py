@@ -21,7 +21,7 @@ class Ends(NamedTuple):
     All by that number. `loading` says how it is loaded there, `unloading` how it is unloaded.
     """
 
-    count: Integers
+    known: Integers
     loading_place: Integers
     loading_s: Floats
     loading_from_s: Floats
@@ -35,11 +35,12 @@ class Ends(NamedTuple):
 class Legs(NamedTuple):
     """The cheapest legs by robot, end where loaded, end where unloaded and rank.
 
-    `extra`: what it probably costs; `load_at`, `unload_at`: before which position of the route as it is now; `ready_s`: when it can
-    be unloaded at the earliest; `wanted_s`: by when it must be loaded.
+    `extra`: what it probably costs; `load_at`, `unload_at`: before which position of the route as
+    it is now; `ready_s`: when it can be unloaded at the earliest; `wanted_s`: by when it must be
+    loaded. `known`: how many ranks there are.
     """
 
-    count: Integers
+    known: Integers
     extra: Floats
     load_at: Integers
     unload_at: Integers
@@ -77,7 +78,7 @@ def find_legs(
     all routes together allow a leg is for `find_times` to say. `blink`: the share of the places
     that are overlooked, for variety.
     """
-    legs.count[robot, load, unload] = 0
+    legs.known[robot, load, unload] = 0
     aboard = load == 0 and problem.aboard[item] != NOWHERE
     free_s = times.leaves_s[robot]
     before = problem.start[robot]
@@ -195,7 +196,7 @@ def _remember(
     ready_s: float, wanted_s: float,
 ) -> None:  # fmt: skip
     """Keep a leg where it is among the cheapest, in order of cost."""
-    count = legs.count[robot, load, unload]
+    count = legs.known[robot, load, unload]
     if count == KEPT:
         if extra >= legs.extra[robot, load, unload, KEPT - 1]:
             return
@@ -213,4 +214,4 @@ def _remember(
     legs.unload_at[robot, load, unload, rank] = unload_at
     legs.ready_s[robot, load, unload, rank] = ready_s
     legs.wanted_s[robot, load, unload, rank] = wanted_s
-    legs.count[robot, load, unload] = count + 1
+    legs.known[robot, load, unload] = count + 1

@@ -44,10 +44,10 @@ def choose_items(
 
 @compiled
 def _has(chosen: Integers, count: int, item: int) -> bool:
-    for at in range(count):
-        if chosen[at] == item:
-            return True
-    return False
+    at = 0
+    while at < count and chosen[at] != item:
+        at += 1
+    return at < count
 
 
 @compiled

@@ -86,8 +86,11 @@ def find_times(problem: ProblemArrays, plan: Plan, times: Times) -> bool:
     Every sweep keeps what goes forward in time. A longest time on board or away may then call for
     a later pickup or start, and another sweep; more sweeps than such spans mean a contradiction.
     """
-    times.release_s[:] = problem.earliest_s
-    times.leaves_s[:] = problem.shift_begin_s
+    for k in range(plan.length.size):
+        times.leaves_s[k] = problem.shift_begin_s[k]
+        for at in range(plan.length[k]):
+            node = plan.route[k, at]
+            times.release_s[node] = problem.earliest_s[node]
     for _ in range(problem.spans + 1):
         if not _sweep(problem, plan, times):
             return False
@@ -163,7 +166,7 @@ def _go_on(problem: ProblemArrays, plan: Plan, times: Times, robot: int) -> bool
     times.begin_s[node] = begin
     times.free_s[robot] = begin + problem.service_s[node]
     load = problem.load[problem.item[node]]
-    if kind == DROP or kind == GIVE:
+    if kind in (DROP, GIVE):
         load = -load
     times.load[robot, at + 1] = times.load[robot, at] + load
     return True
@@ -229,7 +232,7 @@ def find_value(problem: ProblemArrays, plan: Plan, times: Times) -> None:
             kind = problem.kind[node]
             if kind == DROP:
                 completion += times.begin_s[node] + problem.service_s[node]
-            if kind == DROP or kind == PICK:
+            if kind in (DROP, PICK):
                 lateness += max(0.0, times.begin_s[node] - problem.due_s[node])
         distance += way_m(problem, place, problem.end[k])
         if plan.length[k] > 0:

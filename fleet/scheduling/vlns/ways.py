@@ -38,7 +38,7 @@ ROBOT, PLACE, RANK, PARENT, TRANSFERS = 0, 1, 2, 3, 4
 class Ways(NamedTuple):
     """The cheapest ways, by their order: what they probably cost and their last leg.
 
-    `place` has the number of the transfer place for each end of the item.
+    `place` has the transfer place of each end; `known`: how many labels and how many ways.
     """
 
     ends: Ends
@@ -46,7 +46,7 @@ class Ways(NamedTuple):
     place: Integers
     label: Integers
     label_real: Floats
-    count: Integers
+    known: Integers
     extra: Floats
     last: Integers
     leg: Integers
@@ -61,7 +61,7 @@ def ways_for(problem: ProblemArrays) -> Ways:
         place=np.zeros(most + 1, np.int64),
         label=np.zeros((LABELS, 5), np.int64),
         label_real=np.zeros((LABELS, 2)),
-        count=np.zeros(2, np.int64),
+        known=np.zeros(2, np.int64),
         extra=np.zeros(WAYS + 1),
         last=np.zeros((WAYS + 1, 3), np.int64),
         leg=np.zeros((problem.chain + 1, 4), np.int64),
@@ -74,7 +74,7 @@ def find_ways(
     item: int, most: int, alone: bool, blink: float,
 ) -> None:  # fmt: skip
     """The cheapest ways of an item with at most `most` transfers, direct ones only if `alone`."""
-    ways.count[:] = 0
+    ways.known[0] = ways.known[1] = 0
     _choose_places(problem, plan, ways, dice, item, most)
     _open_ends(problem, ways, item)
     limit = problem.metre * UNREACHABLE / 2
@@ -85,12 +85,12 @@ def find_ways(
             find_legs(
                 problem, plan, times, ways.ends, ways.legs, dice, k, item, 0, 0, limit, blink
             )  # fmt: skip
-            for rank in range(ways.legs.count[k, 0, 0]):
+            for rank in range(ways.legs.known[k, 0, 0]):
                 _remember(ways, ways.legs.extra[k, 0, 0, rank], NOWHERE, k, rank)
-    if ways.ends.count[0] == 0:
+    if ways.ends.known[0] == 0:
         return
-    if problem.timeless and ways.count[1] > 0:
-        limit = ways.extra[min(ways.count[1] - 1, SPARE)]
+    if problem.timeless and ways.known[1] > 0:
+        limit = ways.extra[min(ways.known[1] - 1, SPARE)]
     _find_parts(problem, plan, times, ways, dice, item, most, limit, blink)
     _join_parts(problem, ways, most, limit)
 
@@ -111,7 +111,7 @@ def _choose_places(
     """All transfer places where they are few; otherwise those on the way, in use, and by chance."""
     known = problem.transfer_place.size
     wanted = min(known, ways.place.size - 1) if most > 0 else 0
-    ways.ends.count[0] = wanted
+    ways.ends.known[0] = wanted
     if wanted == known:
         for number in range(known):
             ways.place[number + 1] = problem.transfer_place[number]
@@ -136,10 +136,7 @@ def _choose_places(
 
 @compiled
 def _is_transfer_place(problem: ProblemArrays, place: int) -> bool:
-    for each in problem.transfer_place:
-        if each == place:
-            return True
-    return False
+    return problem.exchange[place]  # type: ignore[no-any-return]
 
 
 @compiled
@@ -161,8 +158,8 @@ def _open_ends(problem: ProblemArrays, ways: Ways, item: int) -> None:
     ends.unloading_s[0] = problem.service_s[drop]
     ends.unloading_from_s[0] = problem.earliest_s[drop]
     ends.unloading_until_s[0] = problem.latest_s[drop]
-    fastest = problem.speed.max()
-    for number in range(1, ends.count[0] + 1):
+    fastest = problem.fastest
+    for number in range(1, ends.known[0] + 1):
         place = ways.place[number]
         ends.loading_place[number] = ends.unloading_place[number] = place
         ends.loading_s[number] = ends.unloading_s[number] = problem.transfer_s
@@ -187,11 +184,11 @@ def _find_parts(
     item: int, most: int, limit: float, blink: float,
 ) -> None:  # fmt: skip
     """The cheapest legs from and to transfer places, and between them for two transfers or more."""
-    places = ways.ends.count[0]
+    places = ways.ends.known[0]
     for k in range(plan.length.size):
         first = not _useless(problem, plan, k, item)
         for place in range(1, places + 1):
-            ways.legs.count[k, 0, place] = 0
+            ways.legs.known[k, 0, place] = 0
             if first:
                 find_legs(
                     problem, plan, times, ways.ends, ways.legs, dice, k, item, 0, place, limit,
@@ -211,16 +208,16 @@ def _find_parts(
 @compiled
 def _join_parts(problem: ProblemArrays, ways: Ways, most: int, limit: float) -> None:
     """Extend labels transfer by transfer; whatever can be brought to the delivery is a way."""
-    legs, places = ways.legs, ways.ends.count[0]
-    robots = legs.count.shape[0]
+    legs, places = ways.legs, ways.ends.known[0]
+    robots = legs.known.shape[0]
     for k in range(robots):
         for place in range(1, places + 1):
-            for rank in range(legs.count[k, 0, place]):
+            for rank in range(legs.known[k, 0, place]):
                 extra = legs.extra[k, 0, place, rank]
                 ready_s = legs.ready_s[k, 0, place, rank]
                 _add_label(ways, extra, ready_s, k, place, rank, NOWHERE, 1)
     at = 0
-    while at < ways.count[0]:
+    while at < ways.known[0]:
         spent, origin = ways.label_real[at, EXTRA], ways.label[at, PLACE]
         given_s = ways.label_real[at, READY_S]
         if not problem.together:
@@ -231,7 +228,7 @@ def _join_parts(problem: ProblemArrays, ways: Ways, most: int, limit: float) -> 
             for target in range(places + 1):
                 if target == origin or (target > 0 and ways.label[at, TRANSFERS] >= most):
                     continue
-                for rank in range(legs.count[k, origin, target]):
+                for rank in range(legs.known[k, origin, target]):
                     extra = spent + legs.extra[k, origin, target, rank]
                     if extra >= limit:
                         break
@@ -251,7 +248,7 @@ def _add_label(
     ways: Ways, extra: float, ready_s: float, robot: int, place: int, rank: int, parent: int,
     transfers: int,
 ) -> None:  # fmt: skip
-    at = ways.count[0]
+    at = ways.known[0]
     if at == LABELS:
         return
     ways.label_real[at, EXTRA] = extra
@@ -261,21 +258,22 @@ def _add_label(
     ways.label[at, RANK] = rank
     ways.label[at, PARENT] = parent
     ways.label[at, TRANSFERS] = transfers
-    ways.count[0] += 1
+    ways.known[0] += 1
 
 
 @compiled
 def _remember(ways: Ways, extra: float, label: int, robot: int, rank: int) -> None:
     """Keep a way where it is among the cheapest, in order of cost."""
-    at = ways.count[1]
+    at = ways.known[1]
     if at == WAYS:
         if extra >= ways.extra[WAYS - 1]:
             return
         at -= 1
-    ways.count[1] = at + 1
+    ways.known[1] = at + 1
     while at > 0 and ways.extra[at - 1] > extra:
         ways.extra[at] = ways.extra[at - 1]
-        ways.last[at] = ways.last[at - 1]
+        for part in range(3):
+            ways.last[at, part] = ways.last[at - 1, part]
         at -= 1
     ways.extra[at] = extra
     ways.last[at, 0] = label
@@ -287,25 +285,34 @@ def _remember(ways: Ways, extra: float, label: int, robot: int, rank: int) -> No
 def follow(problem: ProblemArrays, plan: Plan, ways: Ways, item: int, number: int) -> bool:
     """Insert the item's nodes along a way. False, and nothing done, where it crosses itself."""
     transfers = _unroll(ways, number)
-    legs, leg = ways.legs, ways.leg
+    leg = ways.leg
     for later in range(transfers + 1):
         for earlier in range(later):
             same = leg[earlier, 0] == leg[later, 0]
-            k, load, unload, rank = leg[earlier]
-            ended = legs.unload_at[k, load, unload, rank]
-            k, load, unload, rank = leg[later]
-            if same and legs.load_at[k, load, unload, rank] < ended:
+            if same and _load_at(ways, later) < _unload_at(ways, earlier):
                 return False
     for at in range(transfers, -1, -1):
-        k, load, unload, rank = leg[at]
+        k = leg[at, 0]
         drop = problem.load.size + item
         last = drop if at == transfers else give_node(problem, item, at)
         first = item if at == 0 else give_node(problem, item, at - 1) + 1
-        put(plan, k, legs.unload_at[k, load, unload, rank], last, ways.ends.unloading_place[unload])
+        put(plan, k, _unload_at(ways, at), last, ways.ends.unloading_place[leg[at, 2]])
         if at > 0 or problem.aboard[item] == NOWHERE:
-            put(plan, k, legs.load_at[k, load, unload, rank], first, ways.ends.loading_place[load])
+            put(plan, k, _load_at(ways, at), first, ways.ends.loading_place[leg[at, 1]])
     plan.transfers[item] = transfers
     return True
+
+
+@compiled
+def _load_at(ways: Ways, number: int) -> int:
+    leg = ways.leg
+    return ways.legs.load_at[leg[number, 0], leg[number, 1], leg[number, 2], leg[number, 3]]  # type: ignore[no-any-return]
+
+
+@compiled
+def _unload_at(ways: Ways, number: int) -> int:
+    leg = ways.leg
+    return ways.legs.unload_at[leg[number, 0], leg[number, 1], leg[number, 2], leg[number, 3]]  # type: ignore[no-any-return]
 
 
 @compiled
