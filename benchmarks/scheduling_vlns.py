@@ -133,11 +133,11 @@ def print_table(results: list[Result]) -> None:
     for kind, members in sorted(classes.items(), key=lambda each: (each[0][:3] == "all", each[0])):
         known = [each for each in members if isfinite(each.published.objective)]
         gaps = [each.gap for each in known if isfinite(each.found)]
-        plain = [each.naive / each.published.objective - 1 for each in known if isfinite(each.naive)]
+        plain = [
+            each.naive / each.published.objective - 1 for each in known if isfinite(each.naive)
+        ]
         equal = sum(abs(each.gap) < SAME for each in known)
-        better = sum(
-            each.found < each.published.objective * (1 - SAME) for each in members
-        )  # fmt: skip
+        better = sum(each.found < each.published.objective * (1 - SAME) for each in members)
         print(
             f"{kind:12} {len(members):3d} {_percent(gaps):>9} {_percent(plain):>9} "
             f"{equal / len(members):7.0%} {better / len(members):7.0%}"

@@ -142,7 +142,7 @@ class _Planner:
             share = min(1.0, (now_s - begun_s + SLICE_S) / length_s)
             self._slice(steps, most, (COOL / WARM) ** spent, (COOL / WARM) ** share)
             before_s, now_s = now_s, self._clock()
-            pace = 0.5 * (pace + steps / max(now_s - before_s, 1e-6))
+            pace = 0.5 * (pace + min(4 * pace, steps / max(now_s - before_s, 1e-6)))
         return pace
 
     def _slice(self, steps: int, most: int, warm: float, cool: float) -> None:

@@ -332,4 +332,4 @@ def _unroll(ways: Ways, number: int) -> int:
         ways.leg[at, 2] = place
         ways.leg[at, 3] = ways.label[label, RANK]
         label = ways.label[label, PARENT]
-    return transfers  # type: ignore[no-any-return]
+    return transfers
