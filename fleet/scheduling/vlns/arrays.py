@@ -6,7 +6,7 @@ item and number of transfer, what is given (even) and right after it what is tak
 
 from dataclasses import replace
 from math import inf, isfinite
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +19,10 @@ Integers = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
 PICK, DROP, GIVE, TAKE = 0, 1, 2, 3
-NOWHERE = -1
+NOWHERE = cast(int, np.int64(-1))
+HOME = cast(int, np.int64(0))
+"""The first of an item's ends: its pickup or delivery. These two are no plain numbers, as a kernel
+would be compiled once more for every plain number that it is called with."""
 BANKED = -1
 UNREACHABLE = 1e12
 """Metres and seconds of a way that does not exist; finite, so that differences stay numbers."""

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fleet.scheduling.vlns.arrays import TOTAL, Integers, Plan, ProblemArrays, take_out
+from fleet.scheduling.vlns.arrays import HOME, TOTAL, Integers, Plan, ProblemArrays, take_out
 from fleet.scheduling.vlns.compiled import compiled
 from fleet.scheduling.vlns.dice import Dice, shuffle, throw
 from fleet.scheduling.vlns.times import Times, find_latest, find_times, find_value
@@ -40,13 +40,13 @@ def refresh(problem: ProblemArrays, plan: Plan, times: Times) -> bool:
 @compiled
 def insert(
     problem: ProblemArrays, plan: Plan, times: Times, ways: Ways, dice: Dice,
-    item: int, most: int, alone: bool, blink: float,
+    item: int, fewest: int, most: int, blink: float,
 ) -> bool:  # fmt: skip
     """Insert an item by the cheapest of its ways, if any is possible.
 
     Times must be those of the plan, and are so again afterwards.
     """
-    find_ways(problem, plan, times, ways, dice, item, most, alone, blink)
+    find_ways(problem, plan, times, ways, dice, item, fewest, most, blink)
     if ways.known[1] == 0:
         return False
     best, chosen = inf, NONE
@@ -78,14 +78,14 @@ def insert_all(
     for turn in range(count):
         if manner.regret:
             _most_urgent_first(problem, plan, times, ways, dice, items, turn, count, manner)
-        alone = turn > 0 or not manner.shared
+        fewest = 1 if turn == 0 and manner.shared else 0
         item = items[turn]
         done = insert(
-            problem, plan, times, ways, dice, item, manner.most, alone, manner.blink
+            problem, plan, times, ways, dice, item, fewest, manner.most, manner.blink
         )  # fmt: skip
-        if not done and not alone:
+        if not done and fewest > 0:
             done = insert(
-                problem, plan, times, ways, dice, item, manner.most, True, 0.0
+                problem, plan, times, ways, dice, item, HOME, manner.most, 0.0
             )  # fmt: skip
         if not done:
             banked += 1
@@ -103,7 +103,7 @@ def _most_urgent_first(
     best, chosen = -inf, turn
     for other in range(turn, count):
         find_ways(
-            problem, plan, times, ways, dice, items[other], manner.most, True, manner.blink
+            problem, plan, times, ways, dice, items[other], HOME, manner.most, manner.blink
         )  # fmt: skip
         regret = problem.penalty
         if ways.known[1] > 0:

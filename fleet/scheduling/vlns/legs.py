@@ -87,7 +87,7 @@ def find_legs(
         if aboard:
             if at == 0:
                 _unload_after(
-                    problem, plan, times, ends, legs, dice, robot, load, unload, 0, before,
+                    problem, plan, times, ends, legs, dice, robot, load, unload, at, before,
                     free_s, 0.0, inf, inf, limit, blink,
                 )  # fmt: skip
             return

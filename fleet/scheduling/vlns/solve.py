@@ -21,6 +21,7 @@ from fleet.scheduling.vlns.arrays import (
     Plan,
     ProblemArrays,
     copy_plan,
+    empty_plan,
     problem_arrays,
 )
 from fleet.scheduling.vlns.dice import Dice, dice_from
@@ -98,6 +99,9 @@ class _Planner:
 
     def run(self, seconds: float, transfers: bool) -> None:
         """Search until the time is over: first without transfers, then with them."""
+        if not self.arrays.load.size:
+            self._take_over(empty_plan(self.arrays))
+            return
         self._search_for(seconds * ALONE if transfers else seconds, 0)
         if self._start is not None:
             self._take_over(self._start)
@@ -119,7 +123,7 @@ class _Planner:
 
     def _search_for(self, seconds: float, most: int) -> None:
         """Rounds of cooling, every other one from the best; more and shorter ones for few items."""
-        items = max(1, self.arrays.load.size)
+        items = self.arrays.load.size
         begun_s = self._clock()
         steps = 10
         self._slice(steps, most, 1.0, 1.0)

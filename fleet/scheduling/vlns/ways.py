@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fleet.scheduling.vlns.arrays import (
+    HOME,
     NOWHERE,
     UNREACHABLE,
     Floats,
@@ -71,19 +72,20 @@ def ways_for(problem: ProblemArrays) -> Ways:
 @compiled
 def find_ways(
     problem: ProblemArrays, plan: Plan, times: Times, ways: Ways, dice: Dice,
-    item: int, most: int, alone: bool, blink: float,
+    item: int, fewest: int, most: int, blink: float,
 ) -> None:  # fmt: skip
-    """The cheapest ways of an item with at most `most` transfers, direct ones only if `alone`."""
+    """The cheapest ways of an item with `fewest` (0 or 1) to `most` transfers."""
     ways.known[0] = ways.known[1] = 0
     _choose_places(problem, plan, ways, dice, item, most)
     _open_ends(problem, ways, item)
     limit = problem.metre * UNREACHABLE / 2
-    if alone:
+    if fewest == 0:
         for k in range(plan.length.size):
             if _useless(problem, plan, k, item):
                 continue
             find_legs(
-                problem, plan, times, ways.ends, ways.legs, dice, k, item, 0, 0, limit, blink
+                problem, plan, times, ways.ends, ways.legs, dice, k, item, HOME, HOME, limit,
+                blink,
             )  # fmt: skip
             for rank in range(ways.legs.known[k, 0, 0]):
                 _remember(ways, ways.legs.extra[k, 0, 0, rank], NOWHERE, k, rank)
@@ -191,11 +193,22 @@ def _find_parts(
             ways.legs.known[k, 0, place] = 0
             if first:
                 find_legs(
-                    problem, plan, times, ways.ends, ways.legs, dice, k, item, 0, place, limit,
+                    problem, plan, times, ways.ends, ways.legs, dice, k, item, HOME, place, limit,
                     blink,
                 )  # fmt: skip
             find_legs(
-                problem, plan, times, ways.ends, ways.legs, dice, k, item, place, 0, limit, blink
+                problem,
+                plan,
+                times,
+                ways.ends,
+                ways.legs,
+                dice,
+                k,
+                item,
+                place,
+                HOME,
+                limit,
+                blink,
             )
             for other in range(1, places + 1):
                 if most > 1 and other != place:
@@ -215,7 +228,7 @@ def _join_parts(problem: ProblemArrays, ways: Ways, most: int, limit: float) -> 
             for rank in range(legs.known[k, 0, place]):
                 extra = legs.extra[k, 0, place, rank]
                 ready_s = legs.ready_s[k, 0, place, rank]
-                _add_label(ways, extra, ready_s, k, place, rank, NOWHERE, 1)
+                _add_label(ways, extra, ready_s, k, place, rank, NOWHERE)
     at = 0
     while at < ways.known[0]:
         spent, origin = ways.label_real[at, EXTRA], ways.label[at, PLACE]
@@ -238,16 +251,14 @@ def _join_parts(problem: ProblemArrays, ways: Ways, most: int, limit: float) -> 
                         _remember(ways, extra, at, k, rank)
                     else:
                         ready_s = max(legs.ready_s[k, origin, target, rank], given_s)
-                        depth = ways.label[at, TRANSFERS] + 1
-                        _add_label(ways, extra, ready_s, k, target, rank, at, depth)
+                        _add_label(ways, extra, ready_s, k, target, rank, at)
         at += 1
 
 
 @compiled
 def _add_label(
-    ways: Ways, extra: float, ready_s: float, robot: int, place: int, rank: int, parent: int,
-    transfers: int,
-) -> None:  # fmt: skip
+    ways: Ways, extra: float, ready_s: float, robot: int, place: int, rank: int, parent: int
+) -> None:
     at = ways.known[0]
     if at == LABELS:
         return
@@ -257,7 +268,9 @@ def _add_label(
     ways.label[at, PLACE] = place
     ways.label[at, RANK] = rank
     ways.label[at, PARENT] = parent
-    ways.label[at, TRANSFERS] = transfers
+    ways.label[at, TRANSFERS] = 1
+    if parent != NOWHERE:
+        ways.label[at, TRANSFERS] += ways.label[parent, TRANSFERS]
     ways.known[0] += 1
 
 
