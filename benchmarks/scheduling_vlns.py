@@ -3,13 +3,14 @@
 The naive way runs beside it for as long: cheapest insertion without transfers in random order,
 again and again. Seconds are of this process's own processor time unless `--clock wall`.
 
-    python benchmarks/scheduling_vlns.py --data FOLDER [--set pdptwt|pdpt] [--seconds 10]
-        [--instances 20] [--seed 1] [--quick]
+    python benchmarks/scheduling_vlns.py [--set pdptwt|pdpt] [--only proved|open]
+        [--seconds 10] [--instances 20] [--seed 1] [--quick] [--data FOLDER]
 """
 
 # ruff: noqa: T201
 import argparse
 import csv
+import os
 import random
 import time
 from collections import defaultdict
@@ -30,6 +31,7 @@ from fleet.scheduling.vlns.solve import prepare, solve_vlns
 from fleet.scheduling.vlns.times import times_for
 from fleet.scheduling.vlns.ways import ways_for
 
+DATA = Path(os.environ.get("MEND_DATA", Path(__file__).parents[2] / "shared/data")) / "scheduling"
 SAME = 1e-4
 """Two costs are equal when they differ by less than this share."""
 
@@ -154,7 +156,7 @@ def _percent(shares: list[float]) -> str:
 def main() -> None:
     """Read the command line, measure a seeded sample, print the table."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--data", type=Path, required=True, help="the folder with pdpt and pdptwt")
+    parser.add_argument("--data", type=Path, default=DATA, help="the folder with pdpt and pdptwt")
     parser.add_argument("--set", choices=("pdptwt", "pdpt"), default="pdptwt")
     parser.add_argument("--only", choices=("proved", "open"), default=None)
     parser.add_argument("--seconds", type=float, default=10.0)
@@ -167,6 +169,8 @@ def main() -> None:
         options.instances, options.seconds = 6, 2.0
     clock = time.perf_counter if options.clock == "wall" else time.process_time
     folder = options.data / options.set
+    if not folder.is_dir():
+        parser.error(f"there are no instances in {folder}; --data says where they are")
     published = published_results(folder)
     wanted = None if options.only is None else options.only == "proved"
     paths = [

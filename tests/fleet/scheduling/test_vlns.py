@@ -63,7 +63,7 @@ def drawn_problem(seed: int) -> Problem:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", range(24))
 def test_search_finds_what_the_exact_solver_proves(seed: int) -> None:
     problem = drawn_problem(seed)
     exact = solve_exactly(problem, seconds=60.0)
