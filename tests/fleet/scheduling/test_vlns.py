@@ -209,16 +209,14 @@ def test_nothing_to_deliver_is_delivered_at_once() -> None:
 
 @pytest.mark.slow
 @pytest.mark.skipif(not DATA.is_dir(), reason="the folder of benchmark instances is not here")
-@pytest.mark.parametrize(
-    "name", ["3R-4K-4T-180L-0", "5R-4K-4T-240L-0", "5R-4K-4T-180L-0", "PDPT-R12-K2-T2-Q100-3"]
-)
+@pytest.mark.parametrize("name", ["3R-4K-4T-180L-0", "5R-4K-4T-180L-0"])
 def test_published_optimum_is_found(name: str) -> None:
     (path,) = DATA.glob(f"*/{name}.txt")
     problem = read_transfer_benchmark(path.read_text(), name)
     with (path.parent / "published_mip.csv").open() as file:
         rows = [row for row in csv.DictReader(file) if row["instance"] == path.name]
     best = min(float(row["objective"]) for row in rows if row["status"] == "OPTIMAL")
-    found = solve_vlns(problem, seconds=4.0, seed=1, clock=time.process_time)
+    found = solve_vlns(problem, seconds=2.0, seed=1, clock=time.process_time)
     assert found.schedule is not None
     assert check(problem, found.schedule) == []
     assert found.cost is not None
