@@ -1,0 +1,1 @@
+"""Simulated annealing over very large neighbourhoods, with transfers."""
