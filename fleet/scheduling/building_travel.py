@@ -22,7 +22,7 @@ def travel_in(
     names = [place.name for place in graph.places] if places is None else places
     chosen = np.array([graph.index(name) for name in names], dtype=np.intp)
     grid = np.ix_(chosen, chosen)
-    changes_s = [time_s for time_s in graph.changes_s() if time_s > 0]
+    changes_s = [time_s for time_s in graph.changes_s() if 0 < time_s < inf]
     if len(changes_s) > MAX_CHANGES:
         raise TravelError(
             f"doors open or close at {len(changes_s)} different times; {MAX_CHANGES} are possible"
