@@ -35,17 +35,21 @@ def solve_by_insertion(
     """
     chance, began_s = Random(seed), clock()
     best, best_cost = start, inf if start is None else cost(problem, start).total
-    order = _urgent_first(problem)
-    for _ in range(ORDERS):
-        left_s = seconds - (clock() - began_s)
-        if left_s <= 0:
+    # What a transfer gains for one item may cost more for the next: both are tried.
+    kinds = [problem.without_transfers(), problem] if problem.transfers.places else [problem]
+    orders = [_urgent_first(problem)] * len(kinds)
+    for attempt in range(ORDERS * len(kinds)):
+        if clock() - began_s >= seconds:
             break
-        placed, failed = _insert_in_order(problem, order, lambda: clock() - began_s < seconds)
+        kind = attempt % len(kinds)
+        placed, failed = _insert_in_order(
+            kinds[kind], orders[kind], lambda: clock() - began_s < seconds
+        )
         if placed is not None and cost(problem, placed).total < best_cost:
             best, best_cost = placed, cost(problem, placed).total
             if on_progress is not None:
                 on_progress(Progress(best_cost, None, clock() - began_s))
-        order = _next_order(problem, order, failed, chance)
+        orders[kind] = _next_order(problem, orders[kind], failed, chance)
     return _solution(problem, best, clock() - began_s)
 
 
