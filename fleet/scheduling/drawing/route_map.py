@@ -9,7 +9,7 @@ from fleet.scheduling.problem import Problem
 from fleet.scheduling.schedule import Action, Schedule
 
 MARGIN_PX = 70.0
-MOST_HEIGHT_PX = 620.0
+MOST_HEIGHT_PX = 520.0
 APART_PX = 3.0
 """How far apart the routes of two robots along the same line are."""
 
@@ -82,8 +82,9 @@ def _draw_route(
         if length < 1:
             continue
         dx, dy = (x2 - x1) / length, (y2 - y1) / length
-        # The way back lies on the other side, because the normal turns with the direction.
-        ox, oy = -dy * (shift + APART_PX / 2), dx * (shift + APART_PX / 2)
+        # Every robot has its side of a line; its way back lies beside its way there.
+        aside = (2 * shift if points[a] < points[b] else -2 * shift) + APART_PX / 2
+        ox, oy = -dy * aside, dx * aside
         svg.add(
             "line", x1=x1 + ox, y1=y1 + oy, x2=x2 + ox, y2=y2 + oy,
             stroke=stroke, stroke_width=2.0, stroke_linecap="round",
