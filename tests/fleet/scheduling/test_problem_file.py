@@ -187,6 +187,12 @@ def test_examples_can_be_solved(path: Path) -> None:
     assert check(delivery.problem, found.schedule) == []
 
 
+def test_example_in_the_documentation_is_a_delivery_file() -> None:
+    document = (Path(__file__).parents[3] / "docs/scheduling.md").read_text()
+    example = document.split("```yaml\n")[1].split("```")[0]
+    assert read_delivery_text(example).contradictions == ()
+
+
 def test_example_of_the_corridor_needs_a_transfer() -> None:
     (path,) = (path for path in EXAMPLES if path.stem == "corridor")
     problem = read_delivery_file(path).problem
