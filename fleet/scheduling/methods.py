@@ -23,6 +23,10 @@ WARM_UP_SHARE = 0.2
 """The share of the time that goes to heuristics before the exact method begins."""
 
 
+EXACT_SIZE = 2_000_000
+"""How large the exact model may be (robots times visits squared times items) to fit in memory."""
+
+
 class Solver(Protocol):
     """Finds the best schedule that it can in about `seconds`; never worse than `start`."""
 
@@ -57,16 +61,22 @@ def _exact_after_heuristics(
     on_progress: Callable[[Progress], None] | None,
     clock: Clock,
 ) -> Solution:
-    """The exact method from the best schedule that the heuristics have found."""
+    """The exact method from the best schedule that the heuristics have found.
+
+    Where its model would be too large, their schedule is all that there is, without a bound.
+    """
     began_s = clock()
+    fits = _exact_size(problem) <= EXACT_SIZE
     warm = best_heuristic(
         problem,
-        seconds=WARM_UP_SHARE * seconds,
+        seconds=(WARM_UP_SHARE if fits else 1.0) * seconds,
         seed=seed,
         start=start,
         on_progress=on_progress,
         clock=clock,
     )
+    if not fits:
+        return warm
     spent_s = clock() - began_s
     solution = solve_exactly(
         problem,
@@ -75,9 +85,16 @@ def _exact_after_heuristics(
         start=warm.schedule,
         on_progress=_later(on_progress, began_s, clock),
     )
-    return Solution(
-        solution.status, solution.schedule, solution.cost, solution.bound, clock() - began_s
-    )
+    status = solution.status
+    # Incumbent and bound may differ by the rounding of the model alone.
+    if solution.cost is not None and solution.gap == 0.0:
+        status = Status.OPTIMAL
+    return Solution(status, solution.schedule, solution.cost, solution.bound, clock() - began_s)
+
+
+def _exact_size(problem: Problem) -> int:
+    visits = 2 * len(problem.items) + len(problem.transfers.places) + 2
+    return len(problem.robots) * visits**2 * max(1, len(problem.items))
 
 
 METHODS: Mapping[str, Method] = {

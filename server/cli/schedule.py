@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from server.cli.failures import NOT_FINISHED, CommandLineError, told_plainly
+from server.cli.failures import INTERRUPTED, NOT_FINISHED, CommandLineError, told_plainly
 from server.cli.output import print_rows
 
 
@@ -72,6 +72,8 @@ def schedule(
                     )
             except UnsupportedError as error:
                 raise CommandLineError(str(error)) from error
+            except KeyboardInterrupt as error:
+                raise CommandLineError("stopped before the search was over", INTERRUPTED) from error
         summary = output.summary(measure, solution)
         if plot is not None and solution.schedule is not None:
             plot.parent.mkdir(parents=True, exist_ok=True)

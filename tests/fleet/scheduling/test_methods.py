@@ -110,6 +110,15 @@ def test_exact_tells_of_the_heuristics_and_ends_optimal() -> None:
     assert found.bound == pytest.approx(found.cost.total if found.cost else None)
 
 
+def test_exact_leaves_to_the_heuristics_what_is_too_large(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("fleet.scheduling.methods.EXACT_SIZE", 10)
+    problem = corridor(items=(parcel(), parcel("back", 4, 0)))
+    found = solve(problem, "exact", seconds=60.0, clock=TickingClock())
+    assert found.schedule is not None
+    assert check(problem, found.schedule) == []
+    assert (found.status, found.bound) == (Status.FEASIBLE, None)
+
+
 def with_a_door(problem: Problem) -> Problem:
     apart = Travel.euclidean(CORRIDOR)
     closed = Epoch(0.0, 50.0, apart.distance_m * 3, apart.time_s * 3)

@@ -1,6 +1,7 @@
 """Delivery files: the problem that they pose, and one sentence with its line per mistake."""
 
 import json
+import re
 from math import inf
 from pathlib import Path
 from random import Random
@@ -220,3 +221,28 @@ def test_loose_building_has_one_robot_that_can_do_everything() -> None:
     alone = solve(problem.without_transfers(), "insertion", seconds=60.0, clock=TickingClock())
     assert alone.schedule is not None
     assert problem_of(building_deliveries(BINDING, Random(1))).robots[0].shift.latest_s == 480.0
+
+
+NASTY = ("-1", "1e308", ".inf", "null", "[]", "{}", "''", "yes", "west", "0", "[1, 0]", "!x", "*a")
+
+
+@given(
+    st.sampled_from([path.read_text() for path in EXAMPLES]),
+    st.lists(st.tuples(st.integers(0, 10_000), st.sampled_from(NASTY)), min_size=1, max_size=3),
+)
+@settings(deadline=None, max_examples=80)
+def test_absurd_values_are_told_or_make_sense(text: str, changes: list[tuple[int, str]]) -> None:
+    for number, nasty in changes:
+        values = list(re.finditer(r"(?<=[:\[,] )[\w.]+(?=[,\]}\n])", text))
+        if not values:
+            break
+        value = values[number % len(values)]
+        text = text[: value.start()] + nasty + text[value.end() :]
+    try:
+        delivery = read_delivery_text(text)
+    except DeliveryFileError:
+        return
+    if not delivery.contradictions:
+        found = solve(delivery.problem, "greedy", seconds=60.0, clock=TickingClock())
+        if found.schedule is not None:
+            assert check(delivery.problem, found.schedule) == []
