@@ -21,7 +21,7 @@ from fleet.scheduling.delivery_document import (
 )
 from maps.navigation import WayKind
 
-OFFICE_WIDTH_M = 6.0
+OFFICE_SPACING_M = 15.0
 OFFICE_DEPTH_M = 4.0
 BOARDING_S = 90.0
 FLOOR_S = 8.0
@@ -41,7 +41,7 @@ class BuildingPlan:
     robots: int = 3
     items: int = 5
     capacity: float = 2.0
-    shift_s: float | None = 480.0
+    shift_s: float | None = 420.0
     office_hours: int = 0
 
 
@@ -93,17 +93,17 @@ def _add_floor(
     plan: BuildingPlan, floor: int, places: dict[str, PlaceEntry], ways: list[WayEntry]
 ) -> None:
     lobby, doors = _lobby(floor), (plan.offices + 1) // 2
-    middle_m = OFFICE_WIDTH_M * (doors - 1) / 2
+    middle_m = OFFICE_SPACING_M * (doors - 1) / 2
     places[lobby] = PlaceEntry(x=middle_m, y=-OFFICE_DEPTH_M / 2, floor=floor)
     for door in range(doors):
         hall = f"hall{floor}_{door}"
-        places[hall] = PlaceEntry(x=OFFICE_WIDTH_M * door, y=0.0, floor=floor)
+        places[hall] = PlaceEntry(x=OFFICE_SPACING_M * door, y=0.0, floor=floor)
         if door:
             ways.append(WayEntry(between=(f"hall{floor}_{door - 1}", hall)))
         for side, y in (("a", OFFICE_DEPTH_M), ("b", -OFFICE_DEPTH_M)):
             if 2 * door + (side == "b") < plan.offices:
                 office = f"office{floor}_{door}{side}"
-                places[office] = PlaceEntry(x=OFFICE_WIDTH_M * door, y=y, floor=floor)
+                places[office] = PlaceEntry(x=OFFICE_SPACING_M * door, y=y, floor=floor)
                 ways.append(WayEntry(between=(hall, office), kind=WayKind.DOOR))
     ways.append(WayEntry(between=(f"hall{floor}_{(doors - 1) // 2}", lobby)))
     for below in range(floor):
