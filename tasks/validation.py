@@ -23,7 +23,7 @@ def validate_part(model: type[Model], part: LinedMapping) -> tuple[Model | None,
     except ValidationError as error:
         found = error.errors(include_url=False)
         return None, [
-            Problem(_find_line(part, each["loc"]), None, describe_mistake(each, model))
+            Problem(find_line(part, each["loc"]), None, describe_mistake(each, model))
             for each in found
         ]
     except (RecursionError, ValueError):
@@ -79,7 +79,7 @@ def _show(value: Any) -> str:
     return shown
 
 
-def _find_line(part: LinedMapping, location: Sequence[int | str]) -> int:
+def find_line(part: LinedMapping, location: Sequence[int | str]) -> int:
     """The line of the innermost value on the way to a location."""
     line, value = part.line, part
     for step in location:

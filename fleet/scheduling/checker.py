@@ -7,6 +7,7 @@ keeps every load, window, order and duration, whoever made it.
 from collections import defaultdict
 from collections.abc import Iterator
 from itertools import pairwise
+from math import isfinite
 
 from fleet.scheduling.item_way import BrokenWayError, Leg, item_way
 from fleet.scheduling.problem import Item, Problem, Window
@@ -65,21 +66,37 @@ def _drive(problem: Problem, schedule: Schedule, robot: int) -> Iterator[str]:
             yield f"{who} has a stop with item {stop.task.item}, which does not exist"
             return
         what = f"{stop.task.action} {problem.items[stop.task.item].name}"
-        earliest_s = free_s + problem.travel_time_s(robot, place, stop.task.place)
-        if not stop.arrival_s >= earliest_s - TOLERANCE_S:
+        if not _can_be_there(problem, robot, (place, stop.task.place), free_s, stop.arrival_s):
             yield f"{who} cannot be there to {what} at {stop.arrival_s:g} s"
         if not stop.begin_s >= stop.arrival_s - TOLERANCE_S:
             yield f"{who} begins to {what} before it arrives"
         if not stop.departure_s >= stop.begin_s + _service_s(problem, stop) - TOLERANCE_S:
             yield f"{who} departs before it is done with {what}"
         place, free_s = stop.task.place, stop.departure_s
-    home_s = 0.0 if described.end is None else problem.travel_time_s(robot, place, described.end)
-    if not planned.ends_s >= free_s + home_s - TOLERANCE_S:
+    end = place if described.end is None else described.end
+    if not _can_be_there(problem, robot, (place, end), free_s, planned.ends_s):
         yield f"{who} cannot be at its end at {planned.ends_s:g} s"
     if not planned.ends_s <= described.shift.latest_s + TOLERANCE_S:
         yield f"{who} is at its end at {planned.ends_s:g} s, after its shift"
     if not planned.ends_s - planned.leaves_s <= described.max_duration_s + TOLERANCE_S:
         yield f"{who} is away for longer than {described.max_duration_s:g} s"
+
+
+def _can_be_there(
+    problem: Problem, robot: int, trip: tuple[int, int], leaves_s: float, arrival_s: float
+) -> bool:
+    """Whether the way is open for long enough at some time between leaving and arriving."""
+    if not isfinite(arrival_s):
+        return False
+    travel = problem.travel
+    if trip[0] == trip[1] or not travel.epochs:
+        return arrival_s >= leaves_s + problem.travel_time_s(robot, *trip) - TOLERANCE_S
+    speed = problem.robots[robot].speed
+    return any(
+        max(leaves_s, epoch.from_s) + epoch.time_s[trip] / speed
+        <= min(arrival_s, epoch.until_s) + TOLERANCE_S
+        for epoch in travel.epochs
+    )
 
 
 def _service_s(problem: Problem, stop: Stop) -> float:

@@ -14,6 +14,7 @@ class ConstraintKind(StrEnum):
     SHIFT_END = "shift_end"
     DURATION = "duration"
     TRAVEL = "travel"
+    OPENING = "opening"
     HOMEWARD = "homeward"
     WINDOW_BEGIN = "window_begin"
     WINDOW_END = "window_end"
@@ -47,6 +48,10 @@ def sentence(problem: Problem, constraint: Constraint) -> str:
         case ConstraintKind.TRAVEL:
             assert robot is not None
             return f"{robot.name} has to get there to {what}"
+        case ConstraintKind.OPENING:
+            assert robot is not None
+            where = f"get there to {what}" if constraint.task else "get to its end"
+            return f"{robot.name} can {where} only while doors on its way are open"
         case ConstraintKind.HOMEWARD:
             assert robot is not None
             return f"{robot.name} has to get to its end"

@@ -1,6 +1,7 @@
 """What a schedule costs, recomputed from its stops."""
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 from fleet.scheduling.problem import Problem
 from fleet.scheduling.schedule import Action, Schedule
@@ -45,8 +46,14 @@ def cost(problem: Problem, schedule: Schedule) -> Cost:
 
 def route_distance_m(problem: Problem, robot: int, schedule: Schedule) -> float:
     """How far one robot drives, to its end included (metres)."""
-    described = problem.robots[robot]
-    places = [described.start, *(stop.task.place for stop in schedule.robots[robot].stops)]
+    described, stops = problem.robots[robot], schedule.robots[robot].stops
+    places = [described.start, *(stop.task.place for stop in stops)]
     if described.end is not None:
         places.append(described.end)
-    return float(problem.travel.distance_m[places[:-1], places[1:]].sum())
+    if not problem.travel.epochs:
+        return float(problem.travel.distance_m[places[:-1], places[1:]].sum())
+    leaves_s = (schedule.robots[robot].leaves_s, *(stop.departure_s for stop in stops))
+    return sum(
+        problem.travel.trip(*trip, time_s, described.speed).distance_m
+        for trip, time_s in zip(pairwise(places), leaves_s, strict=False)
+    )

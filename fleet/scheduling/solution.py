@@ -7,6 +7,10 @@ from fleet.scheduling.objective import Cost
 from fleet.scheduling.schedule import Schedule
 
 
+class UnsupportedError(Exception):
+    """A solver does not know what a problem asks for; says what, raised before it begins."""
+
+
 class Status(StrEnum):
     """How far a solver has come."""
 

@@ -1,14 +1,18 @@
 """From routes to a schedule: the earliest times that all constraints allow."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from math import inf
 
 from fleet.scheduling.constraint import Constraint, ConstraintKind, sentence
 from fleet.scheduling.item_way import Leg, item_ways
 from fleet.scheduling.problem import Problem, Window
 from fleet.scheduling.schedule import Action, RobotSchedule, Route, Schedule, Stop, Task
-from fleet.scheduling.temporal_network import ORIGIN, Conflict, TemporalNetwork
+from fleet.scheduling.temporal_network import ORIGIN, TOLERANCE_S, Conflict, TemporalNetwork
+
+MAX_ROUNDS = 1000
+"""How often the times of routes may be moved because of doors."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,6 +54,8 @@ class TimedRoutes:
             self._add_robot(robot)
         for item, legs in ways.items():
             self._join(item, legs)
+        if problem.travel.epochs:
+            self._wait_for_doors()
 
     def schedule(self) -> Schedule:
         """The earliest schedule. Raises `ValueError` when there is a conflict."""
@@ -58,7 +64,11 @@ class TimedRoutes:
         return Schedule(tuple(self._robot_schedule(robot) for robot in range(len(self.routes))))
 
     def _demand(self, later: int, earlier: int, gap_s: float, reason: Constraint) -> None:
-        if self.conflict is None:
+        if self.conflict is not None:
+            return
+        if gap_s == inf:
+            self.conflict = Conflict((reason,), inf)
+        else:
             self.conflict = self.network.after(later, earlier, gap_s, reason)
 
     def _add_robot(self, robot: int) -> None:
@@ -120,20 +130,82 @@ class TimedRoutes:
         )
         self._demand(loaded, drop, -described.max_on_board_s - loading_s, reason)
 
+    def _wait_for_doors(self) -> None:
+        """Move every arrival to when doors let the robot through, until nothing moves any more.
+
+        Later departures never arrive earlier, so that the first times at which nothing moves are
+        the earliest ones. Routes whose times creep on for `MAX_ROUNDS` are taken to have none.
+        """
+        for _ in range(MAX_ROUNDS):
+            late = [trip for robot in range(len(self.routes)) for trip in self._late_trips(robot)]
+            if not late:
+                return
+            for trip in late:
+                self._delay(trip)
+            if self.conflict is not None:
+                return
+        self.conflict = Conflict(tuple(trip.reason for trip in late), 0.0)
+
+    def _late_trips(self, robot: int) -> Iterator["_LateTrip"]:
+        """The trips of a robot that doors make longer than the network knows so far."""
+        described = self.problem.robots[robot]
+        travel, earliest_s = self.problem.travel, self.network.earliest_s
+        before, place, busy_s = self.leaves[robot], described.start, 0.0
+        legs: list[tuple[int, Task | None]] = list(
+            zip(self.begins[robot], self.routes[robot], strict=True)
+        )
+        legs.append((self.ends[robot], None))
+        for event, task in legs:
+            destination = described.end if task is None else task.place
+            if destination is None:
+                return
+            leaves_s = earliest_s(before) + busy_s
+            arrival_s = travel.trip(place, destination, leaves_s, described.speed).arrival_s
+            if arrival_s > earliest_s(event) + TOLERANCE_S:
+                lasts_s = travel.shortest_lasting_s(place, destination, leaves_s, described.speed)
+                reason = Constraint(ConstraintKind.OPENING, robot, task)
+                yield _LateTrip(before, event, busy_s + lasts_s, arrival_s, reason)
+            if task is not None:
+                before, place, busy_s = event, task.place, service_s(self.problem, task)
+
+    def _delay(self, trip: "_LateTrip") -> None:
+        self._demand(trip.arrives, trip.leaves, trip.gap_s, trip.reason)
+        self._demand(trip.arrives, ORIGIN, trip.arrival_s, trip.reason)
+
     def _robot_schedule(self, robot: int) -> RobotSchedule:
         earliest_s = self.network.earliest_s
-        place = self.problem.robots[robot].start
+        described = self.problem.robots[robot]
+        place = described.start
         free_s = leaves_s = earliest_s(self.leaves[robot])
         stops: list[Stop] = []
         for task, event in zip(self.routes[robot], self.begins[robot], strict=True):
-            arrival_s = free_s + self.problem.travel_time_s(robot, place, task.place)
+            arrival_s = self._arrival_s(robot, place, task.place, free_s)
             begin_s = max(arrival_s, earliest_s(event))
             free_s = begin_s + service_s(self.problem, task)
             stops.append(Stop(task, arrival_s, begin_s, free_s))
             place = task.place
-        end = self.problem.robots[robot].end
-        homeward_s = 0.0 if end is None else self.problem.travel_time_s(robot, place, end)
-        return RobotSchedule(tuple(stops), leaves_s, free_s + homeward_s)
+        ends_s = free_s
+        if described.end is not None:
+            ends_s = self._arrival_s(robot, place, described.end, free_s)
+        return RobotSchedule(tuple(stops), leaves_s, ends_s)
+
+    def _arrival_s(self, robot: int, origin: int, destination: int, leaves_s: float) -> float:
+        problem = self.problem
+        if not problem.travel.epochs:
+            return leaves_s + problem.travel_time_s(robot, origin, destination)
+        speed = problem.robots[robot].speed
+        return problem.travel.trip(origin, destination, leaves_s, speed).arrival_s
+
+
+@dataclass(frozen=True, slots=True)
+class _LateTrip:
+    """Event `arrives` is at `arrival_s` or later, and ever at least `gap_s` after `leaves`."""
+
+    leaves: int
+    arrives: int
+    gap_s: float
+    arrival_s: float
+    reason: Constraint
 
 
 def task_window(problem: Problem, task: Task) -> Window | None:

@@ -13,6 +13,7 @@ from server.cli.failures import CommandLineError
 from server.cli.replay import replay
 from server.cli.run import run
 from server.cli.scenarios import scenarios
+from server.cli.schedule import schedule
 from server.cli.schema import schema
 from server.cli.serve import serve
 from server.cli.talk import talk
@@ -56,6 +57,7 @@ COMMANDS: dict[str, tuple[Callable[..., None], str]] = {
     "trees": (trees, "List the task trees that there are."),
     "scenarios": (scenarios, "List the scenarios that there are."),
     "schema": (schema, "Print a schema as JSON."),
+    "schedule": (schedule, "Plan deliveries for several robots."),
     "replay": (replay, "Tell a run again from its journal."),
     "train-colors": (train_colors, "Learn the colours of objects."),
 }

@@ -1,4 +1,4 @@
-"""`mend check`: every mistake of a task, scene or scenario file."""
+"""`mend check`: every mistake of a task, scene, scenario or delivery file."""
 
 import json
 import re
@@ -9,14 +9,22 @@ from typing import Annotated
 import typer
 
 from server.cli.failures import NOT_FINISHED, CommandLineError, told_plainly
-from server.cli.task_files import read_text, scenario_mistakes, scene_mistakes, task_mistakes
+from server.cli.task_files import (
+    delivery_mistakes,
+    read_text,
+    scenario_mistakes,
+    scene_mistakes,
+    task_mistakes,
+)
 
 CHECKERS: Mapping[str, Callable[[Path], list[str]]] = {
     "task": task_mistakes,
     "scene": scene_mistakes,
     "scenario": scenario_mistakes,
+    "delivery": delivery_mistakes,
 }
 
+DELIVERY_KEYS = {"travel", "robots", "items"}
 SCENE_KEYS = {"objects", "places"}
 SCENARIO_KEYS = {"interventions", "answers", "answer_delay_s", "person"}
 TOP_LEVEL_KEY = re.compile(r"""^["']?(\w+)["']?[ \t]*:""", re.MULTILINE)
@@ -25,10 +33,13 @@ TREE_BY_NAME = re.compile(r"""^["']?tree["']?[ \t]*:[ \t]*["']?\w""", re.MULTILI
 
 def check(
     file: Annotated[
-        Path, typer.Argument(metavar="FILE", help="A task, scene or scenario file, YAML or JSON.")
+        Path,
+        typer.Argument(
+            metavar="FILE", help="A task, scene, scenario or delivery file, YAML or JSON."
+        ),
     ],
 ) -> None:
-    """Check a task, scene or scenario file, and name every mistake with its line.
+    """Check a task, scene, scenario or delivery file, and name every mistake with its line.
 
     The exit code is 1 if there are any.
     """
@@ -41,8 +52,10 @@ def check(
 
 
 def kind_of_file(text: str) -> str:
-    """Tell the three kinds of file apart, even where they are full of mistakes."""
+    """Tell the kinds of file apart, even where they are full of mistakes."""
     keys, tree_by_name = _top_level(text)
+    if keys & DELIVERY_KEYS:
+        return "delivery"
     if keys & SCENE_KEYS:
         return "scene"
     return "scenario" if keys & SCENARIO_KEYS or tree_by_name else "task"

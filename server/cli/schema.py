@@ -22,15 +22,16 @@ class SchemaName(StrEnum):
     TASK = "task"
     SCENE = "scene"
     SCENARIO = "scenario"
+    DELIVERY = "delivery"
 
 
 def schema(
     name: Annotated[
         SchemaName,
         typer.Argument(
-            metavar="[openapi|asyncapi|console|events|task|scene|scenario]",
+            metavar="[openapi|asyncapi|console|events|task|scene|scenario|delivery]",
             help="openapi: REST; asyncapi: WebSockets; console: both, as the console uses them; "
-            "events: the journal; task, scene, scenario: files.",
+            "events: the journal; task, scene, scenario, delivery: files.",
         ),
     ] = SchemaName.OPENAPI,
 ) -> None:
@@ -67,6 +68,12 @@ def _events() -> dict[str, Any]:
     return json_schemas()["event"]
 
 
+def _delivery() -> dict[str, Any]:
+    from fleet.scheduling.problem_file import delivery_schema
+
+    return delivery_schema()
+
+
 SCHEMAS: Mapping[SchemaName, Callable[[], dict[str, Any]]] = {
     SchemaName.OPENAPI: _openapi,
     SchemaName.ASYNCAPI: _asyncapi,
@@ -75,4 +82,5 @@ SCHEMAS: Mapping[SchemaName, Callable[[], dict[str, Any]]] = {
     SchemaName.TASK: lambda: task_schema(behavior_parameters()),
     SchemaName.SCENE: scene_schema,
     SchemaName.SCENARIO: scenario_schema,
+    SchemaName.DELIVERY: _delivery,
 }

@@ -58,6 +58,18 @@ def scenario_mistakes(path: Path) -> list[str]:
     return [f"{path}: {each}" for each in _tree_problems(scenario)]
 
 
+def delivery_mistakes(path: Path) -> list[str]:
+    """Every mistake of a delivery file, else what contradicts itself in it."""
+    # Imported only here: schedulers would make every other command wait.
+    from fleet.scheduling.problem_file import read_delivery_file
+
+    try:
+        delivery = read_delivery_file(path)
+    except InvalidFileError as error:
+        return str(error).splitlines()
+    return [each.describe(str(path)) for each in delivery.contradictions]
+
+
 def _tree_problems(scenario: Scenario) -> list[str]:
     """What a scenario expects of its tree and the tree's scene, and does not get."""
     try:

@@ -122,7 +122,7 @@ def test_version_is_said(mend: Mend) -> None:
 
 def test_help_names_every_command(mend: Mend) -> None:
     outcome = mend("--help")
-    commands = "run serve check trees scenarios schema replay train-colors"
+    commands = "run serve check trees scenarios schema schedule replay train-colors"
     assert all(f"\n  {each} " in outcome.out for each in commands.split())
     summaries = outcome.out.partition("Commands:")[2]
     assert "..." not in summaries

@@ -11,7 +11,7 @@ from fleet.scheduling.exact.routes import routes_in
 from fleet.scheduling.objective import cost
 from fleet.scheduling.problem import Problem
 from fleet.scheduling.schedule import Schedule
-from fleet.scheduling.solution import Progress, Solution, Status
+from fleet.scheduling.solution import Progress, Solution, Status, UnsupportedError
 from fleet.scheduling.timing import Untimeable, earliest_schedule
 
 
@@ -28,7 +28,12 @@ def solve_exactly(
 
     `start` is where the search begins; the result is never worse. What is infeasible is proved so
     with times rounded down, apart from a doubt that is smaller than a thousandth of a second.
+    Raises `UnsupportedError` where doors open and close: the model's travel times are fixed.
     """
+    if problem.travel.epochs:
+        raise UnsupportedError(
+            "the exact method cannot plan with doors that open and close; another method can"
+        )
     solution = _solve(problem, Rounding.UP, seconds, seed, workers, start, on_progress)
     if solution.status is not Status.INFEASIBLE:
         return _not_worse(problem, solution, start)

@@ -1,0 +1,154 @@
+"""What a delivery file may say: its models, one a part. Times are seconds, lengths metres."""
+
+from typing import Annotated, Self
+
+from pydantic import Field, model_validator
+
+from maps.navigation import WayKind
+from tasks.scene import Name, StrictModel
+
+Seconds = Annotated[float, Field(ge=0.0, le=1e9, allow_inf_nan=False)]
+Length = Annotated[float, Field(ge=0.0, le=1e7, allow_inf_nan=False)]
+Coordinate = Annotated[float, Field(ge=-1e7, le=1e7, allow_inf_nan=False)]
+Speed = Annotated[float, Field(gt=0.0, le=1e3, allow_inf_nan=False)]
+Load = Annotated[float, Field(ge=0.0, le=1e6, allow_inf_nan=False)]
+Weight = Annotated[float, Field(ge=0.0, le=1e9, allow_inf_nan=False)]
+Span = tuple[Seconds, Seconds | None]
+"""From when until when; null: for ever."""
+
+
+class PlaceEntry(StrictModel):
+    """A place of a building, in the frame of its floor."""
+
+    x: Coordinate
+    y: Coordinate
+    floor: Annotated[int, Field(ge=-100, le=1000)] = 0
+
+
+class WayEntry(StrictModel):
+    """A way between two places, in both directions.
+
+    Without `length_m` the straight line. `delay_s` comes on top (an elevator's ride). `open_s`:
+    when a door may be passed; `closed`: never.
+    """
+
+    between: tuple[Name, Name]
+    kind: WayKind = WayKind.CORRIDOR
+    length_m: Length | None = None
+    delay_s: Seconds = 0.0
+    open_s: tuple[Span, ...] = ()
+    closed: bool = False
+
+
+class GraphEntry(StrictModel):
+    """A building: places on floors and the ways between them."""
+
+    speed_m_s: Speed = 1.0
+    places: Annotated[dict[Name, PlaceEntry], Field(min_length=1, max_length=2000)]
+    ways: tuple[WayEntry, ...] = ()
+
+
+class CoordinatesEntry(StrictModel):
+    """Points in the plane; everybody drives straight."""
+
+    speed_m_s: Speed = 1.0
+    places: Annotated[
+        dict[Name, tuple[Coordinate, Coordinate]], Field(min_length=1, max_length=2000)
+    ]
+
+
+class MatrixEntry(StrictModel):
+    """Times from row to column, and distances (as the times if not given); null: no way."""
+
+    places: Annotated[tuple[Name, ...], Field(min_length=1, max_length=2000)]
+    time_s: tuple[tuple[Seconds | None, ...], ...]
+    distance_m: tuple[tuple[Length | None, ...], ...] | None = None
+
+
+class TravelEntry(StrictModel):
+    """How one gets from place to place: in exactly one of three forms."""
+
+    graph: GraphEntry | None = None
+    coordinates: CoordinatesEntry | None = None
+    matrix: MatrixEntry | None = None
+
+    @model_validator(mode="after")
+    def _one_form(self) -> Self:
+        if sum(form is not None for form in (self.graph, self.coordinates, self.matrix)) != 1:
+            raise ValueError("must have exactly one of 'graph', 'coordinates' and 'matrix'")
+        return self
+
+
+class RobotEntry(StrictModel):
+    """A robot. Without `end` it may end anywhere. `speed` is relative: 2 is twice as fast."""
+
+    name: Name
+    start: Name
+    end: Name | None = None
+    capacity: Load
+    speed: Speed = 1.0
+    shift_s: Span = (0.0, None)
+    max_duration_s: Seconds | None = None
+
+
+class VisitEntry(StrictModel):
+    """Where and when: `window_s` must be kept, what begins after `due_s` is late and costs."""
+
+    place: Name
+    window_s: Span = (0.0, None)
+    due_s: Seconds | None = None
+    service_s: Seconds = 0.0
+
+
+class ItemEntry(StrictModel):
+    """One delivery; `aboard` names the robot that has it already, in place of a pickup."""
+
+    name: Name
+    load: Load = 1.0
+    pickup: VisitEntry | None = None
+    aboard: Name | None = None
+    delivery: VisitEntry
+    max_on_board_s: Seconds | None = None
+
+    @model_validator(mode="after")
+    def _one_beginning(self) -> Self:
+        if (self.pickup is None) == (self.aboard is None):
+            raise ValueError("an item must have either 'pickup' or 'aboard'")
+        return self
+
+
+class TransfersEntry(StrictModel):
+    """Where items may change robots: at the places listed, or anywhere."""
+
+    places: tuple[Name, ...] = ()
+    anywhere: bool = False
+    together: bool = False
+    service_s: Seconds = 0.0
+
+    @model_validator(mode="after")
+    def _one_list(self) -> Self:
+        if self.anywhere and self.places:
+            raise ValueError("'places' say nothing more where transfers are possible 'anywhere'")
+        return self
+
+
+class WeightsEntry(StrictModel):
+    """What a schedule costs: per metre, second of makespan, completion and lateness, and robot."""
+
+    distance: Weight = 1.0
+    makespan: Weight = 0.0
+    completion: Weight = 0.0
+    lateness: Weight = 1.0
+    robots: Weight = 0.0
+
+
+class DeliveryDocument(StrictModel):
+    """A delivery file."""
+
+    name: Name
+    description: str = ""
+    travel: TravelEntry
+    robots: Annotated[tuple[RobotEntry, ...], Field(min_length=1, max_length=1000)]
+    items: Annotated[tuple[ItemEntry, ...], Field(min_length=1, max_length=10_000)]
+    transfers: TransfersEntry = TransfersEntry()
+    weights: WeightsEntry = WeightsEntry()

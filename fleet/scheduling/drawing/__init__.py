@@ -1,0 +1,1 @@
+"""Schedules as pictures: who does what when, and where; SVG that needs nothing else."""

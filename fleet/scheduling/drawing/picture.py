@@ -1,0 +1,21 @@
+"""The whole picture of a schedule: what it costs, when who does what, and where."""
+
+from fleet.scheduling.drawing.gantt import draw_gantt
+from fleet.scheduling.drawing.route_map import draw_map
+from fleet.scheduling.drawing.svg import Svg
+from fleet.scheduling.problem import Problem
+from fleet.scheduling.schedule import Schedule
+
+WIDTH_PX = 1000.0
+
+
+def picture(problem: Problem, schedule: Schedule, summary: str = "") -> str:
+    """A schedule as SVG. The map is left out where places have no coordinates."""
+    svg = Svg()
+    used = [number for number, robot in enumerate(schedule.robots) if robot.used]
+    svg.text(16, 28, problem.name, "title")
+    svg.text(16, 46, summary, "soft")
+    bottom = draw_gantt(svg, problem, schedule, used, 72, WIDTH_PX)
+    if problem.coordinates is not None:
+        bottom = draw_map(svg, problem, schedule, used, bottom + 12, WIDTH_PX)
+    return svg.document(WIDTH_PX, bottom + 8, f"{problem.name}: {summary}")

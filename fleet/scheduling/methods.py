@@ -1,0 +1,192 @@
+"""The methods that there are, by name, and which one suits a problem.
+
+A method is added here: a solver with the signature of `Solver`, and what it can do.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Protocol
+
+from fleet.scheduling.cheapest_insertion import solve_by_insertion
+from fleet.scheduling.exact.solve import solve_exactly
+from fleet.scheduling.nearest_next import solve_by_nearest_next
+from fleet.scheduling.problem import Problem
+from fleet.scheduling.schedule import Schedule
+from fleet.scheduling.solution import Progress, Solution, Status, UnsupportedError
+from fleet.scheduling.vlns.solve import solve_vlns
+
+Clock = Callable[[], float]
+"""Tells seconds from whatever origin."""
+
+EXACT_ITEMS = 12
+"""Up to this many items the exact method is worth its time."""
+WARM_UP_SHARE = 0.2
+"""The share of the time that goes to heuristics before the exact method begins."""
+
+
+EXACT_SIZE = 2_000_000
+"""How large the exact model may be (robots times visits squared times items) to fit in memory."""
+
+
+class Solver(Protocol):
+    """Finds the best schedule that it can in about `seconds`; never worse than `start`."""
+
+    def __call__(
+        self,
+        problem: Problem,
+        *,
+        seconds: float,
+        seed: int,
+        start: Schedule | None,
+        on_progress: Callable[[Progress], None] | None,
+        clock: Clock,
+    ) -> Solution: ...
+
+
+@dataclass(frozen=True, slots=True)
+class Method:
+    """A solver; whether it plans around doors that open and close; whether it proves bounds."""
+
+    solve: Solver
+    doors: bool
+    proves: bool
+    summary: str
+
+
+def _exact_after_heuristics(
+    problem: Problem,
+    *,
+    seconds: float,
+    seed: int,
+    start: Schedule | None,
+    on_progress: Callable[[Progress], None] | None,
+    clock: Clock,
+) -> Solution:
+    """The exact method from the best schedule that the heuristics have found.
+
+    Where its model would be too large, their schedule is all that there is, without a bound.
+    """
+    began_s = clock()
+    fits = _exact_size(problem) <= EXACT_SIZE
+    warm = best_heuristic(
+        problem,
+        seconds=(WARM_UP_SHARE if fits else 1.0) * seconds,
+        seed=seed,
+        start=start,
+        on_progress=on_progress,
+        clock=clock,
+    )
+    if not fits:
+        return warm
+    spent_s = clock() - began_s
+    solution = solve_exactly(
+        problem,
+        seconds=max(0.1, seconds - spent_s),
+        seed=seed,
+        start=warm.schedule,
+        on_progress=_later(on_progress, began_s, clock),
+    )
+    status = solution.status
+    # Incumbent and bound may differ by the rounding of the model alone.
+    if solution.cost is not None and solution.gap == 0.0:
+        status = Status.OPTIMAL
+    return Solution(status, solution.schedule, solution.cost, solution.bound, clock() - began_s)
+
+
+def _exact_size(problem: Problem) -> int:
+    visits = 2 * len(problem.items) + len(problem.transfers.places) + 2
+    return len(problem.robots) * visits**2 * max(1, len(problem.items))
+
+
+def _vlns(
+    problem: Problem,
+    *,
+    seconds: float,
+    seed: int,
+    start: Schedule | None,
+    on_progress: Callable[[Progress], None] | None,
+    clock: Clock,
+) -> Solution:
+    """The search with transfers, which does not know doors that open and close."""
+    if problem.travel.epochs:
+        raise UnsupportedError("the search 'vlns' does not plan around doors; use 'insertion'")
+    return solve_vlns(
+        problem, seconds=seconds, seed=seed, start=start, on_progress=on_progress, clock=clock
+    )
+
+
+METHODS: Mapping[str, Method] = {
+    "exact": Method(_exact_after_heuristics, False, True, "optimal, or with a proved bound"),
+    "vlns": Method(_vlns, False, False, "very large neighbourhood search with transfers"),
+    "insertion": Method(solve_by_insertion, True, False, "each item where it costs least"),
+    "greedy": Method(solve_by_nearest_next, True, False, "each robot what it reaches first"),
+}
+
+HEURISTICS = ("greedy", "insertion")
+"""What the exact method begins with, quickest first."""
+
+
+def best_heuristic(
+    problem: Problem,
+    *,
+    seconds: float,
+    seed: int,
+    start: Schedule | None,
+    on_progress: Callable[[Progress], None] | None,
+    clock: Clock,
+) -> Solution:
+    """The best of all heuristics, each of which begins with the best so far."""
+    best = Solution(Status.UNKNOWN, start, None, None, 0.0)
+    began_s = clock()
+    for name in HEURISTICS:
+        best = METHODS[name].solve(
+            problem,
+            seconds=seconds / len(HEURISTICS),
+            seed=seed,
+            start=best.schedule,
+            on_progress=_later(on_progress, began_s, clock),
+            clock=clock,
+        )
+    return best
+
+
+def suited_method(problem: Problem) -> str:
+    """The name of the method for a problem of this size and with these features."""
+    small = len(problem.items) <= EXACT_ITEMS
+    if problem.travel.epochs:
+        return "insertion"
+    return "exact" if small else "vlns"
+
+
+def solve(
+    problem: Problem,
+    method: str,
+    *,
+    seconds: float,
+    seed: int = 0,
+    on_progress: Callable[[Progress], None] | None = None,
+    clock: Clock,
+) -> Solution:
+    """Solve with a method by name, or `auto`.
+
+    Raises `KeyError` for a name that is none and `UnsupportedError` for a problem that the method
+    cannot do.
+    """
+    chosen = METHODS[suited_method(problem) if method == "auto" else method]
+    if problem.travel.epochs and not chosen.doors:
+        able = ", ".join(name for name, each in METHODS.items() if each.doors)
+        raise UnsupportedError(
+            f"the method '{method}' cannot plan with doors that open and close; {able} can"
+        )
+    return chosen.solve(
+        problem, seconds=seconds, seed=seed, start=None, on_progress=on_progress, clock=clock
+    )
+
+
+def _later(
+    tell: Callable[[Progress], None] | None, began_s: float, clock: Clock
+) -> Callable[[Progress], None] | None:
+    """Tell with the seconds since the beginning of everything."""
+    if tell is None:
+        return None
+    return lambda each: tell(Progress(each.incumbent, each.bound, clock() - began_s))
