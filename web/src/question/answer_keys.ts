@@ -1,5 +1,5 @@
 // The keys that answer: single letters that a helper can change or switch off.
-import { useEffect } from "preact/hooks";
+import { useLayoutEffect } from "preact/hooks";
 import { keys, keysOn } from "../state/preferences";
 import { type Question } from "../state/questions";
 import { answer, undo } from "./answering";
@@ -26,7 +26,8 @@ export function actionOf(
 
 /** Let the keys answer this question while its card is shown. */
 export function useAnswerKeys(question: Question, mayAnswer: boolean): void {
-  useEffect(() => {
+  // At once: a key that is pressed as soon as the buttons are seen to be ready must count.
+  useLayoutEffect(() => {
     const pressed = (event: KeyboardEvent) => {
       const target = event.target as Element;
       const isRange = target instanceof HTMLInputElement && target.type === "range";
