@@ -9,7 +9,14 @@ import pytest
 import pytest_asyncio
 from console_in_browser import TOKEN, OpenPage, Stage
 from played_dialogues import PlayedDialogues
-from playwright.async_api import Browser, BrowserContext, ConsoleMessage, Page, async_playwright
+from playwright.async_api import (
+    Browser,
+    BrowserContext,
+    ConsoleMessage,
+    Page,
+    async_playwright,
+    expect,
+)
 from service_under_test import serving
 
 from server.api.console import BUILT
@@ -19,6 +26,9 @@ from server.settings import Settings
 
 CHROMIUM = shutil.which("chromium") or shutil.which("google-chrome")
 HERE = Path(__file__).parent
+
+# Patience costs nothing where all is well, and a busy machine may be slow.
+expect.set_options(timeout=15_000)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

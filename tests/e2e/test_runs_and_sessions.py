@@ -91,7 +91,7 @@ async def test_long_list_of_runs_comes_in_pages(service: Service, open_page: Ope
 async def test_list_without_runs_invites_to_start_one(open_page: OpenPage) -> None:
     page = await open_page("/runs")
     await page.get_by_role("link", name="Start the first one").click()
-    await expect(page.get_by_role("heading", name="Start a run")).to_be_visible()
+    await expect(page.get_by_role("heading", name="Start a run", exact=True)).to_be_visible()
 
 
 async def test_helper_signs_out_and_in_again(open_page: OpenPage) -> None:
@@ -100,13 +100,15 @@ async def test_helper_signs_out_and_in_again(open_page: OpenPage) -> None:
     await expect(page.get_by_label("Token")).to_be_visible()
     await expect(page.get_by_text("Your session has ended")).to_have_count(0)
     await sign_in(page)
-    await expect(page.get_by_role("heading", name="Settings")).to_be_visible()
+    await expect(page.get_by_role("heading", name="Settings", exact=True)).to_be_visible()
 
 
 async def test_session_that_ends_takes_no_text_along(open_page: OpenPage) -> None:
     page = await open_page("/edit/eket")
     text = page.get_by_label("The file of the task tree")
     await expect(text).to_have_value(re.compile("eket_copy"))
+    # Once it is drawn nothing is asked of the service any more, until something is typed.
+    await expect(page.get_by_role("tree")).to_be_visible()
     await page.context.clear_cookies()
     await text.fill("name: precious\n")
     await expect(page.get_by_text("Your session has ended, anna")).to_be_visible()
@@ -142,7 +144,7 @@ async def test_whole_way_to_a_run_can_be_gone_with_the_keyboard(open_page: OpenP
     await page.keyboard.press("Enter")
     await tab_to("link", "Start a run")
     await page.keyboard.press("Enter")
-    await expect(page.get_by_role("heading", name="Start a run")).to_be_visible()
+    await expect(page.get_by_role("heading", name="Start a run", exact=True)).to_be_visible()
     await tab_to("combobox", "Task tree")
     await tab_to("button", "Start the run")
     await page.keyboard.press("Enter")

@@ -80,7 +80,7 @@ async def test_wrong_file_is_put_right_saved_and_run(open_page: OpenPage, upload
     await page.get_by_role("button", name="Save").click()
 
     await expect(page).to_have_url("/trees/shelf")
-    await expect(page.get_by_role("heading", name="shelf")).to_be_visible()
+    await expect(page.get_by_role("heading", name="shelf", exact=True)).to_be_visible()
     await page.get_by_role("link", name="Start a run").click()
     await expect(page.get_by_label("Task tree")).to_have_value("shelf")
     await page.get_by_label("tabletop").check()
@@ -109,7 +109,7 @@ async def test_file_that_is_no_text_is_refused_in_a_sentence(open_page: OpenPage
     page = await open_library(open_page)
     await by_dropping(page, "photo.jpg", b"\xff\xd8\xff\xe0")
     await expect(page.get_by_role("alert").filter(has_text="photo.jpg is no text")).to_be_visible()
-    await expect(page.get_by_role("heading", name="eket")).to_be_visible()
+    await expect(page.get_by_role("heading", name="eket", exact=True)).to_be_visible()
 
 
 async def test_drawing_follows_the_text_while_it_is_typed(open_page: OpenPage) -> None:
@@ -191,7 +191,7 @@ async def test_unsaved_text_is_guarded_and_never_lost(open_page: OpenPage) -> No
 
     await page.get_by_role("link", name="Runs").click()
     await page.get_by_role("button", name="Leave").click()
-    await expect(page.get_by_role("heading", name="Runs")).to_be_visible()
+    await expect(page.get_by_role("heading", name="Runs", exact=True)).to_be_visible()
     await page.goto("/edit/eket")
     await expect(text_of(page)).to_have_value("my: precious")
     await expect(page.get_by_text("changes that were not saved yet")).to_be_visible()
@@ -232,7 +232,7 @@ async def test_tree_is_deleted_after_one_question(open_page: OpenPage) -> None:
     await by_button(page, "shelf.yaml", CORRECT.encode())
     await page.get_by_role("button", name="Delete").click()
     await page.get_by_role("button", name="Keep it").click()
-    await expect(page.get_by_role("heading", name="shelf")).to_be_visible()
+    await expect(page.get_by_role("heading", name="shelf", exact=True)).to_be_visible()
     await page.get_by_role("button", name="Delete").click()
     await page.get_by_role("dialog").get_by_role("button", name="Delete").click()
     await expect(page).to_have_url("/trees")
