@@ -88,12 +88,12 @@ class TemporalNetwork(Generic[Reason]):
         self._out[earlier].append(edge)
         self._in[later].append(edge)
         self._trail.append(edge)
-        conflict = self._push_earliest(edge)
-        if conflict is None:
+        blocked = self._push_earliest(edge)
+        if blocked is None:
             self._push_latest(edge)
-        else:
-            self.undo(mark)
-        return conflict
+            return None
+        self.undo(mark)
+        return self._explain(blocked, edge)
 
     def not_before(self, event: int, time_s: float, reason: Reason) -> Conflict[Reason] | None:
         """`event` is at `time_s` or later."""
@@ -128,8 +128,11 @@ class TemporalNetwork(Generic[Reason]):
 
     # --- propagation --------------------------------------------------------------------------
 
-    def _push_earliest(self, edge: _Edge[Reason]) -> Conflict[Reason] | None:
-        """Move what must be later now; a way back to where the edge begins is a conflict."""
+    def _push_earliest(self, edge: _Edge[Reason]) -> list[_Edge[Reason]] | None:
+        """Move what must be later now; a way back to where the edge begins is a conflict.
+
+        Returns that way, its last constraint first and `edge` at its end.
+        """
         earliest = self._earliest
         if earliest[edge.earlier] + edge.gap_s <= earliest[edge.later] + TOLERANCE_S:
             return None
@@ -141,7 +144,10 @@ class TemporalNetwork(Generic[Reason]):
             if time_s <= earliest[pushing.later] + TOLERANCE_S:
                 continue
             if pushing.later in (edge.earlier, ORIGIN):
-                return self._explain(pushing, edge, cause)
+                way = [pushing]
+                while way[-1] is not edge:
+                    way.append(cause[way[-1].earlier])
+                return way
             cause[pushing.later] = pushing
             self._set(earliest, pushing.later, time_s)
             waiting.extend(self._out[pushing.later])
@@ -162,51 +168,39 @@ class TemporalNetwork(Generic[Reason]):
         self._trail.append((times, event, times[event]))
         times[event] = time_s
 
-    def _explain(
-        self, last: _Edge[Reason], added: _Edge[Reason], cause: dict[int, _Edge[Reason]]
-    ) -> Conflict[Reason]:
-        """The constraints from `last` back to `added`, and from there to the cycle's begin.
+    def _explain(self, way: list[_Edge[Reason]], added: _Edge[Reason]) -> Conflict[Reason]:
+        """Name the constraints of a way that leads from `added` to what cannot move.
 
-        When the origin is what cannot move, the way from the origin to the added constraint
-        belongs to the conflict too.
+        When that is the origin, what holds the begin of `added` belongs to the conflict too.
         """
-        reasons = [last.reason]
-        length_s = last.gap_s
-        event = last.earlier
-        while event in cause and cause[event] is not added:
-            edge = cause[event]
-            reasons.append(edge.reason)
-            length_s += edge.gap_s
-            event = edge.earlier
-        if last is not added:
-            reasons.append(added.reason)
-            length_s += added.gap_s
-        if last.later == ORIGIN and added.earlier != ORIGIN:
-            tail, tail_s = self._tight_path_to(added.earlier)
-            reasons.extend(tail)
-            length_s += tail_s
-        return Conflict(tuple(dict.fromkeys(reversed(reasons))), length_s)
+        if way[0].later == ORIGIN and added.earlier != ORIGIN:
+            way = way + self._tight_way_to(added.earlier)
+        reasons = dict.fromkeys(edge.reason for edge in reversed(way))
+        return Conflict(tuple(reasons), sum(edge.gap_s for edge in way))
 
-    def _tight_path_to(self, event: int) -> tuple[list[Reason], float]:
-        """The chain of constraints that makes an event as early as it can be, latest first."""
-        reasons: list[Reason] = []
-        length_s = 0.0
-        seen = {event}
-        while event != ORIGIN:
-            tight = next(
-                (
-                    edge
-                    for edge in self._in[event]
-                    if edge.earlier not in seen
-                    and abs(self._earliest[edge.earlier] + edge.gap_s - self._earliest[event])
-                    <= 10 * TOLERANCE_S
-                ),
-                None,
-            )
-            if tight is None:
-                break
-            reasons.append(tight.reason)
-            length_s += tight.gap_s
-            event = tight.earlier
-            seen.add(event)
-        return reasons, length_s
+    def _tight_way_to(self, event: int) -> list[_Edge[Reason]]:
+        """The chain of constraints that makes an event as early as it can be, latest first.
+
+        It ends at the origin, or at an event that nothing but the origin holds at time 0.
+        """
+        next_edge: dict[int, _Edge[Reason] | None] = {event: None}
+        waiting = deque((event,))
+        while waiting:
+            here = waiting.popleft()
+            if here == ORIGIN or self._earliest[here] == 0.0:
+                return self._follow(next_edge, here)
+            for edge in self._in[here]:
+                gap_s = self._earliest[here] - self._earliest[edge.earlier]
+                if edge.earlier not in next_edge and abs(gap_s - edge.gap_s) <= 10 * TOLERANCE_S:
+                    next_edge[edge.earlier] = edge
+                    waiting.append(edge.earlier)
+        raise AssertionError(f"event {event} is later than every constraint asks")
+
+    @staticmethod
+    def _follow(next_edge: dict[int, _Edge[Reason] | None], event: int) -> list[_Edge[Reason]]:
+        way: list[_Edge[Reason]] = []
+        edge = next_edge[event]
+        while edge is not None:
+            way.append(edge)
+            edge = next_edge[edge.later]
+        return way[::-1]
