@@ -27,7 +27,8 @@ from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass, field
 from multiprocessing import get_context
 from pathlib import Path
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
+from uuid import UUID
 
 import numpy as np
 
@@ -36,10 +37,13 @@ from server.journal.audit import audit
 from server.journal.sqlite import IN_MEMORY
 from server.journal.untruths import Rest, find_untruths, kinds_of
 from server.runtime.requests import RunRequest
-from server.runtime.views import RunStatus
+from server.runtime.views import RunStatus, RunView
 from server.settings import Settings
 from tasks.random_task import random_nesting, random_task
 from tasks.scenario import Person
+
+if TYPE_CHECKING:
+    from server.composition import Service
 
 Answers = Literal["random", "unreliable", "none", "willing"]
 
@@ -48,8 +52,11 @@ KINDS: tuple[Answers, ...] = ("random", "unreliable", "none", "willing")
 somebody who always says yes and does it."""
 
 MOST_LEAVES = {"tabletop": 60, "workcell": 6}
-GUARD_S = {"tabletop": 120.0, "workcell": 400.0}
-"""Wall seconds after which a run counts as hung."""
+QUIET_S = {"tabletop": 120.0, "workcell": 300.0}
+"""Wall seconds without an event after which a run counts as hung, on however busy a machine."""
+
+MOST_EVENTS = 50_000
+"""A run with more events than this goes round in circles."""
 
 UNRELIABLE = Person(late=0.2, wrong_object=0.15, wrong_place=0.15, never=0.15)
 MOST_ASKS = 2000
@@ -150,11 +157,7 @@ async def run_once(
     async with open_service(settings) as service:
         await service.trees.save("random", text)
         run = (await service.runtime.start_run(request(world, seed, answers))).id
-        try:
-            async with asyncio.timeout(GUARD_S[world]):
-                view = await service.runtime.wait_for_end(run)
-        except TimeoutError:
-            view = service.runtime.run(run)
+        view = await _ended_or_hung(service, run, QUIET_S[world])
         wall_s = time.perf_counter() - began
         events = await service.journal.read(0, 1_000_000, run)
         snapshot = await service.journal.world(run)
@@ -219,10 +222,23 @@ def _print_events(events: Iterable[ev.Event]) -> None:
 # --- Many runs ---------------------------------------------------------------------------------
 
 
+async def _ended_or_hung(service: "Service", run: UUID, quiet_s: float) -> RunView:
+    """The run as it is when it has ended, or when it does not seem to end any more."""
+    ended = asyncio.create_task(service.runtime.wait_for_end(run))
+    head = -1
+    while not ended.done() and head < service.journal.head < MOST_EVENTS:
+        head = service.journal.head
+        await asyncio.wait({ended}, timeout=quiet_s)
+    if ended.done():
+        return ended.result()
+    ended.cancel()
+    return service.runtime.run(run)
+
+
 def _work(world: str, seed: int) -> Outcome:
     """One run in a worker; a run that blocks its process for good takes the process with it."""
     logging.basicConfig(level=logging.ERROR)
-    faulthandler.dump_traceback_later(2 * GUARD_S[world], exit=True)
+    faulthandler.dump_traceback_later(20 * QUIET_S[world], exit=True)
     try:
         return asyncio.run(run_once(world, seed))
     finally:
