@@ -11,6 +11,8 @@ from fleet.scheduling.cheapest_insertion import solve_by_insertion
 from fleet.scheduling.exact.solve import solve_exactly
 from fleet.scheduling.nearest_next import solve_by_nearest_next
 from fleet.scheduling.problem import Problem
+from fleet.scheduling.routing.arrays import unsupported
+from fleet.scheduling.routing.solve import solve_alns
 from fleet.scheduling.schedule import Schedule
 from fleet.scheduling.solution import Progress, Solution, Status, UnsupportedError
 from fleet.scheduling.vlns.solve import solve_vlns
@@ -118,6 +120,7 @@ def _vlns(
 METHODS: Mapping[str, Method] = {
     "exact": Method(_exact_after_heuristics, False, True, "optimal, or with a proved bound"),
     "vlns": Method(_vlns, False, False, "very large neighbourhood search with transfers"),
+    "alns": Method(solve_alns, False, False, "adaptive large neighbourhoods, no transfers"),
     "insertion": Method(solve_by_insertion, True, False, "each item where it costs least"),
     "greedy": Method(solve_by_nearest_next, True, False, "each robot what it reaches first"),
 }
@@ -155,7 +158,10 @@ def suited_method(problem: Problem) -> str:
     small = len(problem.items) <= EXACT_ITEMS
     if problem.travel.epochs:
         return "insertion"
-    return "exact" if small else "vlns"
+    if small:
+        return "exact"
+    alone = not problem.transfers.places and unsupported(problem) is None
+    return "alns" if alone else "vlns"
 
 
 def solve(
