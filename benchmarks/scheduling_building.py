@@ -57,7 +57,7 @@ class Draw:
 
 def drawn(plan: BuildingPlan, number: int, seed: int) -> Problem:
     """One problem of a kind of building."""
-    return problem_of(building_deliveries(plan, Random(1000 * seed + number), f"draw {number}"))
+    return problem_of(building_deliveries(plan, Random(1000 * seed + number), f"draw{number}"))
 
 
 def measure_exactly(problem: Problem, seconds: float, seed: int) -> Draw:
