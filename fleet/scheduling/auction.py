@@ -20,7 +20,7 @@ from fleet.scheduling.temporal_network import Conflict
 
 ATTEMPTS = 8
 """How many auctions are held, with transfers and without: each offers first what had no place."""
-FEW = 60
+FEW = 24
 """Up to this many items are offered all at once; of more, in lots of this size, urgent ones first,
 as the bids grow with the square of how many are on offer."""
 
@@ -55,22 +55,23 @@ def sell(
     carried = [n for n in items if n in growing.begun or problem.items[n].aboard is not None]
     left = carried + [item for item in items if item not in carried]
     unsold: dict[int, Conflict[Constraint] | None] = {}
+    bids: dict[int, Bid] = {}
     while left and goes_on():
         # What is on board takes up room until it is sold.
         lot = [item for item in left if item in carried] or left[:FEW]
-        bids: list[tuple[Bid, int]] = []
         for item in lot:
-            bid = growing.bid(item, transfers=transfers)
+            bid = bids.get(item) or growing.bid(item, transfers=transfers)
             if bid is None:
                 # Whoever has no place now will have none when there is more to do.
                 unsold[item] = growing.nearest or growing.explain(item)
                 left.remove(item)
             else:
-                bids.append((bid, item))
+                bids[item] = bid
         if bids:
-            bid, item = min(bids, key=lambda each: (each[0].cost, each[1]))
-            growing.award(item, bid)
+            item = min(bids, key=lambda each: (bids[each].cost, each))
+            changed = growing.award(item, bids.pop(item))
             left.remove(item)
+            bids = {n: bid for n, bid in bids.items() if growing.still_lowest(n, bid, changed)}
     return Sale(growing.routes, {**unsold, **dict.fromkeys(left)})
 
 

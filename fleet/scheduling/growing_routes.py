@@ -86,8 +86,11 @@ class GrowingRoutes(TimedRoutes):
         bound = limit if self._bounded else inf
         return self._lowest(item, graph.handed_over(bound), limit) or direct
 
-    def award(self, item: int, bid: Bid) -> None:
-        """Put the item in for good. Raises `ValueError` where its trajectory does not fit."""
+    def award(self, item: int, bid: Bid) -> set[int]:
+        """Put the item in for good; the robots whose routes or times are others now.
+
+        Raises `ValueError` where its trajectory does not fit.
+        """
         self._put(item, bid.trajectory)
         if self.conflict is not None:
             raise ValueError(f"item {item} does not fit into the routes like that")
@@ -95,7 +98,15 @@ class GrowingRoutes(TimedRoutes):
         if self.problem.travel.epochs:
             super().__init__(self.problem, self.routes, _whole_items(self.routes, self.begun))
             self._task_of = self._tasks_by_event()
-        self._refresh_times()
+        return self._refresh_times()
+
+    def still_lowest(self, item: int, bid: Bid, changed: set[int]) -> bool:
+        """Whether a bid from before an award still holds: none of its robots has changed, and none
+        of those that have would do it cheaper alone."""
+        if any(leg.robot in changed for leg in bid.trajectory.legs):
+            return False
+        ends, prices = self._ends(item, ()), self._prices(item)
+        return all(self._legs(item, k, ends, prices).extra[0, 0, 0] >= bid.cost for k in changed)
 
     def _lowest(self, item: int, trajectories: Iterable[Trajectory], limit: float) -> Bid | None:
         lowest: Bid | None = None
@@ -338,13 +349,16 @@ class GrowingRoutes(TimedRoutes):
             robot=float(weights.robots),
         )
 
-    def _refresh_times(self) -> None:
-        """Look at the times of all robots again; those that moved get a new version."""
+    def _refresh_times(self) -> set[int]:
+        """Look at the times of all robots again; the robots that have others now."""
+        changed = set()
         for robot in range(len(self.routes)):
             times = self._route_times(robot)
             known = self._times.get(robot)
             if known is None or not _same(known[1], times):
                 self._times[robot] = (0 if known is None else known[0] + 1), times
+                changed.add(robot)
+        return changed
 
     def _route_times(self, robot: int) -> RouteTimes:
         problem, route, network = self.problem, self.routes[robot], self.network

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from fleet.scheduling.problem import Item, Problem, Transfers, Weights
-from fleet.scheduling.replanning.item_state import ItemState, TrackedItem
+from fleet.scheduling.replanning.item_state import TrackedItem
 from fleet.scheduling.replanning.robot_state import TrackedRobot
 from fleet.scheduling.schedule import Action, Route, Task
 from fleet.scheduling.travel import Travel
@@ -65,9 +65,9 @@ def rest_of(
         if item.put_off is not None and item.robot is not None:
             stuck[item.robot] += item.item.load
 
-    def rest_task(task: Task) -> Task:
+    def rest_task(robot: int, task: Task) -> Task:
         number = item_number[task.item]
-        if task.action is Action.TAKE and items[task.item].state is ItemState.LEFT:
+        if task.action is Action.TAKE and is_given(routes, robot, task):
             return Task(task.place, Action.PICK, number)
         partner = None if task.partner is None else robot_number[task.partner]
         return replace(task, item=number, partner=partner)
@@ -85,8 +85,17 @@ def rest_of(
         problem,
         working,
         planned,
-        tuple(tuple(rest_task(task) for task in routes[k]) for k in working),
+        tuple(tuple(rest_task(k, task) for task in routes[k]) for k in working),
         tuple(1 if robots[k].held and routes[k] else 0 for k in working),
+    )
+
+
+def is_given(routes: Sequence[Route], robot: int, take: Task) -> bool:
+    """Whether what a robot is to take lies there already: nobody is still to give it."""
+    assert take.partner is not None, "a take has a partner"
+    return not any(
+        task.action is Action.GIVE and task.item == take.item and task.partner == robot
+        for task in routes[take.partner]
     )
 
 

@@ -56,18 +56,33 @@ class TrackedRobot:
             return leaves_s
         return travel.trip(self.place, self.robot.end, leaves_s, self.robot.speed).arrival_s
 
+    def stay_longer(self, travel: Travel, now_s: float) -> str | None:
+        """Let the shift last until it is at its end, where that is over before; says why."""
+        free_s = self.free_s if self.trip else max(self.free_s, now_s)
+        home_s = self.home_s(travel, free_s)
+        needed_s = free_s if home_s == inf else home_s
+        shift_ends_s = self.shift_ends_s()
+        if self.left_s is None:
+            shift_ends_s = min(shift_ends_s, free_s + self.robot.max_duration_s)
+        if needed_s <= shift_ends_s:
+            return None
+        self.overtime_until_s = needed_s
+        return (
+            f"{self.robot.name} had to be at its end by {shift_ends_s:g} s, but cannot be there "
+            f"before {needed_s:g} s"
+        )
+
     def rest(self, travel: Travel, now_s: float, stuck_load: float) -> Robot:
         """What the robot can do from now on, with `stuck_load` on board that stays there."""
         free_s = self.free_s if self.trip else max(self.free_s, now_s)
         home_s = self.home_s(travel, free_s)
         end = None if home_s == inf else self.robot.end
-        latest_s = max(self.shift_ends_s(), free_s if end is None else home_s)
         unbound = self.left_s is not None or self.overtime_until_s > -inf
         return replace(
             self.robot,
             start=self.place,
             end=end,
             capacity=max(0.0, self.robot.capacity - stuck_load),
-            shift=Window(free_s, latest_s),
-            max_duration_s=inf if unbound else max(self.robot.max_duration_s, home_s - free_s),
+            shift=Window(free_s, self.shift_ends_s()),
+            max_duration_s=inf if unbound else self.robot.max_duration_s,
         )

@@ -29,7 +29,7 @@ from fleet.scheduling.replanning.events import (
 )
 from fleet.scheduling.replanning.item_state import ItemState, TrackedItem
 from fleet.scheduling.replanning.open_ways import OpenWays
-from fleet.scheduling.replanning.rest import Building, Rest, rest_of
+from fleet.scheduling.replanning.rest import Building, Rest, is_given, rest_of
 from fleet.scheduling.replanning.robot_state import TrackedRobot, Trip
 from fleet.scheduling.replanning.settling import Settling
 from fleet.scheduling.schedule import Action, Route, Schedule, Task
@@ -104,6 +104,8 @@ class RunningFleet:
         self._rest: Rest | None = None
         self._timed: TimedRoutes | None = None
         self._moved_by: dict[str, set[int]] = {}
+        self._departed: set[int] = set()
+        self._before = _stops(self._routes)
         self.log: list[Done] = []
         unplanned = set(range(len(self._items))) - {t.item for r in self._routes for t in r}
         self.first = self._replan(sorted(unplanned), new=())
@@ -162,6 +164,7 @@ class RunningFleet:
         Raises `EventError` for an event that makes no sense, which changes nothing but the time.
         """
         self.advance(now_s)
+        self._before = _stops(self._routes)
         match event:
             case NewItem():
                 return self._new_item(event.item)
@@ -209,9 +212,9 @@ class RunningFleet:
                 while self._routes[robot]:
                     at, task = self._at[robot], self._routes[robot][0]
                     begin_s = timed.network.earliest_s(timed.begins[number][at])
-                    left = self._items[task.item].state is ItemState.LEFT
+                    taken = task.action is Action.TAKE
                     if begin_s > self._now_s + TOLERANCE_S or (
-                        task.action is Action.TAKE and not left
+                        taken and not is_given(self._routes, robot, task)
                     ):
                         break
                     lasts_s = service_s(rest.problem, timed.routes[number][at])
@@ -257,6 +260,7 @@ class RunningFleet:
         travel = self._rest.problem.travel
         robot.free_s = travel.trip(robot.place, place, leaves_s, speed).arrival_s
         robot.trip, robot.place = Trip(robot.place, leaves_s), place
+        self._departed.add(number)
         robot.left_s = leaves_s if robot.left_s is None else robot.left_s
 
     def _go_home(self, robot: TrackedRobot) -> None:
@@ -336,7 +340,7 @@ class RunningFleet:
         assert self._timed is not None, "somebody works"
         place, robot = self._rest.robots.index(number), self._robots[number]
         event, task = self._timed.leaves[place], None
-        if self._at[number] > 0:
+        if self._at[number] > 0 or number in self._departed:
             if not self._routes[number]:
                 return True
             event = self._timed.begins[place][self._at[number]]
@@ -478,7 +482,7 @@ class RunningFleet:
         self, selling: Sequence[int], *, new: Sequence[int] = (), again: Iterable[int] = ()
     ) -> Outcome:
         """Make the rest hold with some items sold; `again`: items offered where that is cheaper."""
-        before = [tuple((t.place, t.item, t.action.loads) for t in r) for r in self._routes]
+        longer = self._stay_longer()
         rest = self._rest_now()
         if rest is None:
             self._rest = self._timed = None
@@ -498,15 +502,35 @@ class RunningFleet:
         refused = {n: put_off.pop(n) for n in new if n in put_off}
         outcome = self._refuse(refused, put_off)
         self._time_anew()
-        after = [tuple((t.place, t.item, t.action.loads) for t in r) for r in self._routes]
         return Outcome(
-            frozenset(
-                self._robots[k].robot.name for k in range(len(after)) if before[k] != after[k]
-            ),
+            self._changed(),
             {self._items[rest.items[n]].item.name: why for n, why in settling.late.items()},
             outcome.refused,
             outcome.put_off,
-            {self._robots[rest.robots[k]].robot.name: w for k, w in settling.overtime.items()},
+            {
+                **longer,
+                **{
+                    self._robots[rest.robots[k]].robot.name: w for k, w in settling.overtime.items()
+                },
+            },
+        )
+
+    def _stay_longer(self) -> dict[str, str]:
+        """The robots that cannot be at their ends in time any more, with a sentence each."""
+        found = {
+            robot.robot.name: robot.stay_longer(self._travel, self._now_s)
+            for robot in self._robots
+            if robot.works
+        }
+        return {name: why for name, why in found.items() if why is not None}
+
+    def _changed(self) -> frozenset[str]:
+        """The robots that have other stops than before the event."""
+        now = _stops(self._routes)
+        return frozenset(
+            robot.robot.name
+            for number, robot in enumerate(self._robots)
+            if now[number] != self._before[number]
         )
 
     def _rest_now(self) -> Rest | None:
@@ -537,11 +561,16 @@ class RunningFleet:
         )
 
     def _time_anew(self) -> None:
-        self._at = [0] * len(self._robots)
+        self._at, self._departed = [0] * len(self._robots), set()
         self._rest = self._rest_now()
         assert self._rest is not None, "somebody works"
         self._timed = TimedRoutes(self._rest.problem, self._rest.routes)
         require_valid(self._rest.problem, self._timed.schedule())
+
+
+def _stops(routes: Sequence[Route]) -> list[list[tuple[int, int, bool]]]:
+    """What is loaded and unloaded where, whoever has a part in it."""
+    return [[(task.place, task.item, task.action.loads) for task in route] for route in routes]
 
 
 def _tracked(item: Item) -> TrackedItem:

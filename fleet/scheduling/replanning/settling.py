@@ -23,6 +23,7 @@ from fleet.scheduling.timing import TimedRoutes
 DEADLINES = (ConstraintKind.WINDOW_END, ConstraintKind.ON_BOARD)
 BETTER = 1e-6
 """By how much cheaper a plan must be to be taken instead."""
+ROBOT_LIMITS = (ConstraintKind.SHIFT_END, ConstraintKind.DURATION)
 JUDGED_ALONE = 2
 """Up to how many items at once are also judged as if there were no other: it takes a while."""
 
@@ -50,6 +51,7 @@ class Settling:
         self._under_way = under_way
         self._selling: dict[int, None] = {}
         self._begun: dict[int, int] = {}
+        self._shift_ends_s: dict[int, float] = {}
 
     # --- what leaves the routes -------------------------------------------------------------------
 
@@ -101,6 +103,7 @@ class Settling:
             self._go_late(item, left[item])
         if late:
             left = self._sell(self._urgent_first(left))
+        left = self._sell_beyond_shifts(left)
         for item, why in left.items():
             self.put_off[item] = self._why(item, why)
             self.late.pop(item, None)
@@ -114,8 +117,7 @@ class Settling:
             for task in route:
                 load += self.problem.items[task.item].load * (1 if task.action.loads else -1)
                 if task.action.loads and load > capacity + TOLERANCE_LOAD:
-                    self.resell(task.item)
-                    self._drop_begun(task.item)
+                    self._let_go(task.item)
                     return [task.item]
         return []
 
@@ -133,27 +135,27 @@ class Settling:
             self._yield_to(conflict)
 
     def _yield_to(self, conflict: Conflict[Constraint]) -> None:
+        """Resolve a conflict as gently as can be: items that nobody is about to do anything with,
+        then what is about to be picked up, then deadlines, then shifts."""
         deadlines = self._items_of(conflict, DEADLINES)
-        items = deadlines + self._items_of(conflict, tuple(ConstraintKind))
+        items = [*deadlines, *self._items_of(conflict, tuple(ConstraintKind))]
+        free = next((item for item in items if self._free(item)), None)
+        waiting = next((item for item in items if self._waits(item)), None)
+        late = next((item for item in deadlines if item not in self.late), None)
         robots = [each.robot for each in conflict.reasons if each.robot is not None]
-        on_routes = [task.item for k in robots for task in reversed(self.routes[k])]
-        for item in (*items, *on_routes):
-            if self._free(item):
-                self.resell(item)
-                return
-        for item in deadlines:
-            if item not in self.late:
-                self._go_late(item, conflict)
-                return
-        for robot in robots:
-            if robot not in self.overtime:
-                self._work_longer(robot, conflict)
-                return
-        # Not even what a robot is about to do can be done any more.
-        last = next(iter((*items, *on_routes)), None)
-        assert last is not None, f"nothing can give way to {conflict}"
-        self._drop_begun(last)
-        self.resell(last)
+        limits = [each.robot for each in conflict.reasons if each.kind in ROBOT_LIMITS]
+        longer = next((k for k in limits if k is not None and k not in self.overtime), None)
+        if free is not None:
+            self.resell(free)
+        elif waiting is not None:
+            self._let_go(waiting)
+        elif late is not None:
+            self._go_late(late, conflict)
+        elif longer is not None:
+            self._work_longer(longer, self._conflict_words(conflict))
+        else:
+            on_routes = [task.item for k in robots for task in reversed(self.routes[k])]
+            self._let_go([*items, *on_routes][0])
 
     def _items_of(
         self, conflict: Conflict[Constraint], kinds: Sequence[ConstraintKind]
@@ -171,16 +173,44 @@ class Settling:
             for held, route in zip(self.held, self.routes, strict=True)
         )
 
+    def _waits(self, item: int) -> bool:
+        """Whether it is about to be picked up for the first time."""
+        return not self._under_way[item] and any(
+            task.item == item for route in self.routes for task in route
+        )
+
+    def _let_go(self, item: int) -> None:
+        """Sell an item again although a robot is about to do something with it."""
+        self.resell(item)
+        self._drop_begun(item)
+
     def _go_late(self, item: int, conflict: Conflict[Constraint] | None) -> None:
         self.late[item] = self._why(item, conflict)
         items = list(self.problem.items)
         items[item] = without_deadline(items[item])
         self.problem = replace(self.problem, items=tuple(items))
 
-    def _work_longer(self, robot: int, conflict: Conflict[Constraint]) -> None:
-        self.overtime[robot] = self._conflict_words(conflict)
-        shift = Window(self.problem.robots[robot].shift.earliest_s)
-        self._change_robot(robot, shift)
+    def _sell_beyond_shifts(
+        self, left: dict[int, Conflict[Constraint] | None]
+    ) -> dict[int, Conflict[Constraint] | None]:
+        """Robots bring what they have on board, if need be after their shifts."""
+        stuck = [item for item in left if self.problem.items[item].aboard is not None]
+        for item in stuck:
+            robot = self.problem.items[item].aboard
+            assert robot is not None, "it is on board"
+            if robot not in self.overtime:
+                self._work_longer(robot, self._why(item, left[item]))
+        if not stuck:
+            return left
+        left = {**left, **dict.fromkeys(stuck)}
+        left = self._sell(self._urgent_first(left))
+        self._end_overtime()
+        return left
+
+    def _work_longer(self, robot: int, why: str) -> None:
+        self.overtime[robot] = why
+        self._shift_ends_s[robot] = self.problem.robots[robot].shift.latest_s
+        self._change_robot(robot, inf)
 
     def _end_overtime(self) -> None:
         """Robots that must work longer get no more to do than they have."""
@@ -188,18 +218,16 @@ class Settling:
             return
         whole = sorted({task.item for route in self.routes for task in route} - set(self._begun))
         timed = TimedRoutes(self.problem, self.routes, whole)
-        for robot in self.overtime:
-            shift = self.problem.robots[robot].shift
+        for robot in list(self.overtime):
             ends_s = timed.network.earliest_s(timed.ends[robot])
-            self._change_robot(robot, Window(shift.earliest_s, ends_s))
+            self._change_robot(robot, max(ends_s, self._shift_ends_s[robot]))
+            if ends_s <= self._shift_ends_s[robot]:
+                del self.overtime[robot]
 
-    def _change_robot(self, robot: int, shift: Window) -> None:
+    def _change_robot(self, robot: int, shift_ends_s: float) -> None:
         robots = list(self.problem.robots)
-        # Where there is no way home it stays where it is.
-        end = robots[robot].end
-        if end is not None and self.problem.travel_time_s(robot, robots[robot].start, end) == inf:
-            end = None
-        robots[robot] = replace(robots[robot], shift=shift, max_duration_s=inf, end=end)
+        shift = Window(robots[robot].shift.earliest_s, shift_ends_s)
+        robots[robot] = replace(robots[robot], shift=shift, max_duration_s=inf)
         self.problem = replace(self.problem, robots=tuple(robots))
 
     # --- selling ----------------------------------------------------------------------------------
