@@ -105,7 +105,8 @@ class RunningFleet:
         self._timed: TimedRoutes | None = None
         self._moved_by: dict[str, set[int]] = {}
         self._departed: set[int] = set()
-        self._before = _stops(self._routes)
+        self._task_of: dict[int, Task] = {}
+        self._before = list(self._routes)
         self.log: list[Done] = []
         unplanned = set(range(len(self._items))) - {t.item for r in self._routes for t in r}
         self.first = self._replan(sorted(unplanned), new=())
@@ -164,7 +165,7 @@ class RunningFleet:
         Raises `EventError` for an event that makes no sense, which changes nothing but the time.
         """
         self.advance(now_s)
-        self._before = _stops(self._routes)
+        self._before = list(self._routes)
         match event:
             case NewItem():
                 return self._new_item(event.item)
@@ -321,8 +322,11 @@ class RunningFleet:
         busy = robot.trip is None and before_s > self._now_s
         if busy:
             self._delay_handling(number, before_s, robot.free_s)
-        if busy or self._travel.epochs or not self._propagate(number):
+        if busy or self._travel.epochs:
             return self._replan([])
+        late = self._propagate(number)
+        if late is None or late:
+            return self._replan([], again=late or ())
         return Outcome()
 
     def _delay_handling(self, number: int, before_s: float, now_free_s: float) -> None:
@@ -334,24 +338,39 @@ class RunningFleet:
             if item.robot == number and item.loaded_s == before_s:
                 item.loaded_s = now_free_s
 
-    def _propagate(self, number: int) -> bool:
-        """Tell the temporal network that a robot is free later; False where that cannot be."""
+    def _propagate(self, number: int) -> set[int] | None:
+        """Tell the temporal network that a robot is free later; the items that are late for it.
+
+        None where a constraint breaks.
+        """
         assert self._rest is not None, "somebody works"
         assert self._timed is not None, "somebody works"
         place, robot = self._rest.robots.index(number), self._robots[number]
         event, task = self._timed.leaves[place], None
         if self._at[number] > 0 or number in self._departed:
             if not self._routes[number]:
-                return True
+                return set()
             event = self._timed.begins[place][self._at[number]]
             task = self._timed.routes[place][self._at[number]]
-        reason = Constraint(ConstraintKind.TRAVEL, place, task)
-        return self._timed.network.not_before(event, robot.free_s, reason) is None
+        network, reason = self._timed.network, Constraint(ConstraintKind.TRAVEL, place, task)
+        mark = network.mark()
+        if network.not_before(event, robot.free_s, reason) is not None:
+            return None
+        return {
+            self._rest.items[moved.item]
+            for at in network.moved_since(mark)
+            if (moved := self._task_of.get(at)) is not None
+            and network.earliest_s(at) > _due_s(self._rest.problem, moved) + TOLERANCE_S
+        }
 
     def _fail(self, number: int, lost: frozenset[str]) -> Outcome:
         robot = self._robots[number]
         if not robot.works:
             raise EventError(f"robot '{robot.robot.name}' has failed already")
+        aboard = {item.item.name for item in self._items if item.robot == number}
+        if not lost <= aboard:
+            names = ", ".join(sorted(lost - aboard))
+            raise EventError(f"robot '{robot.robot.name}' does not have {names} on board")
         self._stand_still(robot)
         moved = {task.item for task in self._routes[number]}
         robot.works, robot.trip = False, None
@@ -526,11 +545,10 @@ class RunningFleet:
 
     def _changed(self) -> frozenset[str]:
         """The robots that have other stops than before the event."""
-        now = _stops(self._routes)
         return frozenset(
             robot.robot.name
-            for number, robot in enumerate(self._robots)
-            if now[number] != self._before[number]
+            for robot, now, before in zip(self._robots, self._routes, self._before, strict=True)
+            if _stops(now) != _stops(before)
         )
 
     def _rest_now(self) -> Rest | None:
@@ -566,11 +584,24 @@ class RunningFleet:
         assert self._rest is not None, "somebody works"
         self._timed = TimedRoutes(self._rest.problem, self._rest.routes)
         require_valid(self._rest.problem, self._timed.schedule())
+        self._task_of = {
+            event: task
+            for events, route in zip(self._timed.begins, self._timed.routes, strict=True)
+            for event, task in zip(events, route, strict=True)
+        }
 
 
-def _stops(routes: Sequence[Route]) -> list[list[tuple[int, int, bool]]]:
+def _due_s(problem: Problem, task: Task) -> float:
+    """After when a task costs something, if that counts."""
+    item = problem.items[task.item]
+    if not problem.weights.lateness or task.action not in (Action.PICK, Action.DROP):
+        return inf
+    return (item.pickup if task.action is Action.PICK else item.delivery).due_s
+
+
+def _stops(route: Route) -> list[tuple[int, int, bool]]:
     """What is loaded and unloaded where, whoever has a part in it."""
-    return [[(task.place, task.item, task.action.loads) for task in route] for route in routes]
+    return [(task.place, task.item, task.action.loads) for task in route]
 
 
 def _tracked(item: Item) -> TrackedItem:

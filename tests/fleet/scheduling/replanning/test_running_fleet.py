@@ -126,6 +126,16 @@ def test_delay_that_costs_an_item_its_time_gives_it_to_another_robot() -> None:
     assert not outcome.put_off
 
 
+def test_delay_that_makes_an_item_late_offers_it_again() -> None:
+    due = Item("due", 1.0, Visit(2), Visit(1, due_s=60.0))
+    one_at_a_time = tuple(replace(robot, capacity=1.0) for robot in FREE)
+    fleet = fleet_with(parcel("first", 0, 1), due, robots=one_at_a_time)
+    assert "pick due at c" in stops(fleet, "left")
+    outcome = fleet.apply(RobotDelayed("left", 90.0), 1.0)
+    assert outcome.changed == {"left", "right"}
+    assert "pick due at c" in stops(fleet, "right")
+
+
 def test_item_on_board_that_cannot_be_in_time_goes_late_with_a_sentence() -> None:
     urgent = Item("urgent", 1.0, Visit(0), Visit(4, Window(0.0, 60.0)))
     fleet = fleet_with(urgent, robots=FREE[:1])
@@ -249,6 +259,7 @@ def test_events_that_make_no_sense_are_told_and_change_nothing() -> None:
         (RobotDelayed("nobody", 1.0), "there is no robot 'nobody'"),
         (RobotDelayed("left", -1.0), "at least 0 s"),
         (RobotDelayed("left", inf), "finite"),
+        (RobotFailed("left", frozenset({"first"})), "does not have first on board"),
         (RobotBack("left", "a"), "works already"),
         (WayBlocked(("a", "b")), "the ways between the places are not known"),
         (DoorClosed(("a", "b"), 0.0), "more than 0 s"),
