@@ -1,0 +1,340 @@
+"""A fleet at work: time goes by, things happen, and the plan for the rest holds again.
+
+Robots do what is planned when it is planned unless an event says otherwise. What a robot is on its
+way to do it does; an event changes the routes of those robots only whose plan rested on what is not
+so any more.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import chain
+from math import inf
+
+from fleet.scheduling.checker import require_valid
+from fleet.scheduling.problem import Item, Problem, ProblemError
+from fleet.scheduling.replanning.events import (
+    Cancelled,
+    DoorClosed,
+    Event,
+    EventError,
+    NewItem,
+    RobotBack,
+    RobotDelayed,
+    RobotFailed,
+    TimePassed,
+    WayBlocked,
+    WayOpen,
+)
+from fleet.scheduling.replanning.fleet_state import Done, FleetState
+from fleet.scheduling.replanning.item_state import ItemState, TrackedItem
+from fleet.scheduling.replanning.live_plan import TOLERANCE_S, LivePlan, NextStop
+from fleet.scheduling.replanning.on_the_way import stand_still, turn_before
+from fleet.scheduling.replanning.open_ways import OpenWays
+from fleet.scheduling.replanning.rest import Rest
+from fleet.scheduling.replanning.robot_state import TrackedRobot
+from fleet.scheduling.replanning.settling import Settling
+from fleet.scheduling.schedule import Route, Schedule
+
+RECONSIDERED = 6
+"""How many items are offered again where a way opens, a robot comes back or something is late."""
+NOBODY = "no robot works"
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What became of the plan. By item or robot, a sentence each.
+
+    `changed`: robots with other stops than before; `late`: times that cannot be kept;
+    `refused`: new items that are not taken; `put_off`: items without a place for now;
+    `overtime`: robots that work longer than their shift.
+    """
+
+    changed: frozenset[str] = frozenset()
+    late: Mapping[str, str] = field(default_factory=dict)
+    refused: Mapping[str, str] = field(default_factory=dict)
+    put_off: Mapping[str, str] = field(default_factory=dict)
+    overtime: Mapping[str, str] = field(default_factory=dict)
+
+
+class RunningFleet:
+    """Robots, items and the plan. Times are seconds on the problem's clock and are passed in.
+
+    `ways`: the graph behind the problem's travel, with the same places, where ways may be blocked.
+    The items of the problem are planned at once, along `start` if there is one; `first` says what
+    came of that. Raises `ScheduleError` for a `start` that is not valid.
+    """
+
+    def __init__(
+        self, problem: Problem, *, ways: OpenWays | None = None, start: Schedule | None = None
+    ) -> None:
+        if start is not None:
+            require_valid(problem, start)
+        self._state = FleetState.beginning(problem, ways, start)
+        self._plan: LivePlan | None = None
+        self._moved_by: dict[int, set[int]] = {}
+        self._before: list[Route] = list(self._state.routes)
+        planned = {task.item for task in chain.from_iterable(self._state.routes)}
+        self.first = self._replan([n for n in range(len(problem.items)) if n not in planned])
+
+    # --- what is known ----------------------------------------------------------------------------
+
+    @property
+    def now_s(self) -> float:
+        """The time of the last event."""
+        return self._state.now_s
+
+    @property
+    def items(self) -> Mapping[str, TrackedItem]:
+        """All items that there ever were, by name."""
+        return {item.item.name: item for item in self._state.items}
+
+    @property
+    def robots(self) -> Mapping[str, TrackedRobot]:
+        """All robots by name."""
+        return {robot.robot.name: robot for robot in self._state.robots}
+
+    @property
+    def log(self) -> Sequence[Done]:
+        """The stops that were made."""
+        return self._state.log
+
+    def plan(self) -> tuple[Problem, Schedule] | None:
+        """The problem that was left at the last replanning, and its schedule, checked anew.
+
+        None where no robot works. Raises `ScheduleError` if the plan were wrong.
+        """
+        return None if self._plan is None else self._plan.checked()
+
+    def stops(self) -> dict[str, tuple[NextStop, ...]]:
+        """What every robot is still to do, with the slack of each stop."""
+        left: dict[str, tuple[NextStop, ...]] = dict.fromkeys(self.robots, ())
+        return left if self._plan is None else {**left, **self._plan.stops()}
+
+    # --- what happens -----------------------------------------------------------------------------
+
+    def advance(self, now_s: float) -> None:
+        """Let robots do what is planned until `now_s`. Raises `EventError` for a time before."""
+        state = self._state
+        if not state.now_s - TOLERANCE_S <= now_s < inf:
+            raise EventError(f"it is {state.now_s:g} s already, so nothing happens at {now_s:g} s")
+        state.now_s = max(state.now_s, now_s)
+        if self._plan is not None:
+            self._plan.carry_out()
+        if state.ways is not None and state.ways.forget_reopened(state.now_s):
+            # What was closed counts as open now; the plan said so from the beginning.
+            state.travel = state.ways.travel()
+
+    def apply(self, event: Event, now_s: float) -> Outcome:
+        """Let time pass until `now_s` and let the event happen.
+
+        Raises `EventError` for an event that makes no sense, which changes nothing but the time.
+        """
+        self.advance(now_s)
+        self._before = list(self._state.routes)
+        match event:
+            case NewItem():
+                return self._new_item(event.item)
+            case Cancelled():
+                return self._cancel(event.item)
+            case RobotDelayed():
+                return self._delay(self._state.robot_number(event.robot), event.by_s)
+            case RobotFailed():
+                return self._fail(self._state.robot_number(event.robot), event.lost)
+            case RobotBack():
+                return self._come_back(self._state.robot_number(event.robot), event.place)
+            case WayBlocked():
+                return self._close(event.between, inf)
+            case DoorClosed():
+                if not event.retry_s > 0:
+                    raise EventError("a door must be tried again after more than 0 s")
+                return self._close(event.between, self._state.now_s + event.retry_s)
+            case WayOpen():
+                return self._open(event.between)
+            case TimePassed():
+                return self._replan(self._state.retry())
+
+    def _new_item(self, item: Item) -> Outcome:
+        state = self._state
+        if item.name in self.items:
+            raise EventError(f"there is an item '{item.name}' already")
+        if item.aboard is not None:
+            raise EventError(f"item '{item.name}' is new; nobody can have it aboard already")
+        robots = tuple(robot.robot for robot in state.robots)
+        try:
+            Problem("new", state.building.places, state.travel, robots, (item,))
+        except ProblemError as error:
+            raise EventError(str(error)) from error
+        state.items.append(TrackedItem(item))
+        number = len(state.items) - 1
+        return self._replan([number], new=number)
+
+    def _cancel(self, name: str) -> Outcome:
+        state = self._state
+        number = next((n for n, i in enumerate(state.items) if i.item.name == name), None)
+        if number is None or not state.items[number].open:
+            raise EventError(f"there is no item '{name}' that could be cancelled")
+        item = state.items[number]
+        if item.returns:
+            raise EventError(f"item '{name}' is cancelled already")
+        state.take_out(number)
+        if item.under_way:
+            item.send_back()
+            item.put_off = None
+            return self._replan([number, *state.retry()])
+        item.close(ItemState.CANCELLED)
+        return self._replan(state.retry())
+
+    def _delay(self, number: int, by_s: float) -> Outcome:
+        state, robot = self._state, self._state.robots[number]
+        if not robot.works:
+            raise EventError(f"robot '{robot.robot.name}' does not work; it cannot be late")
+        if not 0 <= by_s < inf:
+            raise EventError("a delay must be at least 0 s and finite")
+        assert self._plan is not None, "somebody works"
+        before_s = robot.free_s
+        robot.free_s = max(before_s, state.now_s) + by_s
+        if robot.trip is None and before_s > state.now_s:
+            self._delay_handling(number, before_s, robot.free_s)
+            return self._replan([])
+        if state.travel.epochs:
+            return self._replan([])
+        late = self._plan.delay(number)
+        if late is None or late:
+            return self._replan([], again=late or ())
+        return Outcome()
+
+    def _delay_handling(self, number: int, before_s: float, now_free_s: float) -> None:
+        """What the robot is just putting down or taking up is ready later, too."""
+        place = self._state.robots[number].place
+        for item in self._state.items:
+            if item.place == place and item.ready_s == before_s:
+                item.ready_s = now_free_s
+            if item.robot == number and item.loaded_s == before_s:
+                item.loaded_s = now_free_s
+
+    def _fail(self, number: int, lost: frozenset[str]) -> Outcome:
+        state, robot = self._state, self._state.robots[number]
+        name = robot.robot.name
+        if not robot.works:
+            raise EventError(f"robot '{name}' has failed already")
+        aboard = {n: item for n, item in enumerate(state.items) if item.robot == number}
+        unknown = lost - {item.item.name for item in aboard.values()}
+        if unknown:
+            raise EventError(f"robot '{name}' does not have {', '.join(sorted(unknown))} on board")
+        stand_still(robot, state.ways, state.now_s)
+        robot.works = False
+        moved = {task.item for task in state.routes[number]} | set(aboard)
+        for n, item in aboard.items():
+            item.put_off = None
+            if item.item.name in lost:
+                moved.remove(n)
+                state.take_out(n)
+                item.close(ItemState.LOST)
+            else:
+                item.leave(robot.place, state.now_s)
+        for n in moved:
+            state.take_out(n, keep_pickups=True)
+        self._moved_by[number] = moved
+        return self._replan(sorted(moved))
+
+    def _come_back(self, number: int, place: str) -> Outcome:
+        state, robot = self._state, self._state.robots[number]
+        if robot.works:
+            raise EventError(f"robot '{robot.robot.name}' works already")
+        if place not in state.building.places:
+            raise EventError(f"there is no place '{place}'")
+        robot.works, robot.place = True, state.building.places.index(place)
+        robot.free_s = max(state.now_s, robot.robot.shift.earliest_s)
+        return self._replan(state.retry(), again=self._moved_by.pop(number, ()))
+
+    def _close(self, between: tuple[str, str], until_s: float) -> Outcome:
+        state, ways = self._state, self._state.known_ways()
+        stopped = ways.numbers(between)
+        turns = [turn_before(robot, ways, stopped, state.now_s) for robot in state.robots]
+        ways.close(between, until_s)
+        state.travel = ways.travel()
+        for robot, turn in zip(state.robots, turns, strict=True):
+            if turn is not None:
+                robot.place, robot.free_s = turn
+                robot.trip = None
+        return self._replan([])
+
+    def _open(self, between: tuple[str, str]) -> Outcome:
+        state, ways = self._state, self._state.known_ways()
+        before = state.travel
+        ways.open(between)
+        state.travel = ways.travel()
+        shorter = set()
+        for robot, route in zip(state.robots, state.routes, strict=True):
+            place = robot.place
+            for task in route:
+                if state.travel.time_s[place, task.place] < before.time_s[place, task.place]:
+                    shorter.add(task.item)
+                place = task.place
+        return self._replan(state.retry(), again=shorter)
+
+    # --- the plan ---------------------------------------------------------------------------------
+
+    def _replan(
+        self, selling: Sequence[int], *, new: int | None = None, again: Iterable[int] = ()
+    ) -> Outcome:
+        """Make the rest hold with some items sold; `again`: items offered where that is cheaper."""
+        state = self._state
+        longer = state.stay_longer()
+        rest = state.rest()
+        if rest is None:
+            self._plan = None
+            return self._outcome(new, put_off=dict.fromkeys(selling, NOBODY))
+        number_of = {fleet: number for number, fleet in enumerate(rest.items)}
+        under_way = [state.items[n].under_way for n in rest.items]
+        settling = Settling(rest.problem, rest.routes, rest.held, under_way)
+        for item in selling:
+            settling.resell(number_of[item])
+        settling.settle()
+        settling.reconsider([number_of[n] for n in again if n in number_of][:RECONSIDERED])
+        self._take_over(rest, settling)
+        late = {rest.items[n]: why for n, why in settling.late.items()}
+        put_off = {rest.items[n]: why for n, why in settling.put_off.items()}
+        for number, why in settling.overtime.items():
+            longer[rest.problem.robots[number].name] = why
+        outcome = self._outcome(new, put_off, late, longer)
+        left = state.rest()
+        assert left is not None, "somebody works"
+        self._plan = LivePlan(state, left)
+        return outcome
+
+    def _take_over(self, rest: Rest, settling: Settling) -> None:
+        """Let robots and items know what was settled."""
+        state = self._state
+        state.routes = rest.fleet_routes(settling.routes, len(state.robots))
+        for number, robot in enumerate(rest.robots):
+            if not settling.held[number]:
+                state.robots[robot].let_go()
+            if number in settling.overtime:
+                ends_s = settling.problem.robots[number].shift.latest_s
+                state.robots[robot].overtime_until_s = ends_s
+        for number in settling.late:
+            state.items[rest.items[number]].overdue = True
+
+    def _outcome(
+        self,
+        new: int | None,
+        put_off: Mapping[int, str],
+        late: Mapping[int, str] | None = None,
+        overtime: Mapping[str, str] | None = None,
+    ) -> Outcome:
+        """Refuse or put off what has no place, and say what became of everything."""
+        items, refused = self._state.items, {}
+        for number, why in put_off.items():
+            if number == new:
+                refused[items[number].item.name] = why
+                items[number].close(ItemState.REFUSED)
+            else:
+                items[number].put_off = why
+        return Outcome(
+            self._state.changed_since(self._before),
+            {items[n].item.name: why for n, why in (late or {}).items()},
+            refused,
+            {items[n].item.name: why for n, why in put_off.items() if n != new},
+            overtime or {},
+        )

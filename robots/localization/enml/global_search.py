@@ -1,0 +1,213 @@
+"""Where on a map, or on a part of it, some points fit: the best places of a coarse lattice."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import maximum_filter
+
+from maps.compiled import compiled
+from robots.localization.enml.problem import Floats, Indices
+from robots.localization.mcl.likelihood_field import DistanceField
+from robots.localization.pose import Poses, wrap
+
+Grid = NDArray[np.float32]
+
+_COARSE_M = 0.4
+_COARSE_WIDTH_M = 0.3
+_HEADINGS = 72
+_COARSE_POINTS = 100
+_FINE_POINTS = 120
+_FINE_WIDTH_M = 0.15
+_FINE_STEPS = ((0.2, np.radians(3.0)), (0.1, np.radians(1.5)), (0.05, np.radians(0.75)))
+_APART_M = 0.7
+_APART_RAD = np.radians(15.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Region:
+    """A rectangle of the map (metres): where to look."""
+
+    x_min: float
+    y_min: float
+    x_max: float
+    y_max: float
+
+    @classmethod
+    def around(cls, pose: Poses, reach_m: float) -> "Region":
+        """The square around a pose."""
+        x, y = float(pose[0]), float(pose[1])
+        return cls(x - reach_m, y - reach_m, x + reach_m, y + reach_m)
+
+
+def best_places(field: DistanceField, points: Floats, region: Region, count: int) -> list[Poses]:
+    """At most so many poses within a region at which points (robot's frame) fit, best first.
+
+    They are some way apart from each other, and refined to a few centimetres.
+    """
+    if not len(points):
+        return []
+    coarse = points[_spread(len(points), _COARSE_POINTS)]
+    step = max(round(_COARSE_M / field.cell_m), 1)
+    first = np.floor((np.array([region.x_min, region.y_min]) - field.origin) / field.cell_m)
+    size = np.array([region.x_max - region.x_min, region.y_max - region.y_min])
+    columns, rows = np.ceil(size / (step * field.cell_m)).astype(np.int64) + 1
+    headings = np.linspace(0.0, 2.0 * np.pi, _HEADINGS, endpoint=False)
+    scores = np.zeros((len(headings), rows, columns), dtype=np.float32)
+    score_places(
+        _phases(fits(field, _COARSE_WIDTH_M), step),
+        first.astype(np.int64),
+        field.cell_m,
+        coarse,
+        headings,
+        scores,
+    )
+    corner = field.origin + first * field.cell_m
+    xs = corner[0] + np.arange(columns) * step * field.cell_m
+    ys = corner[1] + np.arange(rows) * step * field.cell_m
+    some = points[_spread(len(points), _FINE_POINTS)]
+    candidates = _peaks(scores, headings, xs, ys, 4 * count)
+    fine = fits(field, _FINE_WIDTH_M)
+    refined = np.empty((len(candidates), 4))
+    for row, candidate in enumerate(candidates):
+        pose = candidate.copy()
+        score = 0.0
+        for step_m, step_rad in _FINE_STEPS:
+            score = refine(fine, field.origin, field.cell_m, some, pose, step_m, step_rad)
+        refined[row, :3], refined[row, 3] = pose, score
+    return _distinct(refined[np.argsort(-refined[:, 3], kind="stable")], count)
+
+
+def _spread(count: int, wanted: int) -> NDArray[np.int64]:
+    return np.unique(np.linspace(0, count - 1, min(count, wanted)).astype(np.int64))
+
+
+def fits(field: DistanceField, width_m: float) -> Grid:
+    """How well a point fits at each corner of the field: 1 on a wall, nearly 0 far from it."""
+    fit = np.exp(-0.5 * (field.distances / width_m) ** 2).astype(np.float32)
+    fit[field.distances >= field.reach_m] = 0.0
+    return np.asarray(fit)
+
+
+def _peaks(scores: Grid, headings: Floats, xs: Floats, ys: Floats, count: int) -> list[Poses]:
+    """The places with the highest scores, of neighbours only the best.
+
+    Once for the best heading of each place, and once for the best of the other half of the circle:
+    corridors look much the same both ways.
+    """
+    best_heading = scores.argmax(axis=0)
+    rows, columns = np.indices(best_heading.shape)
+    quarter = len(headings) // 4
+    behind = [(best_heading + quarter + turned) % len(headings) for turned in range(2 * quarter)]
+    other = np.stack([scores[each, rows, columns] for each in behind])
+    other_heading = np.stack(behind)[other.argmax(axis=0), rows, columns]
+    found: list[Poses] = []
+    for values, chosen in (
+        (scores.max(axis=0), best_heading),
+        (other.max(axis=0), other_heading),
+    ):
+        peak = values == maximum_filter(values, size=3)
+        order = np.argsort(-np.where(peak, values, -1.0), axis=None, kind="stable")[:count]
+        for at in order:
+            row, column = divmod(int(at), values.shape[1])
+            found.append(np.array([xs[column], ys[row], headings[chosen[row, column]]]))
+    return found
+
+
+def _distinct(ranked: Floats, count: int) -> list[Poses]:
+    kept: list[Poses] = []
+    for row in ranked:
+        pose = row[:3].copy()
+        if all(not same_place(pose, other) for other in kept):
+            pose[2] = wrap(pose[2])
+            kept.append(pose)
+            if len(kept) == count:
+                break
+    return kept
+
+
+def same_place(a: Poses, b: Poses) -> bool:
+    """Whether two poses are too near to each other to be different answers."""
+    return bool(
+        np.hypot(a[0] - b[0], a[1] - b[1]) < _APART_M and abs(wrap(a[2] - b[2])) < _APART_RAD
+    )
+
+
+def _phases(fit: Grid, step: int) -> Grid:
+    """Every `step`-th row and column of a grid, for each of the first ones to start from.
+
+    What a coarse lattice reads for one point then lies side by side in memory.
+    """
+    height, width = (-(-size // step) for size in fit.shape)
+    padded = np.zeros((height * step, width * step), dtype=np.float32)
+    padded[: fit.shape[0], : fit.shape[1]] = fit
+    split = padded.reshape(height, step, width, step).transpose(1, 3, 0, 2)
+    return np.ascontiguousarray(split)
+
+
+@compiled
+def score_places(
+    phases: Grid,
+    first: Indices,
+    cell_m: float,
+    points: Floats,
+    headings: Floats,
+    scores: Grid,
+) -> None:
+    """Sum of how well all points fit, for each heading, row and column of the lattice.
+
+    `first` is the lattice's first column and row in cells of the field.
+    """
+    step, height, width = phases.shape[0], phases.shape[2], phases.shape[3]
+    rows, columns = scores.shape[1], scores.shape[2]
+    for heading in range(headings.shape[0]):
+        c, s = np.cos(headings[heading]), np.sin(headings[heading])
+        for index in range(points.shape[0]):
+            px = (c * points[index, 0] - s * points[index, 1]) / cell_m
+            py = (s * points[index, 0] + c * points[index, 1]) / cell_m
+            column = first[0] + int(np.floor(px + 0.5))
+            row = first[1] + int(np.floor(py + 0.5))
+            left, below = column // step, row // step
+            plane = phases[row - below * step, column - left * step]
+            begin, end = max(0, -left), min(columns, width - left)
+            for y in range(max(0, -below), min(rows, height - below)):
+                for x in range(begin, end):
+                    scores[heading, y, x] += plane[below + y, left + x]
+
+
+@compiled
+def refine(
+    fit: Grid,
+    origin: Floats,
+    cell_m: float,
+    points: Floats,
+    pose: Floats,
+    step_m: float,
+    step_rad: float,
+) -> float:
+    """Climb from a pose, in place, as long as a step to any side fits better; the score there."""
+    best = -1.0
+    for _ in range(4):
+        bx, by, bt = pose[0], pose[1], pose[2]
+        moved = False
+        for turn in range(-1, 2):
+            angle = bt + turn * step_rad
+            c, s = np.cos(angle), np.sin(angle)
+            for right in range(-1, 2):
+                for up in range(-1, 2):
+                    x, y = bx + right * step_m, by + up * step_m
+                    total = 0.0
+                    for index in range(points.shape[0]):
+                        px = x + c * points[index, 0] - s * points[index, 1] - origin[0]
+                        py = y + s * points[index, 0] + c * points[index, 1] - origin[1]
+                        column = int(np.floor(px / cell_m + 0.5))
+                        row = int(np.floor(py / cell_m + 0.5))
+                        if 0 <= row < fit.shape[0] and 0 <= column < fit.shape[1]:
+                            total += fit[row, column]
+                    if total > best + 1e-9:
+                        best = total
+                        pose[0], pose[1], pose[2] = x, y, angle
+                        moved = turn != 0 or right != 0 or up != 0
+        if not moved:
+            break
+    return best

@@ -1,0 +1,115 @@
+"""Every parameter of episodic non-Markov localization: unit, default and where that is from.
+
+Sources: *published* is the configuration that the authors of the method ship for their indoor
+robots; *ours* was chosen once, on simulated and recorded runs together, and holds for all maps.
+"""
+
+from dataclasses import dataclass, fields
+from math import isfinite, pi, radians
+
+
+@dataclass(frozen=True, slots=True)
+class EnmlParameters:
+    """All angles in radians, distances in metres. Raises `ValueError` for what makes no sense."""
+
+    min_translation_m: float = 0.3
+    """A pose stays in the episode once the robot has moved this far since the last (published)."""
+    min_rotation_rad: float = radians(5.0)
+    """... or has turned this far (published)."""
+
+    odometry_radial_rate: float = 0.1
+    """Standard deviation along the motion, per metre moved (published)."""
+    odometry_tangential_rate: float = 0.1
+    """Standard deviation across the motion, per metre moved (published)."""
+    odometry_angular_rate: float = 0.15
+    """Standard deviation of the heading, per radian turned (ours; published 0.1)."""
+    odometry_drift_rad_per_m: float = radians(1.0)
+    """Standard deviation of the heading, per metre moved (ours: wheels slip)."""
+    odometry_min_std_m: float = 0.02
+    """Never trust a translation more than this (ours; published 0.001)."""
+    odometry_min_std_rad: float = radians(1.0)
+    """Never trust a rotation more than this (published)."""
+
+    odometry_robust_width: float = 2.0
+    """Standard deviations at which odometry's pull is half of what plain least squares gives it
+    (ours: wheels that slip are wrong by more than noise)."""
+
+    laser_std_m: float = 0.05
+    """Standard deviation of a point's distance from what it was measured on (published)."""
+    robust_width_m: float = 0.1
+    """Distance at which a point's pull is half of what plain least squares gives it (ours)."""
+
+    ltf_gate_m: float = 0.25
+    """A point farther from the map's line than this is no long-term feature (published)."""
+    ltf_widest_gate_m: float = 1.0
+    """Where the gate starts when the prediction is at its most uncertain (ours)."""
+    ltf_max_angle_rad: float = radians(35.0)
+    """Largest angle between a point's normal and its line's (published)."""
+    ltf_correlation: float = 1.0 / 10.0
+    """How much one of many correlated rays counts (ours; published 1/50 over 1,000 rays)."""
+
+    stf_gate_m: float = 0.15
+    """Two points farther apart than this are not the same thing (published)."""
+    stf_max_angle_rad: float = radians(25.0)
+    """Largest angle between the normals of two corresponding points (published)."""
+    stf_correlation: float = 1.0 / 40.0
+    """How much one of many correlated correspondences counts (published)."""
+    stf_min_matches: int = 10
+    """Two poses with no more correspondences than this are not tied to each other (published)."""
+    stf_separations: tuple[int, ...] = (1, 2, 4, 8, 16)
+    """How many poses back correspondences are looked for (ours; published: every fourth pose)."""
+
+    min_episode_length: int = 10
+    """Poses that are kept even if nothing ties the newest to them (published)."""
+    max_episode_length: int = 25
+    """Poses after which the oldest is let go whatever ties it (ours; published 80)."""
+    alignment_weight: float = 0.25
+    """How much one of many correlated rays counts in the pre-alignment (ours)."""
+    alignment_scans: int = 4
+    """How many of the last poses the pre-alignment lays the newest scan over (ours)."""
+    alignment_min_gain: float = 1.0
+    """The prediction is kept unless another place is likelier by this much (ours; logarithm)."""
+
+    association_rounds: int = 4
+    """At most this many rounds of association and optimization per update (published)."""
+    solver_iterations: int = 10
+    """Most Levenberg-Marquardt steps per round (published 30, with a slower loss)."""
+    settled_m: float = 0.01
+    """A pose that moved less keeps its ray cast and its correspondences (ours)."""
+    settled_rad: float = radians(0.25)
+    """... and turned less (ours)."""
+
+    evidence_fading: float = 0.8
+    """What is left of earlier scans' evidence for being lost or not, per update (ours)."""
+    lost_above: float = 0.5
+    """The robot is lost once its measure is above this (ours)."""
+    found_below: float = 0.3
+    """No place with a measure above this is taken for where a lost robot is (ours)."""
+    recovery_near_m: float = 2.5
+    """How far around the last pose a lost robot is looked for first (published)."""
+    recovery_every_m: float = 1.0
+    """A lost robot looks for its place again after driving this far (ours)."""
+    recovery_lead: float = 0.12
+    """How much better than all others, in shares of the returns, the place has to be at first..."""
+    recovery_patience_m: float = 8.0
+    """... which becomes less until, after driving this far, the best will do (ours)."""
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if isinstance(value, float) and not (isfinite(value) and value > 0.0):
+                raise ValueError(f"{field.name} must be a positive number, not {value!r}")
+        if not 2 <= self.min_episode_length <= self.max_episode_length:
+            raise ValueError(
+                "min_episode_length must be at least 2 and at most max_episode_length "
+                f"({self.max_episode_length}), not {self.min_episode_length}"
+            )
+        if self.association_rounds < 1 or self.solver_iterations < 1:
+            raise ValueError("association_rounds and solver_iterations must be at least 1")
+        if not self.stf_separations or min(self.stf_separations) < 1:
+            raise ValueError("stf_separations must name at least one pose back, counted from 1")
+        if self.ltf_widest_gate_m < self.ltf_gate_m:
+            raise ValueError("ltf_widest_gate_m must not be below ltf_gate_m")
+        for name in ("ltf_max_angle_rad", "stf_max_angle_rad"):
+            if getattr(self, name) > pi / 2:
+                raise ValueError(f"{name} must not be above a right angle")
