@@ -68,7 +68,7 @@ def _indoors(
 ) -> NDArray[np.bool_]:
     """Which cells have walls nearly all around; decided for blocks of cells."""
     block = round(_PROBE_EVERY_M / CELL_M)
-    angles = np.arange(_PROBE_RAYS) * (2.0 * np.pi / _PROBE_RAYS)
+    angles = np.linspace(0.0, 2.0 * np.pi, _PROBE_RAYS, endpoint=False)
     inside = np.zeros_like(free)
     for row in range(0, free.shape[0], block):
         for column in range(0, free.shape[1], block):
