@@ -8,6 +8,7 @@ from scipy.ndimage import distance_transform_edt, label
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import dijkstra
 
+from maps.ray_cast import cast
 from maps.vector_map import VectorMap, VectorMapError
 
 CELL_M = 0.15
@@ -15,11 +16,18 @@ _MARGIN_M = 1.0
 _WALL_COST = 4.0
 """How many times dearer driving at the least clearance is than driving in the open."""
 _WALL_COST_DECAY_M = 0.3
+_FARTHEST_WALL_M = 3.5
+"""Robots of buildings do not drive where nothing is near: a laser would see nothing there."""
+_PROBE_EVERY_M = 0.9
+_PROBE_RAYS = 24
+_PROBE_REACH_M = 25.0
+_INDOORS = 0.85
+"""Inside a building is where this share of all directions ends at a wall."""
 
 
 @dataclass(frozen=True, slots=True)
 class FreeSpace:
-    """The largest connected area with enough clearance, as a graph of cells."""
+    """The largest connected indoor area with enough clearance, as a graph of cells."""
 
     centers: NDArray[np.float64]
     """(n, 2) metres in the map's frame."""
@@ -40,11 +48,11 @@ class FreeSpace:
 def free_space(vector_map: VectorMap, clearance_m: float) -> FreeSpace:
     """Raises `VectorMapError` where no room is left on the map."""
     distance, origin = distance_grid(vector_map, CELL_M)
-    free = distance > clearance_m
-    areas, _ = label(free)
+    free = (distance > clearance_m) & (distance < _FARTHEST_WALL_M)
+    free &= _indoors(vector_map, free, origin)
+    areas, _ = label(free, np.ones((3, 3)))
     sizes = np.bincount(areas.ravel())
-    # What is around the building is no place to drive.
-    sizes[0] = sizes[areas[0, 0]] = 0
+    sizes[0] = 0
     if not sizes.max():
         raise VectorMapError(
             f"the vector map has no closed area with {clearance_m:g} m of clearance to drive in"
@@ -53,6 +61,27 @@ def free_space(vector_map: VectorMap, clearance_m: float) -> FreeSpace:
     rows, columns = np.nonzero(inside)
     centers = np.column_stack((columns, rows)) * CELL_M + origin + CELL_M / 2.0
     return FreeSpace(centers, _graph(inside, distance - clearance_m))
+
+
+def _indoors(
+    vector_map: VectorMap, free: NDArray[np.bool_], origin: NDArray[np.float64]
+) -> NDArray[np.bool_]:
+    """Which cells have walls nearly all around; decided for blocks of cells."""
+    block = round(_PROBE_EVERY_M / CELL_M)
+    angles = np.linspace(0.0, 2.0 * np.pi, _PROBE_RAYS, endpoint=False)
+    inside = np.zeros_like(free)
+    for row in range(0, free.shape[0], block):
+        for column in range(0, free.shape[1], block):
+            cells = np.argwhere(free[row : row + block, column : column + block])
+            if not len(cells):
+                continue
+            # A free cell in the middle stands for its block: its center may be within a wall.
+            down, right = cells[len(cells) // 2]
+            x, y = np.array([column + right, row + down]) * CELL_M + origin + CELL_M / 2.0
+            _, hit = cast(vector_map.segments, float(x), float(y), angles, _PROBE_REACH_M)
+            if np.mean(hit >= 0) >= _INDOORS:
+                inside[row : row + block, column : column + block] = True
+    return inside
 
 
 def distance_grid(

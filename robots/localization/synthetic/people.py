@@ -40,7 +40,7 @@ class People:
 
 def people(way: Poses, times_s: Matrix, how_many: float, generator: np.random.Generator) -> People:
     """`how_many` are near the robot at any time, on average; each meets it somewhere on its way."""
-    total = int(round(how_many * (float(times_s[-1]) + _SEEN_S) / _SEEN_S))
+    total = round(how_many * (float(times_s[-1]) + _SEEN_S) / _SEEN_S)
     met = generator.integers(len(way), size=total)
     heading = way[met, 2]
     side = generator.choice([-1.0, 1.0], total) * generator.uniform(*_ASIDE_M, total)

@@ -38,7 +38,7 @@ class SceneSettings:
     """The share of the map's segments that are on the map but no longer there."""
     people: float = 0.0
     """How many people walk within the laser's range, on average."""
-    clearance_m: float = 0.45
+    clearance_m: float = 0.4
     speed_m_per_s: float = 0.5
     laser: LaserSettings = field(default_factory=LaserSettings)
     odometry: OdometrySettings = field(default_factory=OdometrySettings)

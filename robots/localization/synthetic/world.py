@@ -46,7 +46,7 @@ def scene(vector_map: VectorMap, settings: SceneSettings, seed: int) -> Scene:
     generator = np.random.default_rng(seed)
     space = free_space(vector_map, settings.clearance_m)
     way = drive(space, settings.length_m, settings.step_m, generator)
-    times_s = np.arange(len(way)) * (settings.step_m / settings.speed_m_per_s)
+    times_s = np.arange(len(way), dtype=np.float64) * (settings.step_m / settings.speed_m_per_s)
     there = generator.random(len(vector_map)) >= settings.removed
     walls = vector_map.segments[there]
     crowd = people(way, times_s, settings.people, generator)
@@ -109,7 +109,8 @@ def _scan(
 
 def _beams(laser: LaserSettings) -> tuple[Matrix, float]:
     increment = laser.field_of_view_rad / (laser.beams - 1)
-    return -laser.field_of_view_rad / 2.0 + np.arange(laser.beams) * increment, increment
+    beams = np.arange(laser.beams, dtype=np.float64)
+    return -laser.field_of_view_rad / 2.0 + beams * increment, increment
 
 
 def _explained(
@@ -139,6 +140,6 @@ def _odometry(way: Poses, settings: OdometrySettings, generator: np.random.Gener
             np.hypot(settings.turn_rad_per_sqrt_m * root_m, settings.turn_share * root_rad),
         )
     )
-    told = motions + generator.normal(0.0, 1.0, motions.shape) * deviations
+    told: Matrix = motions + generator.normal(0.0, 1.0, motions.shape) * deviations
     told[:, 2] = wrap(told[:, 2])
     return told
