@@ -10,6 +10,7 @@ import typer
 
 from server.cli.check import check
 from server.cli.failures import CommandLineError
+from server.cli.localize import localize
 from server.cli.replay import replay
 from server.cli.run import run
 from server.cli.scenarios import scenarios
@@ -58,6 +59,7 @@ COMMANDS: dict[str, tuple[Callable[..., None], str]] = {
     "scenarios": (scenarios, "List the scenarios that there are."),
     "schema": (schema, "Print a schema as JSON."),
     "schedule": (schedule, "Plan deliveries for several robots."),
+    "localize": (localize, "Follow a robot through a recorded drive."),
     "replay": (replay, "Tell a run again from its journal."),
     "train-colors": (train_colors, "Learn the colours of objects."),
 }

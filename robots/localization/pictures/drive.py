@@ -11,6 +11,7 @@ from maps.vector_map import VectorMap
 from robots.localization.localizer import Estimate
 from robots.localization.pictures.canvas import Canvas, Image, Raster, Svg
 from robots.localization.pictures.colors import ELLIPSE, MAP, POINTS, REFERENCE, TRAJECTORY
+from robots.localization.pictures.failure import PictureError
 from robots.localization.pictures.view import View, view_of
 from robots.localization.pose import Poses, transform
 
@@ -24,12 +25,10 @@ _PICTURE_PX = 1600
 _ANIMATION_PX = 720
 _FRAMES_PER_S = 15
 _MAX_FRAMES = 600
+_MAX_GIF_FRAMES = 150
+"""GIF is slow to write and large; a longer drive skips more."""
 _DEVIATIONS = 3.0
 """How many standard deviations the ellipses show."""
-
-
-class PictureError(Exception):
-    """A picture that cannot be written; one sentence."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -78,7 +77,7 @@ class Drive:
 
     def save_animation(self, path: Path) -> None:
         """Write an `.mp4` or `.gif`. Raises `PictureError`."""
-        frames = self._frames()
+        frames = self._frames(_MAX_GIF_FRAMES if path.suffix == ".gif" else _MAX_FRAMES)
         if path.suffix == ".gif":
             animation = cv2.Animation()
             animation.frames = frames
@@ -108,12 +107,12 @@ class Drive:
         if len(known):
             canvas.path(view.pixels(known), REFERENCE)
 
-    def _frames(self) -> list[Image]:
+    def _frames(self, most: int) -> list[Image]:
         view = self._view(_ANIMATION_PX)
         ground = Raster(view.width_px, view.height_px)
         ground.segments(view.pixels(_ends(self.vector_map)).reshape(-1, 4), MAP)
         _draw_legend(ground, self.title)
-        every = max(1, -(-len(self.moments) // _MAX_FRAMES))
+        every = max(1, -(-len(self.moments) // most))
         shown = self.moments[::every]
         way = np.array([each.pose[:2] for each in shown]).reshape(-1, 2)
         frames: list[Image] = []
