@@ -11,6 +11,7 @@ import typer
 from server.cli.check import check
 from server.cli.failures import CommandLineError
 from server.cli.localize import localize
+from server.cli.map import maps_app
 from server.cli.replay import replay
 from server.cli.run import run
 from server.cli.scenarios import scenarios
@@ -66,6 +67,7 @@ COMMANDS: dict[str, tuple[Callable[..., None], str]] = {
 
 for name, (command, summary) in COMMANDS.items():
     app.command(name, short_help=summary)(command)
+app.add_typer(maps_app)
 
 
 def main() -> None:

@@ -59,8 +59,8 @@ def localize(
     if method not in METHODS:
         names = ", ".join(METHODS)
         raise CommandLineError(f"there is no method '{method}'; there are {names}")
-    _check_suffix("picture", plot, PICTURE_SUFFIXES)
-    _check_suffix("animation", animate, ANIMATION_SUFFIXES)
+    checked_suffix("picture", plot, PICTURE_SUFFIXES)
+    checked_suffix("animation", animate, ANIMATION_SUFFIXES)
     given = _pose(start) if start is not None else None
     console = Console(stderr=True, highlight=False, soft_wrap=True)
     with told_plainly():
@@ -79,7 +79,7 @@ def localize(
         drive = Drive(vector_map, f"{read.name}: {method}", read.references)
         drawn = plot is not None or animate is not None
         try:
-            with _progress(console, len(read)) as advance:
+            with progress(console, len(read)) as advance:
 
                 def take(_: int, estimate: Estimate) -> None:
                     if drawn:
@@ -102,7 +102,8 @@ def localize(
         print_rows(_rows(summary), HEADINGS)
 
 
-def _check_suffix(what: str, path: Path | None, suffixes: tuple[str, ...]) -> None:
+def checked_suffix(what: str, path: Path | None, suffixes: tuple[str, ...]) -> None:
+    """Raises `CommandLineError` where a file that is to be written has no such end."""
     if path is not None and path.suffix not in suffixes:
         ends = " or ".join(suffixes)
         raise CommandLineError(f"the {what}'s file has to end in {ends}, which '{path}' does not")
@@ -136,7 +137,7 @@ def _get_ready(console: "Console", method: str) -> None:
 
 
 @contextmanager
-def _progress(console: "Console", scans: int) -> Iterator[Callable[[], None]]:
+def progress(console: "Console", scans: int) -> Iterator[Callable[[], None]]:
     """A bar in a terminal, nothing elsewhere; what is yielded moves it by one scan."""
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TimeRemainingColumn
 
