@@ -77,9 +77,7 @@ class ShortTermFeatures:
         if earlier.tree is None or not len(rows):
             return StfMatches(rows[:0], rows[:0], motion)
         points = transform(motion, later.scan_points.points[rows])
-        gaps, nearest = earlier.tree.query(
-            points, distance_upper_bound=self._parameters.stf_gate_m
-        )
+        gaps, nearest = earlier.tree.query(points, distance_upper_bound=self._parameters.stf_gate_m)
         rows, nearest = rows[np.isfinite(gaps)], nearest[np.isfinite(gaps)]
         normals = turn(float(motion[2]), later.scan_points.normals[rows])
         same_side = np.sum(normals * earlier.scan_points.normals[nearest], axis=1)
@@ -101,9 +99,7 @@ def stf_constraints(
     if not tied:
         return StfConstraints.none()
     counts = [len(matches) for matches in tied.values()]
-    earlier = [
-        (nodes[a].scan_points, matches.earlier) for (a, _), matches in tied.items()
-    ]
+    earlier = [(nodes[a].scan_points, matches.earlier) for (a, _), matches in tied.items()]
     later = [(nodes[b].scan_points, matches.later) for (_, b), matches in tied.items()]
     return StfConstraints(
         np.array(list(tied), dtype=np.int64),

@@ -1,6 +1,7 @@
 """How far odometry can be trusted."""
 
 import numpy as np
+from numpy.typing import NDArray
 
 from robots.localization.enml.parameters import EnmlParameters
 from robots.localization.pose import Poses, compose
@@ -35,7 +36,7 @@ class Travel:
             ]
         )
 
-    def whitening(self, parameters: EnmlParameters) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
+    def whitening(self, parameters: EnmlParameters) -> NDArray[np.float64]:
         """The matrix (3, 3) that turns the motion's error into independent unit variances."""
         along = np.arctan2(self.motion[1], self.motion[0])
         c, s = np.cos(along), np.sin(along)

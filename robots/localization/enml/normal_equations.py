@@ -9,7 +9,7 @@ import math
 import numpy as np
 
 from maps.compiled import compiled
-from robots.localization.enml.problem import Floats, Problem
+from robots.localization.enml.problem import Floats, Indices, Problem
 
 
 def linearize(problem: Problem, poses: Floats) -> tuple[float, Floats, Floats]:
@@ -18,9 +18,7 @@ def linearize(problem: Problem, poses: Floats) -> tuple[float, Floats, Floats]:
     gradient = np.zeros(size)
     matrix = np.zeros((size, size))
     cost = _add_prior(poses, problem.prior, problem.prior_whitening, gradient, matrix)
-    cost += _add_odometry(
-        poses, problem.odometry, problem.odometry_whitening, gradient, matrix
-    )
+    cost += _add_odometry(poses, problem.odometry, problem.odometry_whitening, gradient, matrix)
     ltf, stf = problem.ltf, problem.stf
     cost += _add_ltf(
         poses,
@@ -50,12 +48,14 @@ def linearize(problem: Problem, poses: Floats) -> tuple[float, Floats, Floats]:
 
 
 @compiled
-def _wrapped(angle):  # type: ignore[no-untyped-def]
+def _wrapped(angle: float) -> float:
     return angle - 2.0 * math.pi * math.floor((angle + math.pi) / (2.0 * math.pi))
 
 
 @compiled
-def _add_prior(poses, prior, whitening, gradient, matrix):  # type: ignore[no-untyped-def]
+def _add_prior(
+    poses: Floats, prior: Floats, whitening: Floats, gradient: Floats, matrix: Floats
+) -> float:
     error = np.empty(3)
     error[0] = poses[0, 0] - prior[0]
     error[1] = poses[0, 1] - prior[1]
@@ -74,7 +74,9 @@ def _add_prior(poses, prior, whitening, gradient, matrix):  # type: ignore[no-un
 
 
 @compiled
-def _add_odometry(poses, odometry, whitening, gradient, matrix):  # type: ignore[no-untyped-def]
+def _add_odometry(
+    poses: Floats, odometry: Floats, whitening: Floats, gradient: Floats, matrix: Floats
+) -> float:
     cost = 0.0
     error = np.empty(3)
     plain = np.zeros((3, 6))
@@ -107,9 +109,17 @@ def _add_odometry(poses, odometry, whitening, gradient, matrix):  # type: ignore
 
 
 @compiled
-def _add_ltf(  # type: ignore[no-untyped-def]
-    poses, start, points, normals, offsets, widths_m, information, gradient, matrix
-):
+def _add_ltf(
+    poses: Floats,
+    start: Indices,
+    points: Floats,
+    normals: Floats,
+    offsets: Floats,
+    widths_m: Floats,
+    information: float,
+    gradient: Floats,
+    matrix: Floats,
+) -> float:
     cost = 0.0
     for i in range(poses.shape[0]):
         c, s = math.cos(poses[i, 2]), math.sin(poses[i, 2])
@@ -151,19 +161,19 @@ def _add_ltf(  # type: ignore[no-untyped-def]
 
 
 @compiled
-def _add_stf(  # type: ignore[no-untyped-def]
-    poses,
-    pairs,
-    start,
-    points_a,
-    normals_a,
-    points_b,
-    normals_b,
-    width_m,
-    information,
-    gradient,
-    matrix,
-):
+def _add_stf(
+    poses: Floats,
+    pairs: Indices,
+    start: Indices,
+    points_a: Floats,
+    normals_a: Floats,
+    points_b: Floats,
+    normals_b: Floats,
+    width_m: float,
+    information: float,
+    gradient: Floats,
+    matrix: Floats,
+) -> float:
     cost = 0.0
     width_squared = width_m * width_m
     jacobian = np.empty(6)
