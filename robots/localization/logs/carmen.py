@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from robots.localization.logs.log import Log, LogError, LogStep
+from robots.localization.logs.log import Log, LogError, LogStep, with_equal_beams
 from robots.localization.logs.no_return import no_return_range
 from robots.localization.logs.text_lines import numbered_lines
 from robots.localization.pose import Poses, relative
@@ -162,7 +162,8 @@ def _log(path: Path, content: _Content, corrected: bool) -> Log:
         previous = sweep
     if not steps:
         raise LogError(f"{path}: none of its {len(sweeps)} scans can be used")
-    return Log(path.name.split(".")[0], tuple(steps), skipped)
+    kept = with_equal_beams(steps)
+    return Log(path.name.split(".")[0], kept, skipped + len(steps) - len(kept))
 
 
 def _motion(previous: _Sweep, sweep: _Sweep, corrected: bool) -> Poses:

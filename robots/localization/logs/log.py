@@ -1,10 +1,12 @@
 """A recorded drive: motions, scans, and reference poses where somebody knows them."""
 
+from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from robots.localization.pose import Poses
+from robots.localization.pose import Poses, compose
 from robots.localization.scan import Scan
 
 
@@ -51,3 +53,16 @@ class Log:
         if len(self.steps) and np.isfinite(references).all():
             return float(np.hypot(*np.diff(references[:, :2], axis=0).T).sum())
         return float(sum(np.hypot(each.odometry[0], each.odometry[1]) for each in self.steps))
+
+
+def with_equal_beams(steps: Sequence[LogStep]) -> tuple[LogStep, ...]:
+    """Leave out scans that have not as many beams as most, and keep their motions."""
+    usual = Counter(len(each.scan.ranges) for each in steps).most_common(1)[0][0]
+    kept: list[LogStep] = []
+    pending = np.zeros(3)
+    for step in steps:
+        pending = compose(pending, step.odometry)
+        if len(step.scan.ranges) == usual:
+            kept.append(LogStep(pending, step.scan, step.reference))
+            pending = np.zeros(3)
+    return tuple(kept)

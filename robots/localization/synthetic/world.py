@@ -24,7 +24,7 @@ Matrix = NDArray[np.float64]
 
 EXPLAINED_WITHIN_M = 0.15
 """A return is explained by the map when it is this close to what the map foretells."""
-_BOXES_PER_M = 3.0
+_BOXES_PER_M = 6.0
 """The most furniture that is put up, per metre of the way."""
 _SAMPLES = 60
 """Poses at which the explained share is measured."""
