@@ -47,7 +47,7 @@ class Recovery:
         self._parameters = parameters
 
     def search(self, episode: Episode, expected: Poses, path_m: float) -> Found | None:
-        """Where the newest pose is, near `expected` or else anywhere; None as long as unclear.
+        """Where the newest pose is, looking near `expected` and then anywhere; None if unclear.
 
         `path_m` is how far the robot has driven since it was lost: the farther, the more of the
         surroundings is in the episode, and the smaller a lead has to be to be believed.
@@ -56,25 +56,24 @@ class Recovery:
             return None
         near = Region.around(expected, self._parameters.recovery_near_m)
         points = _submap(episode)
-        found = self._clear_winner(episode, points, near, path_m)
-        return found or self._clear_winner(episode, points, self._everywhere, path_m)
-
-    def _clear_winner(
-        self, episode: Episode, points: Floats, region: Region, path_m: float
-    ) -> Found | None:
-        parameters = self._parameters
-        places = best_places(self._field, points, region, _CANDIDATES)
+        places = [
+            place
+            for region in (near, self._everywhere)
+            for place in best_places(self._field, points, region, _CANDIDATES)
+        ]
         ranked = sorted(
             ((place, self._weigh(episode, place)) for place in places),
             key=lambda each: -_score(each[1]),
         )
-        if not ranked:
+        return self._clear_winner(ranked, path_m)
+
+    def _clear_winner(self, ranked: list[tuple[Poses, Evidence]], path_m: float) -> Found | None:
+        parameters = self._parameters
+        if not ranked or ranked[0][1].lost > parameters.found_below:
             return None
         best, seen = ranked[0]
-        if seen.lost > parameters.found_below:
-            return None
         rivals = [_score(other) for place, other in ranked[1:] if not same_place(place, best)]
-        lead = _score(seen) - max(rivals, default=0.0)
+        lead = _score(seen) - max(rivals, default=-1.0)
         enough = parameters.recovery_lead * max(0.0, 1.0 - path_m / parameters.recovery_patience_m)
         return Found(best, seen) if lead >= enough else None
 
