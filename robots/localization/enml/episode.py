@@ -1,5 +1,6 @@
 """The poses that still matter, and what ties them to the map and to each other."""
 
+from dataclasses import replace
 from itertools import count
 
 import numpy as np
@@ -85,6 +86,7 @@ class Episode:
             odometry_whitening=np.array([each.whitening(parameters) for each in moves]).reshape(
                 -1, 3, 3
             ),
+            odometry_width=parameters.odometry_robust_width,
             ltf=_ltf_constraints(nodes, width_m / parameters.ltf_gate_m),
             stf=stf_constraints(nodes, ties, width_m),
             ltf_weight=parameters.ltf_correlation / parameters.laser_std_m**2,
@@ -119,13 +121,5 @@ def _without_last_ltf(problem: Problem) -> Problem:
     ltf = problem.ltf
     start = ltf.start.copy()
     start[-1] = start[-2]
-    return Problem(
-        problem.prior,
-        problem.prior_whitening,
-        problem.odometry,
-        problem.odometry_whitening,
-        LtfConstraints(start, ltf.points, ltf.normals, ltf.offsets, ltf.widths_m),
-        problem.stf,
-        problem.ltf_weight,
-        problem.stf_weight,
-    )
+    without = LtfConstraints(start, ltf.points, ltf.normals, ltf.offsets, ltf.widths_m)
+    return replace(problem, ltf=without)

@@ -30,6 +30,10 @@ class EnmlParameters:
     odometry_min_std_rad: float = radians(1.0)
     """Never trust a rotation more than this (published)."""
 
+    odometry_robust_width: float = 2.0
+    """Standard deviations at which odometry's pull is half of what plain least squares gives it
+    (ours: wheels that slip are wrong by more than noise)."""
+
     laser_std_m: float = 0.05
     """Standard deviation of a point's distance from what it was measured on (published)."""
     robust_width_m: float = 0.1
@@ -41,7 +45,7 @@ class EnmlParameters:
     """Where the gate starts when the prediction is at its most uncertain (ours)."""
     ltf_max_angle_rad: float = radians(35.0)
     """Largest angle between a point's normal and its line's (published)."""
-    ltf_correlation: float = 1.0 / 20.0
+    ltf_correlation: float = 1.0 / 10.0
     """How much one of many correlated rays counts (ours; published 1/50 over 1,000 rays)."""
 
     stf_gate_m: float = 0.15

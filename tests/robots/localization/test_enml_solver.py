@@ -1,5 +1,7 @@
 """The compiled normal equations equal the plain ones, and the solver finds the lowest cost."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -7,12 +9,12 @@ from hypothesis import strategies as st
 
 from robots.localization.enml import normal_equations, plain_normal_equations
 from robots.localization.enml.prior import prior_on_last, whitening_of
-from robots.localization.enml.problem import LtfConstraints, Problem, StfConstraints
+from robots.localization.enml.problem import Floats, LtfConstraints, Problem, StfConstraints
 from robots.localization.enml.solver import solve
 from robots.localization.pose import compose, relative
 
 
-def problem_of(seed: int, *, poses: int, ltf: int, pairs: int, stf: int) -> tuple[Problem, object]:
+def problem_of(seed: int, *, poses: int, ltf: int, pairs: int, stf: int) -> tuple[Problem, Floats]:
     """A problem with everything in it, and poses that solve none of it."""
     generator = np.random.default_rng(seed)
     truth = np.cumsum(generator.normal([0.3, 0.0, 0.05], [0.05, 0.05, 0.1], (poses, 3)), axis=0)
@@ -25,6 +27,7 @@ def problem_of(seed: int, *, poses: int, ltf: int, pairs: int, stf: int) -> tupl
         prior_whitening=whitening_of(np.diag([0.01, 0.02, 0.005])),
         odometry=relative(truth[:-1], truth[1:]) + generator.normal(0.0, 0.02, (poses - 1, 3)),
         odometry_whitening=np.tile(np.diag([20.0, 30.0, 40.0]), (poses - 1, 1, 1)),
+        odometry_width=2.0,
         ltf=LtfConstraints(
             start=np.arange(poses + 1) * ltf,
             points=generator.uniform(-5.0, 5.0, (poses * ltf, 2)),
@@ -105,21 +108,18 @@ def test_without_observations_the_uncertainty_grows_along_the_way() -> None:
 def test_a_prior_says_what_the_poses_before_it_said(seed: int, boundary: int) -> None:
     whole, start = problem_of(seed, poses=5, ltf=0, pairs=0, stf=0)
     best = solve(whole, start, 50)
-    before = Problem(
-        whole.prior,
-        whole.prior_whitening,
-        whole.odometry[:boundary],
-        whole.odometry_whitening[:boundary],
-        LtfConstraints(
-            np.zeros(boundary + 2, dtype=np.int64),
-            whole.ltf.points,
-            whole.ltf.normals,
-            whole.ltf.offsets,
-            whole.ltf.widths_m[: boundary + 1],
-        ),
-        whole.stf,
-        whole.ltf_weight,
-        whole.stf_weight,
+    unseen = LtfConstraints(
+        np.zeros(boundary + 2, dtype=np.int64),
+        whole.ltf.points,
+        whole.ltf.normals,
+        whole.ltf.offsets,
+        whole.ltf.widths_m[: boundary + 1],
+    )
+    before = replace(
+        whole,
+        odometry=whole.odometry[:boundary],
+        odometry_whitening=whole.odometry_whitening[:boundary],
+        ltf=unseen,
     )
     mean, whitening = prior_on_last(before, best.poses[: boundary + 1])
     np.testing.assert_allclose(mean, best.poses[boundary], atol=1e-6)
