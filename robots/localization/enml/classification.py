@@ -37,7 +37,15 @@ class LongTermFeatures:
         found = np.empty(len(points), dtype=np.int64)
         lines = np.empty((len(points), 3))
         match_lines(
-            segments, points, normals, seen, _NEIGHBORS, node.gate_m, self._cos_max_angle, found, lines
+            segments,
+            points,
+            normals,
+            seen,
+            _NEIGHBORS,
+            node.gate_m,
+            self._cos_max_angle,
+            found,
+            lines,
         )
         node.is_ltf = found >= 0
         rows = np.flatnonzero(node.is_ltf)

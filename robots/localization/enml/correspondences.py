@@ -4,11 +4,15 @@ from dataclasses import dataclass
 from math import cos
 
 import numpy as np
+from numpy.typing import NDArray
 
 from robots.localization.enml.parameters import EnmlParameters
 from robots.localization.enml.pose_node import PoseNode
 from robots.localization.enml.problem import Floats, Indices, StfConstraints
-from robots.localization.pose import Poses, relative, transform, turn, wrap_angle
+from robots.localization.pose import Poses, relative, transform, turn, wrap
+
+_MOST_PER_PAIR = 50
+"""More points on the same things say little more about how two poses stand to each other."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -22,8 +26,19 @@ class StfMatches:
     later: Indices
     motion: Poses
 
+    @classmethod
+    def none(cls) -> "StfMatches":
+        """Nothing is the same."""
+        nothing = np.zeros(0, dtype=np.int64)
+        return cls(nothing, nothing, np.zeros(3))
+
     def __len__(self) -> int:
         return len(self.earlier)
+
+    def thinned(self, most: int) -> "StfMatches":
+        """At most so many of them, evenly spread."""
+        every = -(-len(self) // most)
+        return StfMatches(self.earlier[::every], self.later[::every], self.motion)
 
 
 class ShortTermFeatures:
@@ -44,32 +59,43 @@ class ShortTermFeatures:
         """The correspondences of every tied pair (earlier, later) of the episode.
 
         `changed` names (by index) the poses whose long-term features are not what they were. Marks
-        each node's short-term features.
+        the newest pose's short-term features.
         """
+        pairs = self._pairs(len(nodes))
+        motions = relative(poses[pairs[:, 0]], poses[pairs[:, 1]])
+        names = [(nodes[a].identity, nodes[b].identity) for a, b in pairs]
+        moved = self._moved(names, motions)
         tied: dict[tuple[int, int], StfMatches] = {}
         known: dict[tuple[int, int], StfMatches] = {}
-        for later in range(len(nodes)):
-            for separation in self._parameters.stf_separations:
-                earlier = later - separation
-                if earlier < 0:
-                    break
-                name = nodes[earlier].identity, nodes[later].identity
-                motion = relative(poses[earlier], poses[later])
-                matches = self._known.get(name)
-                stale = earlier in changed or later in changed
-                if matches is None or stale or self._moved(matches.motion, motion):
-                    matches = self._nearest(nodes[earlier], nodes[later], motion)
-                known[name] = matches
-                if len(matches) > self._parameters.stf_min_matches:
-                    tied[earlier, later] = matches
+        for index, (earlier, later) in enumerate(pairs):
+            matches = self._known.get(names[index])
+            if matches is None or moved[index] or earlier in changed or later in changed:
+                matches = self._nearest(nodes[earlier], nodes[later], motions[index])
+            known[names[index]] = matches
+            if len(matches) > self._parameters.stf_min_matches:
+                tied[int(earlier), int(later)] = matches
         self._known = known
-        self._mark(nodes, tied)
+        _mark_newest(nodes, tied)
         return tied
 
-    def _moved(self, before: Poses, motion: Poses) -> bool:
-        return bool(
-            np.hypot(*(motion - before)[:2]) > self._parameters.settled_m
-            or abs(wrap_angle(motion[2] - before[2])) > self._parameters.settled_rad
+    def _pairs(self, count: int) -> Indices:
+        """Which poses (earlier, later) of so many are compared."""
+        found = [
+            (later - separation, later)
+            for later in range(count)
+            for separation in self._parameters.stf_separations
+            if separation <= later
+        ]
+        return np.array(found, dtype=np.int64).reshape(-1, 2)
+
+    def _moved(self, names: list[tuple[int, int]], motions: Poses) -> NDArray[np.bool_]:
+        """Which pairs stand otherwise to each other than when their matches were found."""
+        unknown = StfMatches.none()
+        before = np.array([self._known.get(name, unknown).motion for name in names])
+        change = motions - before.reshape(-1, 3)
+        return np.asarray(
+            (np.hypot(change[:, 0], change[:, 1]) > self._parameters.settled_m)
+            | (np.abs(wrap(change[:, 2])) > self._parameters.settled_rad)
         )
 
     def _nearest(self, earlier: PoseNode, later: PoseNode, motion: Poses) -> StfMatches:
@@ -77,21 +103,20 @@ class ShortTermFeatures:
         if earlier.tree is None or not len(rows):
             return StfMatches(rows[:0], rows[:0], motion)
         points = transform(motion, later.scan_points.points[rows])
-        gaps, nearest = earlier.tree.query(
-            points, distance_upper_bound=self._parameters.stf_gate_m
-        )
+        gaps, nearest = earlier.tree.query(points, distance_upper_bound=self._parameters.stf_gate_m)
         rows, nearest = rows[np.isfinite(gaps)], nearest[np.isfinite(gaps)]
         normals = turn(float(motion[2]), later.scan_points.normals[rows])
         same_side = np.sum(normals * earlier.scan_points.normals[nearest], axis=1)
         kept = (same_side > self._cos_max_angle) & ~earlier.is_ltf[nearest]
         return StfMatches(nearest[kept], rows[kept], motion)
 
-    def _mark(self, nodes: list[PoseNode], tied: dict[tuple[int, int], StfMatches]) -> None:
-        for node in nodes:
-            node.is_stf = np.zeros(len(node.scan_points), dtype=np.bool_)
-        for (earlier, later), matches in tied.items():
-            nodes[earlier].is_stf[matches.earlier] = True
-            nodes[later].is_stf[matches.later] = True
+
+def _mark_newest(nodes: list[PoseNode], tied: dict[tuple[int, int], StfMatches]) -> None:
+    newest = nodes[-1]
+    newest.is_stf = np.zeros(len(newest.scan_points), dtype=np.bool_)
+    for (_, later), matches in tied.items():
+        if later == len(nodes) - 1:
+            newest.is_stf[matches.later] = True
 
 
 def stf_constraints(
@@ -100,17 +125,16 @@ def stf_constraints(
     """The correspondences as one list for the solver."""
     if not tied:
         return StfConstraints.none()
-    counts = [len(matches) for matches in tied.values()]
-    earlier = [
-        (nodes[a].scan_points, matches.earlier) for (a, _), matches in tied.items()
-    ]
-    later = [(nodes[b].scan_points, matches.later) for (_, b), matches in tied.items()]
+    matched = [matches.thinned(_MOST_PER_PAIR) for matches in tied.values()]
+    earlier = [(nodes[a].scan_points, each) for (a, _), each in zip(tied, matched, strict=True)]
+    later = [(nodes[b].scan_points, each) for (_, b), each in zip(tied, matched, strict=True)]
+    counts = [len(each) for each in matched]
     return StfConstraints(
         np.array(list(tied), dtype=np.int64),
         np.concatenate([[0], np.cumsum(counts)]).astype(np.int64),
-        np.concatenate([points.points[rows] for points, rows in earlier]),
-        np.concatenate([points.normals[rows] for points, rows in earlier]),
-        np.concatenate([points.points[rows] for points, rows in later]),
-        np.concatenate([points.normals[rows] for points, rows in later]),
+        np.concatenate([points.points[each.earlier] for points, each in earlier]),
+        np.concatenate([points.normals[each.earlier] for points, each in earlier]),
+        np.concatenate([points.points[each.later] for points, each in later]),
+        np.concatenate([points.normals[each.later] for points, each in later]),
         width_m,
     )

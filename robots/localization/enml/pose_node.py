@@ -40,7 +40,7 @@ class PoseNode:
     identity: int
     scan_points: ScanPoints
     bearings: Floats
-    increment_rad: float
+    ranges_m: Floats
     sensor_offset: Floats
     travel: Travel
     gate_m: float
@@ -68,9 +68,15 @@ class PoseNode:
         return cls(
             identity,
             scan_points,
-            scan.angle_min + scan_points.beams * scan.angle_increment,
-            scan.angle_increment,
+            scan.angles[scan_points.beams],
+            scan.ranges[scan_points.beams],
             scan.sensor_offset,
             travel,
             gate_m,
         )
+
+    def take_off_map(self) -> None:
+        """Forget what lay on lines of the map."""
+        self.cast_pose = None
+        self.ltf = LtfMatches.none()
+        self.is_ltf = np.zeros(len(self.scan_points), dtype=np.bool_)
