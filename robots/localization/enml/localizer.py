@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from maps.vector_map import VectorMap
 from robots.localization.enml import normal_equations
-from robots.localization.enml.alignment import align
+from robots.localization.enml.alignment import Aligner
 from robots.localization.enml.classification import LongTermFeatures
 from robots.localization.enml.correspondences import ShortTermFeatures
 from robots.localization.enml.episode import Episode, Ties
@@ -57,12 +57,13 @@ class EnmlLocalizer:
         self._long_term = LongTermFeatures(
             vector_map.segments, DEFAULT_MAX_RANGE_M, self._parameters
         )
-        self._field = distance_field(vector_map, _FIELD_CELL_M, _FIELD_REACH_M)
+        field = distance_field(vector_map, _FIELD_CELL_M, _FIELD_REACH_M)
+        self._aligner = Aligner(field, self._parameters)
         x_min, y_min, x_max, y_max = vector_map.bounds
         self._recovery = Recovery(
             vector_map.segments,
             Region(x_min, y_min, x_max, y_max),
-            self._field,
+            field,
             DEFAULT_MAX_RANGE_M,
             self._parameters,
         )
@@ -174,13 +175,12 @@ class EnmlLocalizer:
             ]
         ]
         newest = nodes[-1]
-        aligned = align(
-            self._field if self._mode is Mode.TRACKING else None,
+        aligned = self._aligner.align(
             np.concatenate([np.zeros((0, 2)), *recent]),
             newest.scan_points.points,
             poses[-1],
             newest.travel.deviations(parameters),
-            parameters,
+            on_map=self._mode is Mode.TRACKING,
         )
         if aligned.gain > parameters.alignment_min_gain:
             poses[-1] = aligned.pose
