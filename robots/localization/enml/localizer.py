@@ -29,6 +29,7 @@ _FIELD_CELL_M = 0.1
 _FIELD_REACH_M = 1.0
 _LOST_STD = np.array([10.0, 10.0, np.pi])
 _FOUND_STD = np.array([0.3, 0.3, np.radians(5.0)])
+_LEAST_VARIANCE = 1e-8
 _LEAST_JUDGED = 3
 _LEAST_RETURNS = 20.0
 _FIRST_STD = np.array([0.1, 0.1, np.radians(3.0)])
@@ -75,12 +76,20 @@ class EnmlLocalizer:
         self.reset(np.zeros(3) if start is None else start)
 
     def reset(self, pose: Poses, covariance: NDArray[np.float64] | None = None) -> None:
-        """Start anew at a pose, with its (3, 3) covariance or one that is small."""
+        """Start anew at a pose, with its (3, 3) covariance or one that is small.
+
+        A covariance wider than the place near which a lost robot is looked for says that the robot
+        is lost: it is then looked for everywhere.
+        """
         if covariance is None:
             covariance = np.diag(_FIRST_STD**2)
+        covariance = np.asarray(covariance, dtype=np.float64) + _LEAST_VARIANCE * np.eye(3)
         self._stream = ScanStream()
-        self._track(Evidence())
         self._short_term.forget()
+        if covariance[0, 0] + covariance[1, 1] > self._parameters.recovery_near_m**2:
+            self._lose()
+        else:
+            self._track(Evidence())
         self._episode = Episode(
             self._parameters, np.asarray(pose, dtype=np.float64), whitening_of(covariance)
         )
@@ -128,9 +137,7 @@ class EnmlLocalizer:
             and self._evidence.returns >= _LEAST_RETURNS
             and self._evidence.lost > self._parameters.lost_above
         ):
-            self._mode = Mode.LOST
-            self._driven_m = 0.0
-            self._next_search_m = self._parameters.recovery_every_m
+            self._lose()
             self._episode.begin_anew(np.diag(1.0 / _LOST_STD))
 
     def _look_for_place(self, covariance: Floats) -> Floats:
@@ -146,6 +153,11 @@ class EnmlLocalizer:
             node.gate_m = 2.0 * self._parameters.ltf_gate_m
         self._track(found.evidence)
         return self._settle()
+
+    def _lose(self) -> None:
+        self._mode = Mode.LOST
+        self._driven_m = 0.0
+        self._next_search_m = self._parameters.recovery_every_m
 
     def _track(self, seen: Evidence) -> None:
         self._mode = Mode.TRACKING

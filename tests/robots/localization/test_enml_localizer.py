@@ -173,6 +173,19 @@ def test_a_kidnapped_robot_says_so_and_finds_itself_again() -> None:
     assert found
 
 
+@pytest.mark.slow
+def test_a_robot_that_starts_anywhere_says_that_it_is_lost_until_it_finds_itself() -> None:
+    poses = way(40)
+    localizer = EnmlLocalizer(FLOOR, start=poses[0])
+    localizer.reset(np.zeros(3), np.diag([100.0, 100.0, 10.0]))
+    estimates = [localizer.update(*step) for step in drive(poses)]
+    assert estimates[0].is_lost
+    assert not estimates[-1].is_lost
+    assert off(estimates[-1], poses[-1])[0] < 0.1
+    for estimate, pose in zip(estimates, poses, strict=True):
+        assert estimate.is_lost or off(estimate, pose)[0] < 0.5
+
+
 @pytest.mark.parametrize(
     "ranges",
     [
