@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from maps.compiled import compiled
+from robots.localization.enml.global_search import fits
 from robots.localization.enml.parameters import EnmlParameters
 from robots.localization.enml.problem import Floats
 from robots.localization.mcl.likelihood_field import DistanceField
@@ -18,10 +19,8 @@ from robots.localization.pose import Poses, turn, wrap_angle
 
 Grid = NDArray[np.float32]
 
-_CELL_M = 0.1
 _WIDTH_M = 0.2
 """Standard deviation of how well a point fits, in the grid."""
-_SPLAT_CELLS = 4
 _MAX_REACH_M = 12.0
 """What is farther away turns out of the grid with the smallest error of the heading."""
 _MAX_POINTS = 120
@@ -29,6 +28,7 @@ _DEVIATIONS = 3.0
 """The lattice reaches this many standard deviations of odometry to each side."""
 _MIN_TURN_RAD = np.radians(8.0)
 _MAX_TURN_RAD = np.radians(25.0)
+_TURN_STEP_RAD = np.radians(2.0)
 _MIN_SHIFT_M = 0.1
 _MAX_SHIFT_M = 0.6
 
@@ -41,52 +41,84 @@ class Aligned:
     gain: float
 
 
-def align(
-    field: DistanceField | None,
-    recent: Floats,
-    points: Floats,
-    predicted: Poses,
-    deviations: Poses,
-    parameters: EnmlParameters,
-) -> Aligned:
-    """Search around a prediction.
+class Aligner:
+    """Lays scans over a map, and over what was seen just before."""
 
-    `recent` are points (n, 2) of the last scans in the map's frame, `points` those of the newest in
-    the robot's. Without a field of the map, only recent points count. `deviations` are those of
-    odometry along x, y (metres) and heading (radians).
-    """
-    near = points[np.hypot(*points.T) < _MAX_REACH_M]
-    if not len(near):
-        return Aligned(predicted, 0.0)
-    near = near[:: len(near) // _MAX_POINTS + 1]
-    reach_m = float(np.percentile(np.hypot(*near.T), 80))
-    shift_m = float(np.clip(_DEVIATIONS * deviations[:2].max(), _MIN_SHIFT_M, _MAX_SHIFT_M))
-    turn_rad = float(np.clip(_DEVIATIONS * deviations[2], _MIN_TURN_RAD, _MAX_TURN_RAD))
-    turn_step = min(_CELL_M / max(reach_m, 1.0), np.radians(2.0))
-    turns = _both_ways(turn_rad, turn_step)
-    shifts = _both_ways(shift_m, _CELL_M)
-    half_m = _MAX_REACH_M + shift_m + _CELL_M
-    grid, origin = _surroundings(field, recent, predicted[:2], half_m)
-    scores = np.empty((len(turns), len(shifts), len(shifts)))
-    turned = np.stack([turn(float(predicted[2] + each), near) for each in turns])
-    score_lattice(
-        grid, (predicted[:2] - origin) / _CELL_M, turned / _CELL_M, len(shifts) // 2, scores
-    )
-    scores *= parameters.alignment_weight * len(points) / len(near)
-    doubt = (turns[:, None, None] / deviations[2]) ** 2 + (
+    def __init__(self, field: DistanceField, parameters: EnmlParameters) -> None:
+        self._parameters = parameters
+        self._origin = field.origin
+        self._cell_m = field.cell_m
+        self._fit = fits(field, _WIDTH_M)
+        half = int(np.ceil(2.0 * _WIDTH_M / field.cell_m))
+        away = np.hypot(*np.mgrid[-half : half + 1, -half : half + 1]) * field.cell_m
+        self._stamp = np.exp(-0.5 * (away / _WIDTH_M) ** 2).astype(np.float32)
+
+    def align(
+        self,
+        recent: Floats,
+        points: Floats,
+        predicted: Poses,
+        deviations: Poses,
+        *,
+        on_map: bool = True,
+    ) -> Aligned:
+        """Search around a prediction.
+
+        `recent` are points (n, 2) of the last scans in the map's frame, `points` those of the
+        newest in the robot's. `deviations` are those of odometry along x, y (metres) and heading
+        (radians). Unless `on_map`, only recent points count.
+        """
+        near = points[np.hypot(*points.T) < _MAX_REACH_M]
+        if not len(near):
+            return Aligned(predicted, 0.0)
+        near = near[:: len(near) // _MAX_POINTS + 1]
+        reach_m = float(np.percentile(np.hypot(*near.T), 80))
+        shift_m = float(np.clip(_DEVIATIONS * deviations[:2].max(), _MIN_SHIFT_M, _MAX_SHIFT_M))
+        turn_rad = float(np.clip(_DEVIATIONS * deviations[2], _MIN_TURN_RAD, _MAX_TURN_RAD))
+        turns = _both_ways(turn_rad, min(self._cell_m / max(reach_m, 1.0), _TURN_STEP_RAD))
+        shifts = _both_ways(shift_m, self._cell_m)
+        grid, origin = self._surroundings(recent, predicted[:2], shift_m, on_map)
+        turned = np.stack([turn(float(predicted[2] + each), near) for each in turns])
+        scores = np.empty((len(turns), len(shifts), len(shifts)))
+        center = (predicted[:2] - origin) / self._cell_m
+        score_lattice(grid, center, turned / self._cell_m, len(shifts) // 2, scores)
+        scores *= self._parameters.alignment_weight * len(points) / len(near)
+        scores -= _doubt(turns, shifts, deviations)
+        best = np.unravel_index(int(scores.argmax()), scores.shape)
+        gain = scores[best] - scores[tuple(size // 2 for size in scores.shape)]
+        moved = np.array([shifts[best[1]], shifts[best[2]], turns[best[0]]])
+        pose = predicted + moved
+        pose[2] = wrap_angle(pose[2])
+        return Aligned(pose, float(gain))
+
+    def _surroundings(
+        self, recent: Floats, center: Floats, shift_m: float, on_map: bool
+    ) -> tuple[Grid, Floats]:
+        """How well a point fits at each cell of a square around a place, and its corner."""
+        half = int(np.ceil((_MAX_REACH_M + shift_m) / self._cell_m)) + 1
+        size = 2 * half + 1
+        column, row = np.rint((center - self._origin) / self._cell_m).astype(np.int64) - half
+        grid = np.zeros((size, size), dtype=np.float32)
+        if on_map:
+            height, width = self._fit.shape
+            rows = slice(max(row, 0), min(row + size, height))
+            columns = slice(max(column, 0), min(column + size, width))
+            if rows.start < rows.stop and columns.start < columns.stop:
+                grid[
+                    rows.start - row : rows.stop - row,
+                    columns.start - column : columns.stop - column,
+                ] = self._fit[rows, columns]
+        origin = self._origin + np.array([column, row]) * self._cell_m
+        splat(recent, origin, self._cell_m, self._stamp, grid)
+        return grid, origin
+
+
+def _doubt(turns: Floats, shifts: Floats, deviations: Poses) -> Floats:
+    """How unlikely odometry makes each place of the lattice (logarithm)."""
+    squares = (turns[:, None, None] / deviations[2]) ** 2 + (
         shifts[None, :, None] ** 2 + shifts[None, None, :] ** 2
     ) / deviations[:2].max() ** 2
-    scores -= np.log1p(doubt)
-    best = np.unravel_index(int(scores.argmax()), scores.shape)
-    middle = tuple(size // 2 for size in scores.shape)
-    pose = np.array(
-        [
-            predicted[0] + shifts[best[1]],
-            predicted[1] + shifts[best[2]],
-            wrap_angle(predicted[2] + turns[best[0]]),
-        ]
-    )
-    return Aligned(pose, float(scores[best] - scores[middle]))
+    return np.asarray(np.log1p(squares))
 
 
 def _both_ways(reach: float, step: float) -> Floats:
@@ -94,58 +126,20 @@ def _both_ways(reach: float, step: float) -> Floats:
     return np.asarray(np.arange(-count, count + 1) * step, dtype=np.float64)
 
 
-def _surroundings(
-    field: DistanceField | None, recent: Floats, center: Floats, half_m: float
-) -> tuple[Grid, Floats]:
-    """How well a point fits at each cell of a square around a place, and the square's corner."""
-    cells = int(np.ceil(2.0 * half_m / _CELL_M)) + 1
-    grid = np.zeros((cells, cells), dtype=np.float32)
-    origin = center - half_m
-    if field is not None:
-        fill_from_field(
-            field.distances, field.origin, field.cell_m, origin, _CELL_M, _WIDTH_M, grid
-        )
-    splat(recent, origin, _CELL_M, _WIDTH_M, _SPLAT_CELLS, grid)
-    return grid, origin
-
-
 @compiled
-def fill_from_field(
-    distances: Grid,
-    field_origin: Floats,
-    field_cell_m: float,
-    origin: Floats,
-    cell_m: float,
-    width_m: float,
-    grid: Grid,
-) -> None:
-    """Write how well a point fits onto the nearest wall, for every cell of a grid."""
-    reach = 3.0 * width_m
-    for row in range(grid.shape[0]):
-        y = int((origin[1] + row * cell_m - field_origin[1]) / field_cell_m + 0.5)
-        if y < 0 or y >= distances.shape[0]:
-            continue
-        for column in range(grid.shape[1]):
-            x = int((origin[0] + column * cell_m - field_origin[0]) / field_cell_m + 0.5)
-            if x < 0 or x >= distances.shape[1]:
-                continue
-            gap = distances[y, x]
-            if gap < reach:
-                grid[row, column] = np.exp(-0.5 * (gap / width_m) ** 2)
-
-
-@compiled
-def splat(
-    points: Floats, origin: Floats, cell_m: float, width_m: float, cells: int, grid: Grid
-) -> None:
+def splat(points: Floats, origin: Floats, cell_m: float, stamp: Grid, grid: Grid) -> None:
     """Let a point fit onto each of some points (map's frame), as well as onto walls."""
+    half = stamp.shape[0] // 2
     for index in range(points.shape[0]):
-        x, y = (points[index, 0] - origin[0]) / cell_m, (points[index, 1] - origin[1]) / cell_m
-        column, row = int(np.floor(x + 0.5)), int(np.floor(y + 0.5))
-        for r in range(max(row - cells, 0), min(row + cells + 1, grid.shape[0])):
-            for c in range(max(column - cells, 0), min(column + cells + 1, grid.shape[1])):
-                away = ((r - y) ** 2 + (c - x) ** 2) * (cell_m / width_m) ** 2
-                grid[r, c] = max(grid[r, c], np.exp(-0.5 * away))
+        column = int(np.floor((points[index, 0] - origin[0]) / cell_m + 0.5))
+        row = int(np.floor((points[index, 1] - origin[1]) / cell_m + 0.5))
+        if not (half <= row < grid.shape[0] - half and half <= column < grid.shape[1] - half):
+            continue
+        for r in range(-half, half + 1):
+            for c in range(-half, half + 1):
+                fit = stamp[r + half, c + half]
+                if fit > grid[row + r, column + c]:
+                    grid[row + r, column + c] = fit
 
 
 @compiled

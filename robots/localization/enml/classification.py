@@ -49,7 +49,7 @@ class LongTermFeatures:
         )
         node.is_ltf = found >= 0
         rows = np.flatnonzero(node.is_ltf)
-        node.ltf = LtfMatches(rows, lines[rows, :2], lines[rows, 2])
+        node.ltf = LtfMatches(rows, node.scan_points.points[rows], lines[rows, :2], lines[rows, 2])
         node.cast_pose, node.cast_gate_m, node.expected_m = pose.copy(), node.gate_m, expected_m
         return True
 

@@ -88,7 +88,7 @@ class Episode:
             ),
             odometry_width=parameters.odometry_robust_width,
             ltf=_ltf_constraints(nodes, width_m / parameters.ltf_gate_m),
-            stf=stf_constraints(nodes, ties, width_m),
+            stf=stf_constraints(ties, width_m),
             ltf_weight=parameters.ltf_correlation / parameters.laser_std_m**2,
             stf_weight=parameters.stf_correlation / parameters.laser_std_m**2,
         )
@@ -110,7 +110,7 @@ def _ltf_constraints(nodes: list[PoseNode], width_per_gate: float) -> LtfConstra
     counts = [len(node.ltf.rows) for node in nodes]
     return LtfConstraints(
         start=np.concatenate([[0], np.cumsum(counts)]).astype(np.int64),
-        points=np.concatenate([node.scan_points.points[node.ltf.rows] for node in nodes]),
+        points=np.concatenate([node.ltf.points for node in nodes]),
         normals=np.concatenate([node.ltf.normals for node in nodes]),
         offsets=np.concatenate([node.ltf.offsets for node in nodes]),
         widths_m=np.array([node.gate_m * width_per_gate for node in nodes]),

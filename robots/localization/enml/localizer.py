@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from maps.vector_map import VectorMap
 from robots.localization.enml import normal_equations
-from robots.localization.enml.alignment import align
+from robots.localization.enml.alignment import Aligner
 from robots.localization.enml.classification import LongTermFeatures
 from robots.localization.enml.correspondences import ShortTermFeatures
 from robots.localization.enml.episode import Episode, Ties
@@ -29,6 +29,7 @@ _FIELD_CELL_M = 0.1
 _FIELD_REACH_M = 1.0
 _LOST_STD = np.array([10.0, 10.0, np.pi])
 _FOUND_STD = np.array([0.3, 0.3, np.radians(5.0)])
+_LEAST_VARIANCE = 1e-8
 _LEAST_JUDGED = 3
 _LEAST_RETURNS = 20.0
 _FIRST_STD = np.array([0.1, 0.1, np.radians(3.0)])
@@ -57,12 +58,13 @@ class EnmlLocalizer:
         self._long_term = LongTermFeatures(
             vector_map.segments, DEFAULT_MAX_RANGE_M, self._parameters
         )
-        self._field = distance_field(vector_map, _FIELD_CELL_M, _FIELD_REACH_M)
+        field = distance_field(vector_map, _FIELD_CELL_M, _FIELD_REACH_M)
+        self._aligner = Aligner(field, self._parameters)
         x_min, y_min, x_max, y_max = vector_map.bounds
         self._recovery = Recovery(
             vector_map.segments,
             Region(x_min, y_min, x_max, y_max),
-            self._field,
+            field,
             DEFAULT_MAX_RANGE_M,
             self._parameters,
         )
@@ -74,12 +76,20 @@ class EnmlLocalizer:
         self.reset(np.zeros(3) if start is None else start)
 
     def reset(self, pose: Poses, covariance: NDArray[np.float64] | None = None) -> None:
-        """Start anew at a pose, with its (3, 3) covariance or one that is small."""
+        """Start anew at a pose, with its (3, 3) covariance or one that is small.
+
+        A covariance wider than the place near which a lost robot is looked for says that the robot
+        is lost: it is then looked for everywhere.
+        """
         if covariance is None:
             covariance = np.diag(_FIRST_STD**2)
+        covariance = np.asarray(covariance, dtype=np.float64) + _LEAST_VARIANCE * np.eye(3)
         self._stream = ScanStream()
-        self._track(Evidence())
         self._short_term.forget()
+        if covariance[0, 0] + covariance[1, 1] > self._parameters.recovery_near_m**2:
+            self._lose()
+        else:
+            self._track(Evidence())
         self._episode = Episode(
             self._parameters, np.asarray(pose, dtype=np.float64), whitening_of(covariance)
         )
@@ -127,9 +137,7 @@ class EnmlLocalizer:
             and self._evidence.returns >= _LEAST_RETURNS
             and self._evidence.lost > self._parameters.lost_above
         ):
-            self._mode = Mode.LOST
-            self._driven_m = 0.0
-            self._next_search_m = self._parameters.recovery_every_m
+            self._lose()
             self._episode.begin_anew(np.diag(1.0 / _LOST_STD))
 
     def _look_for_place(self, covariance: Floats) -> Floats:
@@ -145,6 +153,11 @@ class EnmlLocalizer:
             node.gate_m = 2.0 * self._parameters.ltf_gate_m
         self._track(found.evidence)
         return self._settle()
+
+    def _lose(self) -> None:
+        self._mode = Mode.LOST
+        self._driven_m = 0.0
+        self._next_search_m = self._parameters.recovery_every_m
 
     def _track(self, seen: Evidence) -> None:
         self._mode = Mode.TRACKING
@@ -174,13 +187,12 @@ class EnmlLocalizer:
             ]
         ]
         newest = nodes[-1]
-        aligned = align(
-            self._field if self._mode is Mode.TRACKING else None,
+        aligned = self._aligner.align(
             np.concatenate([np.zeros((0, 2)), *recent]),
             newest.scan_points.points,
             poses[-1],
             newest.travel.deviations(parameters),
-            parameters,
+            on_map=self._mode is Mode.TRACKING,
         )
         if aligned.gain > parameters.alignment_min_gain:
             poses[-1] = aligned.pose

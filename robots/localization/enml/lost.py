@@ -8,9 +8,11 @@ from numpy.typing import NDArray
 from robots.localization.enml.pose_node import PoseNode
 from robots.localization.enml.problem import Floats
 
-_AT_WALL_M = 0.25
-_BEHIND_WALL_M = 0.5
-_UNMAPPED_COUNTS = 0.15
+_AT_WALL_M = 0.15
+_BEHIND_WALL_M = 0.4
+_BEHIND_COUNTS = 3.0
+"""Right poses see a few percent of their returns behind walls that are gone, wrong ones a third."""
+_BEFORE_COUNTS = 0.15
 """What stands in front of a wall may be furniture: it speaks against a pose, but weakly."""
 
 
@@ -32,7 +34,7 @@ class Evidence:
     @property
     def lost(self) -> float:
         """From 0 (the map explains all returns) to 1 (none)."""
-        against = self.behind + _UNMAPPED_COUNTS * self.before
+        against = _BEHIND_COUNTS * self.behind + _BEFORE_COUNTS * self.before
         total = against + self.on_map
         return against / total if total > 0.0 else 1.0
 

@@ -110,5 +110,6 @@ class EnmlParameters:
             raise ValueError("stf_separations must name at least one pose back, counted from 1")
         if self.ltf_widest_gate_m < self.ltf_gate_m:
             raise ValueError("ltf_widest_gate_m must not be below ltf_gate_m")
-        if max(self.ltf_max_angle_rad, self.stf_max_angle_rad) > pi / 2:
-            raise ValueError("angles between normals must not be above a right angle")
+        for name in ("ltf_max_angle_rad", "stf_max_angle_rad"):
+            if getattr(self, name) > pi / 2:
+                raise ValueError(f"{name} must not be above a right angle")

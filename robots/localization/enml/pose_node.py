@@ -14,18 +14,21 @@ from robots.localization.scan import Scan
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LtfMatches:
-    """The points that lie on lines of the map, as rows of the node's points, and those lines.
+    """Points (robot's frame) that lie on lines of the map, their rows, and those lines.
 
     A line is normal . point + offset = 0 in the map's frame.
     """
 
     rows: Indices
+    points: Floats
     normals: Floats
     offsets: Floats
 
     @classmethod
     def none(cls) -> "LtfMatches":
-        return cls(np.zeros(0, dtype=np.int64), np.zeros((0, 2)), np.zeros(0))
+        """Nothing lies on the map."""
+        nothing = np.zeros((0, 2))
+        return cls(np.zeros(0, dtype=np.int64), nothing, nothing, np.zeros(0))
 
 
 @dataclass(slots=True, eq=False)

@@ -17,7 +17,7 @@ _THINNED_M = 0.25
 _CANDIDATES = 40
 _SCANS_WEIGHED = 5
 _ON_WALL_M = 0.15
-_BEHIND_COUNTS = 1.0
+_BEHIND_COUNTS = 2.0
 _BEFORE_COUNTS = 0.15
 
 
@@ -73,7 +73,7 @@ class Recovery:
             return None
         best, seen = ranked[0]
         rivals = [_score(other) for place, other in ranked[1:] if not same_place(place, best)]
-        lead = _score(seen) - max(rivals, default=-1.0)
+        lead = _score(seen) - max(rivals, default=-2.0)
         enough = parameters.recovery_lead * max(0.0, 1.0 - path_m / parameters.recovery_patience_m)
         return Found(best, seen) if lead >= enough else None
 
@@ -95,7 +95,7 @@ class Recovery:
 
 
 def _score(seen: Evidence) -> float:
-    """From -1 to 1: explained returns, less those that could not be."""
+    """From -2 to 1: explained returns, less those that could not be."""
     if not seen.returns:
         return 0.0
     against = _BEHIND_COUNTS * seen.behind + _BEFORE_COUNTS * seen.before
