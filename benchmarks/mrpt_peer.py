@@ -45,9 +45,9 @@ def mrpt_poses(vector_map: VectorMap, log: Log) -> NDArray[np.float64]:
         raise RuntimeError("pf-localization printed no estimate")
     poses = np.array(found)
     poses[:, 2] = np.radians(poses[:, 2])
-    # It starts one scan late or ends one early, depending on how the log begins.
+    # One estimate per scan; what comes before the first motion may be missing.
     missing = max(len(log) - len(poses), 0)
-    return np.vstack((np.tile(log.start, (missing, 1)), poses))[: len(log)]
+    return np.vstack((np.tile(log.start, (missing, 1)), poses))[-len(log) :]
 
 
 def _run(folder: Path, *command: str) -> str:
@@ -67,6 +67,8 @@ def _write_carmen(log: Log, path: Path) -> None:
             pose = " ".join(f"{value:.6f}" for value in odometry)
             scan = " ".join(f"{value:.2f}" for value in ranges)
             time_s = f"{step.scan.time_s:.6f}"
+            # Its motions come from ODOM lines alone.
+            file.write(f"ODOM {pose} 0 0 0 {time_s} mend {time_s}\n")
             file.write(f"FLASER {len(ranges)} {scan} {pose} {pose} {time_s} mend {time_s}\n")
 
 
@@ -107,6 +109,10 @@ sampleSize=1
 PF_algorithm=0
 adaptiveSampleSize=0
 
+[DummyOdometryParams]
+minStdXY=0.02
+minStdPHI=0.5
+
 [LocalizationExperiment]
 rawlog_file=drive.rawlog
 map_file=map.gridmap.gz
@@ -119,11 +125,11 @@ init_PDF_min_x={x - 0.2:.4f}
 init_PDF_max_x={x + 0.2:.4f}
 init_PDF_min_y={y - 0.2:.4f}
 init_PDF_max_y={y + 0.2:.4f}
-init_PDF_min_phi_deg={np.degrees(theta) - 4.0:.4f}
-init_PDF_max_phi_deg={np.degrees(theta) + 4.0:.4f}
+init_PDF_min_yaw_deg={np.degrees(theta) - 4.0:.4f}
+init_PDF_max_yaw_deg={np.degrees(theta) + 4.0:.4f}
 SHOW_PROGRESS_3D_REAL_TIME=false
 3DSceneFrequency=1000000
-SAVE_STATS_ONLY=true
+SAVE_STATS_ONLY=false
 
 [MetricMap]
 occupancyGrid_count=1
@@ -142,8 +148,8 @@ likelihoodMethod=4
 LF_decimation=5
 LF_stdHit=0.10
 LF_maxCorrsDistance=0.30
-LF_zHit=0.95
-LF_zRandom=0.05
+LF_zHit=0.80
+LF_zRandom=0.20
 LF_maxRange=80
 LF_alternateAverageMethod=0
 MI_exponent=10
