@@ -68,7 +68,8 @@ async def test_a_spoken_answer_is_an_answer(
     assert isinstance(event, Answered)
     assert (event.answer, event.helper) == (answer, "anna")
     assert "I dropped the pink bar. Shall I pick it up again?" in told
-    assert f'You: "{says}"' in told
+    # Which of the phrases for it was heard is told, whatever the noise made of its end.
+    assert any(line.startswith(f'You: "{answer}') for line in told)
     assert device.played[0].startswith(b"RIFF")
 
 
