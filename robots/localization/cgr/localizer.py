@@ -6,15 +6,16 @@ from numpy.typing import NDArray
 from maps.vector_map import VectorMap
 from robots.localization.cgr.parameters import CgrParameters
 from robots.localization.cgr.refinement import Refinement
-from robots.localization.localizer import Estimate, PointClass
-from robots.localization.particles.motion import moved, scattered
+from robots.localization.localizer import Estimate
+from robots.localization.particles.cloud import ParticleCloud
+from robots.localization.particles.motion import moved
 from robots.localization.particles.weights import mean_pose, normalized, resampled
 from robots.localization.points import ScanPoints, scan_points
 from robots.localization.pose import Poses, wrap
-from robots.localization.scan import Scan, ScanStream
+from robots.localization.scan import Scan
 
 
-class CgrLocalizer:
+class CgrLocalizer(ParticleCloud):
     """Follows one robot; the same seed and input give the same estimates."""
 
     def __init__(
@@ -26,21 +27,9 @@ class CgrLocalizer:
     ) -> None:
         """Stands at the origin until `reset`."""
         self.parameters = parameters or CgrParameters()
+        super().__init__(self.parameters, seed)
         self._refine = Refinement(np.array(vector_map.segments), self.parameters)
-        self._generator = np.random.default_rng(seed)
         self.reset(np.zeros(3))
-
-    def reset(self, pose: Poses, covariance: NDArray[np.float64] | None = None) -> None:
-        """Scatter the particles around a pose."""
-        its = self.parameters
-        deviations = (
-            np.array([its.start_deviation_m, its.start_deviation_m, its.start_deviation_rad])
-            if covariance is None
-            else np.sqrt(np.diag(covariance))
-        )
-        self._particles = scattered(np.asarray(pose), deviations, its.particles, self._generator)
-        self._stream = ScanStream()
-        self._lost = 0.0
 
     def update(self, odometry: Poses, scan: Scan) -> Estimate:
         """Raises `InvalidScanError`, and is then as it was before."""
@@ -87,9 +76,5 @@ class CgrLocalizer:
         sensor: Poses,
         reach_m: float,
     ) -> Estimate:
-        its = self.parameters
-        explained = self._refine.distances(pose, points, sensor, reach_m) < its.explained_within_m
-        unexplained = 1.0 - float(explained.mean()) if len(points) else 1.0
-        self._lost = its.lost_memory * self._lost + (1.0 - its.lost_memory) * unexplained
-        classes = np.where(explained, PointClass.LTF, PointClass.DF).astype(np.int8)
-        return Estimate(pose, covariance, points, classes, self._lost, self._lost > its.lost_above)
+        away_m = self._refine.distances(pose, points, sensor, reach_m)
+        return self._estimated(pose, covariance, points, away_m)

@@ -3,14 +3,14 @@
 "Published" is the configuration that its authors drove with.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from math import radians
 
-from robots.localization.particles.motion import MotionNoise
+from robots.localization.particles.parameters import ParticleParameters
 
 
-@dataclass(frozen=True, slots=True)
-class CgrParameters:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CgrParameters(ParticleParameters):
     """The same everywhere."""
 
     particles: int = 20
@@ -43,14 +43,3 @@ class CgrParameters:
     """Spread of particles drawn more than once; published."""
     jitter_rad: float = radians(5.0)
     """The same for the heading; published."""
-    min_range_m: float = 0.05
-    max_range_m: float = 30.0
-    start_deviation_m: float = 0.1
-    start_deviation_rad: float = radians(3.0)
-    explained_within_m: float = 0.25
-    """A point this near the line that it was seen on is put down to the map."""
-    lost_above: float = 0.8
-    """Lost is said when more than this share of the points is unexplained, on average."""
-    lost_memory: float = 0.7
-    """How much of the lost measure is carried from one scan to the next."""
-    motion: MotionNoise = field(default_factory=MotionNoise)

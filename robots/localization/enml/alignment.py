@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from maps.compiled import compiled
+from robots.localization.distance_field import DistanceField
 from robots.localization.enml.global_search import fits
 from robots.localization.enml.parameters import EnmlParameters
 from robots.localization.enml.problem import Floats
-from robots.localization.mcl.likelihood_field import DistanceField
 from robots.localization.pose import Poses, turn, wrap_angle
 
 Grid = NDArray[np.float32]

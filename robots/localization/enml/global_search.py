@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter
 
 from maps.compiled import compiled
+from robots.localization.distance_field import DistanceField
 from robots.localization.enml.problem import Floats, Indices
-from robots.localization.mcl.likelihood_field import DistanceField
 from robots.localization.pose import Poses, wrap
 
 Grid = NDArray[np.float32]

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from maps.vector_map import VectorMap
+from robots.localization.distance_field import distance_field
 from robots.localization.enml import normal_equations
 from robots.localization.enml.alignment import Aligner
 from robots.localization.enml.classification import LongTermFeatures
@@ -20,7 +21,6 @@ from robots.localization.enml.problem import Floats
 from robots.localization.enml.recovery import Recovery
 from robots.localization.enml.solver import Linearize, Solution, solve
 from robots.localization.localizer import Estimate, PointClass
-from robots.localization.mcl.likelihood_field import distance_field
 from robots.localization.points import DEFAULT_MAX_RANGE_M, scan_points
 from robots.localization.pose import Poses, transform, wrap, wrap_angle
 from robots.localization.scan import Scan, ScanStream

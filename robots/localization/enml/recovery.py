@@ -4,13 +4,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from robots.localization.distance_field import DistanceField
 from robots.localization.enml.classification import cast_bearings
 from robots.localization.enml.episode import Episode
 from robots.localization.enml.global_search import Region, best_places, same_place
 from robots.localization.enml.lost import Evidence, evidence
 from robots.localization.enml.parameters import EnmlParameters
 from robots.localization.enml.problem import Floats
-from robots.localization.mcl.likelihood_field import DistanceField
 from robots.localization.pose import Poses, compose, relative, transform
 
 _THINNED_M = 0.25

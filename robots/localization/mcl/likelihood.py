@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from maps.compiled import compiled
-from robots.localization.mcl.likelihood_field import DistanceField, Grid, interpolated
+from robots.localization.distance_field import DistanceField, Grid, interpolated
 from robots.localization.mcl.parameters import MclParameters
 from robots.localization.pose import Poses
 

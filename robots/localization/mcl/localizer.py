@@ -4,11 +4,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from maps.vector_map import VectorMap
-from robots.localization.localizer import Estimate, PointClass
+from robots.localization.distance_field import distance_field
+from robots.localization.localizer import Estimate
 from robots.localization.mcl.likelihood import FieldLikelihood
-from robots.localization.mcl.likelihood_field import distance_field
 from robots.localization.mcl.parameters import MclParameters
-from robots.localization.particles.motion import moved, scattered
+from robots.localization.particles.cloud import ParticleCloud
+from robots.localization.particles.motion import moved
 from robots.localization.particles.weights import (
     effective_count,
     mean_pose,
@@ -17,10 +18,10 @@ from robots.localization.particles.weights import (
 )
 from robots.localization.points import ScanPoints, scan_points
 from robots.localization.pose import Poses, compose, transform
-from robots.localization.scan import Scan, ScanStream
+from robots.localization.scan import Scan
 
 
-class MclLocalizer:
+class MclLocalizer(ParticleCloud):
     """Follows one robot; the same seed and input give the same estimates."""
 
     def __init__(
@@ -32,27 +33,19 @@ class MclLocalizer:
     ) -> None:
         """Stands at the origin until `reset`. Raises `ValueError` where the map is too large."""
         self.parameters = parameters or MclParameters()
+        super().__init__(self.parameters, seed)
         self._field = distance_field(
             vector_map, self.parameters.cell_m, self.parameters.field_reach_m
         )
         self._likelihood = FieldLikelihood(self._field, self.parameters)
-        self._generator = np.random.default_rng(seed)
         self.reset(np.zeros(3))
 
     def reset(self, pose: Poses, covariance: NDArray[np.float64] | None = None) -> None:
         """Scatter the particles around a pose."""
-        its = self.parameters
-        deviations = (
-            np.array([its.start_deviation_m, its.start_deviation_m, its.start_deviation_rad])
-            if covariance is None
-            else np.sqrt(np.diag(covariance))
-        )
-        self._particles = scattered(np.asarray(pose), deviations, its.particles, self._generator)
-        self._log_weights = np.zeros(its.particles)
-        self._stream = ScanStream()
+        super().reset(pose, covariance)
+        self._log_weights = np.zeros(self.parameters.particles)
         self._pending = np.zeros(3)
         self._way_m = self._turned = np.inf
-        self._lost = 0.0
 
     def update(self, odometry: Poses, scan: Scan) -> Estimate:
         """Raises `InvalidScanError`, and is then as it was before."""
@@ -87,10 +80,5 @@ class MclLocalizer:
     def _estimate(
         self, pose: Poses, covariance: NDArray[np.float64], points: ScanPoints
     ) -> Estimate:
-        its = self.parameters
-        away = self._field.at(transform(pose, points.points))
-        explained = away < its.explained_within_m
-        unexplained = 1.0 - float(explained.mean()) if len(points) else 1.0
-        self._lost = its.lost_memory * self._lost + (1.0 - its.lost_memory) * unexplained
-        classes = np.where(explained, PointClass.LTF, PointClass.DF).astype(np.int8)
-        return Estimate(pose, covariance, points, classes, self._lost, self._lost > its.lost_above)
+        away_m = self._field.at(transform(pose, points.points))
+        return self._estimated(pose, covariance, points, away_m)

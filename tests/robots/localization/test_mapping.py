@@ -7,9 +7,9 @@ import pytest
 from made_up_floor import FLOOR
 
 from maps.vector_map import VectorMap
+from robots.localization.distance_field import distance_field
 from robots.localization.logs.log import Log
 from robots.localization.mapping import map_of
-from robots.localization.mcl.likelihood_field import distance_field
 from robots.localization.pose import compose, relative
 from robots.localization.scan_matching import matched_poses
 from robots.localization.synthetic.settings import SceneSettings

@@ -9,9 +9,9 @@ from made_up_floor import FLOOR
 
 from maps.vector_map import VectorMap
 from robots.localization.cgr.localizer import CgrLocalizer
+from robots.localization.distance_field import distance_field
 from robots.localization.evaluation import Trace, follow, summarize
 from robots.localization.localizer import Localizer, PointClass
-from robots.localization.mcl.likelihood_field import distance_field
 from robots.localization.mcl.localizer import MclLocalizer
 from robots.localization.scan import InvalidScanError, Scan
 from robots.localization.synthetic.settings import SceneSettings
