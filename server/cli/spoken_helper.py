@@ -6,6 +6,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from uuid import UUID
 
+from server.api.helper_messages import Error
 from server.api.speech_messages import (
     AnySpeechServerMessage,
     Ended,
@@ -13,7 +14,6 @@ from server.api.speech_messages import (
     HeardMessage,
     Listening,
     Say,
-    SpeechError,
 )
 from server.cli.sound_device import SoundDevice
 from server.client import MendClient, RefusedError
@@ -171,6 +171,6 @@ class SpokenHelper:
                 self._tell("(listening)")
             case GaveUp():
                 self._tell("I did not understand you. Please answer in the console.")
-            case SpeechError(detail=detail):
+            case Error(detail=detail):
                 self._tell(f"This question cannot be talked about: {detail}.")
-        return isinstance(message, Ended | SpeechError)
+        return isinstance(message, Ended | Error)
