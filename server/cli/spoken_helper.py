@@ -16,9 +16,10 @@ from server.api.speech_messages import (
     Say,
 )
 from server.cli.sound_device import SoundDevice
-from server.client import MendClient, RefusedError
+from server.client import MendClient
+from server.client_errors import CommandRefusedError, RefusedError
 from server.client_speech import SpeechStream
-from server.client_stream import CommandRefusedError, EventStream
+from server.client_stream import EventStream
 from server.journal.events import Answered, DialogueClosed, Prompt
 from server.runtime.views import Snapshot
 from server.speech.commands import Command
