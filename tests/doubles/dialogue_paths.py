@@ -13,16 +13,18 @@ CALLS = {Phase.ASKING: ("yes", "no"), Phase.AWAITING_HELP: ("seen", "not_seen")}
 
 
 def every_branch(script: Script, issue: Issue) -> list[Path]:
-    """The shortest paths (calls after `open`) first, each that takes a branch none before took.
+    """Paths (calls after `open`) that together take every branch, in few calls.
 
-    A branch is what was said last together with the call that follows.
+    A branch is what was said last together with the call that follows. A dialogue without
+    branches has one path, which has no calls.
     """
-    taken: set[tuple[str, str]] = set()
-    chosen = []
-    for path, branches in sorted(_paths(script, issue), key=lambda each: len(each[0])):
-        if not branches <= taken:
-            taken |= branches
-            chosen.append(path)
+    paths = list(_paths(script, issue))
+    left = set[tuple[str, str]]().union(*(branches for _, branches in paths))
+    chosen: list[Path] = []
+    while left or not chosen:
+        path, branches = max(paths, key=lambda each: len(each[1] & left) / (1 + len(each[0])))
+        chosen.append(path)
+        left -= branches
     return chosen
 
 

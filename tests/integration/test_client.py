@@ -10,8 +10,13 @@ from recorded_service import recorded_events
 from sample_events import detected, paused
 from service_under_test import TOKEN, ServiceUnderTest, build, serving
 
-from server.client import MendClient, RefusedError, UnreachableError
-from server.client_stream import CommandRefusedError, StreamRefusedError
+from server.client import MendClient
+from server.client_errors import (
+    CommandRefusedError,
+    RefusedError,
+    StreamRefusedError,
+    UnreachableError,
+)
 from server.journal.events import Answered, Event, RunAborted, RunStarted
 from server.journal.journal import Entry
 from server.runtime.requests import RunRequest
