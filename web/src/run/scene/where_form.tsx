@@ -15,7 +15,10 @@ export function WhereForm({ object, places, drawn, onPlace, onCancel }: Props) {
   const [place, setPlace] = useState(places[0] ?? "");
   const form = useRef<HTMLFormElement>(null);
   // Chosen from a menu that is gone by now: whoever uses keys goes on here.
-  useEffect(() => form.current?.querySelector<HTMLElement>("select, button")?.focus({ preventScroll: true }), []);
+  useEffect(() => {
+    form.current?.scrollIntoView({ block: "nearest" });
+    form.current?.querySelector<HTMLElement>("select, button")?.focus({ preventScroll: true });
+  }, []);
   const submit = (event: SubmitEvent) => {
     event.preventDefault();
     onPlace(place);
