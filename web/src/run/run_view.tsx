@@ -16,8 +16,8 @@ import { openRun, type RunFeed } from "./run_feed";
 import { RunHeader } from "./run_header";
 import { Scrubber } from "./scrubber";
 import { Tabs, useNarrow } from "./tabs";
-import { Timeline } from "./timeline";
-import { lanesOf, type TimelineItem } from "./timeline_lanes";
+import { lanesOf, type TimelineItem } from "./timeline/lanes";
+import { Timeline } from "./timeline/timeline";
 import { Transcript } from "./transcript";
 import "./run.css";
 

@@ -42,18 +42,18 @@ export function createNames(host: HTMLElement, over: () => readonly HTMLElement[
       const taken = over().map(areaOf);
       const boxes = shown.map(({ name, x, y, rise, held }): NameBox => {
         const mark = markOf(name);
-        mark.spot.style.translate = `${x.toFixed(1)}px ${y.toFixed(1)}px`;
+        mark.spot.style.left = `${x.toFixed(1)}px`;
+        mark.spot.style.top = `${y.toFixed(1)}px`;
+        mark.spot.style.setProperty("--rise", `${rise.toFixed(0)}px`);
         mark.spot.classList.toggle("held", held);
         // Once: to measure it with every drawing would lay out the page each time.
         mark.size ??= { width: mark.text.offsetWidth, height: mark.text.offsetHeight };
         return { name, x, y: y - rise, held, ...mark.size };
       });
-      const rises = new Map(shown.map(({ name, rise }) => [name, rise]));
       for (const { name, aside, above } of placeNames(boxes, picture, taken)) {
-        const { style } = markOf(name).text;
+        const { style } = markOf(name).spot;
         style.setProperty("--aside", `${aside.toFixed(0)}px`);
-        style.setProperty("--rise", `${((rises.get(name) ?? 0) + above).toFixed(0)}px`);
-        style.setProperty("--above", `${Math.max(above, 0).toFixed(0)}px`);
+        style.setProperty("--above", `${above.toFixed(0)}px`);
       }
     },
   };

@@ -38,7 +38,7 @@ export function WhereForm({ object, places, drawn, onPlace, onCancel }: Props) {
           <label class="unseen" for="scene-place">
             Place
           </label>
-          <select id="scene-place" value={place} onChange={(event) => setPlace(event.currentTarget.value)}>
+          <select id="scene-place" class="input" value={place} onChange={(event) => setPlace(event.currentTarget.value)}>
             {places.map((each) => (
               <option key={each} value={each}>
                 {plain(each)}
