@@ -22,10 +22,10 @@ from statistics import mean
 
 import numpy as np
 
+from fleet.scheduling.dice import dice_from
 from fleet.scheduling.instances.transfer_benchmark import read_transfer_benchmark
 from fleet.scheduling.problem import Problem
 from fleet.scheduling.vlns.arrays import TOTAL, empty_plan, problem_arrays
-from fleet.scheduling.vlns.dice import dice_from
 from fleet.scheduling.vlns.insertion import Manner, insert_all, refresh
 from fleet.scheduling.vlns.solve import prepare, solve_vlns
 from fleet.scheduling.vlns.times import times_for

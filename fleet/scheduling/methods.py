@@ -11,8 +11,12 @@ from fleet.scheduling.cheapest_insertion import solve_by_insertion
 from fleet.scheduling.exact.solve import solve_exactly
 from fleet.scheduling.nearest_next import solve_by_nearest_next
 from fleet.scheduling.problem import Problem
+from fleet.scheduling.routing.arrays import unsupported
+from fleet.scheduling.routing.solve import prepare as prepare_alns
+from fleet.scheduling.routing.solve import solve_alns
 from fleet.scheduling.schedule import Schedule
 from fleet.scheduling.solution import Progress, Solution, Status, UnsupportedError
+from fleet.scheduling.vlns.solve import prepare as prepare_vlns
 from fleet.scheduling.vlns.solve import solve_vlns
 
 Clock = Callable[[], float]
@@ -45,12 +49,16 @@ class Solver(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Method:
-    """A solver; whether it plans around doors that open and close; whether it proves bounds."""
+    """A solver; whether it plans around doors that open and close; whether it proves bounds.
+
+    `prepare` compiles it, or loads what was compiled before.
+    """
 
     solve: Solver
     doors: bool
     proves: bool
     summary: str
+    prepare: Callable[[], None] | None = None
 
 
 def _exact_after_heuristics(
@@ -117,7 +125,10 @@ def _vlns(
 
 METHODS: Mapping[str, Method] = {
     "exact": Method(_exact_after_heuristics, False, True, "optimal, or with a proved bound"),
-    "vlns": Method(_vlns, False, False, "very large neighbourhood search with transfers"),
+    "vlns": Method(_vlns, False, False, "very large neighbourhoods with transfers", prepare_vlns),
+    "alns": Method(
+        solve_alns, False, False, "adaptive large neighbourhoods, no transfers", prepare_alns
+    ),
     "insertion": Method(solve_by_insertion, True, False, "each item where it costs least"),
     "greedy": Method(solve_by_nearest_next, True, False, "each robot what it reaches first"),
 }
@@ -155,7 +166,10 @@ def suited_method(problem: Problem) -> str:
     small = len(problem.items) <= EXACT_ITEMS
     if problem.travel.epochs:
         return "insertion"
-    return "exact" if small else "vlns"
+    if small:
+        return "exact"
+    alone = not problem.transfers.places and unsupported(problem) is None
+    return "alns" if alone else "vlns"
 
 
 def solve(
@@ -165,10 +179,12 @@ def solve(
     seconds: float,
     seed: int = 0,
     on_progress: Callable[[Progress], None] | None = None,
+    on_prepare: Callable[[], None] | None = None,
     clock: Clock,
 ) -> Solution:
     """Solve with a method by name, or `auto`.
 
+    `on_prepare` is called before a method is compiled or loaded, which does not count as its time.
     Raises `KeyError` for a name that is none and `UnsupportedError` for a problem that the method
     cannot do.
     """
@@ -178,6 +194,10 @@ def solve(
         raise UnsupportedError(
             f"the method '{method}' cannot plan with doors that open and close; {able} can"
         )
+    if chosen.prepare is not None:
+        if on_prepare is not None:
+            on_prepare()
+        chosen.prepare()
     return chosen.solve(
         problem, seconds=seconds, seed=seed, start=None, on_progress=on_progress, clock=clock
     )

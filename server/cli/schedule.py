@@ -68,6 +68,7 @@ def schedule(
                         seconds=seconds,
                         seed=seed,
                         on_progress=progress.take,
+                        on_prepare=lambda: progress.say(output.PREPARING),
                         clock=time.monotonic,
                     )
             except UnsupportedError as error:

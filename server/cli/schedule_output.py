@@ -15,6 +15,8 @@ from fleet.scheduling.solution import Progress, Solution
 BOUND_EVERY_S = 1.0
 """How often a better bound alone is worth a line."""
 
+PREPARING = "getting the search ready; its first use compiles it, which takes up to a minute"
+
 HEADINGS = ("robot", "arrival", "begin", "departure", "place", "what")
 
 VERBS = {
@@ -78,6 +80,13 @@ class ProgressOutput:
     def __exit__(self, *_: object) -> None:
         if self._spinner is not None:
             self._spinner.stop()
+
+    def say(self, words: str) -> None:
+        """Tell what is going on."""
+        if self._spinner is not None:
+            self._spinner.update(words)
+        else:
+            self.console.print(words)
 
     def take(self, progress: Progress) -> None:
         """Tell, if there is anything new."""

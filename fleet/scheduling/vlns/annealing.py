@@ -3,6 +3,8 @@
 from math import inf, log
 from typing import NamedTuple
 
+from fleet.scheduling.compiled import compiled
+from fleet.scheduling.dice import Dice, one_of, throw
 from fleet.scheduling.vlns.arrays import (
     BANKED,
     TOTAL,
@@ -13,8 +15,6 @@ from fleet.scheduling.vlns.arrays import (
     empty_plan,
     take_out,
 )
-from fleet.scheduling.vlns.compiled import compiled
-from fleet.scheduling.vlns.dice import Dice, one_of, throw
 from fleet.scheduling.vlns.insertion import Manner, insert_all, items_room, refresh
 from fleet.scheduling.vlns.removal import choose_items
 from fleet.scheduling.vlns.times import Times, times_for

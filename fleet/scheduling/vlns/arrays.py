@@ -11,8 +11,8 @@ from typing import NamedTuple, cast
 import numpy as np
 from numpy.typing import NDArray
 
+from fleet.scheduling.compiled import compiled
 from fleet.scheduling.problem import Problem
-from fleet.scheduling.vlns.compiled import compiled
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]

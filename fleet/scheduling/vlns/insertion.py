@@ -5,9 +5,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fleet.scheduling.compiled import compiled
+from fleet.scheduling.dice import Dice, shuffle, throw
 from fleet.scheduling.vlns.arrays import HOME, TOTAL, Integers, Plan, ProblemArrays, take_out
-from fleet.scheduling.vlns.compiled import compiled
-from fleet.scheduling.vlns.dice import Dice, shuffle, throw
 from fleet.scheduling.vlns.times import Times, find_latest, find_times, find_value
 from fleet.scheduling.vlns.ways import Ways, find_ways, follow
 

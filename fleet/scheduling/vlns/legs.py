@@ -6,9 +6,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from fleet.scheduling.compiled import compiled
+from fleet.scheduling.dice import Dice, throw
 from fleet.scheduling.vlns.arrays import NOWHERE, TAKE, Floats, Integers, Plan, ProblemArrays
-from fleet.scheduling.vlns.compiled import compiled
-from fleet.scheduling.vlns.dice import Dice, throw
 from fleet.scheduling.vlns.times import TOLERANCE, Times, drive_s, way_m
 
 KEPT = 5

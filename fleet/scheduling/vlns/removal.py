@@ -2,6 +2,8 @@
 
 from math import inf
 
+from fleet.scheduling.compiled import compiled
+from fleet.scheduling.dice import Dice, one_of, throw
 from fleet.scheduling.vlns.arrays import (
     BANKED,
     GIVE,
@@ -10,8 +12,6 @@ from fleet.scheduling.vlns.arrays import (
     Plan,
     ProblemArrays,
 )
-from fleet.scheduling.vlns.compiled import compiled
-from fleet.scheduling.vlns.dice import Dice, one_of, throw
 from fleet.scheduling.vlns.times import Times, way_m
 
 SMALL = 8

@@ -7,6 +7,7 @@ from math import inf, isfinite
 import numpy as np
 
 from fleet.scheduling.checker import require_valid
+from fleet.scheduling.dice import Dice, dice_from
 from fleet.scheduling.item_way import item_ways
 from fleet.scheduling.objective import cost
 from fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit
@@ -24,7 +25,6 @@ from fleet.scheduling.vlns.arrays import (
     empty_plan,
     problem_arrays,
 )
-from fleet.scheduling.vlns.dice import Dice, dice_from
 from fleet.scheduling.vlns.insertion import refresh
 from fleet.scheduling.vlns.routes import plan_of, routes_in
 

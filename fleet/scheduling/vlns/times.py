@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fleet.scheduling.compiled import compiled
 from fleet.scheduling.vlns.arrays import (
     BANKED,
     DISTANCE,
@@ -19,7 +20,6 @@ from fleet.scheduling.vlns.arrays import (
     Plan,
     ProblemArrays,
 )
-from fleet.scheduling.vlns.compiled import compiled
 
 TOLERANCE = 1e-9
 UNSET = -1e18

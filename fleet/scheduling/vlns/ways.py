@@ -8,6 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fleet.scheduling.compiled import compiled
+from fleet.scheduling.dice import Dice, one_of
 from fleet.scheduling.vlns.arrays import (
     HOME,
     NOWHERE,
@@ -19,8 +21,6 @@ from fleet.scheduling.vlns.arrays import (
     give_node,
     put,
 )
-from fleet.scheduling.vlns.compiled import compiled
-from fleet.scheduling.vlns.dice import Dice, one_of
 from fleet.scheduling.vlns.legs import Ends, Legs, ends_for, find_legs, legs_for
 from fleet.scheduling.vlns.times import TOLERANCE, Times
 

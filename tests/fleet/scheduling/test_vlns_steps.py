@@ -9,6 +9,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from fleet.scheduling.checker import check
+from fleet.scheduling.dice import dice_from, one_of, shuffle, throw
 from fleet.scheduling.objective import cost
 from fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit, Weights, Window
 from fleet.scheduling.schedule import Action, Route, Schedule
@@ -25,7 +26,6 @@ from fleet.scheduling.vlns.arrays import (
     problem_arrays,
     take_out,
 )
-from fleet.scheduling.vlns.dice import dice_from, one_of, shuffle, throw
 from fleet.scheduling.vlns.insertion import refresh
 from fleet.scheduling.vlns.routes import plan_of, routes_in
 from fleet.scheduling.vlns.ways import find_ways, follow

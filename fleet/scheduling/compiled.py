@@ -1,0 +1,28 @@
+"""How the kernels of the search are compiled."""
+
+from collections.abc import Callable
+from typing import Any, TypeVar, cast
+
+import numba
+
+Kernel = TypeVar("Kernel", bound=Callable[..., Any])
+
+
+PLAIN = {"_nrt": False, "error_model": "numpy", "no_cfunc_wrapper": True}
+"""No reference counting: the kernels allocate nothing, and counting the many arrays of a problem at
+every call took thirty times as long as the kernels themselves. No way in from C."""
+
+
+def compiled(function: Kernel) -> Kernel:
+    """Compile on the first call, keeping the result where some cache folder can be written.
+
+    What is private can be called by other kernels alone: a way in from Python, through the many
+    arrays of a problem, takes longer to compile than most kernels.
+    """
+    private = function.__name__.startswith("_")
+    options = {**PLAIN, "no_cpython_wrapper": private}
+    njit = cast(Any, numba.njit)
+    try:
+        return cast(Kernel, njit(cache=True, **options)(function))
+    except RuntimeError:
+        return cast(Kernel, njit(**options)(function))

@@ -1,0 +1,1 @@
+"""Routes without transfers: ejection chains for few robots, adaptive large neighbourhood search."""
