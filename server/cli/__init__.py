@@ -10,6 +10,8 @@ import typer
 
 from server.cli.check import check
 from server.cli.failures import CommandLineError
+from server.cli.localize import localize
+from server.cli.map import maps_app
 from server.cli.replay import replay
 from server.cli.run import run
 from server.cli.scenarios import scenarios
@@ -58,12 +60,14 @@ COMMANDS: dict[str, tuple[Callable[..., None], str]] = {
     "scenarios": (scenarios, "List the scenarios that there are."),
     "schema": (schema, "Print a schema as JSON."),
     "schedule": (schedule, "Plan deliveries for several robots."),
+    "localize": (localize, "Follow a robot through a recorded drive."),
     "replay": (replay, "Tell a run again from its journal."),
     "train-colors": (train_colors, "Learn the colours of objects."),
 }
 
 for name, (command, summary) in COMMANDS.items():
     app.command(name, short_help=summary)(command)
+app.add_typer(maps_app)
 
 
 def main() -> None:

@@ -3,6 +3,10 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from maps.vector_map import VectorMapError
+from robots.localization.logs.log import LogError
+from robots.localization.pictures.failure import PictureError
+from robots.localization.scan import InvalidScanError
 from robots.vision.color_model import ColorModelError
 from server.errors import InvalidError, ServiceError
 from server.journal.file_lock import JournalLockedError
@@ -24,12 +28,16 @@ INTERRUPTED = 130
 KNOWN_ERRORS = (
     ColorModelError,
     InvalidFileError,
+    InvalidScanError,
     JournalLockedError,
     JournalSchemaError,
+    LogError,
     NotInLibraryError,
+    PictureError,
     PluginError,
     ServiceError,
     UnknownEventVersionError,
+    VectorMapError,
     WorldUnavailableError,
     WrongSettingsError,
 )

@@ -1,0 +1,1 @@
+"""Where a robot is: localization on a vector map by laser scans and odometry."""

@@ -1,0 +1,1 @@
+"""Corrective gradient refinement: few particles, each moved to where the map explains it best."""

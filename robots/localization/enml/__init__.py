@@ -1,0 +1,1 @@
+"""Episodic non-Markov localization: mapped walls, furniture for a while, moving things."""

@@ -1,0 +1,140 @@
+"""Which points of a scan are long-term features: those on the line that the map shows there."""
+
+from math import cos
+
+import numpy as np
+from numpy.typing import NDArray
+
+from maps.compiled import compiled
+from maps.ray_cast import cast_sorted
+from robots.localization.enml.parameters import EnmlParameters
+from robots.localization.enml.pose_node import LtfMatches, PoseNode
+from robots.localization.enml.problem import Floats, Indices
+from robots.localization.pose import Poses, compose, transform, turn, wrap_angle
+
+_NEIGHBORS = 8
+"""A point may lie on a line that the map shows up to so many points beside it: where walls end, a
+small error of the heading changes what is seen."""
+
+
+class LongTermFeatures:
+    """Finds the long-term features of poses, again only once a pose has really moved."""
+
+    def __init__(self, segments: Floats, max_range_m: float, parameters: EnmlParameters) -> None:
+        self._nearby = _Nearby(segments, max_range_m)
+        self._max_range_m = max_range_m
+        self._parameters = parameters
+        self._cos_max_angle = cos(parameters.ltf_max_angle_rad)
+
+    def classify(self, node: PoseNode, pose: Poses) -> bool:
+        """Bring the node's long-term features up to a pose; whether there was anything to do."""
+        if self._settled(node, pose):
+            return False
+        segments = self._nearby.around(pose)
+        expected_m, seen = self._cast(node, pose, segments)
+        points = transform(pose, node.scan_points.points)
+        normals = turn(float(pose[2]), node.scan_points.normals)
+        found = np.empty(len(points), dtype=np.int64)
+        lines = np.empty((len(points), 3))
+        match_lines(
+            segments, points, normals, seen, _NEIGHBORS, node.gate_m, self._cos_max_angle, found, lines
+        )
+        node.is_ltf = found >= 0
+        rows = np.flatnonzero(node.is_ltf)
+        node.ltf = LtfMatches(rows, lines[rows, :2], lines[rows, 2])
+        node.cast_pose, node.cast_gate_m, node.expected_m = pose.copy(), node.gate_m, expected_m
+        return True
+
+    def _settled(self, node: PoseNode, pose: Poses) -> bool:
+        before = node.cast_pose
+        if before is None or node.gate_m != node.cast_gate_m:
+            return False
+        moved_m = np.hypot(pose[0] - before[0], pose[1] - before[1])
+        turned_rad = abs(wrap_angle(pose[2] - before[2]))
+        return bool(
+            moved_m < self._parameters.settled_m and turned_rad < self._parameters.settled_rad
+        )
+
+    def _cast(self, node: PoseNode, pose: Poses, segments: Floats) -> tuple[Floats, Indices]:
+        sensor = compose(pose, node.sensor_offset)
+        return cast_bearings(segments, sensor, node.bearings, self._max_range_m)
+
+
+def cast_bearings(
+    segments: Floats, sensor: Poses, bearings: Floats, max_range_m: float
+) -> tuple[Floats, Indices]:
+    """Expected range and segment along ascending bearings from a sensor's pose."""
+    angles = np.mod(bearings + sensor[2], 2.0 * np.pi)
+    first = int(np.argmin(angles)) if len(angles) else 0
+    angles = np.roll(angles, -first)
+    ranges, indices = np.empty(len(angles)), np.empty(len(angles), dtype=np.int64)
+    cast_sorted(segments, sensor[0], sensor[1], angles, max_range_m, ranges, indices)
+    return np.roll(ranges, first), np.roll(indices, first)
+
+
+class _Nearby:
+    """The segments that matter around a pose; chosen anew when the robot has left the place."""
+
+    _MARGIN_M = 5.0
+
+    def __init__(self, segments: Floats, max_range_m: float) -> None:
+        self._segments = segments
+        self._reach_m = max_range_m + self._MARGIN_M
+        self._center: NDArray[np.float64] | None = None
+        self._chosen = segments
+
+    def around(self, pose: Poses) -> Floats:
+        center = self._center
+        if center is None or np.hypot(*(pose[:2] - center)) > self._MARGIN_M:
+            self._center = pose[:2].copy()
+            low, high = pose[:2] - self._reach_m, pose[:2] + self._reach_m
+            ends = self._segments.reshape(-1, 2, 2)
+            near = (ends.max(axis=1) >= low).all(axis=1) & (ends.min(axis=1) <= high).all(axis=1)
+            self._chosen = np.ascontiguousarray(self._segments[near])
+        return self._chosen
+
+
+@compiled
+def match_lines(
+    segments: Floats,
+    points: Floats,
+    normals: Floats,
+    seen: Indices,
+    neighbors: int,
+    gate_m: float,
+    cos_max_angle: float,
+    found: Indices,
+    lines: Floats,
+) -> None:
+    """For each point (map's frame) the nearest visible segment within the gate, or -1.
+
+    `seen` is the segment that the map shows along each point's bearing; `lines` receives normal and
+    offset of the found segment's line.
+    """
+    count = points.shape[0]
+    for row in range(count):
+        found[row] = -1
+        px, py = points[row, 0], points[row, 1]
+        nx, ny = normals[row, 0], normals[row, 1]
+        best = gate_m
+        last = -1
+        for other in range(max(0, row - neighbors), min(count, row + neighbors + 1)):
+            candidate = seen[other]
+            if candidate < 0 or candidate == last:
+                continue
+            last = candidate
+            x0, y0 = segments[candidate, 0], segments[candidate, 1]
+            dx, dy = segments[candidate, 2] - x0, segments[candidate, 3] - y0
+            length = np.hypot(dx, dy)
+            if length <= 0.0:
+                continue
+            lx, ly = -dy / length, dx / length
+            if abs(lx * nx + ly * ny) < cos_max_angle:
+                continue
+            along = min(max(((px - x0) * dx + (py - y0) * dy) / length, 0.0), length)
+            gap = np.hypot(px - x0 - along * dx / length, py - y0 - along * dy / length)
+            if gap < best:
+                best = gap
+                found[row] = candidate
+                lines[row, 0], lines[row, 1] = lx, ly
+                lines[row, 2] = -(lx * x0 + ly * y0)

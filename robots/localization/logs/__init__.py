@@ -1,0 +1,1 @@
+"""Recorded drives: one model, a reader per format."""

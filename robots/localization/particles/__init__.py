@@ -1,0 +1,1 @@
+"""What the localizers that carry particles share: motion noise, resampling, the mean pose."""

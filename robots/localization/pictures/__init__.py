@@ -1,0 +1,1 @@
+"""Pictures of drives: map, trajectory, covariances, and what each point was taken for."""

@@ -1,0 +1,1 @@
+"""Made-up drives over vector maps: furniture, walking people, removed walls, drifting odometry."""
