@@ -40,7 +40,7 @@ ACQUAINTANCE_S = 0.8
 READINGS = 60
 """How many of the best readings of an utterance are compared."""
 FAR_AHEAD = 0.2
-"""The margin of a command that has no rival among them."""
+"""The margin of a command that has no rival among them, or only poor ones."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -168,7 +168,7 @@ class SphinxDecoder:
             if meant is not None and meant[0] is command:
                 best = score if best is None else best
             elif best is not None:
-                return best - score
+                return min(FAR_AHEAD, best - score)
             else:
                 # Something else comes first once the lattice is searched as a whole.
                 return 0.0
