@@ -22,7 +22,7 @@ from server.speech.commands import Command
 
 log = logging.getLogger(__name__)
 
-START_TIMEOUT_S = 20.0
+START_TIMEOUT_S = 40.0
 MAX_BACKLOG_BYTES = 5 * 32_000
 """Five seconds of sound; an ear so far behind has lost the conversation."""
 
