@@ -15,7 +15,6 @@ import numpy.typing as npt
 import pocketsphinx
 
 from server.speech.commands import Command
-from server.speech.endpointing import SAMPLE_RATE_HZ
 from server.speech.language_model import COMMAND_MARK, Weights, command_in, write_language_model
 
 Cepstrum = npt.NDArray[np.float64]
@@ -34,13 +33,16 @@ PRIOR_FRAMES = 500.0
 CEPSTRUM_BYTES = 320
 """Of sound, from one frame of cepstra to the next (10 ms)."""
 
-ACQUAINTANCE_S = 0.8
-"""So much of an utterance is heard before its mean is taken and the search begins."""
+ACQUAINTANCE_BYTES = 80 * CEPSTRUM_BYTES
+"""So much of an utterance is heard before its mean is taken and the search begins.
+
+A mean that is taken again later makes silence look like words.
+"""
 
 READINGS = 60
 """How many of the best readings of an utterance are compared."""
 FAR_AHEAD = 0.2
-"""The margin of a command that has no rival among them."""
+"""The margin of a command that has no rival among them, or only poor ones."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,8 +50,8 @@ class Hypothesis:
     """What an utterance probably was.
 
     `words` is empty where there were none. `command` is set where they are nothing but one
-    command, and `margin` then says by how much (in the decoder's logarithms, per thousand) that
-    reading is ahead of the best one that is not this command.
+    command, and `margin` then says by how much (in the decoder's scaled logarithms) it is ahead of
+    whatever else they may have been.
     """
 
     words: str
@@ -117,7 +119,7 @@ class SphinxDecoder:
         self._waiting.append(sound)
         if not self._searching:
             self._front.process_raw(sound, no_search=True)
-        if self._taken_bytes >= ACQUAINTANCE_S * SAMPLE_RATE_HZ * 2:
+        if self._taken_bytes >= ACQUAINTANCE_BYTES:
             self._search_on()
 
     def end(self) -> Hypothesis:
@@ -159,20 +161,17 @@ class SphinxDecoder:
         return mean
 
     def _margin_of(self, command: Command) -> float:
-        best: float | None = None
+        """By how much the best reading as a command is ahead of the best other one."""
+        ours: list[float] = []
+        others: list[float] = []
         for reading in islice(self._search.nbest(), READINGS):
-            if reading is None or not reading.hypstr:
-                continue
-            score = math.log(reading.score)
-            meant = command_in(reading.hypstr)
-            if meant is not None and meant[0] is command:
-                best = score if best is None else best
-            elif best is not None:
-                return best - score
-            else:
-                # Something else comes first once the lattice is searched as a whole.
-                return 0.0
-        return FAR_AHEAD
+            if reading is not None and reading.hypstr and reading.score > 0:
+                meant = command_in(reading.hypstr)
+                same = meant is not None and meant[0] is command
+                (ours if same else others).append(math.log(reading.score))
+        if not others:
+            return FAR_AHEAD
+        return min(FAR_AHEAD, max(ours) - max(others)) if ours else 0.0
 
 
 def _text_of(mean: Cepstrum) -> str:

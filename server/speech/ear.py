@@ -22,9 +22,12 @@ from server.speech.commands import Command
 
 log = logging.getLogger(__name__)
 
-START_TIMEOUT_S = 20.0
+START_TIMEOUT_S = 40.0
 MAX_BACKLOG_BYTES = 5 * 32_000
 """Five seconds of sound; an ear so far behind has lost the conversation."""
+
+MOST_KEPT = 2
+"""Each takes about 80 MB."""
 
 HEADER = struct.Struct("<dI")
 """Before each piece of sound: when it came (monotonic seconds), and its bytes."""
@@ -116,7 +119,8 @@ def choose_ears(wanted: bool, at_once: int) -> "ProcessEars | NoEars":
 class ProcessEars:
     """Ears that are child processes, at most `at_once`.
 
-    One that is not needed any more is kept for the next conversation, which then need not wait.
+    A few that are not needed any more are kept for the next conversations, which then need not
+    wait for theirs.
     """
 
     engine = "pocketsphinx"
@@ -124,7 +128,7 @@ class ProcessEars:
     def __init__(self, at_once: int) -> None:
         self._at_once = at_once
         self._taken = 0
-        self._spare: RecognizerProcess | None = None
+        self._kept: list[RecognizerProcess] = []
         self._closed = False
 
     def check_room(self) -> None:
@@ -143,27 +147,27 @@ class ProcessEars:
             raise
 
     async def close(self) -> None:
-        """End the process that is kept, and keep none from now on."""
+        """End the processes that are kept, and keep none from now on."""
         self._closed = True
-        spare, self._spare = self._spare, None
-        if spare is not None:
-            await spare.stop()
+        kept, self._kept = self._kept, []
+        for process in kept:
+            await process.stop()
 
     async def _ready_process(self) -> "RecognizerProcess":
-        spare, self._spare = self._spare, None
-        if spare is not None:
+        while self._kept:
+            process = self._kept.pop()
             try:
-                await spare.begin_afresh()
+                await process.begin_afresh()
             except EarLostError:
-                log.warning("the recognizer that was kept has gone; another is started")
+                log.warning("a recognizer that was kept has gone; another is started")
             else:
-                return spare
+                return process
         return await RecognizerProcess.start()
 
     async def _give_back(self, process: "RecognizerProcess") -> None:
         self._taken -= 1
-        if self._spare is None and process.runs and not self._closed:
-            self._spare = process
+        if len(self._kept) < MOST_KEPT and process.runs and not self._closed:
+            self._kept.append(process)
         else:
             await process.stop()
 

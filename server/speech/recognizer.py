@@ -8,7 +8,8 @@ import numpy as np
 
 from server.speech.commands import Command
 from server.speech.decoding import Decoder
-from server.speech.endpointing import FRAME_S, FRAME_SAMPLES, Edge, Endpointer
+from server.speech.endpointing import FRAME_S, FRAME_SAMPLES, Edge, Endpointer, level_db
+from server.speech.sureness import is_sure
 
 FRAME_BYTES = FRAME_SAMPLES * 2
 
@@ -17,9 +18,6 @@ NOISE_DBFS = -60.0
 
 LEAD_S = 0.4
 """Decoded from before speech was noticed: the weak sounds at its beginning."""
-
-LEAST_MARGIN = 0.03
-"""A command that is less far ahead of what else it may have been is asked about again."""
 
 LONGEST_UTTERANCE_S = 5.0
 """Longer than any phrase: what is cut off here is no command."""
@@ -56,7 +54,8 @@ class Recognizer:
         self._rest = b""
         self._lead: deque[bytes] = deque(maxlen=round(LEAD_S / FRAME_S))
         self._endpointer = Endpointer()
-        self._frames = 0
+        self._levels_db: list[float] = []
+        """Of the frames of the utterance that goes on; empty between two."""
 
     def feed(self, pcm: bytes) -> Iterator[Heard]:
         """Take sound (PCM16, mono, 16 kHz) in pieces of any size."""
@@ -68,7 +67,7 @@ class Recognizer:
 
     def interrupt(self) -> None:
         """Forget an utterance that was going on: what comes next does not follow it."""
-        self._frames = 0
+        self._levels_db = []
         self._rest = b""
         self._lead.clear()
         self._endpointer.interrupt()
@@ -81,30 +80,29 @@ class Recognizer:
                 self._hear(before)
             yield SpeechBegan()
         self._lead.append(frame)
-        if self._frames == 0:
+        if not self._levels_db:
             return
         self._hear(frame)
         if edge is Edge.ENDED:
-            self._frames = 0
             yield self._utterance()
-        elif self._frames * FRAME_S > LONGEST_UTTERANCE_S:
-            self._frames = 0
+            self._levels_db = []
+        elif len(self._levels_db) * FRAME_S > LONGEST_UTTERANCE_S:
+            self._levels_db = []
             self._endpointer.interrupt()
             yield Utterance(None, None, words=True, hangover_s=0.0)
 
     def _hear(self, frame: bytes) -> None:
-        self._frames += 1
+        self._levels_db.append(level_db(frame))
         self._decoder.take(frame)
 
     def _utterance(self) -> Utterance:
-        hangover_s = self._endpointer.quiet_frames * FRAME_S
         hypothesis = self._decoder.end()
-        sure = hypothesis.margin >= LEAST_MARGIN
+        sure = is_sure(hypothesis, self._levels_db)
         return Utterance(
             hypothesis.command if sure else None,
             hypothesis.phrase if sure else None,
             bool(hypothesis.words),
-            hangover_s,
+            self._endpointer.quiet_frames * FRAME_S,
         )
 
 

@@ -1,6 +1,6 @@
 """Ways through a dialogue script that together take every branch of it."""
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 
 from dialogue.conversation import Conversation, Phase
 from dialogue.script import Script
@@ -12,14 +12,17 @@ Path = tuple[str, ...]
 CALLS = {Phase.ASKING: ("yes", "no"), Phase.AWAITING_HELP: ("seen", "not_seen")}
 
 
-def every_branch(script: Script, issue: Issue) -> list[Path]:
-    """Paths (calls after `open`) that together take every branch, in few calls.
+ALL_CALLS = tuple(call for calls in CALLS.values() for call in calls)
+
+
+def every_branch(script: Script, issue: Issue, calls: Collection[str] = ALL_CALLS) -> list[Path]:
+    """Paths (calls after `open`) that together take every branch of these calls, in few calls.
 
     A branch is what was said last together with the call that follows. A dialogue without
     branches has one path, which has no calls.
     """
     paths = list(_paths(script, issue))
-    left = set[tuple[str, str]]().union(*(branches for _, branches in paths))
+    left = {branch for _, branches in paths for branch in branches if branch[1] in calls}
     chosen: list[Path] = []
     while left or not chosen:
         path, branches = max(paths, key=lambda each: len(each[1] & left) / (1 + len(each[0])))

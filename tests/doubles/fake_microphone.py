@@ -4,7 +4,13 @@ import subprocess
 from pathlib import Path
 from shutil import which
 
+import numpy as np
 from playwright.async_api import Browser, Playwright
+from scipy.io import wavfile
+from scipy.signal import resample_poly
+
+RATE_HZ = 48_000
+"""What browsers expect of such a file."""
 
 LEAD_S = 1.2
 """Long enough for a console to begin to listen."""
@@ -13,13 +19,12 @@ PAUSE_S = 3.0
 
 def utter(words: str, folder: Path) -> Path:
     """A microphone's sound: some silence, the words, and silence again."""
-    name = words.replace(" ", "_")
-    said, file = folder / f"{name}.said.wav", folder / f"{name}.wav"
-    subprocess.run(["flite", "-voice", "slt", "-t", words, "-o", said], check=True)
-    subprocess.run(
-        ["sox", said, "-r", "48000", "-b", "16", file, "pad", str(LEAD_S), str(PAUSE_S)],
-        check=True,
-    )
+    file = folder / f"{words.replace(' ', '_')}.wav"
+    subprocess.run(["flite", "-voice", "slt", "-t", words, "-o", file], check=True)
+    rate_hz, said = wavfile.read(file)
+    resampled = resample_poly(said.astype(float), RATE_HZ, rate_hz)
+    sound = np.pad(resampled, (round(LEAD_S * RATE_HZ), round(PAUSE_S * RATE_HZ)))
+    wavfile.write(file, RATE_HZ, np.clip(sound, -32768, 32767).astype(np.int16))
     return file
 
 

@@ -7,8 +7,10 @@ from typing import Any
 
 from playwright.async_api import Page, WebSocket
 
-PATIENCE_S = 12.0
-TRIES = 3
+PATIENCE_S = 60.0
+UTTERANCE_S = 25.0
+"""Long after the words must have been heard: said again, they would answer the next question."""
+TRIES = 4
 
 
 class SpokenConsole:
@@ -30,17 +32,19 @@ class SpokenConsole:
                 await microphone.click()
             list(self._waiting())
             await microphone.click()
+            await self.message("listening")
             try:
-                heard = await self.message("heard")
+                heard = await self.message("heard", UTTERANCE_S)
             except TimeoutError:
+                # They were said before the service listened.
                 continue
             if heard["command"] is not None:
                 return heard
         raise AssertionError(f"nothing was understood in {TRIES} tries")
 
-    async def message(self, kind: str) -> dict[str, Any]:
+    async def message(self, kind: str, timeout_s: float = PATIENCE_S) -> dict[str, Any]:
         """The next message of a kind from the service's speech socket. Raises `TimeoutError`."""
-        async with asyncio.timeout(PATIENCE_S):
+        async with asyncio.timeout(timeout_s):
             while (message := await self._messages.get())["type"] != kind:
                 pass
         return message

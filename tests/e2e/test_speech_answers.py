@@ -25,7 +25,6 @@ from server.speech.voice import NoVoice, choose_voice
 pytestmark = [
     pytest.mark.asyncio(loop_scope="session"),
     pytest.mark.skipif(shutil.which("flite") is None, reason="flite is not installed"),
-    pytest.mark.skipif(shutil.which("sox") is None, reason="sox is not installed"),
     pytest.mark.skipif(find_spec("pocketsphinx") is None, reason="pocketsphinx is not installed"),
 ]
 
