@@ -1,10 +1,13 @@
 """Solving the constraint model: incumbents and bounds as they come, and the schedule at the end."""
 
 from collections.abc import Callable
+from dataclasses import replace
+from math import isfinite
 
 from ortools.sat.python import cp_model
 
 from fleet.scheduling.checker import require_valid
+from fleet.scheduling.exact.flow_bound import flow_bound, windows_are_wide
 from fleet.scheduling.exact.hint import hint_from
 from fleet.scheduling.exact.model import SCALE, ExactModel, Rounding
 from fleet.scheduling.exact.routes import routes_in
@@ -13,6 +16,11 @@ from fleet.scheduling.problem import Problem
 from fleet.scheduling.schedule import Schedule
 from fleet.scheduling.solution import Progress, Solution, Status, UnsupportedError
 from fleet.scheduling.timing import Untimeable, earliest_schedule
+
+CONSTRAINTS_SHARE = 0.65
+"""The share of the time for constraint programming where flows may give a better bound."""
+SAME = 1e-6
+"""A cost and a bound that differ by less than this share are the same."""
 
 
 def solve_exactly(
@@ -28,15 +36,22 @@ def solve_exactly(
 
     `start` is where the search begins; the result is never worse. What is infeasible is proved so
     with times rounded down, apart from a doubt that is smaller than a thousandth of a second.
+    Where windows are wide and constraint programming has proved nothing in the most of the time,
+    the rest goes to a bound from flows.
     Raises `UnsupportedError` where doors open and close: the model's travel times are fixed.
     """
     if problem.travel.epochs:
         raise UnsupportedError(
             "the exact method cannot plan with doors that open and close; another method can"
         )
-    solution = _solve(problem, Rounding.UP, seconds, seed, workers, start, on_progress)
+    wide = windows_are_wide(problem)
+    most = CONSTRAINTS_SHARE * seconds if wide else seconds
+    solution = _solve(problem, Rounding.UP, most, seed, workers, start, on_progress)
     if solution.status is not Status.INFEASIBLE:
-        return _not_worse(problem, solution, start)
+        solution = _not_worse(problem, solution, start)
+        if wide and solution.status is not Status.OPTIMAL:
+            return _with_flow_bound(problem, solution, seconds, on_progress)
+        return solution
     left = max(1.0, seconds - solution.seconds)
     again = _solve(problem, Rounding.DOWN, left, seed, workers, start, None)
     proved = again.status is Status.INFEASIBLE
@@ -90,6 +105,25 @@ def _not_worse(problem: Problem, solution: Solution, start: Schedule | None) -> 
         return solution
     status = Status.OPTIMAL if solution.status is Status.OPTIMAL else Status.FEASIBLE
     return Solution(status, start, begun, solution.bound, solution.seconds)
+
+
+def _with_flow_bound(
+    problem: Problem,
+    solution: Solution,
+    seconds: float,
+    on_progress: Callable[[Progress], None] | None,
+) -> Solution:
+    """The solution with the better bound: its own, or that from flows in the time left."""
+    proved = flow_bound(problem, max(0.1, seconds - solution.seconds))
+    if proved is None or not isfinite(proved):
+        return replace(solution, seconds=seconds)
+    bound, status = max(proved, solution.bound or 0.0), solution.status
+    if solution.cost is not None and bound >= solution.cost.total * (1 - SAME):
+        bound, status = solution.cost.total, Status.OPTIMAL
+    if on_progress is not None:
+        incumbent = None if solution.cost is None else solution.cost.total
+        on_progress(Progress(incumbent, bound, seconds))
+    return replace(solution, status=status, bound=bound, seconds=seconds)
 
 
 class _Reporter(cp_model.CpSolverSolutionCallback):
