@@ -105,6 +105,30 @@ class NavigationGraph:
                     distance_m[origin, place] = distance_m[origin, previous] + lengths[key]
         return distance_m, np.asarray(time_s, dtype=np.float64)
 
+    def quickest_path(
+        self,
+        origin: int,
+        destination: int,
+        speed_m_s: float,
+        *,
+        from_s: float = 0.0,
+        until_s: float = inf,
+    ) -> tuple[tuple[int, float], ...]:
+        """The places on the quickest way, by number, each with the seconds from the origin to it.
+
+        Only ways that are passable from `from_s` until `until_s` count; empty where there is none.
+        """
+        count = len(self.places)
+        rows, columns, seconds, _ = self._edges(speed_m_s, from_s, until_s)
+        times = csr_matrix((seconds, (rows, columns)), shape=(count, count))
+        time_s, before = dijkstra(times, directed=False, indices=origin, return_predecessors=True)
+        if time_s[destination] == inf:
+            return ()
+        path = [destination]
+        while path[-1] != origin:
+            path.append(int(before[path[-1]]))
+        return tuple((place, float(time_s[place])) for place in reversed(path))
+
     def changes_s(self) -> list[float]:
         """The times at which a way opens or closes, in order."""
         return sorted({time_s for way in self.ways for span in way.open_s for time_s in span})

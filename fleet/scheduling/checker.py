@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from itertools import pairwise
 from math import isfinite
 
-from fleet.scheduling.item_way import BrokenWayError, Leg, item_way
+from fleet.scheduling.item_way import BrokenWayError, Leg, item_way, item_ways
 from fleet.scheduling.problem import Item, Problem, Window
 from fleet.scheduling.schedule import Action, Schedule, Stop
 
@@ -42,16 +42,29 @@ def check(problem: Problem, schedule: Schedule) -> list[str]:
         for robot in range(len(problem.robots))
         for violation in (*_drive(problem, schedule, robot), *_loads(problem, schedule, robot))
     ]
-    ways: dict[int, tuple[Leg, ...]] = {}
-    for number in range(len(problem.items)):
-        try:
-            ways[number] = item_way(problem, schedule.routes, number)
-        except BrokenWayError as error:
-            violations.append(str(error))
+    ways, broken = _ways(problem, schedule)
+    violations.extend(broken)
     for number, legs in ways.items():
         violations.extend(_item(problem, schedule, problem.items[number], legs))
     violations.extend(_waiting_in_a_circle(problem, schedule, ways))
     return violations
+
+
+def _ways(problem: Problem, schedule: Schedule) -> tuple[dict[int, tuple[Leg, ...]], list[str]]:
+    """The ways of the items that have one, and a sentence for each of the others."""
+    routes = schedule.routes
+    try:
+        return item_ways(problem, routes), []
+    except BrokenWayError:
+        # One by one, which takes longer, to name all that are broken.
+        ways: dict[int, tuple[Leg, ...]] = {}
+        broken = []
+        for number in range(len(problem.items)):
+            try:
+                ways[number] = item_way(problem, routes, number)
+            except BrokenWayError as error:
+                broken.append(str(error))
+        return ways, broken
 
 
 def _drive(problem: Problem, schedule: Schedule, robot: int) -> Iterator[str]:

@@ -7,9 +7,12 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Protocol
 
+from fleet.scheduling.auction import solve_by_auction
 from fleet.scheduling.cheapest_insertion import solve_by_insertion
 from fleet.scheduling.exact.solve import solve_exactly
 from fleet.scheduling.nearest_next import solve_by_nearest_next
+from fleet.scheduling.one_destination import solve_to_one_destination
+from fleet.scheduling.one_task_bidder import solve_one_task_each
 from fleet.scheduling.problem import Problem
 from fleet.scheduling.routing.arrays import unsupported
 from fleet.scheduling.routing.solve import prepare as prepare_alns
@@ -129,8 +132,13 @@ METHODS: Mapping[str, Method] = {
     "alns": Method(
         solve_alns, False, False, "adaptive large neighbourhoods, no transfers", prepare_alns
     ),
+    "auction": Method(solve_by_auction, True, False, "robots bid for each item"),
     "insertion": Method(solve_by_insertion, True, False, "each item where it costs least"),
     "greedy": Method(solve_by_nearest_next, True, False, "each robot what it reaches first"),
+    "one_task": Method(solve_one_task_each, True, False, "one item at a time to who is done first"),
+    "one_destination": Method(
+        solve_to_one_destination, False, True, "at most twice the optimum, to one destination"
+    ),
 }
 
 HEURISTICS = ("greedy", "insertion")

@@ -108,12 +108,13 @@ def delivery_schema() -> dict[str, Any]:
 # --- the problem ------------------------------------------------------------------------------
 
 
-def problem_of(document: DeliveryDocument) -> Problem:
+def problem_of(document: DeliveryDocument, *, whole: bool = False) -> Problem:
     """The problem that a document without mistakes poses.
 
-    Raises `TravelError` where doors change too often.
+    `whole`: with all places, also those where nothing happens, as a fleet at work needs them to be
+    led around what is blocked. Raises `TravelError` where doors change too often.
     """
-    names = _places_needed(document)
+    names = place_names(document.travel) if whole else _places_needed(document)
     place = {name: number for number, name in enumerate(names)}
     robots = {robot.name: number for number, robot in enumerate(document.robots)}
     transfers, weights = document.transfers, document.weights

@@ -47,13 +47,14 @@ class TemporalNetwork(Generic[Reason]):
         self._latest = [0.0]
         self._out: list[list[_Edge[Reason]]] = [[]]
         self._in: list[list[_Edge[Reason]]] = [[]]
-        self._trail: list[tuple[list[float], int, float] | _Edge[Reason]] = []
+        self._trail: list[tuple[list[float], int, float] | _Edge[Reason] | None] = []
 
     def __len__(self) -> int:
         return len(self._earliest)
 
     def add_event(self) -> int:
-        """A new event, not before the origin; returns its number. It cannot be undone."""
+        """A new event, not before the origin; returns its number."""
+        self._trail.append(None)
         self._earliest.append(0.0)
         self._latest.append(inf)
         self._out.append([])
@@ -116,15 +117,26 @@ class TemporalNetwork(Generic[Reason]):
         return len(self._trail)
 
     def undo(self, mark: int) -> None:
-        """Take back every constraint that was added since `mark`."""
+        """Take back every constraint and every event that was added since `mark`."""
         while len(self._trail) > mark:
             entry = self._trail.pop()
-            if isinstance(entry, _Edge):
+            if entry is None:
+                for each in (self._earliest, self._latest, self._out, self._in):
+                    each.pop()
+            elif isinstance(entry, _Edge):
                 self._out[entry.earlier].pop()
                 self._in[entry.later].pop()
             else:
                 times, event, before = entry
                 times[event] = before
+
+    def moved_since(self, mark: int) -> dict[int, float]:
+        """The events that are later now than at `mark`, with their earliest times then."""
+        before: dict[int, float] = {}
+        for entry in self._trail[mark:]:
+            if isinstance(entry, tuple) and entry[0] is self._earliest:
+                before.setdefault(entry[1], entry[2])
+        return before
 
     # --- propagation --------------------------------------------------------------------------
 

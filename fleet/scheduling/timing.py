@@ -38,10 +38,13 @@ def earliest_schedule(problem: Problem, routes: Sequence[Route]) -> Schedule | U
 class TimedRoutes:
     """The temporal network of some routes, and which of its events is which.
 
-    `leaves` and `ends` by robot, `begins` by robot and number of the task. Raises `BrokenWayError`.
+    `leaves` and `ends` by robot, `begins` by robot and number of the task. `items`: those that the
+    routes deliver; all if None. Raises `BrokenWayError`.
     """
 
-    def __init__(self, problem: Problem, routes: Sequence[Route]) -> None:
+    def __init__(
+        self, problem: Problem, routes: Sequence[Route], items: Sequence[int] | None = None
+    ) -> None:
         self.problem = problem
         self.routes = tuple(routes)
         self.network: TemporalNetwork[Constraint] = TemporalNetwork()
@@ -49,7 +52,7 @@ class TimedRoutes:
         self.ends: list[int] = []
         self.begins: list[list[int]] = []
         self.conflict: Conflict[Constraint] | None = None
-        ways = item_ways(problem, routes)
+        ways = item_ways(problem, routes, items)
         for robot in range(len(problem.robots)):
             self._add_robot(robot)
         for item, legs in ways.items():

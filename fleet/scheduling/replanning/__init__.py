@@ -1,0 +1,1 @@
+"""A fleet at work: what happens to it, and what becomes of its plan."""

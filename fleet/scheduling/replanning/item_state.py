@@ -1,0 +1,118 @@
+"""Where an item of a fleet at work is, and which states may follow one another."""
+
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from math import inf
+
+from fleet.scheduling.problem import Item, Visit, Window
+
+
+class ItemState(StrEnum):
+    """How far an item has come."""
+
+    WAITING = "waiting"
+    ABOARD = "aboard"
+    LEFT = "left"
+    DELIVERED = "delivered"
+    CANCELLED = "cancelled"
+    REFUSED = "refused"
+    LOST = "lost"
+
+
+_NEXT = {
+    ItemState.WAITING: {ItemState.ABOARD, ItemState.CANCELLED, ItemState.REFUSED},
+    ItemState.ABOARD: {ItemState.LEFT, ItemState.DELIVERED, ItemState.CANCELLED, ItemState.LOST},
+    ItemState.LEFT: {ItemState.ABOARD},
+}
+"""Nothing follows the others."""
+
+
+class ItemStateError(Exception):
+    """An item was to go where it cannot go from its state; says from where to where."""
+
+
+@dataclass(slots=True)
+class TrackedItem:
+    """An item with its state.
+
+    `robot` has it while it is aboard; `place` and `ready_s` say where it lies since when while it
+    is left; `loaded_s` is the end of its pickup. `returns`: it was cancelled on its way and goes
+    back; `overdue`: it goes on although its times cannot be kept; `put_off`: why it is in no plan.
+    """
+
+    item: Item
+    state: ItemState = ItemState.WAITING
+    robot: int | None = None
+    place: int | None = None
+    ready_s: float = 0.0
+    loaded_s: float | None = None
+    returns: bool = False
+    overdue: bool = False
+    put_off: str | None = None
+
+    @property
+    def under_way(self) -> bool:
+        """Whether it has been picked up, but not been delivered."""
+        return self.state in (ItemState.ABOARD, ItemState.LEFT)
+
+    @property
+    def open(self) -> bool:
+        """Whether anything remains to be done with it."""
+        return self.under_way or self.state is ItemState.WAITING
+
+    def load(self, robot: int, done_s: float) -> None:
+        """A robot has it from now on. Raises `ItemStateError`."""
+        if self.state is ItemState.WAITING:
+            self.loaded_s = done_s
+        self._become(ItemState.ABOARD)
+        self.robot, self.place = robot, None
+
+    def leave(self, place: int, ready_s: float) -> None:
+        """It lies somewhere for another robot. Raises `ItemStateError`."""
+        self._become(ItemState.LEFT)
+        self.robot, self.place, self.ready_s = None, place, ready_s
+
+    def close(self, state: ItemState) -> None:
+        """Nothing remains to be done. Raises `ItemStateError`."""
+        self._become(state)
+        self.robot = self.place = self.put_off = None
+
+    def send_back(self) -> None:
+        """Bring it back to where it was picked up, whenever that is possible."""
+        self.returns = self.overdue = True
+        back = Visit(self.item.pickup.place, service_s=self.item.pickup.service_s)
+        self.item = replace(self.item, delivery=back, max_on_board_s=inf)
+
+    def rest(self, robot: int | None, handling_s: float) -> Item:
+        """What remains to be done as an item by itself; `robot`: the number of whoever has it."""
+        item = without_deadline(self.item) if self.overdue else self.item
+        if not self.under_way:
+            return item
+        assert self.loaded_s is not None, "what is under way was picked up"
+        window = item.delivery.window
+        latest_s = min(window.latest_s, self.loaded_s + item.max_on_board_s)
+        delivery = replace(item.delivery, window=Window(min(window.earliest_s, latest_s), latest_s))
+        if self.state is ItemState.ABOARD:
+            return replace(item, delivery=delivery, max_on_board_s=inf, aboard=robot)
+        assert self.place is not None, "what is left lies somewhere"
+        pickup = Visit(self.place, Window(self.ready_s), service_s=handling_s)
+        return replace(item, pickup=pickup, delivery=delivery, max_on_board_s=inf)
+
+    def _become(self, state: ItemState) -> None:
+        if state not in _NEXT.get(self.state, ()):
+            raise ItemStateError(
+                f"item '{self.item.name}' is {self.state}; it cannot become {state} from there"
+            )
+        self.state = state
+
+
+def without_deadline(item: Item) -> Item:
+    """The same item; what had to be in time is now better in time."""
+    delivery, pickup = item.delivery, item.pickup
+    pickup = replace(pickup, window=Window(pickup.window.earliest_s))
+    late = replace(
+        delivery,
+        window=Window(delivery.window.earliest_s),
+        due_s=min(delivery.due_s, delivery.window.latest_s),
+    )
+    return replace(item, pickup=pickup, delivery=late, max_on_board_s=inf)

@@ -1,0 +1,308 @@
+"""Making a plan hold again: what cannot hold together gives way and is sold again.
+
+Only items whose constraints are in a conflict, or that the event took out, leave their routes; what
+is under way and cannot be in time goes late; what has no place at all is put off with a sentence.
+"""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from math import inf
+
+from fleet.scheduling.auction import Sale, sell
+from fleet.scheduling.checker import TOLERANCE_LOAD
+from fleet.scheduling.constraint import Constraint, ConstraintKind, sentence
+from fleet.scheduling.contradictions import contradictions
+from fleet.scheduling.objective import cost
+from fleet.scheduling.partial_routes import part_schedule, without_items
+from fleet.scheduling.problem import Problem, Window
+from fleet.scheduling.replanning.item_state import without_deadline
+from fleet.scheduling.schedule import Action, Route
+from fleet.scheduling.temporal_network import Conflict
+from fleet.scheduling.timing import TimedRoutes
+
+DEADLINES = (ConstraintKind.WINDOW_END, ConstraintKind.ON_BOARD)
+BETTER = 1e-6
+"""By how much cheaper a plan must be to be taken instead."""
+ROBOT_LIMITS = (ConstraintKind.SHIFT_END, ConstraintKind.DURATION)
+JUDGED_ALONE = 2
+"""Up to how many items at once are also judged as if there were no other: it takes a while."""
+
+
+class Settling:
+    """Routes that may not hold, and items to be sold; `settle` makes them hold.
+
+    `held`: by robot, how many of its first tasks are what it does next. `late`, `put_off`: by item,
+    why it goes late or has no place; `overtime`: by robot, why its shift is longer than it was.
+    """
+
+    def __init__(
+        self,
+        problem: Problem,
+        routes: Sequence[Route],
+        held: Sequence[int],
+        under_way: Sequence[bool],
+    ) -> None:
+        self.problem = problem
+        self.routes = list(routes)
+        self.held = list(held)
+        self.late: dict[int, str] = {}
+        self.put_off: dict[int, str] = {}
+        self.overtime: dict[int, str] = {}
+        self._under_way = under_way
+        self._selling: dict[int, None] = {}
+        self._begun: dict[int, int] = {}
+        self._shift_ends_s: dict[int, float] = {}
+
+    # --- what leaves the routes -------------------------------------------------------------------
+
+    def resell(self, item: int) -> None:
+        """Take an item out of the routes and sell it again.
+
+        What a robot is about to pick up it still picks up; a transfer of the item falls through.
+        """
+        self._selling[item] = None
+        for robot, route in enumerate(self.routes):
+            if not any(task.item == item for task in route):
+                continue
+            first = route[0]
+            keeps = self.held[robot] and first.item == item
+            if keeps and first.action is Action.PICK:
+                self._begun[item] = robot
+                self.routes[robot] = (first, *without_items([route[1:]], {item})[0])
+            else:
+                self.held[robot] = 0 if keeps else self.held[robot]
+                self.routes[robot] = without_items([route], {item})[0]
+
+    # --- making it hold ---------------------------------------------------------------------------
+
+    def settle(self) -> None:
+        """Make the routes hold and sell what is to be sold."""
+        self._give_way()
+        self._end_overtime()
+        pending = list(self._selling)
+        while pending:
+            self._place(pending)
+            pending = self._overload()
+
+    def reconsider(self, items: Sequence[int]) -> None:
+        """Sell items again that are in routes, where that makes the whole cheaper."""
+        for item in items:
+            if not self._free(item) or item in self.put_off:
+                continue
+            others = without_items(self.routes, {item})
+            sale = sell(self.problem, others, (item,), held=self.held)
+            now = Sale(tuple(self.routes))
+            if not sale.unsold and self._cost(sale) < self._cost(now) - BETTER:
+                self.routes = list(sale.routes)
+
+    def _place(self, items: Sequence[int]) -> None:
+        """Sell items; what is under way goes late if it must, what has no place is put off."""
+        left = self._sell(self._urgent_first(items))
+        late = [item for item in left if self._under_way[item]]
+        for item in late:
+            self._go_late(item, left[item])
+        if late:
+            left = self._sell(self._urgent_first(left))
+        left = self._sell_beyond_shifts(left)
+        for item, why in left.items():
+            self.put_off[item] = self._why(item, why)
+            self.late.pop(item, None)
+            self._drop_begun(item)
+
+    def _overload(self) -> list[int]:
+        """Take out an item for which there is no room any more, as another one stays on board."""
+        for robot, route in enumerate(self.routes):
+            capacity = self.problem.robots[robot].capacity
+            load = sum(item.load for item in self.problem.items if item.aboard == robot)
+            for task in route:
+                load += self.problem.items[task.item].load * (1 if task.action.loads else -1)
+                if task.action.loads and load > capacity + TOLERANCE_LOAD:
+                    self._let_go(task.item)
+                    return [task.item]
+        return []
+
+    def _give_way(self) -> None:
+        """Take out or relax, one by one, what cannot hold together."""
+        while True:
+            whole = [
+                item
+                for item in sorted({task.item for route in self.routes for task in route})
+                if item not in self._begun
+            ]
+            conflict = TimedRoutes(self.problem, self.routes, whole).conflict
+            if conflict is None:
+                return
+            self._yield_to(conflict)
+
+    def _yield_to(self, conflict: Conflict[Constraint]) -> None:
+        """Resolve a conflict as gently as can be: items that nobody is about to do anything with,
+        then what is about to be picked up, then deadlines, then shifts."""
+        deadlines = self._items_of(conflict, DEADLINES)
+        items = [*deadlines, *self._items_of(conflict, tuple(ConstraintKind))]
+        free = next((item for item in items if self._free(item)), None)
+        waiting = next((item for item in items if self._waits(item)), None)
+        late = next((item for item in deadlines if item not in self.late), None)
+        robots = [each.robot for each in conflict.reasons if each.robot is not None]
+        limits = [each.robot for each in conflict.reasons if each.kind in ROBOT_LIMITS]
+        longer = next((k for k in limits if k is not None and k not in self.overtime), None)
+        if free is not None:
+            self.resell(free)
+        elif waiting is not None:
+            self._let_go(waiting)
+        elif late is not None:
+            self._go_late(late, conflict)
+        elif longer is not None:
+            self._work_longer(longer, self._conflict_words(conflict))
+        else:
+            on_routes = [task.item for k in robots for task in reversed(self.routes[k])]
+            self._let_go([*items, *on_routes][0])
+
+    def _items_of(
+        self, conflict: Conflict[Constraint], kinds: Sequence[ConstraintKind]
+    ) -> list[int]:
+        return [
+            each.task.item
+            for each in conflict.reasons
+            if each.task is not None and each.kind in kinds
+        ]
+
+    def _free(self, item: int) -> bool:
+        """Whether nobody is about to do anything with it, and it is not sold again already."""
+        return item not in self._selling and not any(
+            held and route and route[0].item == item
+            for held, route in zip(self.held, self.routes, strict=True)
+        )
+
+    def _waits(self, item: int) -> bool:
+        """Whether it is about to be picked up for the first time."""
+        return not self._under_way[item] and any(
+            task.item == item for route in self.routes for task in route
+        )
+
+    def _let_go(self, item: int) -> None:
+        """Sell an item again although a robot is about to do something with it."""
+        self.resell(item)
+        self._drop_begun(item)
+
+    def _go_late(self, item: int, conflict: Conflict[Constraint] | None) -> None:
+        self.late[item] = self._why(item, conflict)
+        items = list(self.problem.items)
+        items[item] = without_deadline(items[item])
+        self.problem = replace(self.problem, items=tuple(items))
+
+    def _sell_beyond_shifts(
+        self, left: dict[int, Conflict[Constraint] | None]
+    ) -> dict[int, Conflict[Constraint] | None]:
+        """Robots bring what they have on board, if need be after their shifts."""
+        stuck = [item for item in left if self.problem.items[item].aboard is not None]
+        for item in stuck:
+            robot = self.problem.items[item].aboard
+            assert robot is not None, "it is on board"
+            if robot not in self.overtime:
+                self._work_longer(robot, self._why(item, left[item]))
+        if not stuck:
+            return left
+        left = {**left, **dict.fromkeys(stuck)}
+        left = self._sell(self._urgent_first(left))
+        self._end_overtime()
+        return left
+
+    def _work_longer(self, robot: int, why: str) -> None:
+        self.overtime[robot] = why
+        self._shift_ends_s[robot] = self.problem.robots[robot].shift.latest_s
+        self._change_robot(robot, inf)
+
+    def _end_overtime(self) -> None:
+        """Robots that must work longer get no more to do than they have."""
+        if not self.overtime:
+            return
+        whole = sorted({task.item for route in self.routes for task in route} - set(self._begun))
+        timed = TimedRoutes(self.problem, self.routes, whole)
+        for robot in list(self.overtime):
+            ends_s = timed.network.earliest_s(timed.ends[robot])
+            self._change_robot(robot, max(ends_s, self._shift_ends_s[robot]))
+            if ends_s <= self._shift_ends_s[robot]:
+                del self.overtime[robot]
+
+    def _change_robot(self, robot: int, shift_ends_s: float) -> None:
+        robots = list(self.problem.robots)
+        shift = Window(robots[robot].shift.earliest_s, shift_ends_s)
+        robots[robot] = replace(robots[robot], shift=shift, max_duration_s=inf)
+        self.problem = replace(self.problem, robots=tuple(robots))
+
+    # --- selling ----------------------------------------------------------------------------------
+
+    def _sell(self, items: Sequence[int]) -> dict[int, Conflict[Constraint] | None]:
+        """Sell items, with transfers or without as is better; what is left over."""
+        if not items:
+            return {}
+        sales = [self._auction(items, True)]
+        if self.problem.transfers.places and len(items) > 1:
+            sales.append(self._auction(items, False))
+        if all(sale.unsold for sale in sales):
+            hard = [item for item in items if item in sales[0].unsold]
+            easy = [item for item in items if item not in sales[0].unsold]
+            if easy:
+                sales.append(self._auction(hard, True, easy))
+        best = min(sales, key=lambda sale: (len(sale.unsold), self._cost(sale)))
+        self.routes = list(best.routes)
+        self._begun = {item: k for item, k in self._begun.items() if item in best.unsold}
+        return dict(best.unsold)
+
+    def _auction(self, items: Sequence[int], transfers: bool, then: Sequence[int] = ()) -> Sale:
+        begun = self._begun
+        sale = sell(
+            self.problem, self.routes, items, held=self.held, begun=begun, transfers=transfers
+        )
+        if not then:
+            return sale
+        begun = {item: k for item, k in begun.items() if item in then or item in sale.unsold}
+        more = sell(
+            self.problem, sale.routes, then, held=self.held, begun=begun, transfers=transfers
+        )
+        return Sale(more.routes, {**sale.unsold, **more.unsold})
+
+    def _cost(self, sale: Sale) -> float:
+        timed = part_schedule(self.problem, without_items(sale.routes, sale.unsold))
+        return inf if timed is None else cost(*timed).total
+
+    def _urgent_first(self, items: Iterable[int]) -> list[int]:
+        described = self.problem.items
+        return sorted(
+            items,
+            key=lambda item: (
+                not self._under_way[item],
+                described[item].delivery.window.latest_s,
+                item,
+            ),
+        )
+
+    def _drop_begun(self, item: int) -> None:
+        robot = self._begun.pop(item, None)
+        if robot is not None:
+            self.routes[robot] = without_items([self.routes[robot]], {item})[0]
+            self.held[robot] = 0
+
+    # --- why --------------------------------------------------------------------------------------
+
+    def _why(self, item: int, conflict: Conflict[Constraint] | None) -> str:
+        """One sentence: what cannot hold whatever the robots do, or beside what they have to do."""
+        described = self.problem.items[item]
+        if len(self._selling) <= JUDGED_ALONE:
+            alone = replace(self.problem, items=(described,))
+            for each in contradictions(alone):
+                if each.item == 0:
+                    return each.sentence
+        if conflict is None:
+            return (
+                f"item '{described.name}' has no place: no robot has room for it on its way "
+                "beside what it has to do already"
+            )
+        return (
+            f"item '{described.name}' has no place in time beside what the robots have to do "
+            f"already: {self._conflict_words(conflict)}"
+        )
+
+    def _conflict_words(self, conflict: Conflict[Constraint]) -> str:
+        words = "; ".join(sentence(self.problem, each) for each in conflict.reasons)
+        return f"these cannot hold together: {words}"
