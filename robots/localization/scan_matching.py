@@ -14,18 +14,18 @@ from robots.localization.pose import Poses, compose, relative, transform, turn, 
 Matrix = NDArray[np.float64]
 
 _KEY_STEP_M = 0.15
-_KEY_TURN_RAD = 0.1
+_KEY_TURN_RAD = 0.05
 """A scan is kept when the robot has moved or turned by this since the last that was."""
 _MAX_RANGE_M = 15.0
-_GATES_M = (0.6, 0.4, 0.25, 0.15, 0.15, 0.15, 0.15, 0.15)
+_GATES_M = (1.0, 0.8, 0.6, 0.4, 0.4, 0.3, 0.3, 0.2, 0.2, 0.2, 0.2)
 """How far a point may be from what it is matched to, from round to round."""
 _LEAST_COSINE = 0.8
 """Between the normals of two points that are matched."""
 _POINT_DEVIATION_M = 0.05
-_THIN_M = 0.04
-"""Of what was seen, one point per square of this size is kept."""
+_SAME_SURFACE_M = 0.2
+"""A point this near a known one that faces the same way is on the same surface."""
 _LEAST_MATCHES = 20
-_TRUST = 0.1
+_TRUST = 0.3
 """Weight of a matched point, since neighbouring points err together."""
 
 
@@ -53,22 +53,27 @@ def matched_poses(log: Log, on_scan: Callable[[], None] | None = None) -> Poses:
 
 
 class _Matching:
-    """What was seen so far, thinned, and scans matched to it."""
+    """Surfaces seen so far, and scans matched to them."""
 
     def __init__(self) -> None:
         self._points = np.empty((0, 2))
         self._normals = np.empty((0, 2))
-        self._cells: set[tuple[int, int]] = set()
         self._noise = MotionNoise()
 
     def add(self, points: Matrix, normals: Matrix) -> None:
-        """Remember points of the map's frame where nothing was seen yet."""
-        fresh: list[int] = []
-        for number, cell in enumerate(np.floor(points / _THIN_M).astype(int).tolist()):
-            place = (cell[0], cell[1])
-            if place not in self._cells:
-                self._cells.add(place)
-                fresh.append(number)
+        """Remember points of the map's frame on surfaces that were not seen before.
+
+        A known surface seen again says where the robot is, not where the surface is: if it were
+        remembered anew, each small error would move the map along with it.
+        """
+        fresh = np.ones(len(points), dtype=bool)
+        if len(self._points):
+            tree = cKDTree(self._points)
+            known = tree.query_ball_point(points, _SAME_SURFACE_M)
+            for number, near in enumerate(known):
+                if near:
+                    alike = np.abs(self._normals[near] @ normals[number])
+                    fresh[number] = alike.max() < _LEAST_COSINE
         self._points = np.vstack((self._points, points[fresh]))
         self._normals = np.vstack((self._normals, normals[fresh]))
 

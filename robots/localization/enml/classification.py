@@ -37,11 +37,19 @@ class LongTermFeatures:
         found = np.empty(len(points), dtype=np.int64)
         lines = np.empty((len(points), 3))
         match_lines(
-            segments, points, normals, seen, _NEIGHBORS, node.gate_m, self._cos_max_angle, found, lines
+            segments,
+            points,
+            normals,
+            seen,
+            _NEIGHBORS,
+            node.gate_m,
+            self._cos_max_angle,
+            found,
+            lines,
         )
         node.is_ltf = found >= 0
         rows = np.flatnonzero(node.is_ltf)
-        node.ltf = LtfMatches(rows, lines[rows, :2], lines[rows, 2])
+        node.ltf = LtfMatches(rows, node.scan_points.points[rows], lines[rows, :2], lines[rows, 2])
         node.cast_pose, node.cast_gate_m, node.expected_m = pose.copy(), node.gate_m, expected_m
         return True
 

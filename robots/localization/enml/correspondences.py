@@ -1,29 +1,57 @@
 """Short-term features: points off the map that two poses of an episode both saw."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 from math import cos
+from typing import Self
 
 import numpy as np
+from numpy.typing import NDArray
 
 from robots.localization.enml.parameters import EnmlParameters
 from robots.localization.enml.pose_node import PoseNode
 from robots.localization.enml.problem import Floats, Indices, StfConstraints
-from robots.localization.pose import Poses, relative, transform, turn, wrap_angle
+from robots.localization.points import ScanPoints
+from robots.localization.pose import Poses, relative, transform, turn, wrap
+
+_MOST_PER_PAIR = 50
+"""More points on the same things say little more about how two poses stand to each other."""
+_NOWHERE = np.full(3, 1e9)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class StfMatches:
-    """Rows of the points of an earlier and a later pose that are the same thing.
+    """Points of an earlier and a later pose that are the same thing, each in its robot's frame.
 
-    `motion` is the later pose in the frame of the earlier when they were found.
+    `count` is how many there are; of the points and normals only some are kept, evenly spread.
+    `later` are the rows of all of them among the later pose's points. `motion` is the later pose in
+    the frame of the earlier when they were found.
     """
 
-    earlier: Indices
-    later: Indices
     motion: Poses
+    count: int
+    later: Indices
+    earlier_points: Floats
+    earlier_normals: Floats
+    later_points: Floats
+    later_normals: Floats
 
-    def __len__(self) -> int:
-        return len(self.earlier)
+    @classmethod
+    def of(
+        cls, motion: Poses, a: ScanPoints, earlier: Indices, b: ScanPoints, later: Indices
+    ) -> Self:
+        """The given rows of two scans' points."""
+        every = max(-(-len(later) // _MOST_PER_PAIR), 1)
+        some_a, some_b = earlier[::every], later[::every]
+        return cls(
+            motion,
+            len(later),
+            later,
+            a.points[some_a],
+            a.normals[some_a],
+            b.points[some_b],
+            b.normals[some_b],
+        )
 
 
 class ShortTermFeatures:
@@ -44,73 +72,81 @@ class ShortTermFeatures:
         """The correspondences of every tied pair (earlier, later) of the episode.
 
         `changed` names (by index) the poses whose long-term features are not what they were. Marks
-        each node's short-term features.
+        the newest pose's short-term features.
         """
+        pairs = _pairs(len(nodes), self._parameters.stf_separations)
+        motions = relative(poses[pairs[:, 0]], poses[pairs[:, 1]])
+        names = [(nodes[a].identity, nodes[b].identity) for a, b in pairs.tolist()]
+        moved = self._moved(names, motions)
         tied: dict[tuple[int, int], StfMatches] = {}
         known: dict[tuple[int, int], StfMatches] = {}
-        for later in range(len(nodes)):
-            for separation in self._parameters.stf_separations:
-                earlier = later - separation
-                if earlier < 0:
-                    break
-                name = nodes[earlier].identity, nodes[later].identity
-                motion = relative(poses[earlier], poses[later])
-                matches = self._known.get(name)
-                stale = earlier in changed or later in changed
-                if matches is None or stale or self._moved(matches.motion, motion):
-                    matches = self._nearest(nodes[earlier], nodes[later], motion)
-                known[name] = matches
-                if len(matches) > self._parameters.stf_min_matches:
-                    tied[earlier, later] = matches
+        for index, (earlier, later) in enumerate(pairs.tolist()):
+            matches = self._known.get(names[index])
+            if matches is None or moved[index] or earlier in changed or later in changed:
+                matches = self._nearest(nodes[earlier], nodes[later], motions[index])
+            known[names[index]] = matches
+            if matches.count > self._parameters.stf_min_matches:
+                tied[earlier, later] = matches
         self._known = known
-        self._mark(nodes, tied)
+        _mark_newest(nodes, tied)
         return tied
 
-    def _moved(self, before: Poses, motion: Poses) -> bool:
-        return bool(
-            np.hypot(*(motion - before)[:2]) > self._parameters.settled_m
-            or abs(wrap_angle(motion[2] - before[2])) > self._parameters.settled_rad
+    def _moved(self, names: list[tuple[int, int]], motions: Poses) -> NDArray[np.bool_]:
+        """Which pairs stand otherwise to each other than when their matches were found."""
+        known = [self._known.get(name) for name in names]
+        before = [_NOWHERE if each is None else each.motion for each in known]
+        change = motions - np.array(before).reshape(-1, 3)
+        return np.asarray(
+            (np.hypot(change[:, 0], change[:, 1]) > self._parameters.settled_m)
+            | (np.abs(wrap(change[:, 2])) > self._parameters.settled_rad)
         )
 
     def _nearest(self, earlier: PoseNode, later: PoseNode, motion: Poses) -> StfMatches:
+        a, b = earlier.scan_points, later.scan_points
         rows = np.flatnonzero(~later.is_ltf & later.has_normal)
         if earlier.tree is None or not len(rows):
-            return StfMatches(rows[:0], rows[:0], motion)
-        points = transform(motion, later.scan_points.points[rows])
-        gaps, nearest = earlier.tree.query(
-            points, distance_upper_bound=self._parameters.stf_gate_m
-        )
+            return StfMatches.of(motion, a, rows[:0], b, rows[:0])
+        points = transform(motion, b.points[rows])
+        gaps, nearest = earlier.tree.query(points, distance_upper_bound=self._parameters.stf_gate_m)
         rows, nearest = rows[np.isfinite(gaps)], nearest[np.isfinite(gaps)]
-        normals = turn(float(motion[2]), later.scan_points.normals[rows])
-        same_side = np.sum(normals * earlier.scan_points.normals[nearest], axis=1)
-        kept = (same_side > self._cos_max_angle) & ~earlier.is_ltf[nearest]
-        return StfMatches(nearest[kept], rows[kept], motion)
-
-    def _mark(self, nodes: list[PoseNode], tied: dict[tuple[int, int], StfMatches]) -> None:
-        for node in nodes:
-            node.is_stf = np.zeros(len(node.scan_points), dtype=np.bool_)
-        for (earlier, later), matches in tied.items():
-            nodes[earlier].is_stf[matches.earlier] = True
-            nodes[later].is_stf[matches.later] = True
+        normals = turn(float(motion[2]), b.normals[rows])
+        agreement = np.sum(normals * a.normals[nearest], axis=1)
+        kept = (agreement > self._cos_max_angle) & ~earlier.is_ltf[nearest]
+        return StfMatches.of(motion, a, nearest[kept], b, rows[kept])
 
 
-def stf_constraints(
-    nodes: list[PoseNode], tied: dict[tuple[int, int], StfMatches], width_m: float
-) -> StfConstraints:
+@lru_cache(maxsize=64)
+def _pairs(count: int, separations: tuple[int, ...]) -> Indices:
+    """Which poses (earlier, later) of so many are compared."""
+    found = [
+        (later - separation, later)
+        for later in range(count)
+        for separation in separations
+        if separation <= later
+    ]
+    return np.array(found, dtype=np.int64).reshape(-1, 2)
+
+
+def _mark_newest(nodes: list[PoseNode], tied: dict[tuple[int, int], StfMatches]) -> None:
+    newest = nodes[-1]
+    newest.is_stf = np.zeros(len(newest.scan_points), dtype=np.bool_)
+    for (_, later), matches in tied.items():
+        if later == len(nodes) - 1:
+            newest.is_stf[matches.later] = True
+
+
+def stf_constraints(tied: dict[tuple[int, int], StfMatches], width_m: float) -> StfConstraints:
     """The correspondences as one list for the solver."""
     if not tied:
         return StfConstraints.none()
-    counts = [len(matches) for matches in tied.values()]
-    earlier = [
-        (nodes[a].scan_points, matches.earlier) for (a, _), matches in tied.items()
-    ]
-    later = [(nodes[b].scan_points, matches.later) for (_, b), matches in tied.items()]
+    found = list(tied.values())
+    counts = [len(each.later_points) for each in found]
     return StfConstraints(
         np.array(list(tied), dtype=np.int64),
         np.concatenate([[0], np.cumsum(counts)]).astype(np.int64),
-        np.concatenate([points.points[rows] for points, rows in earlier]),
-        np.concatenate([points.normals[rows] for points, rows in earlier]),
-        np.concatenate([points.points[rows] for points, rows in later]),
-        np.concatenate([points.normals[rows] for points, rows in later]),
+        np.concatenate([each.earlier_points for each in found]),
+        np.concatenate([each.earlier_normals for each in found]),
+        np.concatenate([each.later_points for each in found]),
+        np.concatenate([each.later_normals for each in found]),
         width_m,
     )

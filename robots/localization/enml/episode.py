@@ -1,5 +1,6 @@
 """The poses that still matter, and what ties them to the map and to each other."""
 
+from dataclasses import replace
 from itertools import count
 
 import numpy as np
@@ -11,7 +12,7 @@ from robots.localization.enml.pose_node import PoseNode
 from robots.localization.enml.prior import prior_on_last
 from robots.localization.enml.problem import Floats, LtfConstraints, Problem
 from robots.localization.points import ScanPoints
-from robots.localization.pose import Poses, compose
+from robots.localization.pose import Poses, compose, relative
 from robots.localization.scan import Scan
 
 Ties = dict[tuple[int, int], StfMatches]
@@ -60,6 +61,18 @@ class Episode:
             or travel.turned_rad >= self._parameters.min_rotation_rad
         )
 
+    def begin_anew(self, prior_whitening: Floats) -> None:
+        """Keep only the newest pose, and believe its place no more than a new prior says."""
+        self.nodes = self.nodes[-1:]
+        self.poses = self.poses[-1:]
+        self.prior, self.prior_whitening = self.poses[0].copy(), prior_whitening
+        self.nodes[0].take_off_map()
+
+    def move(self, newest: Poses, prior_whitening: Floats) -> None:
+        """Shift all poses alike, so that the newest comes to a place; all are open to doubt."""
+        self.poses = compose(newest, relative(self.poses[-1], self.poses))
+        self.prior, self.prior_whitening = self.poses[0].copy(), prior_whitening
+
     def problem(self, ties: Ties, first: int = 0, last: int | None = None) -> Problem:
         """The constraints on the poses from `first` to `last` (exclusive; all if None)."""
         nodes = self.nodes[first:last]
@@ -70,11 +83,12 @@ class Episode:
             prior=self.prior,
             prior_whitening=self.prior_whitening,
             odometry=np.array([each.motion for each in moves]).reshape(-1, 3),
-            odometry_whitening=np.array(
-                [each.whitening(parameters) for each in moves]
-            ).reshape(-1, 3, 3),
+            odometry_whitening=np.array([each.whitening(parameters) for each in moves]).reshape(
+                -1, 3, 3
+            ),
+            odometry_width=parameters.odometry_robust_width,
             ltf=_ltf_constraints(nodes, width_m / parameters.ltf_gate_m),
-            stf=stf_constraints(nodes, ties, width_m),
+            stf=stf_constraints(ties, width_m),
             ltf_weight=parameters.ltf_correlation / parameters.laser_std_m**2,
             stf_weight=parameters.stf_correlation / parameters.laser_std_m**2,
         )
@@ -87,9 +101,7 @@ class Episode:
         # The boundary's own points stay in the episode, so they must not count in its prior.
         left = self.problem(kept, 0, boundary + 1)
         without = _without_last_ltf(left)
-        self.prior, self.prior_whitening = prior_on_last(
-            without, self.poses[: boundary + 1]
-        )
+        self.prior, self.prior_whitening = prior_on_last(without, self.poses[: boundary + 1])
         self.nodes = self.nodes[boundary:]
         self.poses = self.poses[boundary:]
 
@@ -98,7 +110,7 @@ def _ltf_constraints(nodes: list[PoseNode], width_per_gate: float) -> LtfConstra
     counts = [len(node.ltf.rows) for node in nodes]
     return LtfConstraints(
         start=np.concatenate([[0], np.cumsum(counts)]).astype(np.int64),
-        points=np.concatenate([node.scan_points.points[node.ltf.rows] for node in nodes]),
+        points=np.concatenate([node.ltf.points for node in nodes]),
         normals=np.concatenate([node.ltf.normals for node in nodes]),
         offsets=np.concatenate([node.ltf.offsets for node in nodes]),
         widths_m=np.array([node.gate_m * width_per_gate for node in nodes]),
@@ -109,13 +121,5 @@ def _without_last_ltf(problem: Problem) -> Problem:
     ltf = problem.ltf
     start = ltf.start.copy()
     start[-1] = start[-2]
-    return Problem(
-        problem.prior,
-        problem.prior_whitening,
-        problem.odometry,
-        problem.odometry_whitening,
-        LtfConstraints(start, ltf.points, ltf.normals, ltf.offsets, ltf.widths_m),
-        problem.stf,
-        problem.ltf_weight,
-        problem.stf_weight,
-    )
+    without = LtfConstraints(start, ltf.points, ltf.normals, ltf.offsets, ltf.widths_m)
+    return replace(problem, ltf=without)

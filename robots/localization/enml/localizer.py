@@ -1,24 +1,45 @@
 """Episodic non-Markov localization as a stream: a motion and a scan in, an estimate out."""
 
+from enum import Enum
+
 import numpy as np
 from numpy.typing import NDArray
 
 from maps.vector_map import VectorMap
 from robots.localization.enml import normal_equations
+from robots.localization.enml.alignment import Aligner
 from robots.localization.enml.classification import LongTermFeatures
 from robots.localization.enml.correspondences import ShortTermFeatures
 from robots.localization.enml.episode import Episode, Ties
 from robots.localization.enml.episodes import episode_start
+from robots.localization.enml.global_search import Region
+from robots.localization.enml.lost import Evidence, evidence_of
 from robots.localization.enml.parameters import EnmlParameters
 from robots.localization.enml.prior import whitening_of
 from robots.localization.enml.problem import Floats
+from robots.localization.enml.recovery import Recovery
 from robots.localization.enml.solver import Linearize, Solution, solve
 from robots.localization.localizer import Estimate, PointClass
+from robots.localization.mcl.likelihood_field import distance_field
 from robots.localization.points import DEFAULT_MAX_RANGE_M, scan_points
-from robots.localization.pose import Poses, wrap, wrap_angle
+from robots.localization.pose import Poses, transform, wrap, wrap_angle
 from robots.localization.scan import Scan, ScanStream
 
+_FIELD_CELL_M = 0.1
+_FIELD_REACH_M = 1.0
+_LOST_STD = np.array([10.0, 10.0, np.pi])
+_FOUND_STD = np.array([0.3, 0.3, np.radians(5.0)])
+_LEAST_VARIANCE = 1e-8
+_LEAST_JUDGED = 3
+_LEAST_RETURNS = 20.0
 _FIRST_STD = np.array([0.1, 0.1, np.radians(3.0)])
+
+
+class Mode(Enum):
+    """Whether the map is believed: lost, the robot goes by odometry and what it just saw."""
+
+    TRACKING = "tracking"
+    LOST = "lost"
 
 
 class EnmlLocalizer:
@@ -37,15 +58,38 @@ class EnmlLocalizer:
         self._long_term = LongTermFeatures(
             vector_map.segments, DEFAULT_MAX_RANGE_M, self._parameters
         )
+        field = distance_field(vector_map, _FIELD_CELL_M, _FIELD_REACH_M)
+        self._aligner = Aligner(field, self._parameters)
+        x_min, y_min, x_max, y_max = vector_map.bounds
+        self._recovery = Recovery(
+            vector_map.segments,
+            Region(x_min, y_min, x_max, y_max),
+            field,
+            DEFAULT_MAX_RANGE_M,
+            self._parameters,
+        )
+        self._mode = Mode.TRACKING
+        self._evidence = Evidence()
+        self._judged = 0
+        self._driven_m = self._next_search_m = 0.0
         self._short_term = ShortTermFeatures(self._parameters)
         self.reset(np.zeros(3) if start is None else start)
 
     def reset(self, pose: Poses, covariance: NDArray[np.float64] | None = None) -> None:
-        """Start anew at a pose, with its (3, 3) covariance or one that is small."""
+        """Start anew at a pose, with its (3, 3) covariance or one that is small.
+
+        A covariance wider than the place near which a lost robot is looked for says that the robot
+        is lost: it is then looked for everywhere.
+        """
         if covariance is None:
             covariance = np.diag(_FIRST_STD**2)
+        covariance = np.asarray(covariance, dtype=np.float64) + _LEAST_VARIANCE * np.eye(3)
         self._stream = ScanStream()
         self._short_term.forget()
+        if covariance[0, 0] + covariance[1, 1] > self._parameters.recovery_near_m**2:
+            self._lose()
+        else:
+            self._track(Evidence())
         self._episode = Episode(
             self._parameters, np.asarray(pose, dtype=np.float64), whitening_of(covariance)
         )
@@ -61,25 +105,97 @@ class EnmlLocalizer:
         Raises `InvalidScanError`, and is then as it was before.
         """
         motion = self._stream.accept(odometry, scan)
-        episode = self._episode
-        episode.extend(motion, scan, scan_points(scan))
+        self._episode.extend(motion, scan, scan_points(scan))
+        self._align()
         self._set_first_gate()
-        ties, solution = self._associate_and_solve()
-        covariance = solution.covariance_of(-1)
-        boundary = episode_start(
-            len(episode),
-            ties,
-            self._parameters.min_episode_length,
-            self._parameters.max_episode_length,
-        )
-        episode.forget_before(boundary, ties)
-        node = episode.nodes[-1]
-        pose = episode.poses[-1].copy()
+        covariance = self._settle()
+        if self._mode is Mode.TRACKING:
+            self._look_for_doubt()
+        else:
+            self._driven_m += float(np.hypot(motion[0], motion[1]))
+            covariance = self._look_for_place(covariance)
+        return self._estimate(covariance)
+
+    def _estimate(self, covariance: Floats) -> Estimate:
+        node = self._episode.nodes[-1]
+        pose = self._episode.poses[-1].copy()
         pose[2] = wrap_angle(pose[2])
         classes = np.full(len(node.scan_points), PointClass.DF, dtype=np.int8)
         classes[node.is_stf] = PointClass.STF
         classes[node.is_ltf] = PointClass.LTF
-        return Estimate(pose, covariance, node.scan_points, classes, 0.0, False)
+        lost = self._evidence.lost if self._mode is Mode.TRACKING else 1.0
+        return Estimate(pose, covariance, node.scan_points, classes, lost, self._mode is Mode.LOST)
+
+    def _look_for_doubt(self) -> None:
+        """Judge by the newest scans whether the robot is where it is believed to be."""
+        self._evidence = self._evidence.faded(
+            self._parameters.evidence_fading, evidence_of(self._episode.nodes[-1])
+        )
+        self._judged += 1
+        if (
+            self._judged >= _LEAST_JUDGED
+            and self._evidence.returns >= _LEAST_RETURNS
+            and self._evidence.lost > self._parameters.lost_above
+        ):
+            self._lose()
+            self._episode.begin_anew(np.diag(1.0 / _LOST_STD))
+
+    def _look_for_place(self, covariance: Floats) -> Floats:
+        """Search the map every so often; take the episode to where it clearly belongs."""
+        if self._driven_m < self._next_search_m:
+            return covariance
+        self._next_search_m += self._parameters.recovery_every_m
+        found = self._recovery.search(self._episode, self._episode.poses[-1], self._driven_m)
+        if found is None:
+            return covariance
+        self._episode.move(found.pose, np.diag(1.0 / _FOUND_STD))
+        for node in self._episode.nodes:
+            node.gate_m = 2.0 * self._parameters.ltf_gate_m
+        self._track(found.evidence)
+        return self._settle()
+
+    def _lose(self) -> None:
+        self._mode = Mode.LOST
+        self._driven_m = 0.0
+        self._next_search_m = self._parameters.recovery_every_m
+
+    def _track(self, seen: Evidence) -> None:
+        self._mode = Mode.TRACKING
+        self._evidence = seen
+        self._judged = 0
+
+    def _settle(self) -> Floats:
+        """Find the best poses, let go of what the episode needs no more; the covariance."""
+        ties, solution = self._associate_and_solve()
+        boundary = episode_start(
+            len(self._episode),
+            ties,
+            self._parameters.min_episode_length,
+            self._parameters.max_episode_length,
+        )
+        self._episode.forget_before(boundary, ties)
+        return solution.covariance_of(-1)
+
+    def _align(self) -> None:
+        """Move the newest prediction to where its scan fits clearly better."""
+        episode, parameters = self._episode, self._parameters
+        nodes, poses = episode.nodes, episode.poses
+        recent = [
+            transform(pose, node.scan_points.points)
+            for node, pose in list(zip(nodes[:-1], poses, strict=False))[
+                -parameters.alignment_scans :
+            ]
+        ]
+        newest = nodes[-1]
+        aligned = self._aligner.align(
+            np.concatenate([np.zeros((0, 2)), *recent]),
+            newest.scan_points.points,
+            poses[-1],
+            newest.travel.deviations(parameters),
+            on_map=self._mode is Mode.TRACKING,
+        )
+        if aligned.gain > parameters.alignment_min_gain:
+            poses[-1] = aligned.pose
 
     def _set_first_gate(self) -> None:
         """Open the newest pose's gate as wide as its prediction is uncertain."""
@@ -89,22 +205,14 @@ class EnmlLocalizer:
         points = node.scan_points.points
         reach_m = float(np.median(np.hypot(*points.T))) if len(points) else 0.0
         doubt_m = 2.0 * float(np.hypot(max(along_m, across_m), heading_rad * reach_m))
-        node.gate_m = float(
-            np.clip(doubt_m, parameters.ltf_gate_m, parameters.ltf_widest_gate_m)
-        )
+        node.gate_m = float(np.clip(doubt_m, parameters.ltf_gate_m, parameters.ltf_widest_gate_m))
 
     def _associate_and_solve(self) -> tuple[Ties, Solution]:
         """Alternate between deciding what points are and where the poses are best."""
         parameters = self._parameters
         episode = self._episode
         for _ in range(parameters.association_rounds):
-            changed = {
-                index
-                for index, (node, pose) in enumerate(
-                    zip(episode.nodes, episode.poses, strict=True)
-                )
-                if self._long_term.classify(node, pose)
-            }
+            changed = self._classify()
             ties = self._short_term.match(episode.nodes, episode.poses, changed)
             solution = solve(
                 episode.problem(ties),
@@ -119,6 +227,17 @@ class EnmlLocalizer:
                 break
         episode.poses[:, 2] = wrap(episode.poses[:, 2])
         return ties, solution
+
+    def _classify(self) -> set[int]:
+        """Decide what lies on the map's lines; at which poses that was decided anew."""
+        if self._mode is Mode.LOST:
+            return set()
+        poses = zip(self._episode.nodes, self._episode.poses, strict=True)
+        return {
+            index
+            for index, (node, pose) in enumerate(poses)
+            if self._long_term.classify(node, pose)
+        }
 
     def _narrow_gates(self) -> bool:
         narrowed = False

@@ -1,6 +1,7 @@
 """How far odometry can be trusted."""
 
 import numpy as np
+from numpy.typing import NDArray
 
 from robots.localization.enml.parameters import EnmlParameters
 from robots.localization.pose import Poses, compose
@@ -9,18 +10,20 @@ from robots.localization.pose import Poses, compose
 class Travel:
     """The motion measured since some pose, in that pose's frame, and how uncertain it is."""
 
-    __slots__ = ("motion", "path_m", "turned_rad")
+    __slots__ = ("_whitening", "motion", "path_m", "turned_rad")
 
     def __init__(self) -> None:
         self.motion: Poses = np.zeros(3)
         self.path_m = 0.0
         self.turned_rad = 0.0
+        self._whitening: NDArray[np.float64] | None = None
 
     def add(self, step: Poses) -> None:
         """Append a motion, in the frame of where the last one led."""
         self.motion = compose(self.motion, step)
         self.path_m += float(np.hypot(step[0], step[1]))
         self.turned_rad += abs(float(step[2]))
+        self._whitening = None
 
     def deviations(self, parameters: EnmlParameters) -> Poses:
         """Standard deviations along and across the motion (metres) and of the heading (radians)."""
@@ -35,9 +38,11 @@ class Travel:
             ]
         )
 
-    def whitening(self, parameters: EnmlParameters) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
+    def whitening(self, parameters: EnmlParameters) -> NDArray[np.float64]:
         """The matrix (3, 3) that turns the motion's error into independent unit variances."""
-        along = np.arctan2(self.motion[1], self.motion[0])
-        c, s = np.cos(along), np.sin(along)
-        to_motion = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
-        return np.asarray(to_motion / self.deviations(parameters)[:, None])
+        if self._whitening is None:
+            along = np.arctan2(self.motion[1], self.motion[0])
+            c, s = np.cos(along), np.sin(along)
+            to_motion = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+            self._whitening = np.asarray(to_motion / self.deviations(parameters)[:, None])
+        return self._whitening

@@ -1,7 +1,8 @@
 """Cost, gradient and Gauss-Newton matrix of a problem, in one fused pass of compiled code.
 
 The loss of a point at distance r is Cauchy's: w^2/2 log(1 + (r/w)^2), which pulls like least
-squares nearby and lets go of what is far. Odometry and prior are plain least squares.
+squares nearby and lets go of what is far; that of a motion is the same in standard deviations. The
+prior is plain least squares.
 """
 
 import math
@@ -9,7 +10,7 @@ import math
 import numpy as np
 
 from maps.compiled import compiled
-from robots.localization.enml.problem import Floats, Problem
+from robots.localization.enml.problem import Floats, Indices, Problem
 
 
 def linearize(problem: Problem, poses: Floats) -> tuple[float, Floats, Floats]:
@@ -19,7 +20,12 @@ def linearize(problem: Problem, poses: Floats) -> tuple[float, Floats, Floats]:
     matrix = np.zeros((size, size))
     cost = _add_prior(poses, problem.prior, problem.prior_whitening, gradient, matrix)
     cost += _add_odometry(
-        poses, problem.odometry, problem.odometry_whitening, gradient, matrix
+        poses,
+        problem.odometry,
+        problem.odometry_whitening,
+        problem.odometry_width,
+        gradient,
+        matrix,
     )
     ltf, stf = problem.ltf, problem.stf
     cost += _add_ltf(
@@ -50,12 +56,14 @@ def linearize(problem: Problem, poses: Floats) -> tuple[float, Floats, Floats]:
 
 
 @compiled
-def _wrapped(angle):  # type: ignore[no-untyped-def]
+def _wrapped(angle: float) -> float:
     return angle - 2.0 * math.pi * math.floor((angle + math.pi) / (2.0 * math.pi))
 
 
 @compiled
-def _add_prior(poses, prior, whitening, gradient, matrix):  # type: ignore[no-untyped-def]
+def _add_prior(
+    poses: Floats, prior: Floats, whitening: Floats, gradient: Floats, matrix: Floats
+) -> float:
     error = np.empty(3)
     error[0] = poses[0, 0] - prior[0]
     error[1] = poses[0, 1] - prior[1]
@@ -74,11 +82,19 @@ def _add_prior(poses, prior, whitening, gradient, matrix):  # type: ignore[no-un
 
 
 @compiled
-def _add_odometry(poses, odometry, whitening, gradient, matrix):  # type: ignore[no-untyped-def]
+def _add_odometry(
+    poses: Floats,
+    odometry: Floats,
+    whitening: Floats,
+    width: float,
+    gradient: Floats,
+    matrix: Floats,
+) -> float:
     cost = 0.0
     error = np.empty(3)
+    residual = np.empty(3)
     plain = np.zeros((3, 6))
-    jacobian = np.empty(6)
+    jacobian = np.empty((3, 6))
     for i in range(odometry.shape[0]):
         c, s = math.cos(poses[i, 2]), math.sin(poses[i, 2])
         dx, dy = poses[i + 1, 0] - poses[i, 0], poses[i + 1, 1] - poses[i, 1]
@@ -89,27 +105,41 @@ def _add_odometry(poses, odometry, whitening, gradient, matrix):  # type: ignore
         plain[0, 0], plain[0, 1], plain[0, 2], plain[0, 3], plain[0, 4] = -c, -s, left, c, s
         plain[1, 0], plain[1, 1], plain[1, 2], plain[1, 3], plain[1, 4] = s, -c, -forward, -s, c
         plain[2, 2], plain[2, 5] = -1.0, 1.0
+        square = 0.0
+        for row in range(3):
+            residual[row] = 0.0
+            for k in range(3):
+                residual[row] += whitening[i, row, k] * error[k]
+            square += residual[row] * residual[row]
+            for a in range(6):
+                jacobian[row, a] = 0.0
+                for k in range(3):
+                    jacobian[row, a] += whitening[i, row, k] * plain[k, a]
+        excess = square / (width * width)
+        weight = 1.0 / (1.0 + excess)
+        cost += 0.5 * width * width * math.log1p(excess)
         first = 3 * i
         for row in range(3):
-            residual = 0.0
-            for k in range(3):
-                residual += whitening[i, row, k] * error[k]
             for a in range(6):
-                jacobian[a] = 0.0
-                for k in range(3):
-                    jacobian[a] += whitening[i, row, k] * plain[k, a]
-            cost += 0.5 * residual * residual
-            for a in range(6):
-                gradient[first + a] += jacobian[a] * residual
+                pull = weight * jacobian[row, a]
+                gradient[first + a] += pull * residual[row]
                 for b in range(6):
-                    matrix[first + a, first + b] += jacobian[a] * jacobian[b]
+                    matrix[first + a, first + b] += pull * jacobian[row, b]
     return cost
 
 
 @compiled
-def _add_ltf(  # type: ignore[no-untyped-def]
-    poses, start, points, normals, offsets, widths_m, information, gradient, matrix
-):
+def _add_ltf(
+    poses: Floats,
+    start: Indices,
+    points: Floats,
+    normals: Floats,
+    offsets: Floats,
+    widths_m: Floats,
+    information: float,
+    gradient: Floats,
+    matrix: Floats,
+) -> float:
     cost = 0.0
     for i in range(poses.shape[0]):
         c, s = math.cos(poses[i, 2]), math.sin(poses[i, 2])
@@ -151,19 +181,19 @@ def _add_ltf(  # type: ignore[no-untyped-def]
 
 
 @compiled
-def _add_stf(  # type: ignore[no-untyped-def]
-    poses,
-    pairs,
-    start,
-    points_a,
-    normals_a,
-    points_b,
-    normals_b,
-    width_m,
-    information,
-    gradient,
-    matrix,
-):
+def _add_stf(
+    poses: Floats,
+    pairs: Indices,
+    start: Indices,
+    points_a: Floats,
+    normals_a: Floats,
+    points_b: Floats,
+    normals_b: Floats,
+    width_m: float,
+    information: float,
+    gradient: Floats,
+    matrix: Floats,
+) -> float:
     cost = 0.0
     width_squared = width_m * width_m
     jacobian = np.empty(6)

@@ -1,4 +1,4 @@
-"""Every parameter of episodic non-Markov localization: its unit, its default and where that is from.
+"""Every parameter of episodic non-Markov localization: unit, default and where that is from.
 
 Sources: *published* is the configuration that the authors of the method ship for their indoor
 robots; *ours* was chosen once, on simulated and recorded runs together, and holds for all maps.
@@ -24,11 +24,15 @@ class EnmlParameters:
     odometry_angular_rate: float = 0.15
     """Standard deviation of the heading, per radian turned (ours; published 0.1)."""
     odometry_drift_rad_per_m: float = radians(1.0)
-    """Standard deviation of the heading, per metre moved (ours: wheels slip when going straight)."""
-    odometry_min_std_m: float = 0.005
+    """Standard deviation of the heading, per metre moved (ours: wheels slip)."""
+    odometry_min_std_m: float = 0.02
     """Never trust a translation more than this (ours; published 0.001)."""
-    odometry_min_std_rad: float = radians(0.3)
-    """Never trust a rotation more than this (ours; published 1 degree)."""
+    odometry_min_std_rad: float = radians(1.0)
+    """Never trust a rotation more than this (published)."""
+
+    odometry_robust_width: float = 2.0
+    """Standard deviations at which odometry's pull is half of what plain least squares gives it
+    (ours: wheels that slip are wrong by more than noise)."""
 
     laser_std_m: float = 0.05
     """Standard deviation of a point's distance from what it was measured on (published)."""
@@ -41,7 +45,7 @@ class EnmlParameters:
     """Where the gate starts when the prediction is at its most uncertain (ours)."""
     ltf_max_angle_rad: float = radians(35.0)
     """Largest angle between a point's normal and its line's (published)."""
-    ltf_correlation: float = 1.0 / 20.0
+    ltf_correlation: float = 1.0 / 10.0
     """How much one of many correlated rays counts (ours; published 1/50 over 1,000 rays)."""
 
     stf_gate_m: float = 0.15
@@ -59,6 +63,13 @@ class EnmlParameters:
     """Poses that are kept even if nothing ties the newest to them (published)."""
     max_episode_length: int = 25
     """Poses after which the oldest is let go whatever ties it (ours; published 80)."""
+    alignment_weight: float = 0.1
+    """How much one of many correlated rays counts in the pre-alignment (ours)."""
+    alignment_scans: int = 4
+    """How many of the last poses the pre-alignment lays the newest scan over (ours)."""
+    alignment_min_gain: float = 2.0
+    """The prediction is kept unless another place is likelier by this much (ours; logarithm)."""
+
     association_rounds: int = 4
     """At most this many rounds of association and optimization per update (published)."""
     solver_iterations: int = 10
@@ -67,6 +78,21 @@ class EnmlParameters:
     """A pose that moved less keeps its ray cast and its correspondences (ours)."""
     settled_rad: float = radians(0.25)
     """... and turned less (ours)."""
+
+    evidence_fading: float = 0.8
+    """What is left of earlier scans' evidence for being lost or not, per update (ours)."""
+    lost_above: float = 0.6
+    """The robot is lost once its measure is above this (ours)."""
+    found_below: float = 0.45
+    """No place with a measure above this is taken for where a lost robot is (ours)."""
+    recovery_near_m: float = 2.5
+    """How far around the last pose a lost robot is looked for first (published)."""
+    recovery_every_m: float = 1.0
+    """A lost robot looks for its place again after driving this far (ours)."""
+    recovery_lead: float = 0.12
+    """How much better than all others, in shares of the returns, the place has to be at first..."""
+    recovery_patience_m: float = 8.0
+    """... which becomes less until, after driving this far, the best will do (ours)."""
 
     def __post_init__(self) -> None:
         for field in fields(self):
@@ -84,5 +110,6 @@ class EnmlParameters:
             raise ValueError("stf_separations must name at least one pose back, counted from 1")
         if self.ltf_widest_gate_m < self.ltf_gate_m:
             raise ValueError("ltf_widest_gate_m must not be below ltf_gate_m")
-        if max(self.ltf_max_angle_rad, self.stf_max_angle_rad) > pi / 2:
-            raise ValueError("angles between normals must not be above a right angle")
+        for name in ("ltf_max_angle_rad", "stf_max_angle_rad"):
+            if getattr(self, name) > pi / 2:
+                raise ValueError(f"{name} must not be above a right angle")

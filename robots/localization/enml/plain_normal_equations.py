@@ -48,9 +48,11 @@ def _odometry(problem: Problem, poses: Floats) -> list[_Term]:
         jacobian[2, 2], jacobian[2, 5] = -1.0, 1.0
         residuals = whitening @ error
         columns = list(range(3 * i, 3 * i + 6))
-        terms.append(
-            (residuals, whitening @ jacobian, columns, np.ones(3), _half_square(residuals))
-        )
+        width = problem.odometry_width
+        excess = residuals @ residuals / width**2
+        weights = np.full(3, 1.0 / (1.0 + excess))
+        loss = float(0.5 * width**2 * np.log1p(excess))
+        terms.append((residuals, whitening @ jacobian, columns, weights, loss))
     return terms
 
 

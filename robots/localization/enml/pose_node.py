@@ -14,18 +14,21 @@ from robots.localization.scan import Scan
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LtfMatches:
-    """The points that lie on lines of the map, as rows of the node's points, and those lines.
+    """Points (robot's frame) that lie on lines of the map, their rows, and those lines.
 
     A line is normal . point + offset = 0 in the map's frame.
     """
 
     rows: Indices
+    points: Floats
     normals: Floats
     offsets: Floats
 
     @classmethod
     def none(cls) -> "LtfMatches":
-        return cls(np.zeros(0, dtype=np.int64), np.zeros((0, 2)), np.zeros(0))
+        """Nothing lies on the map."""
+        nothing = np.zeros((0, 2))
+        return cls(np.zeros(0, dtype=np.int64), nothing, nothing, np.zeros(0))
 
 
 @dataclass(slots=True, eq=False)
@@ -40,7 +43,7 @@ class PoseNode:
     identity: int
     scan_points: ScanPoints
     bearings: Floats
-    increment_rad: float
+    ranges_m: Floats
     sensor_offset: Floats
     travel: Travel
     gate_m: float
@@ -68,9 +71,15 @@ class PoseNode:
         return cls(
             identity,
             scan_points,
-            scan.angle_min + scan_points.beams * scan.angle_increment,
-            scan.angle_increment,
+            scan.angles[scan_points.beams],
+            scan.ranges[scan_points.beams],
             scan.sensor_offset,
             travel,
             gate_m,
         )
+
+    def take_off_map(self) -> None:
+        """Forget what lay on lines of the map."""
+        self.cast_pose = None
+        self.ltf = LtfMatches.none()
+        self.is_ltf = np.zeros(len(self.scan_points), dtype=np.bool_)

@@ -56,7 +56,8 @@ class Problem:
     """All constraints on n poses.
 
     `odometry[i]` is the measured motion from pose i to pose i + 1 in the frame of pose i, and
-    `odometry_whitening[i]` turns its error into unit variances. The prior is on the first pose; its
+    `odometry_whitening[i]` turns its error into unit variances; beyond `odometry_width`
+    of them the robust loss lets go. The prior is on the first pose; its
     error is whitened in the map's frame. `ltf_weight` and `stf_weight` are information per square
     metre: the inverse variance, times what is discounted for rays that are correlated.
     """
@@ -65,6 +66,7 @@ class Problem:
     prior_whitening: Floats
     odometry: Floats
     odometry_whitening: Floats
+    odometry_width: float
     ltf: LtfConstraints
     stf: StfConstraints
     ltf_weight: float

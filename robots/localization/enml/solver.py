@@ -14,9 +14,9 @@ Linearize = Callable[[Problem, Floats], tuple[float, Floats, Floats]]
 _FIRST_DAMPING = 1e-4
 _LEAST_DAMPING = 1e-9
 _MOST_DAMPING = 1e8
-_ENOUGH_COST = 1e-7
-"""A step that lowers the cost by less than this share of it ends the search (published)."""
-_ENOUGH_STEP = 1e-6
+_ENOUGH_COST = 1e-4
+"""A step that lowers the cost by less than this share of it ends the search."""
+_ENOUGH_STEP = 1e-5
 """As does one that moves no pose by more than this (metres, radians)."""
 
 

@@ -151,12 +151,14 @@ def _draw_points(canvas: Canvas, view: View, moment: Moment, radius: float) -> N
 
 
 def _draw_legend(canvas: Canvas, title: str) -> None:
-    canvas.text(8, 18, title)
-    x = 240.0
-    for kind, color in POINTS.items():
-        canvas.dots(np.array([[x, 14.0]]), color, 4.0)
-        canvas.text(x + 10, 18, kind.name)
-        x += 70.0
+    entries = {kind.name: color for kind, color in POINTS.items()}
+    entries |= {"map": MAP, "path": TRAJECTORY, "reference": REFERENCE}
+    x = 8.0
+    for name, color in entries.items():
+        canvas.dots(np.array([[x + 4, 14.0]]), color, 4.0)
+        canvas.text(x + 14, 18, name)
+        x += 58.0
+    canvas.text(x + 40, 18, title)
 
 
 def _ellipse(moment: Moment) -> Matrix:

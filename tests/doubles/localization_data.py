@@ -1,0 +1,6 @@
+"""Where published maps and logs are, if they are here; they are not the product's."""
+
+import os
+from pathlib import Path
+
+DATA = Path(os.environ.get("MEND_DATA", Path(__file__).parents[3] / "shared/data")) / "localization"
