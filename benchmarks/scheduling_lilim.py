@@ -164,9 +164,7 @@ def main() -> None:
         found = [measure(each, problem, options.seconds, options.seed) for each in solvers.values()]
         rows.append(Row(path.stem, known.get(path.stem.lower()), tuple(found)))
         best = str(rows[-1].known or "-")
-        print(
-            f"{path.stem:9} {best:>14} " + " ".join(str(each) for each in found), flush=True
-        )
+        print(f"{path.stem:9} {best:>14} " + " ".join(str(each) for each in found), flush=True)
     plot(names, rows, print_table(names, rows), OUT)
     print(f"plot: {OUT}")
 
