@@ -197,16 +197,16 @@ class TemporalNetwork(Generic[Reason]):
         """
         next_edge: dict[int, _Edge[Reason] | None] = {event: None}
         waiting = deque((event,))
-        while waiting:
+        while waiting and ORIGIN not in next_edge:
             here = waiting.popleft()
-            if here == ORIGIN or self._earliest[here] == 0.0:
-                return self._follow(next_edge, here)
             for edge in self._in[here]:
                 gap_s = self._earliest[here] - self._earliest[edge.earlier]
                 if edge.earlier not in next_edge and abs(gap_s - edge.gap_s) <= 10 * TOLERANCE_S:
                     next_edge[edge.earlier] = edge
                     waiting.append(edge.earlier)
-        raise AssertionError(f"event {event} is later than every constraint asks")
+        if ORIGIN in next_edge:
+            return self._follow(next_edge, ORIGIN)
+        return self._follow(next_edge, next(each for each in next_edge if not self._earliest[each]))
 
     @staticmethod
     def _follow(next_edge: dict[int, _Edge[Reason] | None], event: int) -> list[_Edge[Reason]]:
