@@ -59,7 +59,8 @@ async def persons(tmp_path_factory: pytest.TempPathFactory) -> AsyncIterator[Per
 @pytest_asyncio.fixture(scope="module", loop_scope="session")
 async def speech() -> AsyncIterator[SpeechAbilities]:
     """A robot with ears, and a voice that takes no time."""
-    ears = ProcessEars(2 * AT_ONCE)
+    # A conversation may still be closing when the next one begins.
+    ears = ProcessEars(4 * AT_ONCE)
     speech = SpeechAbilities(SpokenTexts(ToneVoice()), ears)
     # Their processes are kept, and then ready at once.
     for ear in [await ears.open() for _ in range(AT_ONCE)]:
