@@ -10,12 +10,12 @@ import numpy as np
 from server.speech.commands import Command
 from server.speech.decoding import Hypothesis
 
-QUIET_MARGIN = 0.035
-NOISY_MARGIN = 0.04
+QUIET_MARGIN = 0.025
+NOISY_MARGIN = 0.035
 NOISY_BELOW_DB = 17.0
 """Where a voice stands out less from what else is to be heard, more resembles a command."""
 
-MORE_MARGIN = 0.02
+MORE_MARGIN = 0.03
 """For what is no answer: help, repeat and stop are what noise and other words are taken for, and
 there is a button for each."""
 
