@@ -4,6 +4,7 @@ import type { Question } from "../state/questions";
 import { connection } from "../state/service";
 import { type Answer, given, held, mistakes, undo } from "./answering";
 import type { Arming } from "./arming";
+import "./answers.css";
 
 const WORDS = { yes: "YES", no: "NO" } as const;
 

@@ -4,6 +4,7 @@ import { type Question, stopHelping, type Together } from "../state/questions";
 import type { Help } from "../wire/types";
 import { robotName, spoken } from "./fault_words";
 import { PausedNode } from "./paused_node";
+import "./waiting_cards.css";
 
 const PROMISES: Readonly<Record<Help, (part: string) => string>> = {
   place: (part) => `would place the ${part}`,

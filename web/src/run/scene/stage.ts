@@ -21,6 +21,8 @@ import type { Palette } from "./palette";
 import { release } from "./release";
 
 const HIGHEST_PIXEL_RATIO = 2;
+/** After so long without motion a picture that was drawn coarsely is drawn once more, and sharp. */
+const AT_REST_MS = 300;
 const GROUND_M = 8;
 const GRID_STEP_M = 0.5;
 
@@ -54,9 +56,14 @@ export function createStage(canvas: HTMLCanvasElement, before: Before, after: ()
   const pace = createPace(bySoftware);
   let request = 0;
   let { pixels } = pace.first;
+  /** The share of the device's pixels that the picture has now. */
+  let share = pixels;
+  let rest = 0;
   key.castShadow = pace.first.shadows;
   const draw = (now: number) => {
     request = 0;
+    window.clearTimeout(rest);
+    if (share !== pixels) resize(pixels);
     const again = before(now);
     const turning = orbit.update();
     renderer.render(scene, camera);
@@ -65,20 +72,29 @@ export function createStage(canvas: HTMLCanvasElement, before: Before, after: ()
     if (less !== null) {
       pixels = less.pixels;
       key.castShadow = less.shadows;
-      fit();
     }
-    if (again || turning) invalidate();
+    if (again || turning || less !== null) invalidate();
+    else if (pixels < 1) rest = window.setTimeout(sharpen, AT_REST_MS);
+  };
+  const sharpen = () => {
+    resize(1);
+    renderer.render(scene, camera);
   };
   const invalidate = () => {
     if (request === 0) request = requestAnimationFrame(draw);
   };
   const orbit = createOrbit(camera, canvas, invalidate);
 
+  /** Take another share of the device's pixels; what was drawn is gone with it. */
+  const resize = (next: number) => {
+    share = next;
+    renderer.setPixelRatio(share * Math.min(devicePixelRatio, HIGHEST_PIXEL_RATIO));
+    renderer.setSize(canvas.clientWidth, canvas.clientHeight, false);
+  };
   const fit = () => {
     const { clientWidth: width, clientHeight: height } = canvas;
     if (width === 0 || height === 0) return;
-    renderer.setPixelRatio(pixels * Math.min(devicePixelRatio, HIGHEST_PIXEL_RATIO));
-    renderer.setSize(width, height, false);
+    resize(pixels);
     camera.aspect = width / height;
     camera.updateProjectionMatrix();
     orbit.fit(camera.aspect);
@@ -103,6 +119,7 @@ export function createStage(canvas: HTMLCanvasElement, before: Before, after: ()
     },
     dispose() {
       cancelAnimationFrame(request);
+      window.clearTimeout(rest);
       observer.disconnect();
       canvas.removeEventListener("webglcontextrestored", invalidate);
       orbit.dispose();
