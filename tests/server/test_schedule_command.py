@@ -53,6 +53,13 @@ def write(folder: Path, text: str, name: str = "instance.txt") -> Path:
     return path
 
 
+def test_getting_ready_is_announced(mend: Any, tmp_path: Path) -> None:
+    file = write(tmp_path, LI_LIM)
+    code, _, err = mend("schedule", file, "--method", "alns", "--seconds", "0.2")
+    assert code == 0
+    assert err.startswith("getting the search ready")
+
+
 def test_table_has_a_row_for_every_stop(mend: Any) -> None:
     code, out, err = mend("schedule", CORRIDOR, "--seconds", "5")
     assert code == 0

@@ -19,7 +19,7 @@ from fleet.scheduling.problem import Problem, Visit
 TOLERANCE = 1e-6
 """The share by which HiGHS may be wrong."""
 
-WIDE = 0.8
+WIDE = 0.98
 """The share of all ways between visits that wide windows leave."""
 ANYBODY = -1
 

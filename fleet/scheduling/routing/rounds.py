@@ -20,6 +20,7 @@ FIRST_FEWER, FEWER = 0.15, 0.15
 """The share of all the time, and of each round, in which robots are to be freed."""
 TRIES = 50
 """How many ejections per item one attempt to free a robot may take."""
+FEW_STEPS = 50
 SLICE_S = 0.1
 """How long the kernels run before the clock is looked at (seconds)."""
 REGRET = 2
@@ -61,7 +62,7 @@ class Rounds:
         if not items:
             return
         self.free_robots(min(ends_s, self._clock() + FIRST_FEWER * seconds))
-        self.take_steps(10, 1.0, 1.0)
+        self._find_pace()
         while (left_s := ends_s - self._clock()) > 0:
             rounds = max(1, round(self._steps_a_s * left_s / (ROUND_STEPS * items)))
             begun_s = self._clock()
@@ -125,6 +126,12 @@ class Rounds:
             self._ejections_a_s = _pace(self._ejections_a_s, steps, after_s - now_s)
             if after_s >= ends_s or (most is not None and taken >= most):
                 return False
+
+    def _find_pace(self) -> None:
+        """How many steps a second there are, from a few of them."""
+        begun_s = self._clock()
+        self.take_steps(FEW_STEPS, 1.0, 1.0)
+        self._steps_a_s = FEW_STEPS / max(self._clock() - begun_s, 1e-3)
 
     def _cool_until(self, ends_s: float) -> None:
         """One round: the temperature falls until a time of the clock."""

@@ -162,6 +162,15 @@ def test_heuristics_plan_around_doors(method: str, items: tuple[Item, ...]) -> N
         assert check(problem, found.schedule) == []
 
 
+@pytest.mark.parametrize("method", ["alns", "insertion"])
+def test_what_is_compiled_first_is_announced(method: str) -> None:
+    told: list[str] = []
+    problem = corridor(items=(parcel(),))
+    clock = TickingClock(0.5)
+    solve(problem, method, seconds=2.0, on_prepare=lambda: told.append("prepares"), clock=clock)
+    assert told == (["prepares"] if METHODS[method].prepare else [])
+
+
 def test_size_decides_what_is_suited() -> None:
     few = corridor(items=(parcel(),))
     many = corridor(items=tuple(parcel(f"p{n}") for n in range(40)))

@@ -220,7 +220,7 @@ def test_loose_building_has_one_robot_that_can_do_everything() -> None:
     problem = problem_of(building_deliveries(LOOSE, Random(1)))
     alone = solve(problem.without_transfers(), "insertion", seconds=60.0, clock=TickingClock())
     assert alone.schedule is not None
-    assert problem_of(building_deliveries(BINDING, Random(1))).robots[0].shift.latest_s == 420.0
+    assert problem_of(building_deliveries(BINDING, Random(1))).robots[0].shift.latest_s == 520.0
 
 
 NASTY = ("-1", "1e308", ".inf", "null", "[]", "{}", "''", "yes", "west", "0", "[1, 0]", "!x", "*a")
