@@ -71,6 +71,9 @@ class GrowingRoutes(TimedRoutes):
         weights = problem.weights
         self._timeless = _only_distance_and_robots_count(problem)
         self._bounded = not weights.makespan
+        # A circle of robots that wait for each other shows in the network unless it takes no time.
+        self._circles = problem.transfers.service_s == 0
+        self._doors = bool(problem.travel.epochs)
         self._refresh_times()
 
     # --- what an item costs ---------------------------------------------------------------------
@@ -95,7 +98,7 @@ class GrowingRoutes(TimedRoutes):
         if self.conflict is not None:
             raise ValueError(f"item {item} does not fit into the routes like that")
         self.begun.pop(item, None)
-        if self.problem.travel.epochs:
+        if self._doors:
             super().__init__(self.problem, self.routes, _whole_items(self.routes, self.begun))
             self._task_of = self._tasks_by_event()
         return self._refresh_times()
@@ -135,7 +138,7 @@ class GrowingRoutes(TimedRoutes):
         price: float | None = None
         if self.conflict is None:
             price = self._marginal(item, trajectory, mark, makespan_s, routes)
-            if price < limit and (trajectory.places or self.problem.travel.epochs):
+            if price < limit and ((self._circles and trajectory.places) or self._doors):
                 price = self._whole_price(routes, item, price)
         elif self.nearest is None or self.conflict.excess_s < self.nearest.excess_s:
             self.nearest = self.conflict
@@ -192,7 +195,7 @@ class GrowingRoutes(TimedRoutes):
         """The price as the checker sees it: no circles, and doors on the way."""
         begun = {each: robot for each, robot in self.begun.items() if each != item}
         now = part_schedule(self.problem, without_items(self.routes, begun))
-        if now is None or not self.problem.travel.epochs:
+        if now is None or not self._doors:
             return None if now is None else price
         was = part_schedule(self.problem, without_items(before, self.begun))
         return cost(*now).total - (0.0 if was is None else cost(*was).total)

@@ -2,7 +2,8 @@
 
 from collections.abc import Sequence
 
-from fleet.scheduling.replanning.running_fleet import Done, RunningFleet
+from fleet.scheduling.replanning.fleet_state import Done
+from fleet.scheduling.replanning.running_fleet import RunningFleet
 from fleet.scheduling.schedule import Action
 
 

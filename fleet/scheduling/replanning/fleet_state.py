@@ -1,0 +1,122 @@
+"""What is known of a fleet at work: where robots and items are, and who is to do what."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from fleet.scheduling.partial_routes import without_items
+from fleet.scheduling.problem import Problem
+from fleet.scheduling.replanning.events import EventError
+from fleet.scheduling.replanning.item_state import ItemState, TrackedItem
+from fleet.scheduling.replanning.open_ways import OpenWays
+from fleet.scheduling.replanning.rest import Building, Rest, rest_of
+from fleet.scheduling.replanning.robot_state import TrackedRobot
+from fleet.scheduling.schedule import Action, Route, Schedule
+from fleet.scheduling.travel import Travel
+
+
+@dataclass(frozen=True, slots=True)
+class Done:
+    """A stop that was made."""
+
+    robot: str
+    action: Action
+    item: str
+    place: str
+    begin_s: float
+
+
+@dataclass(slots=True)
+class FleetState:
+    """Robots, items and the routes that are left, all by number; the stops that were made."""
+
+    building: Building
+    travel: Travel
+    ways: OpenWays | None
+    robots: list[TrackedRobot]
+    items: list[TrackedItem]
+    routes: list[Route]
+    now_s: float = 0.0
+    log: list[Done] = field(default_factory=list)
+
+    @classmethod
+    def beginning(
+        cls, problem: Problem, ways: OpenWays | None, start: Schedule | None
+    ) -> "FleetState":
+        """Nothing has been done yet."""
+        items = [
+            TrackedItem(item)
+            if item.aboard is None
+            else TrackedItem(item, ItemState.ABOARD, item.aboard, loaded_s=0.0)
+            for item in problem.items
+        ]
+        return cls(
+            Building(problem.name, problem.places, problem.transfers, problem.weights),
+            problem.travel,
+            ways,
+            [TrackedRobot(each, each.start, each.shift.earliest_s) for each in problem.robots],
+            items,
+            [()] * len(problem.robots) if start is None else list(start.routes),
+        )
+
+    def robot_number(self, name: str) -> int:
+        """The number of a robot. Raises `EventError`."""
+        for number, robot in enumerate(self.robots):
+            if robot.robot.name == name:
+                return number
+        raise EventError(f"there is no robot '{name}'")
+
+    def known_ways(self) -> OpenWays:
+        """The ways that can be closed. Raises `EventError` where they are not known."""
+        if self.ways is None:
+            raise EventError("the ways between the places are not known, only how long they take")
+        return self.ways
+
+    def rest(self) -> Rest | None:
+        """What remains to be done; None where no robot works."""
+        return rest_of(self.building, self.travel, self.robots, self.items, self.routes, self.now_s)
+
+    def retry(self) -> list[int]:
+        """The items that have no place for now, which are to be tried again."""
+        waiting = [n for n, item in enumerate(self.items) if item.open and item.put_off]
+        for number in waiting:
+            self.items[number].put_off = None
+        return waiting
+
+    def take_out(self, item: int, *, keep_pickups: bool = False) -> None:
+        """Remove an item from all routes; whoever is on its way to it goes there all the same.
+
+        `keep_pickups`: who is on its way to pick it up still does so.
+        """
+        for number, route in enumerate(self.routes):
+            if not any(task.item == item for task in route):
+                continue
+            robot = self.robots[number]
+            held = robot.held and route[0].item == item
+            if held and keep_pickups and robot.works and route[0].action is Action.PICK:
+                self.routes[number] = (route[0], *without_items([route[1:]], {item})[0])
+                continue
+            if held:
+                robot.let_go()
+            self.routes[number] = without_items([route], {item})[0]
+
+    def stay_longer(self) -> dict[str, str]:
+        """The robots that cannot be at their ends in time any more, with a sentence each."""
+        found = {
+            robot.robot.name: robot.stay_longer(self.travel, self.now_s)
+            for robot in self.robots
+            if robot.works
+        }
+        return {name: why for name, why in found.items() if why is not None}
+
+    def changed_since(self, before: Sequence[Route]) -> frozenset[str]:
+        """The robots that have other stops than with those routes."""
+        return frozenset(
+            robot.robot.name
+            for robot, now, then in zip(self.robots, self.routes, before, strict=True)
+            if _stops(now) != _stops(then)
+        )
+
+
+def _stops(route: Route) -> list[tuple[int, int, bool]]:
+    """What is loaded and unloaded where, whoever has a part in it."""
+    return [(task.place, task.item, task.action.loads) for task in route]

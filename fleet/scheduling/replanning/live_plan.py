@@ -1,0 +1,184 @@
+"""The plan that a fleet carries out: stops are made as time goes by, delays move what follows."""
+
+from dataclasses import dataclass
+from math import inf
+
+from fleet.scheduling.checker import require_valid
+from fleet.scheduling.constraint import Constraint, ConstraintKind
+from fleet.scheduling.problem import Problem
+from fleet.scheduling.replanning.fleet_state import Done, FleetState
+from fleet.scheduling.replanning.item_state import ItemState
+from fleet.scheduling.replanning.rest import Rest, is_given
+from fleet.scheduling.replanning.robot_state import TrackedRobot, Trip
+from fleet.scheduling.schedule import Action, Schedule, Task
+from fleet.scheduling.timing import TimedRoutes, service_s
+
+TOLERANCE_S = 1e-6
+
+
+@dataclass(frozen=True, slots=True)
+class NextStop:
+    """A stop that is to be made; it may be `slack_s` late before anything breaks."""
+
+    place: str
+    action: Action
+    item: str
+    begin_s: float
+    slack_s: float
+
+
+class LivePlan:
+    """The temporal network of what remained when it was planned, and how far that has come.
+
+    Raises `ScheduleError` where the plan is not valid.
+    """
+
+    def __init__(self, state: FleetState, rest: Rest) -> None:
+        self._state = state
+        self._rest = rest
+        self._timed = TimedRoutes(rest.problem, rest.routes)
+        self._made = [0] * len(state.robots)
+        self._departed: set[int] = set()
+        self._task_of = {
+            event: task
+            for events, route in zip(self._timed.begins, rest.routes, strict=True)
+            for event, task in zip(events, route, strict=True)
+        }
+        self.checked()
+
+    def checked(self) -> tuple[Problem, Schedule]:
+        """The problem and its schedule, which the checker has passed just now."""
+        return self._rest.problem, require_valid(self._rest.problem, self._timed.schedule())
+
+    def stops(self) -> dict[str, tuple[NextStop, ...]]:
+        """What every robot is still to do, with the slack of each stop."""
+        state, network = self._state, self._timed.network
+        return {
+            state.robots[robot].robot.name: tuple(
+                NextStop(
+                    state.building.places[task.place],
+                    task.action,
+                    state.items[task.item].item.name,
+                    network.earliest_s(event),
+                    network.slack_s(event),
+                )
+                for task, event in zip(
+                    state.routes[robot],
+                    self._timed.begins[number][self._made[robot] :],
+                    strict=True,
+                )
+            )
+            for number, robot in enumerate(self._rest.robots)
+        }
+
+    # --- time goes by -----------------------------------------------------------------------------
+
+    def carry_out(self) -> None:
+        """Make the stops that are due, and leave for the next ones."""
+        self._make_stops()
+        for number in self._rest.robots:
+            self._set_out(number)
+
+    def _make_stops(self) -> None:
+        """In an order in which what is taken was given before."""
+        goes_on = True
+        while goes_on:
+            goes_on = False
+            for number, robot in enumerate(self._rest.robots):
+                while self._is_due(number, robot):
+                    at = self._made[robot]
+                    begin_s = self._timed.network.earliest_s(self._timed.begins[number][at])
+                    lasts_s = service_s(self._rest.problem, self._rest.routes[number][at])
+                    self._make_stop(robot, begin_s, begin_s + lasts_s)
+                    goes_on = True
+
+    def _is_due(self, number: int, robot: int) -> bool:
+        route = self._state.routes[robot]
+        if not route:
+            return False
+        begin_s = self._timed.network.earliest_s(self._timed.begins[number][self._made[robot]])
+        if begin_s > self._state.now_s + TOLERANCE_S:
+            return False
+        return route[0].action is not Action.TAKE or is_given(self._state.routes, robot, route[0])
+
+    def _make_stop(self, number: int, begin_s: float, done_s: float) -> None:
+        state = self._state
+        robot, (task, *others) = state.robots[number], state.routes[number]
+        item, place = state.items[task.item], state.building.places[task.place]
+        state.log.append(Done(robot.robot.name, task.action, item.item.name, place, begin_s))
+        match task.action:
+            case Action.PICK | Action.TAKE:
+                item.load(number, done_s)
+            case Action.GIVE:
+                item.leave(task.place, done_s)
+            case Action.DROP:
+                item.close(ItemState.CANCELLED if item.returns else ItemState.DELIVERED)
+        if robot.left_s is None:
+            robot.left_s = begin_s if robot.trip is None else robot.trip.leaves_s
+        robot.place, robot.free_s, robot.trip = task.place, done_s, None
+        state.routes[number] = tuple(others)
+        self._made[number] += 1
+
+    def _set_out(self, number: int) -> None:
+        """A robot that is free leaves for its next stop, or home when its shift is about to end."""
+        robot, now_s = self._state.robots[number], self._state.now_s
+        if robot.trip is not None:
+            if robot.trip.keeps or robot.free_s > now_s:
+                return
+            robot.trip = None
+        if not self._state.routes[number]:
+            self._go_home(robot)
+            return
+        leaves_s = robot.free_s
+        if self._made[number] == 0:
+            leaves = self._timed.leaves[self._rest.robots.index(number)]
+            leaves_s = max(leaves_s, self._timed.network.earliest_s(leaves))
+        if leaves_s > now_s:
+            return
+        place, travel = self._state.routes[number][0].place, self._rest.problem.travel
+        arrival_s = travel.trip(robot.place, place, leaves_s, robot.robot.speed).arrival_s
+        robot.trip, robot.place, robot.free_s = Trip(robot.place, leaves_s), place, arrival_s
+        robot.left_s = leaves_s if robot.left_s is None else robot.left_s
+        self._departed.add(number)
+
+    def _go_home(self, robot: TrackedRobot) -> None:
+        """Go home in the last moment, and not before: there may be more to do."""
+        ends_s, home = robot.shift_ends_s(), robot.robot.end
+        travel, now_s = self._state.travel, self._state.now_s
+        if home is None or robot.place == home or robot.free_s > now_s:
+            return
+        if robot.home_s(travel, robot.free_s) <= ends_s < robot.home_s(travel, now_s):
+            robot.place, robot.free_s = home, ends_s
+
+    # --- delays -----------------------------------------------------------------------------------
+
+    def delay(self, number: int) -> set[int] | None:
+        """Tell the network when a robot is free now; the items that are late for it.
+
+        None, and the network as it was, where a constraint breaks.
+        """
+        place, robot = self._rest.robots.index(number), self._state.robots[number]
+        event, task = self._timed.leaves[place], None
+        if self._made[number] > 0 or number in self._departed:
+            if not self._state.routes[number]:
+                return set()
+            event = self._timed.begins[place][self._made[number]]
+            task = self._rest.routes[place][self._made[number]]
+        network, reason = self._timed.network, Constraint(ConstraintKind.TRAVEL, place, task)
+        mark = network.mark()
+        if network.not_before(event, robot.free_s, reason) is not None:
+            return None
+        return {
+            self._rest.items[moved.item]
+            for at in network.moved_since(mark)
+            if (moved := self._task_of.get(at)) is not None
+            and network.earliest_s(at) > _due_s(self._rest.problem, moved) + TOLERANCE_S
+        }
+
+
+def _due_s(problem: Problem, task: Task) -> float:
+    """After when a task costs something, if that counts."""
+    item = problem.items[task.item]
+    if not problem.weights.lateness or task.action not in (Action.PICK, Action.DROP):
+        return inf
+    return (item.pickup if task.action is Action.PICK else item.delivery).due_s
