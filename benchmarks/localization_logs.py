@@ -1,4 +1,4 @@
-"""Every method on every real log that is here; MRPT's `pf-localization` beside them if installed.
+"""Every method on every real log that is here.
 
 A log NAME-corrected.log.gz belongs to the map NAME.vectormap.txt; logs whose maps are missing are
 left out with a notice. `--drop` deletes a random share of each map's segments first. The Wean Hall
@@ -18,11 +18,10 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from mrpt_peer import MISSING, installed, mrpt_poses
 
 from maps.vector_map import VectorMap
 from maps.vector_map_file import read_vector_map
-from robots.localization.evaluation import Summary, Trace, follow, summarize
+from robots.localization.evaluation import Summary, follow, summarize
 from robots.localization.localizer import Estimate, PointClass, Timed
 from robots.localization.logs.log import Log
 from robots.localization.logs.reading import read_log
@@ -61,16 +60,6 @@ def localized(method: str, vector_map: VectorMap, log: Log, seed: int) -> Summar
     assert log.start is not None
     localizer.reset(log.start)
     return summarize(follow(localizer, log), log)
-
-
-def by_mrpt(vector_map: VectorMap, log: Log) -> Summary:
-    """MRPT's particle filter on the same log."""
-    began = time.perf_counter()
-    poses = mrpt_poses(vector_map, log)
-    each_s = (time.perf_counter() - began) / len(log)
-    nothing = np.zeros(len(log))
-    trace = Trace(poses, log.references, nothing, nothing > 0, nothing + each_s, ())
-    return summarize(trace, log)
 
 
 def wean(folder: Path, methods: list[str], scans: int | None, seed: int) -> None:
@@ -117,8 +106,6 @@ def main() -> None:
     methods = given.method or list(METHODS)
     for method in methods:
         warm_up(method)
-    if not installed():
-        print(MISSING)
     print(HEADINGS)
     for path in sorted((given.data / "logs").glob("*.log.gz")):
         name = path.name.removesuffix(".log.gz").removesuffix("-corrected")
@@ -133,8 +120,6 @@ def main() -> None:
         vector_map = thinned(read_vector_map(map_path), given.drop, given.seed)
         for method in methods:
             print(line(name, method, localized(method, vector_map, log, given.seed)), flush=True)
-        if installed():
-            print(line(name, "mrpt", by_mrpt(vector_map, log)), flush=True)
     if (given.data / "wean").is_dir() and not given.log:
         wean(given.data / "wean", methods, scans, given.seed)
 

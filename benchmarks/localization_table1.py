@@ -176,11 +176,11 @@ def main() -> None:
     parser.add_argument("--first-seed", type=int, default=1)
     parser.add_argument("--length", type=float, default=100.0, help="metres of each drive")
     parser.add_argument("--method", action="append", choices=list(METHODS))
-    parser.add_argument("--quick", action="store_true", help="2 seeds, 40 m, 30 %% explained")
+    parser.add_argument("--quick", action="store_true", help="1 seed, 25 m, 30 %% explained")
     parser.add_argument("--plot", type=Path, default=Path("out/localization_table1.svg"))
     given = parser.parse_args()
     if given.quick:
-        given.seeds, given.length, given.explained = 2, 40.0, [0.3]
+        given.seeds, given.length, given.explained = 1, 25.0, [0.3]
     methods = given.method or list(METHODS)
     paths = sorted(given.maps.glob("*.vectormap.txt"))
     vector_maps = {path.name.split(".")[0]: read_vector_map(path) for path in paths}
@@ -231,7 +231,7 @@ def show(row: dict[str, Tally]) -> None:
     """A line per method, and the ratios of the first to the others."""
     for method, tally in row.items():
         p95_ms = 1e3 * float(np.percentile(tally.seconds, 95))
-        print(f"  {method:5s} {told(tally)}, p95 {p95_ms:.1f} ms of processor time")
+        print(f"  {method:5s} {told(tally)}, p95 {p95_ms:.1f} ms of processor time", flush=True)
     if "enml" in row:
         for method, tally in row.items():
             if method != "enml":

@@ -19,7 +19,7 @@ from robots.localization.pose import Poses, turn, wrap_angle
 
 Grid = NDArray[np.float32]
 
-_WIDTH_M = 0.2
+_WIDTH_M = 0.15
 """Standard deviation of how well a point fits, in the grid."""
 _MAX_REACH_M = 12.0
 """What is farther away turns out of the grid with the smallest error of the heading."""
@@ -29,7 +29,7 @@ _DEVIATIONS = 3.0
 _MIN_TURN_RAD = np.radians(8.0)
 _MAX_TURN_RAD = np.radians(25.0)
 _TURN_STEP_RAD = np.radians(2.0)
-_MIN_SHIFT_M = 0.1
+_MIN_SHIFT_M = 0.3
 _MAX_SHIFT_M = 0.6
 
 

@@ -4,18 +4,20 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import maximum_filter
 
 from maps.compiled import compiled
-from robots.localization.enml.problem import Floats
+from robots.localization.enml.problem import Floats, Indices
 from robots.localization.mcl.likelihood_field import DistanceField
 from robots.localization.pose import Poses, wrap
 
 Grid = NDArray[np.float32]
 
 _COARSE_M = 0.4
-_COARSE_WIDTH_M = 0.35
-_HEADINGS = 60
-_COARSE_POINTS = 40
+_COARSE_WIDTH_M = 0.3
+_HEADINGS = 72
+_COARSE_POINTS = 100
+_FINE_POINTS = 120
 _FINE_WIDTH_M = 0.15
 _FINE_STEPS = ((0.2, np.radians(3.0)), (0.1, np.radians(1.5)), (0.05, np.radians(0.75)))
 _APART_M = 0.7
@@ -46,20 +48,32 @@ def best_places(field: DistanceField, points: Floats, region: Region, count: int
     if not len(points):
         return []
     coarse = points[_spread(len(points), _COARSE_POINTS)]
-    xs = np.arange(region.x_min, region.x_max + _COARSE_M, _COARSE_M)
-    ys = np.arange(region.y_min, region.y_max + _COARSE_M, _COARSE_M)
+    step = max(round(_COARSE_M / field.cell_m), 1)
+    first = np.floor((np.array([region.x_min, region.y_min]) - field.origin) / field.cell_m)
+    size = np.array([region.x_max - region.x_min, region.y_max - region.y_min])
+    columns, rows = np.ceil(size / (step * field.cell_m)).astype(np.int64) + 1
     headings = np.linspace(0.0, 2.0 * np.pi, _HEADINGS, endpoint=False)
-    fit = fits(field, _COARSE_WIDTH_M)
-    scores = np.zeros((len(headings), len(ys), len(xs)), dtype=np.float32)
-    score_places(fit, field.origin, field.cell_m, coarse, headings, xs, ys, scores)
-    candidates = _peaks(scores, headings, xs, ys, 8 * count)
+    scores = np.zeros((len(headings), rows, columns), dtype=np.float32)
+    score_places(
+        _phases(fits(field, _COARSE_WIDTH_M), step),
+        first.astype(np.int64),
+        field.cell_m,
+        coarse,
+        headings,
+        scores,
+    )
+    corner = field.origin + first * field.cell_m
+    xs = corner[0] + np.arange(columns) * step * field.cell_m
+    ys = corner[1] + np.arange(rows) * step * field.cell_m
+    some = points[_spread(len(points), _FINE_POINTS)]
+    candidates = _peaks(scores, headings, xs, ys, 4 * count)
     fine = fits(field, _FINE_WIDTH_M)
     refined = np.empty((len(candidates), 4))
     for row, candidate in enumerate(candidates):
         pose = candidate.copy()
         score = 0.0
         for step_m, step_rad in _FINE_STEPS:
-            score = refine(fine, field.origin, field.cell_m, points, pose, step_m, step_rad)
+            score = refine(fine, field.origin, field.cell_m, some, pose, step_m, step_rad)
         refined[row, :3], refined[row, 3] = pose, score
     return _distinct(refined[np.argsort(-refined[:, 3], kind="stable")], count)
 
@@ -76,23 +90,27 @@ def fits(field: DistanceField, width_m: float) -> Grid:
 
 
 def _peaks(scores: Grid, headings: Floats, xs: Floats, ys: Floats, count: int) -> list[Poses]:
-    """The places with the highest scores, of neighbours only the best."""
+    """The places with the highest scores, of neighbours only the best.
+
+    Once for the best heading of each place, and once for the best of the other half of the circle:
+    corridors look much the same both ways.
+    """
     best_heading = scores.argmax(axis=0)
-    best = scores.max(axis=0)
+    rows, columns = np.indices(best_heading.shape)
+    quarter = len(headings) // 4
+    behind = [(best_heading + quarter + turned) % len(headings) for turned in range(2 * quarter)]
+    other = np.stack([scores[each, rows, columns] for each in behind])
+    other_heading = np.stack(behind)[other.argmax(axis=0), rows, columns]
     found: list[Poses] = []
-    # The best heading of each place, and the best elsewhere on the circle for those that look
-    # the same both ways, as corridors do.
-    opposite = (best_heading + _HEADINGS // 2) % _HEADINGS
-    rows, columns = np.indices(best.shape)
-    turned = np.stack([scores[(opposite + d) % _HEADINGS, rows, columns] for d in range(-8, 9)])
-    for values, choice in (
-        (best, best_heading),
-        (turned.max(axis=0), (opposite + turned.argmax(axis=0) - 8) % _HEADINGS),
+    for values, chosen in (
+        (scores.max(axis=0), best_heading),
+        (other.max(axis=0), other_heading),
     ):
-        order = np.argsort(-values, axis=None, kind="stable")[:count]
+        peak = values == maximum_filter(values, size=3)
+        order = np.argsort(-np.where(peak, values, -1.0), axis=None, kind="stable")[:count]
         for at in order:
-            row, column = np.unravel_index(int(at), values.shape)
-            found.append(np.array([xs[column], ys[row], headings[choice[row, column]]]))
+            row, column = divmod(int(at), values.shape[1])
+            found.append(np.array([xs[column], ys[row], headings[chosen[row, column]]]))
     return found
 
 
@@ -115,32 +133,46 @@ def same_place(a: Poses, b: Poses) -> bool:
     )
 
 
+def _phases(fit: Grid, step: int) -> Grid:
+    """Every `step`-th row and column of a grid, for each of the first ones to start from.
+
+    What a coarse lattice reads for one point then lies side by side in memory.
+    """
+    height, width = (-(-size // step) for size in fit.shape)
+    padded = np.zeros((height * step, width * step), dtype=np.float32)
+    padded[: fit.shape[0], : fit.shape[1]] = fit
+    split = padded.reshape(height, step, width, step).transpose(1, 3, 0, 2)
+    return np.ascontiguousarray(split)
+
+
 @compiled
 def score_places(
-    fit: Grid,
-    origin: Floats,
+    phases: Grid,
+    first: Indices,
     cell_m: float,
     points: Floats,
     headings: Floats,
-    xs: Floats,
-    ys: Floats,
     scores: Grid,
 ) -> None:
-    """Sum of how well all points fit, for each heading, y and x."""
-    height, width = fit.shape
+    """Sum of how well all points fit, for each heading, row and column of the lattice.
+
+    `first` is the lattice's first column and row in cells of the field.
+    """
+    step, height, width = phases.shape[0], phases.shape[2], phases.shape[3]
+    rows, columns = scores.shape[1], scores.shape[2]
     for heading in range(headings.shape[0]):
         c, s = np.cos(headings[heading]), np.sin(headings[heading])
         for index in range(points.shape[0]):
-            px = c * points[index, 0] - s * points[index, 1] - origin[0]
-            py = s * points[index, 0] + c * points[index, 1] - origin[1]
-            for y in range(ys.shape[0]):
-                row = int(np.floor((ys[y] + py) / cell_m + 0.5))
-                if row < 0 or row >= height:
-                    continue
-                for x in range(xs.shape[0]):
-                    column = int(np.floor((xs[x] + px) / cell_m + 0.5))
-                    if 0 <= column < width:
-                        scores[heading, y, x] += fit[row, column]
+            px = (c * points[index, 0] - s * points[index, 1]) / cell_m
+            py = (s * points[index, 0] + c * points[index, 1]) / cell_m
+            column = first[0] + int(np.floor(px + 0.5))
+            row = first[1] + int(np.floor(py + 0.5))
+            left, below = column // step, row // step
+            plane = phases[row - below * step, column - left * step]
+            begin, end = max(0, -left), min(columns, width - left)
+            for y in range(max(0, -below), min(rows, height - below)):
+                for x in range(begin, end):
+                    scores[heading, y, x] += plane[below + y, left + x]
 
 
 @compiled
@@ -155,7 +187,7 @@ def refine(
 ) -> float:
     """Climb from a pose, in place, as long as a step to any side fits better; the score there."""
     best = -1.0
-    for _ in range(8):
+    for _ in range(4):
         bx, by, bt = pose[0], pose[1], pose[2]
         moved = False
         for turn in range(-1, 2):

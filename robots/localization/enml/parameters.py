@@ -63,11 +63,11 @@ class EnmlParameters:
     """Poses that are kept even if nothing ties the newest to them (published)."""
     max_episode_length: int = 25
     """Poses after which the oldest is let go whatever ties it (ours; published 80)."""
-    alignment_weight: float = 0.1
+    alignment_weight: float = 0.25
     """How much one of many correlated rays counts in the pre-alignment (ours)."""
     alignment_scans: int = 4
     """How many of the last poses the pre-alignment lays the newest scan over (ours)."""
-    alignment_min_gain: float = 2.0
+    alignment_min_gain: float = 1.0
     """The prediction is kept unless another place is likelier by this much (ours; logarithm)."""
 
     association_rounds: int = 4

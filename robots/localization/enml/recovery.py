@@ -14,7 +14,7 @@ from robots.localization.mcl.likelihood_field import DistanceField
 from robots.localization.pose import Poses, compose, relative, transform
 
 _THINNED_M = 0.25
-_CANDIDATES = 40
+_CANDIDATES = 80
 _SCANS_WEIGHED = 5
 _ON_WALL_M = 0.15
 _BEHIND_COUNTS = 2.0

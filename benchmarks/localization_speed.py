@@ -1,0 +1,102 @@
+"""Speed: the ray cast against the plain way, updates with 271 beams, memory of a run.
+
+python benchmarks/localization_speed.py [--maps FOLDER] [--map GHC4] [--updates 600]
+    [--explained 0.45] [--quick]
+"""
+
+# ruff: noqa: T201
+import argparse
+import os
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import psutil
+from numpy.typing import NDArray
+
+from maps.ray_cast import cast
+from maps.vector_map_file import read_vector_map
+from robots.localization.evaluation import follow
+from robots.localization.localizer import Timed
+from robots.localization.methods import METHODS, warm_up
+from robots.localization.synthetic.settings import SceneSettings
+from robots.localization.synthetic.world import scene
+
+DATA = Path(os.environ.get("MEND_DATA", Path(__file__).parents[2] / "shared/data"))
+Matrix = NDArray[np.float64]
+RAYS = 1000
+RANGE_M = 30.0
+STEP_M = 0.1
+
+
+def plain_cast(segments: Matrix, x: float, y: float, angles: Matrix) -> Matrix:
+    """Every ray on every segment, vectorised: the ranges."""
+    directions = np.column_stack((np.cos(angles), np.sin(angles)))
+    starts, edges = segments[:, :2] - (x, y), segments[:, 2:] - segments[:, :2]
+    with np.errstate(all="ignore"):
+        across = directions[:, :1] * edges[:, 1] - directions[:, 1:] * edges[:, 0]
+        ranges = (starts[:, 0] * edges[:, 1] - starts[:, 1] * edges[:, 0]) / across
+        shares = (starts[:, 0] * directions[:, 1:] - starts[:, 1] * directions[:, :1]) / across
+    hit = (ranges > 0.0) & (shares >= 0.0) & (shares <= 1.0)
+    nearest: Matrix = np.where(hit, ranges, RANGE_M).min(axis=1)
+    return np.minimum(nearest, RANGE_M)
+
+
+def median_ms(work: Callable[[], object], times: int) -> float:
+    """Processor time of one call, after one that does not count."""
+    work()
+    taken = []
+    for _ in range(times):
+        began = time.process_time()
+        work()
+        taken.append(time.process_time() - began)
+    return 1e3 * float(np.median(taken))
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("--maps", type=Path, default=DATA / "localization/maps")
+    parser.add_argument("--map", default="GHC4")
+    parser.add_argument("--updates", type=int, default=600)
+    parser.add_argument("--explained", type=float, default=0.45)
+    parser.add_argument("--quick", action="store_true", help="100 updates")
+    given = parser.parse_args()
+    updates = 100 if given.quick else given.updates
+    vector_map = read_vector_map(given.maps / f"{given.map}.vectormap.txt")
+    segments = vector_map.segments
+    settings = SceneSettings(
+        length_m=updates * STEP_M, step_m=STEP_M, explained=given.explained, people=1.0
+    )
+    made_up = scene(vector_map, settings, 1)
+    x, y = made_up.truth[0, :2]
+    angles = np.linspace(-np.pi, np.pi, RAYS, endpoint=False)
+    off = np.abs(cast(segments, x, y, angles, RANGE_M)[0] - plain_cast(segments, x, y, angles))
+    fast = median_ms(lambda: cast(segments, x, y, angles, RANGE_M), 100)
+    plain = median_ms(lambda: plain_cast(segments, x, y, angles), 5)
+    print(
+        f"{RAYS} rays on {len(segments)} segments: {fast:.3f} ms, every ray on every segment "
+        f"(numpy) {plain:.1f} ms: {plain / fast:.0f} x; largest difference {off.max():.1e} m"
+    )
+    process = psutil.Process()
+    for method, make in METHODS.items():
+        warm_up(method)
+        localizer = Timed(make(vector_map, 1), time.process_time)
+        localizer.reset(made_up.truth[0])
+        resident: list[int] = []
+        trace = follow(
+            localizer,
+            made_up.log,
+            on_estimate=lambda _, __, seen=resident: seen.append(process.memory_info().rss),
+        )
+        p50, p95 = 1e3 * np.percentile(trace.durations_s, (50, 95))
+        grown = (resident[-1] - resident[len(resident) // 2]) / 2**20
+        print(
+            f"{method:5s} {len(made_up.log)} updates of 271 beams, {made_up.explained:.0%} "
+            f"explained: median {p50:.1f} ms, p95 {p95:.1f} ms of processor time; memory "
+            f"{grown:+.1f} MB over the second half"
+        )
+
+
+if __name__ == "__main__":
+    main()
