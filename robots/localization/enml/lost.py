@@ -12,8 +12,9 @@ _AT_WALL_M = 0.15
 _BEHIND_WALL_M = 0.4
 _BEHIND_COUNTS = 3.0
 """Right poses see a few percent of their returns behind walls that are gone, wrong ones a third."""
-_BEFORE_COUNTS = 0.15
-"""What stands in front of a wall may be furniture: it speaks against a pose, but weakly."""
+_BEFORE_COUNTS = 0.05
+"""What stands in front of a wall, or where the map is empty, may be furniture or a wall that nobody
+mapped: it hardly speaks against a pose."""
 
 
 @dataclass(frozen=True, slots=True)

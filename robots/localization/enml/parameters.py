@@ -81,9 +81,9 @@ class EnmlParameters:
 
     evidence_fading: float = 0.8
     """What is left of earlier scans' evidence for being lost or not, per update (ours)."""
-    lost_above: float = 0.6
+    lost_above: float = 0.5
     """The robot is lost once its measure is above this (ours)."""
-    found_below: float = 0.45
+    found_below: float = 0.3
     """No place with a measure above this is taken for where a lost robot is (ours)."""
     recovery_near_m: float = 2.5
     """How far around the last pose a lost robot is looked for first (published)."""

@@ -16,6 +16,8 @@ from robots.localization.pose import Poses, compose, relative, transform
 _THINNED_M = 0.25
 _CANDIDATES = 80
 _SCANS_WEIGHED = 5
+_LEAST_EXPLAINED = 0.25
+"""Where the map explains fewer of the returns, no robot is found."""
 _ON_WALL_M = 0.15
 _BEHIND_COUNTS = 2.0
 _BEFORE_COUNTS = 0.15
@@ -72,6 +74,8 @@ class Recovery:
         if not ranked or ranked[0][1].lost > parameters.found_below:
             return None
         best, seen = ranked[0]
+        if seen.on_map < _LEAST_EXPLAINED * seen.returns:
+            return None
         rivals = [_score(other) for place, other in ranked[1:] if not same_place(place, best)]
         lead = _score(seen) - max(rivals, default=-2.0)
         enough = parameters.recovery_lead * max(0.0, 1.0 - path_m / parameters.recovery_patience_m)
