@@ -41,6 +41,10 @@ A mean that is taken again later makes silence look like words.
 
 READINGS = 60
 """How many of the best readings of an utterance are compared."""
+BREATHS = {"a", "i"}
+"""What a breath or the silence around a phrase is heard as: no rival of the phrase alone."""
+OTHER_SCALE = 10.0
+"""Readings whose scores differ by more than this do not compare: some overflow."""
 FAR_AHEAD = 0.2
 """The margin of a command that has no rival among them, or only poor ones."""
 
@@ -164,14 +168,23 @@ class SphinxDecoder:
         """By how much the best reading as a command is ahead of the best other one."""
         ours: list[float] = []
         others: list[float] = []
+        first: float | None = None
         for reading in islice(self._search.nbest(), READINGS):
-            if reading is not None and reading.hypstr and reading.score > 0:
-                meant = command_in(reading.hypstr)
+            if reading is None or not reading.hypstr or reading.score <= 0:
+                continue
+            score = math.log(reading.score)
+            first = score if first is None else first
+            if abs(score - first) < OTHER_SCALE:
+                meant = command_in(_without_breaths(reading.hypstr))
                 same = meant is not None and meant[0] is command
-                (ours if same else others).append(math.log(reading.score))
+                (ours if same else others).append(score)
         if not others:
             return FAR_AHEAD
         return min(FAR_AHEAD, max(ours) - max(others)) if ours else 0.0
+
+
+def _without_breaths(words: str) -> str:
+    return " ".join(word for word in words.split() if word.partition("(")[0] not in BREATHS)
 
 
 def _text_of(mean: Cepstrum) -> str:

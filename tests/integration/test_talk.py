@@ -122,7 +122,7 @@ async def test_an_ear_knows_nothing_of_the_conversation_before(voice: CommandVoi
     if isinstance(choose_ears(True, 1), NoEars):
         pytest.skip("pocketsphinx is not installed")
     ears = ProcessEars(1)
-    said = bytes(16_000) + pcm_of(await voice.render("yes please"))
+    said = bytes(16_000) + pcm_of(await voice.render("yes i will"))
     first = await ears.open()
     first.hear(said)
     first.interrupt()
