@@ -41,7 +41,7 @@ A mean that is taken again later makes silence look like words.
 
 READINGS = 60
 """How many of the best readings of an utterance are compared."""
-BREATHS = {"a", "i"}
+BREATHS = {"a", "ah", "are", "i", "oh", "or", "uh"}
 """What a breath or the silence around a phrase is heard as: no rival of the phrase alone."""
 OTHER_SCALE = 10.0
 """Readings whose scores differ by more than this do not compare: some overflow."""
