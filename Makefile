@@ -5,7 +5,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 
-.PHONY: help setup demo types console screenshots serve test lint bench lock clean
+.PHONY: help setup demo types console screenshots serve test steady lint bench lock clean
 
 help:  ## Say what there is
 	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 10
@@ -46,6 +46,12 @@ test: console  ## Every test, in random order
 	cd web && PATH="$(CURDIR)/$(BIN):$$PATH" npm test --silent
 	@command -v chromium google-chrome >/dev/null || echo 'There is no Chromium on this machine: the tests in a browser are skipped.'
 	$(BIN)/pytest -n 2 --dist worksteal -rs
+
+REPEAT := 30
+steady: console  ## The tests in a browser 30 times over (or REPEAT=n), to find one that fails now and then
+	@failed=0; for ((round = 1; round <= $(REPEAT); round++)); do \
+	    echo "== $$round of $(REPEAT)"; $(BIN)/pytest -q tests/e2e || failed=$$((failed + 1)); \
+	done; echo "$$failed of $(REPEAT) rounds failed"; [ $$failed = 0 ]
 
 lint: types  ## Formatting, lint, types (of web/ too) and the floors
 	$(BIN)/ruff format --check .

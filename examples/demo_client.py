@@ -12,8 +12,8 @@ import sys
 from collections import Counter
 
 from server.cli.output import LiveTranscript
-from server.client import DEFAULT_URL, ENDS, MendClient, RefusedError, UnreachableError
-from server.client_stream import StreamRefusedError
+from server.client import DEFAULT_URL, ENDS, MendClient
+from server.client_errors import ClientError
 from server.journal.events import IssueRaised, Resolved
 from server.runtime.requests import RunRequest
 from server.runtime.views import RunStatus, Snapshot
@@ -66,7 +66,7 @@ async def main(arguments: argparse.Namespace) -> int:
         ):
             await client.wait_until_ready()
             status = await follow_run(client, request)
-    except (RefusedError, UnreachableError, StreamRefusedError) as error:
+    except ClientError as error:
         print(f"demo: {error}", file=sys.stderr)
         return UNUSABLE
     except TimeoutError:

@@ -1,6 +1,8 @@
 """A typed client of the service, for users, the command line, the demo and tests."""
 
 import asyncio
+import contextlib
+from collections.abc import AsyncIterator
 from types import TracebackType
 from typing import Any, Literal, Self, TypeVar
 from uuid import UUID
@@ -10,6 +12,8 @@ from pydantic import TypeAdapter, ValidationError
 
 from server.api.problems import Problem, problem
 from server.api.speech import SpeechView
+from server.client_connection import HelperDoor
+from server.client_errors import RefusedError, UnreachableError
 from server.client_speech import SpeechStream
 from server.client_stream import EventStream
 from server.journal.events import (
@@ -35,19 +39,6 @@ READY_PAUSE_S = 0.1
 ENDS = (RunFinished, RunFailed, RunAborted)
 
 _events: TypeAdapter[Any] = TypeAdapter(list[AnyEvent])
-
-
-class RefusedError(Exception):
-    """The service refused a request; `problem` says why."""
-
-    def __init__(self, refusal: Problem) -> None:
-        more = [each for each in refusal.errors or [] if each != refusal.detail]
-        super().__init__("\n".join([refusal.detail, *more]))
-        self.problem = refusal
-
-
-class UnreachableError(Exception):
-    """No service answers at the address."""
 
 
 class MendClient:
@@ -191,15 +182,19 @@ class MendClient:
         """What a `say` message names, as a WAV file."""
         return (await self._request("GET", address)).content
 
-    def talk(self, helper: str) -> SpeechStream:
+    @contextlib.asynccontextmanager
+    async def talk(self, helper: str) -> AsyncIterator[SpeechStream]:
         """A microphone, to answer questions by voice."""
-        return SpeechStream(self._url, self._headers, helper)
+        # Sound does not get smaller by deflating it, only later.
+        door = HelperDoor(self._url, "/ws/speech", self._headers, helper)
+        async with door.connected(compression=None) as socket:
+            yield SpeechStream(socket)
 
     # --- events as they come ------------------------------------------------------------------
 
     def follow(self, helper: str, after: int | None = None) -> EventStream:
         """Follow every event from now on, or from the one after `after`, as a helper."""
-        return EventStream(self._url, self._headers, helper, after)
+        return EventStream(HelperDoor(self._url, "/ws/helper", self._headers, helper), after)
 
     async def wait_until_ready(self, timeout_s: float = 30.0) -> None:
         """Wait until the service can be used. Raises `UnreachableError` after the time-out."""

@@ -7,36 +7,19 @@ import json
 from collections.abc import AsyncIterator
 from types import TracebackType
 from typing import Any, Literal, Self
-from urllib.parse import quote
 from uuid import UUID
 
-from pydantic import ValidationError
-from websockets.asyncio.client import ClientConnection, connect
-from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidStatus
+from websockets.asyncio.client import ClientConnection
+from websockets.exceptions import ConnectionClosed
 
 from server.api.helper_messages import Error
+from server.client_connection import HelperDoor, check_not_turned_away, readable
+from server.client_errors import CommandRefusedError, ConnectionLostError, UnreachableError
 from server.journal.events import Event, any_event
 from server.runtime.views import Snapshot
 
-POLICY_VIOLATION = 1008
 FIRST_PAUSE_S = 0.1
 LONGEST_PAUSE_S = 5.0
-
-
-class StreamRefusedError(Exception):
-    """The service does not let this client follow its events."""
-
-
-class CommandRefusedError(Exception):
-    """The service refused an answer, a claim or a release; `error` says why."""
-
-    def __init__(self, error: Error) -> None:
-        super().__init__(error.detail)
-        self.error = error
-
-
-class ConnectionLostError(Exception):
-    """The connection went away before the result of a command came; it may have been done."""
 
 
 class EventStream:
@@ -47,11 +30,8 @@ class EventStream:
     taken yet waits here, without limit.
     """
 
-    def __init__(
-        self, url: str, headers: dict[str, str], helper: str, after: int | None = None
-    ) -> None:
-        self._address = url.replace("http", "ws", 1) + f"/ws/helper?helper={quote(helper)}"
-        self._headers = headers
+    def __init__(self, door: HelperDoor, after: int | None = None) -> None:
+        self._door = door
         self._seen = after
         self._snapshot_wanted = True
         self._socket: ClientConnection | None = None
@@ -97,15 +77,8 @@ class EventStream:
         while True:
             before = self._seen
             try:
-                await self._read_connection()
-            except ValidationError as error:
-                # Without this, whoever iterates would wait for ever.
-                unreadable = StreamRefusedError(
-                    "the service sent what this client cannot read; is it of another version? "
-                    f"({error})"
-                )
-                self._queue.put_nowait(unreadable)
-                return
+                with readable(), contextlib.suppress(UnreachableError):
+                    await self._read_connection()
             except Exception as error:
                 # Also one that is no refusal: whoever follows must not wait for ever.
                 self._queue.put_nowait(error)
@@ -118,24 +91,10 @@ class EventStream:
 
     async def _read_connection(self) -> None:
         """Read one connection to its end."""
-        try:
-            async with connect(
-                self._here(), additional_headers=self._headers, max_size=None
-            ) as socket:
-                self._socket = socket
-                async for message in self._messages(socket):
-                    self._queue.put_nowait(message)
-        except InvalidStatus as error:
-            if error.response.status_code < 500:
-                raise StreamRefusedError(
-                    f"the service refused the connection ({error.response.status_code}): "
-                    "check the token and the address"
-                ) from error
-        except (OSError, InvalidHandshake, TimeoutError):
-            pass
-
-    def _here(self) -> str:
-        return self._address if self._seen is None else f"{self._address}&after={self._seen}"
+        async with self._door.connected(after=self._seen) as socket:
+            self._socket = socket
+            async for message in self._messages(socket):
+                self._queue.put_nowait(message)
 
     async def _messages(self, socket: ClientConnection) -> AsyncIterator[Snapshot | Event]:
         with contextlib.suppress(ConnectionClosed):
@@ -152,8 +111,7 @@ class EventStream:
                     event: Event = any_event.validate_json(text)
                     self._seen = event.seq
                     yield event
-        if socket.close_code == POLICY_VIOLATION:
-            raise StreamRefusedError(f"the service closed the connection: {socket.close_reason}")
+        check_not_turned_away(socket)
 
     def _take_snapshot(self, message: dict[str, Any]) -> Snapshot | None:
         """The snapshot, unless it only repeats what was seen before the connection was lost."""

@@ -153,7 +153,7 @@ async def _open(
         await runtime.close()
         await mail.close()
         poses.shut()
-        await _stop_rendering(speech, rendering)
+        await _stop_speech(speech, rendering)
         if serving is not None:
             server.should_exit = True
             with suppress(asyncio.CancelledError):
@@ -202,12 +202,11 @@ async def _render_prompts(speech: SpeechAbilities, journal: SqliteJournal) -> No
         await render_prompts(speech.texts, journal)
 
 
-async def _stop_rendering(speech: SpeechAbilities, rendering: "asyncio.Task[None]") -> None:
+async def _stop_speech(speech: SpeechAbilities, rendering: "asyncio.Task[None]") -> None:
     rendering.cancel()
     with suppress(asyncio.CancelledError):
         await rendering
-    if isinstance(speech.texts, SpokenTexts):
-        await speech.texts.close()
+    await speech.close()
 
 
 def _policy(settings: Settings) -> EscalationPolicy:

@@ -5,7 +5,7 @@ from uuid import UUID
 
 from pydantic import Field, TypeAdapter
 
-from server.api.helper_messages import Auth, HelperMessage, ServerMessage
+from server.api.helper_messages import Auth, Error, HelperMessage, ServerMessage
 from server.speech.commands import Command
 from server.speech.conversation import EndReason, Saying
 
@@ -30,11 +30,11 @@ class Cancel(HelperMessage):
     type: Literal["cancel"]
 
 
-SpeechClientMessage = Annotated[Auth | Listen | Spoken | Cancel, Field(discriminator="type")]
+AnySpeechClientMessage = Auth | Listen | Spoken | Cancel
 
-speech_client_message: TypeAdapter[Auth | Listen | Spoken | Cancel] = TypeAdapter(
-    SpeechClientMessage
-)
+SpeechClientMessage = Annotated[AnySpeechClientMessage, Field(discriminator="type")]
+
+speech_client_message: TypeAdapter[AnySpeechClientMessage] = TypeAdapter(SpeechClientMessage)
 
 
 class Say(ServerMessage):
@@ -80,18 +80,7 @@ class Ended(ServerMessage):
     reason: EndReason
 
 
-class SpeechError(ServerMessage):
-    """What was sent cannot be done; the connection stays."""
-
-    type: Literal["error"] = "error"
-    id: str | int | None = None
-    status: int
-    title: str
-    detail: str
-    errors: list[str] | None = None
-
-
-AnySpeechServerMessage = Say | Listening | Hearing | HeardMessage | GaveUp | Ended | SpeechError
+AnySpeechServerMessage = Say | Listening | Hearing | HeardMessage | GaveUp | Ended | Error
 
 SpeechServerMessage = Annotated[AnySpeechServerMessage, Field(discriminator="type")]
 

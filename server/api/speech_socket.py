@@ -4,14 +4,14 @@ import time
 from uuid import UUID
 
 from fastapi import APIRouter
-from pydantic import BaseModel, ConfigDict, ValidationError
-from starlette.websockets import WebSocket, WebSocketDisconnect
+from pydantic import BaseModel
+from starlette.websockets import WebSocket
 
-from server.api.admission import POLICY_VIOLATION, admit
+from server.api.helper_connection import HelperConnection, HelperQuery
 from server.api.helper_messages import Auth
-from server.api.parts import HelperName, Parts, parts_of
-from server.api.problems import problem, problem_of, validation_sentences
+from server.api.problems import problem, problem_of
 from server.api.speech_messages import (
+    AnySpeechClientMessage,
     Cancel,
     Ended,
     GaveUp,
@@ -20,7 +20,6 @@ from server.api.speech_messages import (
     Listen,
     Listening,
     Say,
-    SpeechError,
     Spoken,
     speech_client_message,
 )
@@ -46,118 +45,62 @@ MAX_SOUND_BYTES = 16 * 1024
 """Half a second."""
 
 
-class SpeechQuery(BaseModel):
-    """The address's parameters: who it is."""
-
-    model_config = ConfigDict(extra="ignore", frozen=True)
-
-    helper: HelperName
-
-
 @router.websocket("/ws/speech")
 async def speech_socket(websocket: WebSocket) -> None:
     """Serve one helper's microphone until the connection ends."""
-    socket = SpeechSocket(websocket, parts_of(websocket))
-    try:
-        if await socket.admitted():
-            await socket.serve()
-    except WebSocketDisconnect:
-        pass
+    await SpeechSocket(websocket).run()
 
 
-class SpeechSocket:
+class SpeechSocket(HelperConnection[HelperQuery]):
     """One helper's connection; at most one conversation at a time."""
 
-    def __init__(self, websocket: WebSocket, parts: Parts) -> None:
-        self._websocket = websocket
-        self._parts = parts
+    def __init__(self, websocket: WebSocket) -> None:
+        super().__init__(websocket, HelperQuery, MAX_MESSAGE_CHARS)
         self._talk: Talk | None = None
 
-    async def admitted(self) -> bool:
-        """Let the helper in, with a name."""
-        if not await admit(self._websocket, self._parts.access, self._first_token):
-            return False
-        try:
-            SpeechQuery.model_validate(dict(self._websocket.query_params))
-        except ValidationError as error:
-            await self._refuse(422, "the address is wrong", validation_sentences(error.errors()))
-            await self._websocket.close(POLICY_VIOLATION, "the address is wrong")
-            return False
-        return True
-
-    async def serve(self) -> None:
+    async def _serve(self, query: HelperQuery) -> None:  # noqa: ARG002
         """Take messages and sound until the connection ends."""
         try:
             while True:
                 received = await self._receive()
                 if isinstance(received, bytes):
                     await self._take_sound(received)
-                elif received is not None:
-                    await self._take_text(received)
+                elif (message := await self._read(received, speech_client_message)) is not None:
+                    await self._take_message(message)
         finally:
             if self._talk is not None:
                 await self._talk.close()
 
     # --- from the helper ----------------------------------------------------------------------
 
-    async def _receive(self) -> str | bytes | None:
-        """The next message; None for one that was refused."""
-        frame = await self._websocket.receive()
-        if frame["type"] == "websocket.disconnect":
-            raise WebSocketDisconnect(frame.get("code", 1000))
-        text: str | None = frame.get("text")
-        if text is None:
-            return bytes(frame.get("bytes") or b"")
-        if len(text) > MAX_MESSAGE_CHARS:
-            await self._refuse(413, f"a message may have {MAX_MESSAGE_CHARS} characters")
-            return None
-        return text
-
-    async def _first_token(self) -> str | None:
-        received = await self._receive()
-        if not isinstance(received, str):
-            return None
-        try:
-            message = speech_client_message.validate_json(received)
-        except ValidationError:
-            return None
-        return message.token if isinstance(message, Auth) else None
-
     async def _take_sound(self, pcm: bytes) -> None:
         if len(pcm) > MAX_SOUND_BYTES or len(pcm) % 2:
-            await self._refuse(
-                413 if len(pcm) > MAX_SOUND_BYTES else 422,
-                f"sound comes in frames of whole 16-bit samples, at most {MAX_SOUND_BYTES} bytes",
-            )
+            status = 413 if len(pcm) > MAX_SOUND_BYTES else 422
+            shape = f"frames of whole 16-bit samples, at most {MAX_SOUND_BYTES} bytes"
+            await self._refuse(problem(status, f"sound comes in {shape}"))
         elif self._talk is not None:
             self._talk.hear(pcm)
 
-    async def _take_text(self, text: str) -> None:
-        try:
-            message = speech_client_message.validate_json(text)
-        except ValidationError as error:
-            errors = validation_sentences(error.errors(include_input=False))
-            await self._refuse(422, "the message is wrong", errors)
-            return
+    async def _take_message(self, message: AnySpeechClientMessage) -> None:
         try:
             await self._do(message)
         except IllegalTransitionError as error:
-            await self._refuse(409, str(error), to=message.id)
+            await self._refuse(problem(409, str(error)), message.id)
         except TooManyConversationsError as error:
-            await self._refuse(503, str(error), to=message.id)
+            await self._refuse(problem(503, str(error)), message.id)
         except ServiceError as error:
             refusal = problem_of(error)
             assert refusal is not None, "every other service error has a status"
-            await self._refuse(refusal.status, refusal.detail, refusal.errors, message.id)
+            await self._refuse(refusal, message.id)
 
-    async def _do(self, message: Auth | Listen | Spoken | Cancel) -> None:
+    async def _do(self, message: AnySpeechClientMessage) -> None:
         match message:
             case Listen():
                 await self._begin(message)
             case Spoken() if self._talk is not None:
                 await self._talk.spoken()
             case Spoken():
-                await self._refuse(409, "there is no conversation", to=message.id)
+                await self._refuse(problem(409, "there is no conversation"), message.id)
             case Cancel():
                 await self._end(EndReason.CANCELLED)
             case Auth():
@@ -166,7 +109,8 @@ class SpeechSocket:
     async def _begin(self, message: Listen) -> None:
         ears = self._parts.speech.ears
         if isinstance(ears, NoEars):
-            await self._refuse(503, f"nothing can be recognized: {ears.why_not}", to=message.id)
+            why_not = f"nothing can be recognized: {ears.why_not}"
+            await self._refuse(problem(503, why_not), message.id)
             return
         question = open_question(self._parts.runs, message.dialogue, message.prompt)
         await self._end(EndReason.REPLACED)
@@ -197,17 +141,6 @@ class SpeechSocket:
     @property
     def _silent(self) -> bool:
         return isinstance(self._parts.speech.texts, NoVoice)
-
-    async def _send(self, message: BaseModel) -> None:
-        await self._websocket.send_text(message.model_dump_json())
-
-    async def _refuse(
-        self, status: int, detail: str, errors: list[str] | None = None, to: str | int | None = None
-    ) -> None:
-        refusal = problem(status, detail)
-        await self._send(
-            SpeechError(id=to, status=status, title=refusal.title, detail=detail, errors=errors)
-        )
 
 
 class Aloud:

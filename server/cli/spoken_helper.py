@@ -6,6 +6,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from uuid import UUID
 
+from server.api.helper_messages import Error
 from server.api.speech_messages import (
     AnySpeechServerMessage,
     Ended,
@@ -13,12 +14,12 @@ from server.api.speech_messages import (
     HeardMessage,
     Listening,
     Say,
-    SpeechError,
 )
 from server.cli.sound_device import SoundDevice
-from server.client import MendClient, RefusedError
+from server.client import MendClient
+from server.client_errors import CommandRefusedError, RefusedError
 from server.client_speech import SpeechStream
-from server.client_stream import CommandRefusedError, EventStream
+from server.client_stream import EventStream
 from server.journal.events import Answered, DialogueClosed, Prompt
 from server.runtime.views import Snapshot
 from server.speech.commands import Command
@@ -171,6 +172,6 @@ class SpokenHelper:
                 self._tell("(listening)")
             case GaveUp():
                 self._tell("I did not understand you. Please answer in the console.")
-            case SpeechError(detail=detail):
+            case Error(detail=detail):
                 self._tell(f"This question cannot be talked about: {detail}.")
-        return isinstance(message, Ended | SpeechError)
+        return isinstance(message, Ended | Error)

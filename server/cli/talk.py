@@ -30,9 +30,8 @@ def talk(
     # Imported only here: the client brings the whole API with it.
     from server.cli.sound_device import PortAudioDevice
     from server.cli.spoken_helper import SpokenHelper
-    from server.client import MendClient, RefusedError, UnreachableError
-    from server.client_speech import SpeechRefusedError
-    from server.client_stream import ConnectionLostError, StreamRefusedError
+    from server.client import MendClient
+    from server.client_errors import ClientError
 
     sound = PortAudioDevice(device)
     name = helper or getpass.getuser()
@@ -42,14 +41,7 @@ def talk(
             typer.echo(f"Joining {url} as {name}; Ctrl-C ends it.")
             await SpokenHelper(client, name, sound, typer.echo).run()
 
-    plain = (
-        CommandLineError,
-        ConnectionLostError,
-        RefusedError,
-        SpeechRefusedError,
-        StreamRefusedError,
-        UnreachableError,
-    )
+    plain = (ClientError, CommandLineError)
     try:
         asyncio.run(join())
     except KeyboardInterrupt:

@@ -14,5 +14,12 @@ class SpeechAbilities:
     texts: SpokenTexts | NoVoice
     ears: Ears | NoEars
 
+    async def close(self) -> None:
+        """Stop whatever they keep going."""
+        if not isinstance(self.texts, NoVoice):
+            await self.texts.close()
+        if not isinstance(self.ears, NoEars):
+            await self.ears.close()
+
 
 NO_SPEECH = SpeechAbilities(NoVoice("this service has no speech"), NoEars("it has no speech"))

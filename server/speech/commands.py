@@ -22,7 +22,7 @@ PHRASES: Mapping[Command, tuple[str, ...]] = {
         "sure go ahead", "yes please go ahead", "yes please do", "yes do", "yes do it",
         "yeah do it", "yes do that", "of course", "yes of course", "of course i will", "certainly",
         "yes certainly", "absolutely", "yes absolutely", "definitely", "yes definitely", "correct",
-        "yes that's correct", "that's right", "that is right", "yes that's right", "affirmative",
+        "yes that's correct", "that's right", "that is right", "yes that's right",
         "i will", "yes i will", "yeah i will", "i will do it", "yes i will do it", "i'll do it",
         "yes i'll do it", "i'll do that", "sure i will", "yes i can", "yeah i can",
         "yes i can do that", "yes i am", "yes i do", "yes you can", "yes you may",

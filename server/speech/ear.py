@@ -4,11 +4,12 @@ PocketSphinx keeps Python's global lock while it decodes, so each conversation h
 """
 
 import asyncio
+import logging
 import struct
 import sys
 import time
 from asyncio.subprocess import PIPE, Process
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
 from contextlib import suppress
 from dataclasses import dataclass
 from importlib.util import find_spec
@@ -19,12 +20,22 @@ from pydantic import BaseModel, ConfigDict
 from server.errors import ServiceError
 from server.speech.commands import Command
 
-START_TIMEOUT_S = 20.0
+log = logging.getLogger(__name__)
+
+START_TIMEOUT_S = 40.0
 MAX_BACKLOG_BYTES = 5 * 32_000
 """Five seconds of sound; an ear so far behind has lost the conversation."""
 
+MOST_KEPT = 2
+"""Each takes about 80 MB."""
+
 HEADER = struct.Struct("<dI")
-"""Before each piece of sound: when it came (monotonic seconds), and its bytes; 0 for a break."""
+"""Before each piece of sound: when it came (monotonic seconds), and its bytes."""
+
+BREAK = 0
+"""Instead of a number of bytes: what came before does not belong to what comes next."""
+AFRESH = 2**32 - 1
+"""Instead of a number of bytes: another conversation begins; it is `ready` then."""
 
 
 class EarLostError(Exception):
@@ -84,6 +95,10 @@ class Ears(Protocol):
         """A new ear that is ready. Raises `TooManyConversationsError`, `EarLostError`."""
         ...
 
+    async def close(self) -> None:
+        """Let go of what is kept for later ears."""
+        ...
+
 
 @dataclass(frozen=True, slots=True)
 class NoEars:
@@ -102,13 +117,19 @@ def choose_ears(wanted: bool, at_once: int) -> "ProcessEars | NoEars":
 
 
 class ProcessEars:
-    """Ears that are child processes, at most `at_once`."""
+    """Ears that are child processes, at most `at_once`.
+
+    A few that are not needed any more are kept for the next conversations, which then need not
+    wait for theirs.
+    """
 
     engine = "pocketsphinx"
 
     def __init__(self, at_once: int) -> None:
         self._at_once = at_once
         self._taken = 0
+        self._kept: list[RecognizerProcess] = []
+        self._closed = False
 
     def check_room(self) -> None:
         if self._taken >= self._at_once:
@@ -120,52 +141,104 @@ class ProcessEars:
         self.check_room()
         self._taken += 1
         try:
-            return await ProcessEar.start(self._give_back)
+            return ProcessEar(await self._ready_process(), self._give_back)
         except BaseException:
-            self._give_back()
+            self._taken -= 1
             raise
 
-    def _give_back(self) -> None:
+    async def close(self) -> None:
+        """End the processes that are kept, and keep none from now on."""
+        self._closed = True
+        kept, self._kept = self._kept, []
+        for process in kept:
+            await process.stop()
+
+    async def _ready_process(self) -> "RecognizerProcess":
+        while self._kept:
+            process = self._kept.pop()
+            try:
+                await process.begin_afresh()
+            except EarLostError:
+                log.warning("a recognizer that was kept has gone; another is started")
+            else:
+                return process
+        return await RecognizerProcess.start()
+
+    async def _give_back(self, process: "RecognizerProcess") -> None:
         self._taken -= 1
+        if len(self._kept) < MOST_KEPT and process.runs and not self._closed:
+            self._kept.append(process)
+        else:
+            await process.stop()
 
 
 class ProcessEar:
-    """A recognizer in a child process."""
+    """An ear whose recognizer is a child process, until it is closed."""
 
-    def __init__(self, process: Process, closed: Callable[[], None]) -> None:
+    def __init__(
+        self,
+        process: "RecognizerProcess",
+        give_back: Callable[["RecognizerProcess"], Awaitable[None]],
+    ) -> None:
         self._process = process
-        self._closed: Callable[[], None] | None = closed
+        self._give_back: Callable[[RecognizerProcess], Awaitable[None]] | None = give_back
+
+    def hear(self, pcm: bytes) -> None:
+        if self._process.behind_bytes <= MAX_BACKLOG_BYTES:
+            # Else what comes now would be answered seconds late; the gap makes it no command.
+            self._process.send(len(pcm), pcm)
+
+    def interrupt(self) -> None:
+        self._process.send(BREAK)
+
+    async def report(self) -> Report:
+        return await self._process.report()
+
+    async def close(self) -> None:
+        give_back, self._give_back = self._give_back, None
+        if give_back is not None:
+            await give_back(self._process)
+
+
+class RecognizerProcess:
+    """A recognizer in a child process, for one conversation after the other."""
+
+    def __init__(self, process: Process) -> None:
+        self._process = process
         assert process.stdin is not None
         assert process.stdout is not None
         self._to, self._from = process.stdin, process.stdout
 
     @classmethod
-    async def start(cls, closed: Callable[[], None]) -> Self:
-        """Start one; returns when it is ready. `closed` is called once it is closed."""
+    async def start(cls) -> Self:
+        """Start one; returns when it is ready. Raises `EarLostError`."""
         process = await asyncio.create_subprocess_exec(
             # -P: nothing is imported from wherever the service was started.
             sys.executable, "-P", "-m", "server.speech.ear_process",
             stdin=PIPE, stdout=PIPE,
         )  # fmt: skip
-        ear = cls(process, closed)
-        try:
-            async with asyncio.timeout(START_TIMEOUT_S):
-                await ear.report()
-        except BaseException as error:
-            await ear._stop()
-            if isinstance(error, TimeoutError):
-                raise EarLostError("the recognizer did not start in time") from None
-            raise
-        return ear
+        started = cls(process)
+        await started._wait_until_ready()
+        return started
 
-    def hear(self, pcm: bytes) -> None:
-        if self._to.transport.get_write_buffer_size() > MAX_BACKLOG_BYTES:
-            # What comes now would be answered seconds late; the gap makes it no command.
-            return
-        self._send(pcm)
+    @property
+    def runs(self) -> bool:
+        return self._process.returncode is None
 
-    def interrupt(self) -> None:
-        self._send(b"")
+    @property
+    def behind_bytes(self) -> int:
+        """How much of what was sent it has not taken yet."""
+        return self._to.transport.get_write_buffer_size()
+
+    async def begin_afresh(self) -> None:
+        """Forget the conversation that it was part of. Raises `EarLostError`."""
+        self.send(AFRESH)
+        await self._wait_until_ready()
+
+    def send(self, size: int, pcm: bytes = b"") -> None:
+        # A child that has gone is found out by `report`.
+        with suppress(OSError, RuntimeError):
+            self._to.write(HEADER.pack(time.monotonic(), size) + pcm)
 
     async def report(self) -> Report:
         line = await self._from.readline()
@@ -173,21 +246,20 @@ class ProcessEar:
             raise EarLostError("the recognizer has ended")
         return Report.model_validate_json(line)
 
-    async def close(self) -> None:
-        if self._closed is not None:
-            closed, self._closed = self._closed, None
-            try:
-                await self._stop()
-            finally:
-                closed()
-
-    def _send(self, pcm: bytes) -> None:
-        # A child that has gone is found out by `report`.
-        with suppress(OSError, RuntimeError):
-            self._to.write(HEADER.pack(time.monotonic(), len(pcm)) + pcm)
-
-    async def _stop(self) -> None:
+    async def stop(self) -> None:
         if self._process.returncode is None:
             with suppress(ProcessLookupError):
                 self._process.kill()
         await self._process.wait()
+
+    async def _wait_until_ready(self) -> None:
+        """Pass over what it still had to say about the conversation before."""
+        try:
+            async with asyncio.timeout(START_TIMEOUT_S):
+                while (await self.report()).kind != "ready":
+                    pass
+        except BaseException as error:
+            await self.stop()
+            if isinstance(error, TimeoutError):
+                raise EarLostError("the recognizer did not start in time") from None
+            raise

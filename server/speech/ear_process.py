@@ -1,4 +1,7 @@
-"""The child process of an ear: sound on standard input, one JSON line per report on the output."""
+"""The child process of an ear: sound on standard input, one JSON line per report on the output.
+
+It serves one conversation after the other; only the decoder, which keeps nothing, goes on.
+"""
 
 import os
 import signal
@@ -6,8 +9,9 @@ import sys
 import time
 from typing import BinaryIO
 
-from server.speech.ear import HEADER, Report
-from server.speech.recognizer import Heard, Recognizer, SpeechBegan, SphinxDecoder
+from server.speech.decoding import SphinxDecoder
+from server.speech.ear import AFRESH, BREAK, HEADER, Report
+from server.speech.recognizer import Heard, Recognizer, SpeechBegan
 
 
 def main() -> None:
@@ -17,17 +21,26 @@ def main() -> None:
     sound, reports = sys.stdin.buffer, os.fdopen(os.dup(1), "wb", buffering=0)
     # Whatever a library prints must not come between the reports.
     os.dup2(2, 1)
-    recognizer = Recognizer(SphinxDecoder())
+    decoder = SphinxDecoder()
+    while _converse(Recognizer(decoder), sound, reports):
+        pass
+
+
+def _converse(recognizer: Recognizer, sound: BinaryIO, reports: BinaryIO) -> bool:
+    """Listen to one conversation; whether another begins."""
     _tell(reports, Report(kind="ready"))
     interruptions = 0
     while header := sound.read(HEADER.size):
         came_s, size = HEADER.unpack(header)
-        if size == 0:
+        if size == AFRESH:
+            return True
+        if size == BREAK:
             recognizer.interrupt()
             interruptions += 1
             continue
         for heard in recognizer.feed(sound.read(size)):
             _tell(reports, report_of(heard, time.monotonic() - came_s, interruptions))
+    return False
 
 
 def report_of(heard: Heard, since_sound_s: float, interruptions: int) -> Report:

@@ -100,3 +100,9 @@ def band_levels_db(frame: bytes) -> Levels:
     bands = np.add.reduceat(power, _FIRST_BINS)[:-1]
     levels_db: Levels = np.maximum(QUIETEST_DB, 10 * np.log10(bands + 1e-12))
     return levels_db
+
+
+def level_db(frame: bytes) -> float:
+    """How loud a frame is, in decibels below full scale."""
+    samples = np.frombuffer(frame, np.int16) / 32768.0
+    return max(QUIETEST_DB, float(10 * np.log10(np.mean(samples**2) + 1e-12)))

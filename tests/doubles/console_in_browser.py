@@ -20,3 +20,12 @@ class Stage:
     runs: PlayedDialogues
     run: UUID
     open_page: OpenPage
+
+
+async def settle(page: Page) -> None:
+    """Let what moves come to its end: axe would judge colours on their way."""
+    await page.evaluate(
+        "() => Promise.all(document.getAnimations()"
+        ".filter((each) => each.effect.getComputedTiming().endTime < Infinity)"
+        ".map((each) => each.finished.catch(() => null)))"
+    )

@@ -36,6 +36,18 @@ async def open_question(service: Service, open_page: OpenPage) -> Page:
     return page
 
 
+async def told_ending(service: Service, open_page: OpenPage) -> Page:
+    """A question is gone because its run is, and the next one has its place."""
+    page = await open_page("/")
+    first = await ask(service)
+    await expect(page.get_by_role("button", name="YES")).to_be_visible(timeout=PATIENCE_MS)
+    await ask(service)
+    await expect(page.get_by_role("heading", name="2 questions")).to_be_visible(timeout=PATIENCE_MS)
+    await service.runtime.abort(first)
+    await expect(page.get_by_text("the robot has stopped this task")).to_be_visible()
+    return page
+
+
 async def waiting_for_help(service: Service, open_page: OpenPage) -> Page:
     page = await open_question(service, open_page)
     await page.get_by_role("button", name="YES").click()
@@ -143,6 +155,7 @@ SITUATIONS: dict[str, Situation] = {
     for each in (
         no_question,
         open_question,
+        told_ending,
         waiting_for_help,
         no_runs,
         runs,

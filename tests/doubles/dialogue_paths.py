@@ -1,6 +1,6 @@
 """Ways through a dialogue script that together take every branch of it."""
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 
 from dialogue.conversation import Conversation, Phase
 from dialogue.script import Script
@@ -12,17 +12,22 @@ Path = tuple[str, ...]
 CALLS = {Phase.ASKING: ("yes", "no"), Phase.AWAITING_HELP: ("seen", "not_seen")}
 
 
-def every_branch(script: Script, issue: Issue) -> list[Path]:
-    """The shortest paths (calls after `open`) first, each that takes a branch none before took.
+ALL_CALLS = tuple(call for calls in CALLS.values() for call in calls)
 
-    A branch is what was said last together with the call that follows.
+
+def every_branch(script: Script, issue: Issue, calls: Collection[str] = ALL_CALLS) -> list[Path]:
+    """Paths (calls after `open`) that together take every branch of these calls, in few calls.
+
+    A branch is what was said last together with the call that follows. A dialogue without
+    branches has one path, which has no calls.
     """
-    taken: set[tuple[str, str]] = set()
-    chosen = []
-    for path, branches in sorted(_paths(script, issue), key=lambda each: len(each[0])):
-        if not branches <= taken:
-            taken |= branches
-            chosen.append(path)
+    paths = list(_paths(script, issue))
+    left = {branch for _, branches in paths for branch in branches if branch[1] in calls}
+    chosen: list[Path] = []
+    while left or not chosen:
+        path, branches = max(paths, key=lambda each: len(each[1] & left) / (1 + len(each[0])))
+        chosen.append(path)
+        left -= branches
     return chosen
 
 

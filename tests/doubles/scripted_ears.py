@@ -78,6 +78,9 @@ class ScriptedEars:
         self.opened.append(ScriptedEar(self.hears))
         return self.opened[-1]
 
+    async def close(self) -> None:
+        """Nothing is kept."""
+
 
 @dataclass
 class ToneVoice:

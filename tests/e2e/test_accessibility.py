@@ -1,12 +1,12 @@
-"""Every view for everybody: axe, WCAG 2.2 A and AA; every width; the keyboard alone."""
+"""Every view for everybody: axe, WCAG 2.2 A and AA, and where the focus is."""
 
 from pathlib import Path
 from typing import Any
 
 import pytest
-from console_in_browser import OpenPage
-from console_situations import SITUATIONS, Situation
-from playwright.async_api import Page
+from console_in_browser import OpenPage, settle
+from console_situations import SITUATIONS, Situation, live_run, open_question
+from playwright.async_api import Page, ViewportSize
 
 from server.composition import Service
 
@@ -15,9 +15,22 @@ pytestmark = pytest.mark.asyncio(loop_scope="session")
 
 AXE = Path(__file__).parents[2] / "web/node_modules/axe-core/axe.min.js"
 LEVELS = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa"]
-WIDTHS = (360, 768, 1440)
-# Nothing is under a sticky bar by the chance of where the page is scrolled to.
-TALL = 3000
+PHONE = ViewportSize(width=360, height=640)
+# Tall: all of a page is looked at, and not only what the chance of scrolling shows of it.
+SIZES = [PHONE, ViewportSize(width=360, height=3000), ViewportSize(width=1440, height=3000)]
+
+MOST_TABS = 60
+# What has the focus, and whether some of it can be seen; null once the page has been gone through.
+FOCUSED = """() => {
+    const focused = document.activeElement;
+    if (focused === null || focused === document.body) return null;
+    const { left, top, width, height } = focused.getBoundingClientRect();
+    const at = (x, y) => document.elementFromPoint(left + x * width, top + y * height);
+    const spots = [at(0.5, 0.5), at(0.1, 0.1), at(0.9, 0.1), at(0.1, 0.9), at(0.9, 0.9)];
+    const mine = (spot) => spot !== null && focused.contains(spot);
+    const name = focused.getAttribute("aria-label") ?? focused.textContent;
+    return { name, seen: spots.some(mine) };
+}"""
 
 VIEWS = pytest.mark.parametrize("situation", SITUATIONS.values(), ids=SITUATIONS)
 
@@ -34,42 +47,36 @@ async def violations(page: Page) -> list[str]:
     ]
 
 
-async def settle(page: Page) -> None:
-    """Let what moves come to its end: axe would judge colours on their way."""
-    await page.evaluate(
-        "() => Promise.all(document.getAnimations()"
-        ".filter((each) => each.effect.getComputedTiming().endTime < Infinity)"
-        ".map((each) => each.finished.catch(() => null)))"
-    )
-
-
 @VIEWS
-@pytest.mark.parametrize("width", [360, 1440])
 @pytest.mark.parametrize("theme", ["light", "dark"])
 async def test_axe_finds_nothing(
-    service: Service, open_page: OpenPage, situation: Situation, theme: str, width: int
+    service: Service, open_page: OpenPage, situation: Situation, theme: str
 ) -> None:
     async def opened(path: str) -> Page:
-        return await open_page(
-            path,
-            viewport={"width": width, "height": TALL},
-            color_scheme=theme,
-            bypass_csp=True,
-        )
+        return await open_page(path, viewport=SIZES[0], color_scheme=theme, bypass_csp=True)
 
     page = await situation(service, opened)
     await page.add_script_tag(path=AXE)
-    await settle(page)
-    assert await violations(page) == []
+    for size in SIZES:
+        await page.set_viewport_size(size)
+        await settle(page)
+        assert await violations(page) == [], size
 
 
-@VIEWS
-async def test_nothing_has_to_be_scrolled_sideways(
+@pytest.mark.parametrize("situation", [open_question, live_run])
+async def test_focus_is_never_hidden_by_what_sticks_to_an_edge(
     service: Service, open_page: OpenPage, situation: Situation
 ) -> None:
-    page = await situation(service, open_page)
-    for width in WIDTHS:
-        await page.set_viewport_size({"width": width, "height": 900})
-        await settle(page)
-        beyond = await page.evaluate("document.documentElement.scrollWidth - innerWidth")
-        assert beyond <= 0, f"{beyond} px too wide at {width} px"
+    async def opened(path: str) -> Page:
+        return await open_page(path, viewport=PHONE)
+
+    page = await situation(service, opened)
+    seen = set()
+    for _ in range(MOST_TABS):
+        await page.keyboard.press("Tab")
+        focused = await page.evaluate(FOCUSED)
+        if focused is None:
+            break
+        assert focused["seen"], focused["name"]
+        seen.add(focused["name"])
+    assert len(seen) >= 8

@@ -25,7 +25,13 @@ async def by_button(page: Page, answer: str) -> None:
     await page.locator(f".answer.{answer}").click()
 
 
-@pytest.mark.parametrize("answer", [by_button], ids=["button"])
+async def by_key(page: Page, answer: str) -> None:
+    # As soon as the button is seen to take it, and not before.
+    await expect(page.locator(f".answer.{answer}")).to_be_enabled()
+    await page.keyboard.press(answer[0])
+
+
+@pytest.mark.parametrize("answer", [by_button, by_key], ids=["button", "key"])
 @pytest.mark.parametrize("kind", sorted(SCRIPTS))
 async def test_every_branch_of_a_dialogue(stage: Stage, kind: str, answer: Answer) -> None:
     page = await stage.open_page()

@@ -1,6 +1,7 @@
 """What can happen to a question besides an answer: undo, withdrawal, silence, a queue."""
 
 import re
+from collections.abc import Awaitable, Callable
 
 import pytest
 from console_in_browser import Stage
@@ -13,6 +14,38 @@ async def to_the_final_question(page: Page) -> None:
     """Refuse the first offer: what is asked then cannot be taken back."""
     await page.locator(".answer.no").click()
     await expect(page.get_by_role("heading", name="Will you place the yellow bar")).to_be_visible()
+
+
+async def by_key(page: Page, _: str) -> None:
+    await page.keyboard.press("y")
+
+
+async def by_button(page: Page, answer: str) -> None:
+    # By force: an answer that is given too early finds a button that does not take it yet.
+    await page.locator(f".answer.{answer}").click(force=True)
+
+
+@pytest.mark.parametrize("give", [by_key, by_button], ids=["key", "button"])
+async def test_answer_to_a_question_that_nobody_can_have_read_is_not_taken_and_told(
+    stage: Stage, give: Callable[[Page, str], Awaitable[None]]
+) -> None:
+    page = await stage.open_page()
+    too_early = page.get_by_text("This question has only just come")
+    await page.clock.install(time=0)
+    await page.clock.pause_at(60_000)
+    dialogue = await stage.runs.open(stage.run, "dropped")
+    for question, answer in (("I dropped", "no"), ("Will you place the yellow bar", "yes")):
+        await expect(page.get_by_role("heading", name=question)).to_be_visible()
+        await give(page, "yes")
+        await expect(too_early).to_be_visible()
+        assert stage.runs.dialogue(dialogue).awaiting == "answer"
+        # Its time begins once it is drawn, and so with the frame after that.
+        await page.clock.run_for(1_000)
+        await expect(page.locator(f".answer.{answer}")).to_be_enabled()
+        await page.keyboard.press(answer[0])
+        await expect(too_early).to_be_hidden()
+    await page.clock.run_for(1_000)
+    await expect(page.get_by_text("There is nothing to press")).to_be_visible()
 
 
 async def test_final_answer_can_be_undone(stage: Stage) -> None:

@@ -1,7 +1,6 @@
 """Answering by voice: a real browser whose microphone is a sound file."""
 
 import shutil
-import subprocess
 from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import AsyncExitStack
 from importlib.util import find_spec
@@ -10,8 +9,8 @@ from uuid import UUID
 
 import pytest
 import pytest_asyncio
-from conftest import CHROMIUM
 from console_in_browser import TOKEN
+from fake_microphone import launch_speaking
 from played_dialogues import PlayedDialogues
 from playwright.async_api import Page, async_playwright, expect
 from scripted_ears import MishearingEars
@@ -26,24 +25,10 @@ from server.speech.voice import NoVoice, choose_voice
 pytestmark = [
     pytest.mark.asyncio(loop_scope="session"),
     pytest.mark.skipif(shutil.which("flite") is None, reason="flite is not installed"),
-    pytest.mark.skipif(shutil.which("sox") is None, reason="sox is not installed"),
     pytest.mark.skipif(find_spec("pocketsphinx") is None, reason="pocketsphinx is not installed"),
 ]
 
-SILENCE_S = 3.0
-
 Spoken = Callable[..., Awaitable[tuple[PlayedDialogues, UUID, Page]]]
-
-
-def utter(text: str, folder: Path) -> Path:
-    """A microphone's sound: some silence, the words, and silence again; the browser repeats it."""
-    said, file = folder / "said.wav", folder / "microphone.wav"
-    subprocess.run(["flite", "-voice", "slt", "-t", text, "-o", said], check=True)
-    subprocess.run(
-        ["sox", said, "-r", "48000", "-b", "16", file, "pad", str(SILENCE_S), str(SILENCE_S)],
-        check=True,
-    )
-    return file
 
 
 @pytest_asyncio.fixture(loop_scope="session")
@@ -58,21 +43,12 @@ async def spoken(tmp_path: Path) -> AsyncIterator[Spoken]:
                 voice = choose_voice("flite", flite_voice="slt", piper_model=None)
                 assert not isinstance(voice, NoVoice)
                 speech = SpeechAbilities(SpokenTexts(voice), choose_ears(wanted=True, at_once=2))
+                stack.push_async_callback(speech.close)
             service = await stack.enter_async_context(
                 serving(speech, runs_in=PlayedDialogues, token=TOKEN)
             )
             playwright = await stack.enter_async_context(async_playwright())
-            browser = await playwright.chromium.launch(
-                executable_path=CHROMIUM,
-                headless=True,
-                args=[
-                    "--no-sandbox",
-                    "--use-fake-device-for-media-stream",
-                    "--use-fake-ui-for-media-stream",
-                    f"--use-file-for-fake-audio-capture={utter(words, tmp_path)}",
-                    "--autoplay-policy=no-user-gesture-required",
-                ],
-            )
+            browser = await launch_speaking(playwright, words, tmp_path, again=True)
             stack.push_async_callback(browser.close)
             context = await browser.new_context(base_url=service.url)
             await context.request.post("/api/session", data={"token": TOKEN})

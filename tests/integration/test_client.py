@@ -10,8 +10,13 @@ from recorded_service import recorded_events
 from sample_events import detected, paused
 from service_under_test import TOKEN, ServiceUnderTest, build, serving
 
-from server.client import MendClient, RefusedError, UnreachableError
-from server.client_stream import CommandRefusedError, StreamRefusedError
+from server.client import MendClient
+from server.client_errors import (
+    CommandRefusedError,
+    RefusedError,
+    StreamRefusedError,
+    UnreachableError,
+)
 from server.journal.events import Answered, Event, RunAborted, RunStarted
 from server.journal.journal import Entry
 from server.runtime.requests import RunRequest
@@ -172,6 +177,9 @@ async def test_wrong_token_ends_the_stream(service: ServiceUnderTest) -> None:
         async with client.follow("anna") as stream:
             with pytest.raises(StreamRefusedError):
                 await anext(aiter(stream))
+        with pytest.raises(StreamRefusedError, match="check the token"):
+            async with client.talk("anna"):
+                pass
         with pytest.raises(RefusedError):
             await client.runs()
 
@@ -183,6 +191,9 @@ async def test_no_service_is_one_clear_sentence() -> None:
     async with MendClient(url) as client:
         with pytest.raises(UnreachableError, match="no service answers at"):
             await client.runs()
+        with pytest.raises(UnreachableError, match="no service answers at"):
+            async with client.talk("anna"):
+                pass
         with pytest.raises(UnreachableError, match="no service is ready at"):
             await client.wait_until_ready(timeout_s=0.05)
 

@@ -7,14 +7,15 @@ from collections.abc import AsyncIterator
 import pytest
 from scripted_ears import ToneVoice
 from service_under_test import ServiceUnderTest, serving
-from wav_device import WavDevice
+from wav_device import WavDevice, pcm_of
 
 from server.cli.spoken_helper import SpokenHelper
 from server.client import MendClient
 from server.journal.events import Answered, DialogueClosed, RunPaused
 from server.runtime.requests import RunRequest
 from server.speech.abilities import SpeechAbilities
-from server.speech.ear import NoEars, ProcessEars, choose_ears
+from server.speech.commands import Command
+from server.speech.ear import NoEars, ProcessEars, TooManyConversationsError, choose_ears
 from server.speech.rendering import SpokenTexts
 from server.speech.voice import CommandVoice, choose_voice
 
@@ -36,8 +37,10 @@ async def service() -> AsyncIterator[ServiceUnderTest]:
     ears = choose_ears(True, 2)
     if isinstance(ears, NoEars):
         pytest.skip(ears.why_not)
-    async with serving(SpeechAbilities(SpokenTexts(ToneVoice()), ears)) as service:
+    speech = SpeechAbilities(SpokenTexts(ToneVoice()), ears)
+    async with serving(speech) as service:
         yield service
+    await speech.close()
 
 
 async def help_by_voice(
@@ -108,7 +111,29 @@ async def test_there_is_room_for_so_many_ears_and_no_more() -> None:
         pytest.skip("pocketsphinx is not installed")
     ears = ProcessEars(1)
     ear = await ears.open()
-    with pytest.raises(Exception, match="1 spoken conversations are going on already"):
+    with pytest.raises(TooManyConversationsError, match="1 spoken conversations are going on"):
         await ears.open()
     await ear.close()
     ears.check_room()
+    await ears.close()
+
+
+@pytest.mark.slow
+async def test_an_ear_knows_nothing_of_the_conversation_before(voice: CommandVoice) -> None:
+    if isinstance(choose_ears(True, 1), NoEars):
+        pytest.skip("pocketsphinx is not installed")
+    ears = ProcessEars(1)
+    said = bytes(16_000) + pcm_of(await voice.render("yes i will"))
+    first = await ears.open()
+    first.hear(said)
+    first.interrupt()
+    await first.close()
+    second = await ears.open()
+    second.hear(said + bytes(32_000))
+    async with asyncio.timeout(30):
+        reports = [await second.report() for _ in range(2)]
+    await second.close()
+    await ears.close()
+    assert [each.kind for each in reports] == ["began", "utterance"]
+    assert [each.interruptions for each in reports] == [0, 0]
+    assert reports[-1].command is Command.YES

@@ -1,23 +1,30 @@
 import { describe, expect, it } from "vitest";
-import { createPace } from "../src/run/scene/pace";
+import { createPace, type Detail, type Pace } from "../src/run/scene/pace";
 
-function drawn(every: number, times: number) {
-  const pace = createPace();
-  return Array.from({ length: times }, (_, index) => pace(index * every)).filter((each) => each !== null);
+function draw(pace: Pace, count: number, everyMs: number, from = 0): Detail[] {
+  return Array.from({ length: count }, (_, index) => pace.drawn(from + everyMs * index)).filter((each) => each !== null);
 }
 
-describe("pace", () => {
-  it("keeps every detail where drawing is quick enough", () => {
-    expect(drawn(33, 200)).toEqual([]);
+describe("the pace of drawing", () => {
+  it("keeps all detail while pictures come quickly enough", () => {
+    const pace = createPace(false);
+    expect(pace.first).toEqual({ pixels: 1, shadows: true });
+    expect(draw(pace, 200, 30)).toEqual([]);
   });
 
-  it("gives up detail step by step where it is slow, and ends with the least", () => {
-    const steps = drawn(80, 200);
-    expect(steps.map((each) => each.pixels)).toEqual([0.75, 0.75, 0.5]);
-    expect(steps.at(-1)?.shadows).toBe(false);
+  it("gives up detail step by step, and the shadows before the last of it", () => {
+    const steps = draw(createPace(false), 200, 60);
+    expect(steps.length).toBe(3);
+    expect(steps.at(-1)).toEqual({ pixels: 0.5, shadows: false });
   });
 
-  it("does not take a pause for slowness", () => {
-    expect(drawn(1000, 200)).toEqual([]);
+  it("begins without shadows where no graphics processor helps", () => {
+    const pace = createPace(true);
+    expect(pace.first.shadows).toBe(false);
+    expect(draw(pace, 200, 60).map((each) => each.pixels)).toEqual([0.75, 0.5]);
+  });
+
+  it("takes a pause for no slowness: nothing was to be drawn", () => {
+    expect(draw(createPace(false), 200, 1000)).toEqual([]);
   });
 });

@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { atTheirFields } from "../src/run/start_mistakes";
+import { atTheirFields } from "../src/run/start/start_mistakes";
 
 describe("a refused start", () => {
   it.each([

@@ -1,7 +1,7 @@
 // What timeline and transcript make of the recorded run of the paper's scenario.
 import { beforeAll, describe, expect, it } from "vitest";
 import { joined, type Line, linesOf } from "../src/run/sentences";
-import { lanesOf, ticksOf } from "../src/run/timeline_lanes";
+import { lanesOf, ticksOf } from "../src/run/timeline/lanes";
 import type { Event } from "../src/wire/types";
 import { foldedRuns } from "./folded_runs.mjs";
 

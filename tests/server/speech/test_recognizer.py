@@ -5,7 +5,8 @@ import pytest
 
 pytest.importorskip("pocketsphinx", reason="pocketsphinx is not installed")
 
-from server.speech.commands import Command
+from server.speech.commands import Command, phrase_commands
+from server.speech.decoding import Hypothesis
 from server.speech.endpointing import SAMPLE_RATE_HZ
 from server.speech.recognizer import (
     FRAME_BYTES,
@@ -18,15 +19,24 @@ from server.speech.recognizer import (
 
 
 class ToldDecoder:
-    """Implements `server.speech.recognizer.Decoder`."""
+    """Implements `server.speech.decoding.Decoder`: hears `phrase`, so sure as it is told to be."""
 
-    def __init__(self, hears: str) -> None:
-        self.hears = hears
+    def __init__(self, phrase: str, margin: float = 0.1) -> None:
+        self._phrase = phrase
+        self._margin = margin
+        self._taken: list[bytes] = []
         self.sound = b""
 
-    def decode(self, sound: bytes) -> str:
-        self.sound = sound
-        return self.hears
+    def begin(self) -> None:
+        self._taken = []
+
+    def take(self, sound: bytes) -> None:
+        self._taken.append(sound)
+
+    def end(self) -> Hypothesis:
+        self.sound = b"".join(self._taken)
+        command = phrase_commands()[self._phrase]
+        return Hypothesis(self._phrase, command, self._phrase, self._margin)
 
 
 def noise(duration_s: float, level: float) -> bytes:
@@ -51,7 +61,7 @@ def heard(recognizer: Recognizer, sound: bytes, piece: int = FRAME_BYTES) -> lis
 
 
 def test_an_utterance_is_told_when_it_begins_and_when_it_has_ended() -> None:
-    began, utterance = heard(Recognizer(ToldDecoder("c_yes_please")), word())
+    began, utterance = heard(Recognizer(ToldDecoder("yes please")), word())
     assert began == SpeechBegan()
     assert isinstance(utterance, Utterance)
     assert (utterance.command, utterance.phrase) == (Command.YES, "yes please")
@@ -60,20 +70,20 @@ def test_an_utterance_is_told_when_it_begins_and_when_it_has_ended() -> None:
 
 @pytest.mark.parametrize("piece", [2, 320, 1000, 10**6])
 def test_sound_may_come_in_pieces_of_any_size(piece: int) -> None:
-    assert heard(Recognizer(ToldDecoder("c_no")), word(), piece) == heard(
-        Recognizer(ToldDecoder("c_no")), word()
+    assert heard(Recognizer(ToldDecoder("no")), word(), piece) == heard(
+        Recognizer(ToldDecoder("no")), word()
     )
 
 
 def test_the_weak_beginning_of_a_word_is_decoded_too() -> None:
-    decoder = ToldDecoder("c_yes")
+    decoder = ToldDecoder("yes")
     heard(Recognizer(decoder), word())
     before_and_after_s = len(decoder.sound) / 2 / SAMPLE_RATE_HZ - 0.5
     assert before_and_after_s > LEAD_S / 2 + 0.1
 
 
 def test_what_is_longer_than_any_phrase_is_no_command() -> None:
-    decoder = ToldDecoder("c_yes")
+    decoder = ToldDecoder("yes")
     chopped = b"".join(noise(0.2, 3000) + noise(0.1, 30) for _ in range(30))
     found = heard(Recognizer(decoder), silence(1.0) + chopped)
     assert found[1] == Utterance(None, None, words=True, hangover_s=0.0)
@@ -81,14 +91,14 @@ def test_what_is_longer_than_any_phrase_is_no_command() -> None:
 
 
 def test_a_pause_within_an_utterance_does_not_cut_it_in_two() -> None:
-    decoder = ToldDecoder("c_no_thanks")
+    decoder = ToldDecoder("no thanks")
     sound = silence(1.0) + noise(0.4, 3000) + silence(0.22) + noise(0.4, 3000) + silence(0.5)
     assert [type(each) for each in heard(Recognizer(decoder), sound)] == [SpeechBegan, Utterance]
     assert len(decoder.sound) / 2 / SAMPLE_RATE_HZ > 0.4 + 0.22 + 0.4
 
 
 def test_an_interrupted_utterance_is_never_told() -> None:
-    decoder = ToldDecoder("c_yes")
+    decoder = ToldDecoder("yes")
     recognizer = Recognizer(decoder)
     assert heard(recognizer, silence(1.0) + noise(0.3, 3000)) == [SpeechBegan()]
     recognizer.interrupt()
@@ -97,7 +107,19 @@ def test_an_interrupted_utterance_is_never_told() -> None:
 
 
 def test_digital_silence_gets_a_little_noise() -> None:
-    decoder = ToldDecoder("c_yes")
+    decoder = ToldDecoder("yes")
     heard(Recognizer(decoder), word())
     samples = np.frombuffer(decoder.sound, np.int16)
     assert np.count_nonzero(samples) > 0.9 * len(samples)
+
+
+def test_what_something_else_explains_almost_as_well_is_not_understood() -> None:
+    _, utterance = heard(Recognizer(ToldDecoder("yes", margin=0.001)), word())
+    assert isinstance(utterance, Utterance)
+    assert (utterance.command, utterance.phrase, utterance.words) == (None, None, True)
+
+
+def test_the_decoder_has_the_sound_while_somebody_still_speaks() -> None:
+    decoder = ToldDecoder("yes")
+    assert heard(Recognizer(decoder), silence(1.0) + noise(0.5, 3000)) == [SpeechBegan()]
+    assert sum(len(each) for each in decoder._taken) > 0.5 * SAMPLE_RATE_HZ * 2

@@ -14,7 +14,7 @@ const RunView = later(() => import("../run/run_view").then((module) => module.Ru
 const RunsView = later(() => import("../run/runs_view").then((module) => module.RunsView));
 const TreesView = later(() => import("../trees/trees_view").then((module) => module.TreesView));
 const TreeEditor = later(() => import("../trees/tree_editor").then((module) => module.TreeEditor));
-const StartRun = later(() => import("../run/start_run").then((module) => module.StartRun));
+const StartRun = later(() => import("../run/start/start_run").then((module) => module.StartRun));
 const SettingsView = later(() => import("../settings/settings_view").then((module) => module.SettingsView));
 
 export function App() {

@@ -2,10 +2,11 @@
 import { useLayoutEffect } from "preact/hooks";
 import { keys, keysOn } from "../state/preferences";
 import { type Question } from "../state/questions";
-import { answer, undo } from "./answering";
+import { type Answer, undo } from "./answering";
 import { repeat } from "./repeating";
 
-const TYPING = "input, textarea, select, [contenteditable]";
+// Where a letter is typed, or something else than the question is to be decided.
+const ELSEWHERE = "input, textarea, select, [contenteditable], dialog";
 
 export type KeyAction = "yes" | "no" | "repeat" | "undo";
 
@@ -25,17 +26,17 @@ export function actionOf(
 }
 
 /** Let the keys answer this question while its card is shown. */
-export function useAnswerKeys(question: Question, mayAnswer: boolean): void {
-  // At once: a key that is pressed as soon as the buttons are seen to be ready must count.
+export function useAnswerKeys(question: Question, onAnswer: (value: Answer) => void): void {
+  // With the drawing, not after it: a key that is pressed as soon as the card is seen must find it.
   useLayoutEffect(() => {
     const pressed = (event: KeyboardEvent) => {
       const target = event.target as Element;
       const isRange = target instanceof HTMLInputElement && target.type === "range";
-      if (event.defaultPrevented || (target.closest(TYPING) !== null && !isRange)) return;
+      if (event.defaultPrevented || (target.closest(ELSEWHERE) !== null && !isRange)) return;
       const action = actionOf(event, keys.value, keysOn.value);
       if (action === "undo") undo();
       else if (action === "repeat") repeat(question);
-      else if (action !== null && mayAnswer) answer(question, action);
+      else if (action !== null) onAnswer(action);
     };
     window.addEventListener("keydown", pressed);
     return () => window.removeEventListener("keydown", pressed);

@@ -20,8 +20,8 @@ export interface Held {
 }
 
 export const held = signal<Held | null>(null);
-/** The prompts whose answer is on its way. */
-export const sending = signal<ReadonlySet<string>>(new Set());
+/** The prompts that were answered here, also those whose answer is still on its way. */
+export const given = signal<ReadonlySet<string>>(new Set());
 /** What was wrong with the last answer, by prompt. */
 export const mistakes = signal<ReadonlyMap<string, string>>(new Map());
 
@@ -30,7 +30,7 @@ let timer = 0;
 /** Answer the open question of a dialogue. */
 export function answer(question: Question, value: Answer): void {
   const { prompt } = question;
-  if (prompt === null || question.awaiting !== "answer" || sending.value.has(prompt.prompt)) return;
+  if (prompt === null || question.awaiting !== "answer" || given.value.has(prompt.prompt)) return;
   if (held.value?.prompt === prompt.prompt && held.value.answer === value) return;
   const option = prompt.answers.find((each) => each.value === value);
   if (option === undefined) return;
@@ -59,18 +59,19 @@ export function sendHeld(): void {
 }
 
 async function send(question: Question, prompt: string, value: Answer): Promise<void> {
-  sending.value = new Set([...sending.value, prompt]);
+  given.value = new Set([...given.value, prompt]);
   try {
     await command({ type: "answer", dialogue: question.dialogue, prompt, answer: value });
   } catch (error) {
+    given.value = new Set([...given.value].filter((each) => each !== prompt));
     const faster = error instanceof Refusal ? error.answeredBy : null;
     if (faster === null) {
       note(prompt, `Your ${value.toUpperCase()} was not sent: ${(error as Error).message}`);
-    } else if (faster !== helperName.value) {
+    } else if (faster === helperName.value) {
+      note(prompt, `Your ${value.toUpperCase()} does not count: you have answered this already.`);
+    } else {
       tellEnding(question, `${faster} was faster; your ${value.toUpperCase()} does not count.`);
     }
-  } finally {
-    sending.value = new Set([...sending.value].filter((each) => each !== prompt));
   }
 }
 

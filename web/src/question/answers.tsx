@@ -2,15 +2,23 @@
 import { keys, keysOn } from "../state/preferences";
 import type { Question } from "../state/questions";
 import { connection } from "../state/service";
-import { answer, held, mistakes, sending, undo } from "./answering";
+import { type Answer, given, held, mistakes, undo } from "./answering";
+import type { Arming } from "./arming";
+import "./answers.css";
 
 const WORDS = { yes: "YES", no: "NO" } as const;
 
-export function Answers({ question, armed }: { question: Question; armed: boolean }) {
+interface AnswersProps {
+  question: Question;
+  arming: Arming;
+  onAnswer(value: Answer): void;
+}
+
+export function Answers({ question, arming: { armed, tooEarly }, onAnswer }: AnswersProps) {
   const { prompt } = question;
   if (prompt === null) return null;
   const waiting = held.value?.prompt === prompt.prompt ? held.value : null;
-  const busy = sending.value.has(prompt.prompt) || question.awaiting !== "answer";
+  const busy = given.value.has(prompt.prompt) || question.awaiting !== "answer";
   const offline = connection.value !== "connected";
   const closed = !armed || busy || offline;
   const mistake = mistakes.value.get(prompt.prompt);
@@ -24,7 +32,7 @@ export function Answers({ question, armed }: { question: Question; armed: boolea
             class={`answer ${value} ${waiting?.answer === value ? "held" : ""}`}
             aria-disabled={closed}
             aria-keyshortcuts={keysOn.value ? keys.value[value] : undefined}
-            onClick={() => !closed && answer(question, value)}
+            onClick={() => onAnswer(value)}
           >
             <span class="answer-word">
               {WORDS[value]}
@@ -52,6 +60,7 @@ export function Answers({ question, armed }: { question: Question; armed: boolea
         {offline && "No connection to the service. You can answer as soon as it is back."}
         {mistake !== undefined && <span class="mistake">{mistake}</span>}
         {busy && !offline && "Sent."}
+        {tooEarly && !busy && !offline && <strong>This question has only just come. Read it, then answer again.</strong>}
       </p>
     </div>
   );

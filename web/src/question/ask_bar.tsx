@@ -3,6 +3,7 @@ import { route } from "../app/router";
 import { faultInWords, robotName } from "./fault_words";
 import { shown } from "./queue";
 import { questions } from "../state/questions";
+import "./ask_bar.css";
 
 export function AskBar() {
   const question = shown.value;

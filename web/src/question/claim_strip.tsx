@@ -2,6 +2,7 @@
 import { helperName } from "../state/preferences";
 import type { Question } from "../state/questions";
 import { claim, release } from "./claiming";
+import "./claim_strip.css";
 
 export function ClaimStrip({ question }: { question: Question }) {
   const { claimed_by: by, dialogue } = question;

@@ -1,6 +1,7 @@
 // Says why a card has closed; the region is always there, so that it is read out.
 import { dismissEnding, endings } from "../state/endings";
 import { robotName } from "./fault_words";
+import "./endings_list.css";
 
 export function Endings({ run }: { run?: string }) {
   const told = endings.value.filter((each) => run === undefined || each.run === run);

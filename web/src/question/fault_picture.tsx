@@ -5,6 +5,7 @@ import { picturePath } from "../wire/rest";
 import { ClipControls } from "./clip_controls";
 import { DetectionOverlay } from "./detection_overlay";
 import { spoken } from "./fault_words";
+import "./fault_picture.css";
 
 export function FaultPicture({ question }: { question: Question }) {
   const { clip, detection, picture } = question;

@@ -1,9 +1,11 @@
 // One question: what went wrong, what the robot saw, and the two answers with what each will do.
-import { useEffect, useState } from "preact/hooks";
+import { useEffect } from "preact/hooks";
 import type { Question } from "../state/questions";
-import { runs } from "../state/service";
+import { connection, runs } from "../state/service";
+import { type Answer, answer } from "./answering";
 import { Answers } from "./answers";
 import { useAnswerKeys } from "./answer_keys";
+import { useArming } from "./arming";
 import { ClaimStrip } from "./claim_strip";
 import { actOn, release } from "./claiming";
 import { Countdown } from "./countdown";
@@ -13,11 +15,6 @@ import { PausedNode } from "./paused_node";
 import { SpeechControls } from "./speech_controls";
 import "./question_card.css";
 
-/** An answer meant for a card that has just gone must not hit the one that took its place. */
-const ARMED_AFTER_MS = 500;
-
-let leftAt = Number.NEGATIVE_INFINITY;
-
 interface QuestionCardProps {
   question: Question;
   /** Beside the run's own drawing of the tree, which shows the paused node already. */
@@ -25,10 +22,15 @@ interface QuestionCardProps {
 }
 
 export function QuestionCard({ question, besideTree = false }: QuestionCardProps) {
-  const armed = useArmed();
-  useAnswerKeys(question, armed);
-  useEffect(() => () => release(question.dialogue), [question.dialogue]);
   const { prompt } = question;
+  const arming = useArming(prompt?.prompt ?? null);
+  const give = (value: Answer) => {
+    if (connection.peek() !== "connected") return;
+    if (arming.armed) answer(question, value);
+    else arming.noteTooEarly();
+  };
+  useAnswerKeys(question, give);
+  useEffect(() => () => release(question.dialogue), [question.dialogue]);
   if (prompt === null) return null;
   const act = () => actOn(question);
   const run = runs.value.get(question.run);
@@ -55,7 +57,7 @@ export function QuestionCard({ question, besideTree = false }: QuestionCardProps
           <FaultPicture question={question} />
         </div>
         <div class="question-answers" onPointerMove={act} onPointerDown={act} onFocusCapture={act}>
-          <Answers question={question} armed={armed} />
+          <Answers question={question} arming={arming} onAnswer={give} />
         </div>
         <div class="question-more">
           <SpeechControls question={question} onAct={act} />
@@ -65,18 +67,6 @@ export function QuestionCard({ question, besideTree = false }: QuestionCardProps
       </div>
     </article>
   );
-}
-
-function useArmed(): boolean {
-  const [armed, setArmed] = useState(() => performance.now() - leftAt > ARMED_AFTER_MS);
-  useEffect(() => {
-    const timer = window.setTimeout(() => setArmed(true), ARMED_AFTER_MS);
-    return () => {
-      window.clearTimeout(timer);
-      leftAt = performance.now();
-    };
-  }, []);
-  return armed;
 }
 
 function ordinal(count: number): string {

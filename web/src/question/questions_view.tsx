@@ -6,6 +6,7 @@ import { QuestionCard } from "./question_card";
 import { queue, shown, stopChoosing } from "./queue";
 import { QueueList } from "./queue_list";
 import { AwaitedHelpCard, TogetherCard } from "./waiting_cards";
+import "./questions_view.css";
 
 export function QuestionsView() {
   useEffect(() => stopChoosing, []);

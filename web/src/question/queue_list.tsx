@@ -3,6 +3,7 @@ import { helperName } from "../state/preferences";
 import type { Question } from "../state/questions";
 import { faultInWords, robotName } from "./fault_words";
 import { choose, queue } from "./queue";
+import "./queue_list.css";
 
 export function QueueList({ shown }: { shown: Question | null }) {
   return (

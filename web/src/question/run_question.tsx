@@ -14,7 +14,7 @@ export function RunQuestion({ run }: { run: string }) {
       {awaitingHelp.value
         .filter((each) => each.run === run)
         .map((each) => (
-          <AwaitedHelpCard key={each.dialogue} question={each} />
+          <AwaitedHelpCard key={each.dialogue} question={each} besideTree />
         ))}
       {together.value
         .filter((each) => each.run === run)

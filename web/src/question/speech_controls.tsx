@@ -4,6 +4,7 @@ import { keys, keysOn } from "../state/preferences";
 import type { Question } from "../state/questions";
 import { lastHeard, type SpeechPhase, speechLacks, speechPhase } from "../speech/speech_state";
 import { repeat } from "./repeating";
+import "./speech_controls.css";
 
 const PHASES: Readonly<Record<SpeechPhase, string>> = {
   off: "",

@@ -4,6 +4,7 @@ import { type Question, stopHelping, type Together } from "../state/questions";
 import type { Help } from "../wire/types";
 import { robotName, spoken } from "./fault_words";
 import { PausedNode } from "./paused_node";
+import "./waiting_cards.css";
 
 const PROMISES: Readonly<Record<Help, (part: string) => string>> = {
   place: (part) => `would place the ${part}`,
@@ -19,7 +20,13 @@ const EXPECTED: Readonly<Record<Help, (part: string) => string>> = {
   clear_way: () => "The robot watches until nothing is in the way of its arm.",
 };
 
-export function AwaitedHelpCard({ question }: { question: Question }) {
+interface AwaitedHelpProps {
+  question: Question;
+  /** Beside the run's own drawing of the tree, which shows the paused node already. */
+  besideTree?: boolean;
+}
+
+export function AwaitedHelpCard({ question, besideTree = false }: AwaitedHelpProps) {
   const { help } = question;
   const part = spoken(question.object ?? question.name);
   return (
@@ -36,7 +43,7 @@ export function AwaitedHelpCard({ question }: { question: Question }) {
         </p>
       )}
       <p class="watching quiet small">It goes on by itself as soon as it sees that. There is nothing to press.</p>
-      <PausedNode run={question.run} node={question.node} name={question.name} />
+      {!besideTree && <PausedNode run={question.run} node={question.node} name={question.name} />}
     </article>
   );
 }

@@ -3,6 +3,7 @@ import { KIND_MEANINGS, plain } from "../tree/words";
 import type { NodeStarted, NodeView } from "../wire/types";
 import { whyChosen } from "./choice";
 import { clock } from "./run_header";
+import "./choice_panel.css";
 
 const SHOWN_AT_MOST = 12;
 
@@ -28,7 +29,7 @@ export function ChoicePanel({ node, choices, onChoose }: ChoicePanelProps) {
         <p class="small choice-earlier">
           Earlier:{" "}
           {choices.slice(-9, -1).map((choice) => (
-            <button key={choice.seq} type="button" class="link" onClick={() => onChoose(choice)}>
+            <button key={choice.seq} type="button" class="bare link" onClick={() => onChoose(choice)}>
               attempt {choice.attempt} at {clock(choice.time)}
             </button>
           ))}

@@ -2,6 +2,7 @@
 import { plain } from "../tree/words";
 import { picturePath } from "../wire/rest";
 import { awaiting, type OpenDialogue } from "./fold";
+import "./dialogue_now.css";
 
 export function DialogueNow({ dialogue }: { dialogue: OpenDialogue }) {
   const { opened, raised, prompt, answered, claimedBy } = dialogue;

@@ -1,9 +1,11 @@
 // The head of a run: what it is, how it goes, and pause, resume and abort.
-import { useRef, useState } from "preact/hooks";
+import { useState } from "preact/hooks";
+import { Confirm } from "../app/confirm";
 import { plain } from "../tree/words";
 import * as rest from "../wire/rest";
 import { ended, type RunState } from "./fold";
 import type { Moment } from "./moment";
+import "./run_header.css";
 
 const STATUS_WORDS = {
   running: "running",
@@ -54,7 +56,7 @@ function RunClock({ moment }: { moment: Moment }) {
 function RunControls({ run, paused }: { run: string; paused: boolean }) {
   const [note, setNote] = useState("");
   const [busy, setBusy] = useState(false);
-  const sure = useRef<HTMLDialogElement>(null);
+  const [aborting, setAborting] = useState(false);
   const ask = async (request: (id: string) => Promise<unknown>) => {
     setBusy(true);
     setNote("");
@@ -79,23 +81,23 @@ function RunControls({ run, paused }: { run: string; paused: boolean }) {
           Pause
         </button>
       )}
-      <button class="button danger" type="button" disabled={busy} onClick={() => sure.current?.showModal()}>
+      <button class="button danger" type="button" disabled={busy} onClick={() => setAborting(true)}>
         Abort …
       </button>
-      <dialog ref={sure} class="run-sure" aria-labelledby="run-sure-text">
-        <form method="dialog">
-          <h2 id="run-sure-text">Abort this run for good?</h2>
+      {aborting && (
+        <Confirm
+          title="Abort this run for good?"
+          confirm="Abort the run"
+          cancel="Let it go on"
+          onCancel={() => setAborting(false)}
+          onConfirm={() => {
+            setAborting(false);
+            void ask(rest.abortRun);
+          }}
+        >
           <p>The robot stops, and the run cannot be taken up again.</p>
-          <div class="run-sure-answers">
-            <button class="button" type="submit">
-              Let it go on
-            </button>
-            <button class="button danger" type="submit" onClick={() => void ask(rest.abortRun)}>
-              Abort the run
-            </button>
-          </div>
-        </form>
-      </dialog>
+        </Confirm>
+      )}
     </div>
   );
 }

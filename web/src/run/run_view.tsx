@@ -3,7 +3,7 @@ import { useComputed } from "@preact/signals";
 import { useCallback, useEffect, useMemo, useState } from "preact/hooks";
 import { later } from "../app/later";
 import { RunQuestion } from "../question/run_question";
-import { questions } from "../state/questions";
+import { awaitingHelp, questions, together } from "../state/questions";
 import { TreeDrawing } from "../tree/tree_drawing";
 import { nodesOfRun } from "../tree/tree_node";
 import { plain } from "../tree/words";
@@ -16,8 +16,8 @@ import { openRun, type RunFeed } from "./run_feed";
 import { RunHeader } from "./run_header";
 import { Scrubber } from "./scrubber";
 import { Tabs, useNarrow } from "./tabs";
-import { Timeline } from "./timeline";
-import { lanesOf, type TimelineItem } from "./timeline_lanes";
+import { lanesOf, type TimelineItem } from "./timeline/lanes";
+import { Timeline } from "./timeline/timeline";
 import { Transcript } from "./transcript";
 import "./run.css";
 
@@ -120,10 +120,9 @@ function Shown({ feed, version, state, latest }: ShownProps) {
   );
   const world = useMemo(
     () => (
-      <>
-        <ScenePanel run={state.started.run} moment={moment} />
+      <ScenePanel run={state.started.run} moment={moment}>
         <Cameras run={state.started.run} moment={moment} status={latest.status} />
-      </>
+      </ScenePanel>
     ),
     [state.started.run, moment, latest.status],
   );
@@ -167,20 +166,16 @@ function Shown({ feed, version, state, latest }: ShownProps) {
 
 /** The open question, or what was being talked about at a moment of the past. */
 function Talk({ state, newest }: { state: RunState; newest: boolean }) {
-  const asked = questions.value.filter((question) => question.run === state.started.run);
-  const dialogues = [...state.dialogues.values()];
-  if (newest && asked[0] !== undefined) {
-    return (
-      <div class="run-talk">
-        <RunQuestion run={state.started.run} />
-      </div>
-    );
-  }
-  if (dialogues.length === 0) return null;
+  const { run } = state.started;
+  const asked = questions.value.some((question) => question.run === run);
+  const known = new Set([...questions.value, ...awaitingHelp.value, ...together.value].map((each) => each.dialogue));
+  // What has a card for helpers is not told once more.
+  const told = [...state.dialogues.values()].filter(({ opened }) => !newest || !known.has(opened.dialogue));
   return (
     <div class="run-talk">
-      {!newest && asked.length > 0 && <p class="run-waiting">A question is open now: go back to live to answer it.</p>}
-      {dialogues.map((dialogue) => (
+      {newest && <RunQuestion run={run} />}
+      {!newest && asked && <p class="run-waiting">A question is open now: go back to live to answer it.</p>}
+      {told.map((dialogue) => (
         <DialogueNow key={dialogue.opened.dialogue} dialogue={dialogue} />
       ))}
     </div>

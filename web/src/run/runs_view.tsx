@@ -63,7 +63,7 @@ function Filters() {
       {FILTERS.map((each) => (
         <button
           key={each.name}
-          class="filter"
+          class="button filter"
           type="button"
           aria-pressed={filter.value === each}
           onClick={() => {

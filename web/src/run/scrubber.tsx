@@ -1,6 +1,7 @@
 // The bar that moves the shown moment: a slider over the run's time, play, and the way back.
 import { clock } from "./run_header";
 import { type Moment, SPEEDS } from "./moment";
+import "./scrubber.css";
 
 const STEP_S = 0.1;
 
@@ -22,18 +23,18 @@ export function Scrubber({ moment, going, onStep }: ScrubberProps) {
   return (
     <section class={`scrubber ${newest ? "newest" : "past"}`} aria-label="Moment">
       <div class="scrubber-buttons">
-        <button type="button" class="icon-button" aria-label="One event back" onClick={() => onStep(-1)}>
+        <button type="button" class="bare icon-button" aria-label="One event back" onClick={() => onStep(-1)}>
           <Icon d="M14 4l-8 6 8 6zM4 4v12" />
         </button>
         <button
           type="button"
-          class="icon-button"
+          class="bare icon-button"
           aria-label={playing ? "Stop playing" : "Play"}
           onClick={() => (playing ? moment.pause() : moment.play())}
         >
           <Icon d={playing ? "M6 4v12M14 4v12" : "M6 3l11 7-11 7z"} />
         </button>
-        <button type="button" class="icon-button" aria-label="One event on" disabled={newest} onClick={() => onStep(1)}>
+        <button type="button" class="bare icon-button" aria-label="One event on" disabled={newest} onClick={() => onStep(1)}>
           <Icon d="M6 4l8 6-8 6zM16 4v12" />
         </button>
       </div>
@@ -50,6 +51,7 @@ export function Scrubber({ moment, going, onStep }: ScrubberProps) {
       <label class="scrubber-speed">
         <span class="unseen">Speed</span>
         <select
+          class="input"
           value={String(moment.speed.value)}
           onChange={(event) => moment.playAt(Number(event.currentTarget.value))}
         >

@@ -1,6 +1,7 @@
 // Panels one at a time where there is no room for all of them.
 import type { ComponentChildren } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";
+import "./tabs.css";
 
 const NARROW = "(width < 720px)";
 
@@ -30,6 +31,7 @@ export function Tabs({ panels }: { panels: readonly Panel[] }) {
             key={id}
             id={`tab-${id}`}
             type="button"
+            class="bare"
             role="tab"
             aria-selected={id === chosen}
             aria-controls={id === chosen ? `panel-${id}` : undefined}

@@ -3,6 +3,7 @@ import { useEffect, useMemo, useRef } from "preact/hooks";
 import type { Event } from "../wire/types";
 import { clock } from "./run_header";
 import { joined, type Line, linesOf } from "./sentences";
+import "./transcript.css";
 
 /** So many lines are drawn together, and skipped together while nothing of them is in sight. */
 const PORTION = 40;
@@ -78,7 +79,7 @@ function Portion({ lines, until, marked, onChoose }: PortionProps) {
             class={`line ${line.tone} ${line.seq > until ? "later" : ""}`}
             aria-current={line === current ? "time" : undefined}
           >
-            <button type="button" onClick={() => onChoose(line)} aria-label={`Go to ${clock(line.time)}`}>
+            <button type="button" class="bare" onClick={() => onChoose(line)} aria-label={`Go to ${clock(line.time)}`}>
               {clock(line.time)}
             </button>
             <p>

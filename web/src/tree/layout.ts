@@ -44,7 +44,7 @@ export interface Measures {
 }
 
 export const FULL: Measures = { goalWidth: 184, leafWidth: 216, height: 60, rowGap: 12, columnGap: 40 };
-export const COMPACT: Measures = { goalWidth: 120, leafWidth: 148, height: 32, rowGap: 8, columnGap: 32 };
+export const COMPACT: Measures = { goalWidth: 164, leafWidth: 148, height: 32, rowGap: 8, columnGap: 32 };
 
 const MARGIN = 8;
 const INDENT = 28;

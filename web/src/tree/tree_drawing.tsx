@@ -1,17 +1,16 @@
 // A task tree as a drawing that can be walked with the arrow keys, zoomed, and folded when large.
-import { useEffect, useLayoutEffect, useMemo, useRef, useState } from "preact/hooks";
+import { useLayoutEffect, useMemo, useRef, useState } from "preact/hooks";
 import { Edges } from "./edges";
 import { COMPACT, collapsedAtFirst, FULL, layoutTree, type PlacedNode, type TreeLayout } from "./layout";
 import { NodeCard } from "./node_card";
-import { parentOf, pathsAbove, type TreeNode } from "./tree_node";
+import { pathsAbove, type TreeNode } from "./tree_node";
+import { inSight, useIntoSight, useSight } from "./sight";
+import { useWalk } from "./walk";
 import { described } from "./words";
 import "./tree.css";
 
 const SHOWN_AT_FIRST = 120;
 const SHOWN_AT_FIRST_COMPACT = 14;
-/** From so many nodes on only those in sight are drawn. */
-const MANY = 160;
-const BEYOND_SIGHT_PX = 240;
 const ZOOM_STEP = 1.25;
 const MIN_ZOOM = 0.3;
 const MAX_ZOOM = 2.5;
@@ -178,135 +177,4 @@ function useSize(element: { current: HTMLElement | null }): { width: number } {
     return () => observer.disconnect();
   }, []);
   return size;
-}
-
-interface Sight {
-  left: number;
-  top: number;
-  right: number;
-  bottom: number;
-}
-
-function useSight(element: { current: HTMLElement | null }, scale: number): Sight {
-  const [sight, setSight] = useState<Sight>({ left: 0, top: 0, right: 4000, bottom: 4000 });
-  useEffect(() => {
-    const scrolled = element.current;
-    if (scrolled === null) return;
-    let frame = 0;
-    const look = () => {
-      frame = 0;
-      const { scrollLeft, scrollTop, clientWidth, clientHeight } = scrolled;
-      setSight({
-        left: (scrollLeft - BEYOND_SIGHT_PX) / scale,
-        top: (scrollTop - BEYOND_SIGHT_PX) / scale,
-        right: (scrollLeft + clientWidth + BEYOND_SIGHT_PX) / scale,
-        bottom: (scrollTop + clientHeight + BEYOND_SIGHT_PX) / scale,
-      });
-    };
-    const soon = () => {
-      frame ||= requestAnimationFrame(look);
-    };
-    look();
-    scrolled.addEventListener("scroll", soon, { passive: true });
-    return () => {
-      scrolled.removeEventListener("scroll", soon);
-      cancelAnimationFrame(frame);
-    };
-  }, [scale]);
-  return sight;
-}
-
-function inSight(layout: TreeLayout, sight: Sight, always: string | null): Pick<TreeLayout, "nodes" | "edges"> {
-  if (layout.nodes.length <= MANY) return layout;
-  const near = ({ x, y, width, height }: PlacedNode) =>
-    x < sight.right && x + width > sight.left && y < sight.bottom && y + height > sight.top;
-  return {
-    nodes: layout.nodes.filter((placed) => placed.node.path === always || near(placed)),
-    edges: layout.edges.filter(
-      ({ from, to }) =>
-        Math.min(from.y, to.y) < sight.bottom && Math.max(from.y, to.y) + to.height > sight.top,
-    ),
-  };
-}
-
-function useIntoSight(
-  element: { current: HTMLElement | null },
-  layout: TreeLayout,
-  path: string | null,
-  scale: number,
-): void {
-  const there = layout.nodes.some((placed) => placed.node.path === path);
-  useEffect(() => {
-    const placed = layout.nodes.find((each) => each.node.path === path);
-    if (placed !== undefined && element.current !== null) showWithin(element.current, placed, scale);
-  }, [path, there]);
-}
-
-/** Scroll the drawing, and nothing around it, until a node is in sight. */
-function showWithin(scrolled: HTMLElement, placed: PlacedNode, scale: number): void {
-  const { scrollTop, scrollLeft, clientHeight, clientWidth } = scrolled;
-  const top = placed.y * scale;
-  const bottom = (placed.y + placed.height) * scale;
-  if (top < scrollTop || bottom > scrollTop + clientHeight) {
-    scrolled.scrollTop = (top + bottom - clientHeight) / 2;
-  }
-  const left = placed.x * scale;
-  const right = (placed.x + placed.width) * scale;
-  if (left < scrollLeft || right > scrollLeft + clientWidth) {
-    scrolled.scrollLeft = (left + right - clientWidth) / 2;
-  }
-}
-
-/** One node can be reached with Tab; the arrow keys go on from it as in any tree. */
-function useWalk(
-  layout: TreeLayout,
-  initial: string | null,
-  toggle: (path: string) => void,
-  onSelect: ((path: string) => void) | undefined,
-) {
-  const [walked, setWalked] = useState<string | null>(null);
-  const elements = useRef(new Map<string, SVGGElement>());
-  const goingTo = useRef<string | null>(null);
-  const shown = (path: string | null) => layout.nodes.some((placed) => placed.node.path === path);
-  const at = shown(walked) ? walked : shown(initial) ? initial : (layout.nodes[0]?.node.path ?? null);
-  useLayoutEffect(() => {
-    if (at === null || goingTo.current !== at) return;
-    goingTo.current = null;
-    elements.current.get(at)?.focus();
-  }, [at]);
-  const go = (path: string | undefined | null) => {
-    if (path === undefined || path === null) return;
-    goingTo.current = path;
-    setWalked(path);
-  };
-  const take = (path: string) => {
-    setWalked(path);
-    onSelect?.(path);
-  };
-  const onKeyDown = (event: KeyboardEvent) => {
-    const focused = (event.target as Element).getAttribute("data-path");
-    const index = layout.nodes.findIndex((placed) => placed.node.path === focused);
-    const placed = layout.nodes[index];
-    if (placed === undefined || event.ctrlKey || event.metaKey || event.altKey) return;
-    const { path } = placed.node;
-    const steps: Record<string, () => void> = {
-      ArrowDown: () => go(layout.nodes[index + 1]?.node.path),
-      ArrowUp: () => go(layout.nodes[index - 1]?.node.path),
-      ArrowRight: () => (placed.hidden > 0 ? toggle(path) : placed.expandable && go(layout.nodes[index + 1]?.node.path)),
-      ArrowLeft: () => (placed.expandable && placed.hidden === 0 && index > 0 ? toggle(path) : go(parentOf(path))),
-      Home: () => go(layout.nodes[0]?.node.path),
-      End: () => go(layout.nodes.at(-1)?.node.path),
-      Enter: () => take(path),
-      " ": () => take(path),
-    };
-    const step = steps[event.key];
-    if (step === undefined) return;
-    event.preventDefault();
-    step();
-  };
-  const refOf = (path: string) => (element: SVGGElement | null) => {
-    if (element === null) elements.current.delete(path);
-    else elements.current.set(path, element);
-  };
-  return { at, take, onKeyDown, refOf };
 }

@@ -38,7 +38,9 @@ export function plain(name: string): string {
 
 /** What is left of a text where only so many characters have room. */
 export function shortened(text: string, characters: number): string {
-  return text.length <= characters ? text : `${text.slice(0, Math.max(characters - 1, 1))}…`;
+  if (text.length <= characters) return text;
+  // A letter or two of a name says nothing.
+  return characters < 4 ? "" : `${text.slice(0, characters - 1)}…`;
 }
 
 /** Everything about a node in one sentence, for those who hear the drawing. */

@@ -1,5 +1,6 @@
-// The objects' names over the 3-D picture, each in its object's middle; moved with every drawing.
+// The objects' names over the 3-D picture, each at its object; moved with every drawing.
 import { plain } from "./interventions";
+import { type Area, type NameBox, placeNames } from "./name_places";
 import type { Spot } from "./scene_view";
 
 export interface Names {
@@ -7,32 +8,57 @@ export interface Names {
   show(spots: readonly Spot[], wanted: (name: string) => boolean): void;
 }
 
-export function createNames(host: HTMLElement): Names {
-  const marks = new Map<string, HTMLElement>();
-  const markOf = (name: string) => {
+interface Mark {
+  /** At the object's middle. */
+  readonly spot: HTMLElement;
+  /** The name itself. */
+  readonly text: HTMLElement;
+  size: { readonly width: number; readonly height: number } | null;
+}
+
+/** Names in `host`, which lies over the picture; they keep clear of the elements in `over`. */
+export function createNames(host: HTMLElement, over: () => readonly HTMLElement[]): Names {
+  const marks = new Map<string, Mark>();
+  const markOf = (name: string): Mark => {
     const known = marks.get(name);
     if (known !== undefined) return known;
-    const mark = document.createElement("span");
-    mark.className = "scene-name";
-    const text = document.createElement("span");
+    const [spot, text] = [document.createElement("span"), document.createElement("span")];
+    spot.className = "scene-name";
     text.textContent = plain(name);
-    mark.append(text);
-    host.append(mark);
+    spot.append(text);
+    host.append(spot);
+    const mark: Mark = { spot, text, size: null };
     marks.set(name, mark);
     return mark;
   };
   return {
     show(spots, wanted) {
-      const shown = new Set<string>();
-      for (const { name, x, y, rise, held } of spots) {
-        if (!wanted(name)) continue;
-        const { style, classList } = markOf(name);
-        style.translate = `${x.toFixed(1)}px ${y.toFixed(1)}px`;
-        style.setProperty("--rise", `${rise.toFixed(0)}px`);
-        classList.toggle("held", held);
-        shown.add(name);
+      const shown = spots.filter(({ name }) => wanted(name));
+      const names = new Set(shown.map(({ name }) => name));
+      for (const [name, { spot }] of marks) spot.hidden = !names.has(name);
+      if (shown.length === 0) return;
+      // Before anything is moved: else the page would have to be laid out to answer.
+      const picture = { left: 0, top: 0, right: host.clientWidth, bottom: host.clientHeight };
+      const taken = over().map(areaOf);
+      const boxes = shown.map(({ name, x, y, rise, held }): NameBox => {
+        const mark = markOf(name);
+        mark.spot.style.left = `${x.toFixed(1)}px`;
+        mark.spot.style.top = `${y.toFixed(1)}px`;
+        mark.spot.style.setProperty("--rise", `${rise.toFixed(0)}px`);
+        mark.spot.classList.toggle("held", held);
+        // Once: to measure it with every drawing would lay out the page each time.
+        mark.size ??= { width: mark.text.offsetWidth, height: mark.text.offsetHeight };
+        return { name, x, y: y - rise, held, ...mark.size };
+      });
+      for (const { name, aside, above } of placeNames(boxes, picture, taken)) {
+        const { style } = markOf(name).spot;
+        style.setProperty("--aside", `${aside.toFixed(0)}px`);
+        style.setProperty("--above", `${above.toFixed(0)}px`);
       }
-      for (const [name, mark] of marks) mark.hidden = !shown.has(name);
     },
   };
+}
+
+function areaOf({ offsetLeft, offsetTop, offsetWidth, offsetHeight }: HTMLElement): Area {
+  return { left: offsetLeft, top: offsetTop, right: offsetLeft + offsetWidth, bottom: offsetTop + offsetHeight };
 }

@@ -43,7 +43,7 @@ export function OfferMenu({ label, offers, style = {}, onChoose, onClose }: Prop
         {label}
       </p>
       {offers.map((offer) => (
-        <button key={offer.label} type="button" role="menuitem" tabIndex={-1} onClick={() => onChoose(offer)}>
+        <button key={offer.label} type="button" class="bare" role="menuitem" tabIndex={-1} onClick={() => onChoose(offer)}>
           <span class="scene-menu-act">{offer.label}</span>
           <span class="small quiet">{offer.hint}</span>
         </button>

@@ -18,24 +18,40 @@ const LADDER: readonly Detail[] = [
   { pixels: 0.5, shadows: false },
 ];
 
-/**
- * Hear of each drawing's time (milliseconds); answers with less detail when they come too slowly,
- * else with null. It never goes back up, as going to and fro would be seen.
- */
-export function createPace(): (now: number) => Detail | null {
+/** Where no graphics processor helps: shadows would cost more than all the rest. */
+const LADDER_BY_SOFTWARE: readonly Detail[] = [
+  { pixels: 1, shadows: false },
+  { pixels: 0.75, shadows: false },
+  { pixels: 0.5, shadows: false },
+];
+
+export interface Pace {
+  readonly first: Detail;
+  /**
+   * Hear of each drawing's time (milliseconds); answers with less detail when they come too slowly,
+   * else with null. It never goes back up, as going to and fro would be seen.
+   */
+  drawn(now: number): Detail | null;
+}
+
+export function createPace(bySoftware: boolean): Pace {
+  const ladder = bySoftware ? LADDER_BY_SOFTWARE : LADDER;
   let rung = 0;
   let before = Number.NEGATIVE_INFINITY;
   let gaps: number[] = [];
-  return (now) => {
-    const gap = now - before;
-    before = now;
-    if (gap > PAUSE_MS) return null;
-    gaps.push(gap);
-    if (gaps.length < LOOKED_AT) return null;
-    const middle = gaps.sort((a, b) => a - b)[LOOKED_AT / 2] as number;
-    gaps = [];
-    if (middle <= WANTED_MS + 2 || rung === LADDER.length - 1) return null;
-    rung += 1;
-    return LADDER[rung] ?? null;
+  return {
+    first: ladder[0] as Detail,
+    drawn(now) {
+      const gap = now - before;
+      before = now;
+      if (gap > PAUSE_MS) return null;
+      gaps.push(gap);
+      if (gaps.length < LOOKED_AT) return null;
+      const middle = gaps.sort((a, b) => a - b)[LOOKED_AT / 2] as number;
+      gaps = [];
+      if (middle <= WANTED_MS + 2 || rung === ladder.length - 1) return null;
+      rung += 1;
+      return ladder[rung] ?? null;
+    },
   };
 }

@@ -49,7 +49,11 @@ export function createPoseSource(run: string, helper: string, moment: Moment): P
     changed();
   };
   const takeLayout = (next: Layout) => {
-    if (JSON.stringify(next) !== JSON.stringify(layout.peek())) layout.value = next;
+    if (JSON.stringify(next) === JSON.stringify(layout.peek())) return;
+    layout.value = next;
+    // A frame that came before it said nothing by itself.
+    const frame = moment.live.peek() ? newest : (past ?? newest);
+    if (frame !== null) tell(frame);
   };
   const stopWatching = watchRun(run, helper, {
     layout: takeLayout,

@@ -41,7 +41,8 @@ export function SceneCanvas(props: Props) {
   useEffect(() => {
     let made: SceneView | null = null;
     let gone = false;
-    const marks = createNames(overlay.current as HTMLElement);
+    const host = overlay.current as HTMLElement;
+    const marks = createNames(host, () => [...(host.parentElement?.querySelectorAll<HTMLElement>(".scene-tools") ?? [])]);
     const make = async () => {
       const { createSceneView } = await import("./scene_view");
       if (gone || canvas.current === null) return;

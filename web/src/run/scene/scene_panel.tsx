@@ -1,4 +1,5 @@
 // The run's scene: robot and objects in 3-D at the moment that is shown, and what a person may do there.
+import type { ComponentChildren } from "preact";
 import { useEffect, useMemo, useState } from "preact/hooks";
 import { helperName } from "../../state/preferences";
 import { onEvent, runs } from "../../state/service";
@@ -20,7 +21,14 @@ interface OpenMenu {
   readonly y: number;
 }
 
-export function ScenePanel({ run, moment }: { run: string; moment: Moment }) {
+interface ScenePanelProps {
+  run: string;
+  moment: Moment;
+  /** What is looked at with the picture, and so comes before the list of the objects. */
+  children?: ComponentChildren;
+}
+
+export function ScenePanel({ run, moment, children }: ScenePanelProps) {
   const source = useMemo(() => createPoseSource(run, helperName.peek(), moment), [run, moment]);
   useEffect(() => () => source.close(), [source]);
   const [pointed, setPointed] = useState<string | null>(null);
@@ -66,61 +74,63 @@ export function ScenePanel({ run, moment }: { run: string; moment: Moment }) {
     const target = what.kind === "table" || !offered ? null : targetOf(what, source);
     setMenu(target === null ? null : { target, ...at });
   };
-  const point = (name: string | null) => {
-    setPointed(name);
-  };
-
   return (
-    <section class="panel scene" aria-labelledby="scene-title">
-      <h2 id="scene-title">Scene</h2>
-      {layout !== null && failure === null && (
-        <SceneCanvas
-          layout={layout}
-          poses={source}
-          pointed={pointed}
-          choosing={choosing}
-          onPoint={point}
-          onChoose={choose}
-          onFailure={setFailure}
-          onNote={setNote}
-        >
-          {offered && menu !== null && (
-            <OfferMenu
-              key={titleOf(menu.target)}
-              label={titleOf(menu.target)}
-              offers={offersFor(menu.target, places)}
-              style={{ "--x": `${menu.x}px`, "--y": `${menu.y}px` }}
-              onChoose={(offer) => takeOffer(offer, menu.target)}
-              onClose={() => setMenu(null)}
-            />
-          )}
-        </SceneCanvas>
-      )}
-      {layout !== null && failure !== null && <p>{failure}</p>}
-      <p class="scene-state small quiet">{stateSentence(source, moment)}</p>
-      <p class="scene-note" role="status">
-        {note}
-      </p>
-      {choosing && (
-        <WhereForm
-          key={putting}
-          object={putting}
-          places={places}
-          drawn={failure === null}
-          onPlace={(place) => void intervene({ act: "place", object: putting, place })}
-          onCancel={() => setPutting(null)}
-        />
-      )}
+    <>
+      <section class="panel scene" aria-labelledby="scene-title">
+        <h2 id="scene-title">Scene</h2>
+        {layout !== null && failure === null && (
+          <SceneCanvas
+            layout={layout}
+            poses={source}
+            pointed={pointed}
+            choosing={choosing}
+            onPoint={setPointed}
+            onChoose={choose}
+            onFailure={setFailure}
+            onNote={setNote}
+          >
+            {offered && menu !== null && (
+              <OfferMenu
+                key={titleOf(menu.target)}
+                label={titleOf(menu.target)}
+                offers={offersFor(menu.target, places)}
+                style={{ "--x": `${menu.x}px`, "--y": `${menu.y}px` }}
+                onChoose={(offer) => takeOffer(offer, menu.target)}
+                onClose={() => setMenu(null)}
+              />
+            )}
+          </SceneCanvas>
+        )}
+        {layout !== null && failure !== null && <p>{failure}</p>}
+        <p class="scene-state small quiet">{stateSentence(source, moment)}</p>
+        <p class="scene-note" role="status">
+          {note}
+        </p>
+        {choosing && (
+          <WhereForm
+            key={putting}
+            object={putting}
+            places={places}
+            drawn={failure === null}
+            onPlace={(place) => void intervene({ act: "place", object: putting, place })}
+            onCancel={() => setPutting(null)}
+          />
+        )}
+      </section>
+      {children}
       {layout !== null && (
-        <ObjectList
-          whereabouts={whereabouts}
-          places={places}
-          offered={offered}
-          onChoose={takeOffer}
-          onPoint={point}
-        />
+        <section class="panel scene" aria-labelledby="objects-title">
+          <h2 id="objects-title">Objects</h2>
+          <ObjectList
+            whereabouts={whereabouts}
+            places={places}
+            offered={offered}
+            onChoose={takeOffer}
+            onPoint={setPointed}
+          />
+        </section>
       )}
-    </section>
+    </>
   );
 }
 

@@ -21,6 +21,8 @@ import type { Palette } from "./palette";
 import { release } from "./release";
 
 const HIGHEST_PIXEL_RATIO = 2;
+/** After so long without motion a picture that was drawn coarsely is drawn once more, and sharp. */
+const AT_REST_MS = 300;
 const GROUND_M = 8;
 const GRID_STEP_M = 0.5;
 
@@ -39,7 +41,9 @@ export type Before = (now: number) => boolean;
 
 /** Throws where the browser has no WebGL. */
 export function createStage(canvas: HTMLCanvasElement, before: Before, after: () => void): Stage {
-  const renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: "low-power" });
+  const bySoftware = drawsBySoftware();
+  // Smooth edges take half of the time there is, where no graphics processor makes them.
+  const renderer = new WebGLRenderer({ canvas, antialias: !bySoftware, powerPreference: "low-power" });
   renderer.shadowMap.enabled = true;
   renderer.shadowMap.type = PCFShadowMap;
   const scene = new Scene();
@@ -49,33 +53,48 @@ export function createStage(canvas: HTMLCanvasElement, before: Before, after: ()
   const [ambient, key] = createLights();
   scene.add(ground, grid, ambient, key, key.target);
 
-  const pace = createPace();
+  const pace = createPace(bySoftware);
   let request = 0;
-  let pixels = 1;
+  let { pixels } = pace.first;
+  /** The share of the device's pixels that the picture has now. */
+  let share = pixels;
+  let rest = 0;
+  key.castShadow = pace.first.shadows;
   const draw = (now: number) => {
     request = 0;
+    window.clearTimeout(rest);
+    if (share !== pixels) resize(pixels);
     const again = before(now);
     const turning = orbit.update();
     renderer.render(scene, camera);
     after();
-    const less = pace(now);
+    const less = pace.drawn(now);
     if (less !== null) {
       pixels = less.pixels;
       key.castShadow = less.shadows;
-      fit();
     }
-    if (again || turning) invalidate();
+    if (again || turning || less !== null) invalidate();
+    else if (pixels < 1) rest = window.setTimeout(sharpen, AT_REST_MS);
+  };
+  const sharpen = () => {
+    resize(1);
+    renderer.render(scene, camera);
   };
   const invalidate = () => {
     if (request === 0) request = requestAnimationFrame(draw);
   };
   const orbit = createOrbit(camera, canvas, invalidate);
 
+  /** Take another share of the device's pixels; what was drawn is gone with it. */
+  const resize = (next: number) => {
+    share = next;
+    renderer.setPixelRatio(share * Math.min(devicePixelRatio, HIGHEST_PIXEL_RATIO));
+    renderer.setSize(canvas.clientWidth, canvas.clientHeight, false);
+  };
   const fit = () => {
     const { clientWidth: width, clientHeight: height } = canvas;
     if (width === 0 || height === 0) return;
-    renderer.setPixelRatio(pixels * Math.min(devicePixelRatio, HIGHEST_PIXEL_RATIO));
-    renderer.setSize(width, height, false);
+    resize(pixels);
     camera.aspect = width / height;
     camera.updateProjectionMatrix();
     orbit.fit(camera.aspect);
@@ -100,6 +119,7 @@ export function createStage(canvas: HTMLCanvasElement, before: Before, after: ()
     },
     dispose() {
       cancelAnimationFrame(request);
+      window.clearTimeout(rest);
       observer.disconnect();
       canvas.removeEventListener("webglcontextrestored", invalidate);
       orbit.dispose();
@@ -109,13 +129,23 @@ export function createStage(canvas: HTMLCanvasElement, before: Before, after: ()
   };
 }
 
+// Whoever draws says so in its name; `failIfMajorPerformanceCaveat` does not tell in all browsers.
+const BY_SOFTWARE = /swiftshader|llvmpipe|softpipe|software|basic render/i;
+
+function drawsBySoftware(): boolean {
+  const probe = document.createElement("canvas").getContext("webgl2");
+  const named = probe?.getExtension("WEBGL_debug_renderer_info") ?? null;
+  const renderer = named === null ? "" : String(probe?.getParameter(named.UNMASKED_RENDERER_WEBGL));
+  probe?.getExtension("WEBGL_lose_context")?.loseContext();
+  return BY_SOFTWARE.test(renderer);
+}
+
 function createLights() {
   const ambient = new HemisphereLight(0xffffff, 0xb8bcc4, 2.1);
   ambient.position.set(0, 0, 1);
   const key = new DirectionalLight(0xffffff, 1.5);
   key.position.set(1.2, 1.6, 3.4);
   key.target.position.set(0.5, -0.1, 0.5);
-  key.castShadow = true;
   key.shadow.mapSize.set(1024, 1024);
   key.shadow.radius = 4;
   key.shadow.bias = -0.0005;

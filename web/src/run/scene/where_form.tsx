@@ -15,7 +15,10 @@ export function WhereForm({ object, places, drawn, onPlace, onCancel }: Props) {
   const [place, setPlace] = useState(places[0] ?? "");
   const form = useRef<HTMLFormElement>(null);
   // Chosen from a menu that is gone by now: whoever uses keys goes on here.
-  useEffect(() => form.current?.querySelector<HTMLElement>("select, button")?.focus({ preventScroll: true }), []);
+  useEffect(() => {
+    form.current?.scrollIntoView({ block: "nearest" });
+    form.current?.querySelector<HTMLElement>("select, button")?.focus({ preventScroll: true });
+  }, []);
   const submit = (event: SubmitEvent) => {
     event.preventDefault();
     onPlace(place);
@@ -35,7 +38,7 @@ export function WhereForm({ object, places, drawn, onPlace, onCancel }: Props) {
           <label class="unseen" for="scene-place">
             Place
           </label>
-          <select id="scene-place" value={place} onChange={(event) => setPlace(event.currentTarget.value)}>
+          <select id="scene-place" class="input" value={place} onChange={(event) => setPlace(event.currentTarget.value)}>
             {places.map((each) => (
               <option key={each} value={each}>
                 {plain(each)}

@@ -1,7 +1,7 @@
 // What stands on the lanes of a run's timeline.
-import { plain } from "../tree/words";
-import type { DialogueClosed, Event, NodeDone, NodeReset, Resolution } from "../wire/types";
-import { deed } from "./sentences";
+import { plain } from "../../tree/words";
+import type { DialogueClosed, Event, NodeDone, NodeReset, Resolution } from "../../wire/types";
+import { deed } from "../sentences";
 
 export type LaneKind = "steps" | "faults" | "dialogues" | "people" | "resolutions";
 

@@ -1,8 +1,8 @@
 // The timeline as a list, for those who hear it or would rather read.
 import { useState } from "preact/hooks";
-import type { Moment } from "./moment";
-import { clock } from "./run_header";
-import type { Lane, LaneKind, TimelineItem } from "./timeline_lanes";
+import type { Moment } from "../moment";
+import { clock } from "../run_header";
+import type { Lane, LaneKind, TimelineItem } from "./lanes";
 
 const AT_ONCE = 200;
 
@@ -30,14 +30,14 @@ export function TimelineList({ lanes, moment, onChoose }: TimelineListProps) {
     <ol class="timeline-list" aria-label="Timeline as a list">
       {all.slice(0, most).map(({ kind, item }) => (
         <li key={item.seq} aria-current={item.seq === current ? "time" : undefined}>
-          <button type="button" onClick={() => onChoose(item)}>
+          <button type="button" class="bare" onClick={() => onChoose(item)}>
             <span>{clock(item.start)}</span> <b>{KIND_WORDS[kind]}</b> {item.title}
           </button>
         </li>
       ))}
       {all.length > most && (
         <li>
-          <button type="button" onClick={() => setMost(most + AT_ONCE)}>
+          <button type="button" class="bare" onClick={() => setMost(most + AT_ONCE)}>
             Show {Math.min(AT_ONCE, all.length - most)} more
           </button>
         </li>

@@ -1,0 +1,165 @@
+"""A helper's WebSocket, whatever it carries: letting the helper in, reading, refusing, ending."""
+
+import asyncio
+import json
+from abc import ABC, abstractmethod
+from collections.abc import Coroutine
+from typing import Any, Generic, TypeVar
+
+from pydantic import BaseModel, ConfigDict, TypeAdapter, ValidationError
+from starlette.websockets import WebSocket, WebSocketDisconnect
+
+from server.api.helper_messages import Auth, Error
+from server.api.parts import HelperName, Parts, parts_of
+from server.api.problems import Problem, problem, validation_sentences
+
+THE_END = 1000
+GOING_AWAY = 1001
+POLICY_VIOLATION = 1008
+TRY_AGAIN_LATER = 1013
+
+FIRST_MESSAGE_S = 5.0
+MAX_REASON_CHARS = 100
+"""A close frame has room for 123 bytes."""
+
+
+class HelperQuery(BaseModel):
+    """The address's parameters: who it is."""
+
+    model_config = ConfigDict(extra="ignore", frozen=True)
+
+    helper: HelperName
+
+
+Query = TypeVar("Query", bound=HelperQuery)
+Message = TypeVar("Message")
+
+
+class HelperConnection(ABC, Generic[Query]):
+    """One helper's connection, from the handshake to its end.
+
+    `query` is the shape of the address's parameters; a text message has at most
+    `max_message_chars`.
+    """
+
+    def __init__(self, websocket: WebSocket, query: type[Query], max_message_chars: int) -> None:
+        self._websocket = websocket
+        self._query = query
+        self._max_message_chars = max_message_chars
+        self._parts: Parts = parts_of(websocket)
+
+    async def run(self) -> None:
+        """Let the helper in and serve them, until either side has had enough."""
+        try:
+            if await self._admitted():
+                try:
+                    query = self._query.model_validate(dict(self._websocket.query_params))
+                except ValidationError as error:
+                    errors = validation_sentences(error.errors())
+                    await self._turn_away(problem(422, "the address is wrong", errors=errors))
+                else:
+                    await self._serve(query)
+        except WebSocketDisconnect:
+            pass
+
+    @abstractmethod
+    async def _serve(self, query: Query) -> None:
+        """Everything after the helper has been let in. May raise `WebSocketDisconnect`."""
+
+    # --- letting in ---------------------------------------------------------------------------
+
+    async def _admitted(self) -> bool:
+        """Accept the connection, or close it with 1008.
+
+        Host and Origin are looked at first. The token comes in a bearer header, in the session
+        cookie, or in the first message; never from the address, which ends up in logs.
+        """
+        websocket, access = self._websocket, self._parts.access
+        if not (access.host_allowed(websocket) and access.origin_allowed(websocket)):
+            await websocket.close(POLICY_VIOLATION, "this Host or Origin may not connect")
+            return False
+        admitted = access.admits(websocket)
+        if "authorization" in websocket.headers and not admitted:
+            await websocket.close(POLICY_VIOLATION, "this is not the token")
+            return False
+        await websocket.accept()
+        if not admitted:
+            token = await self._first_token()
+            admitted = token is not None and access.token_fits(token)
+        if not admitted:
+            await websocket.close(POLICY_VIOLATION, "the first message must show the token")
+        return admitted
+
+    async def _first_token(self) -> str | None:
+        """The token in the first message; None for any other message, and for none in time."""
+        try:
+            async with asyncio.timeout(FIRST_MESSAGE_S):
+                first = await self._receive()
+        except TimeoutError:
+            return None
+        if not isinstance(first, str) or len(first) > self._max_message_chars:
+            return None
+        try:
+            return Auth.model_validate_json(first).token
+        except ValidationError:
+            return None
+
+    # --- from the helper ----------------------------------------------------------------------
+
+    async def _receive(self) -> str | bytes:
+        frame = await self._websocket.receive()
+        if frame["type"] == "websocket.disconnect":
+            raise WebSocketDisconnect(frame.get("code", THE_END))
+        text: str | None = frame.get("text")
+        return bytes(frame.get("bytes") or b"") if text is None else text
+
+    async def _read(self, text: str, shape: TypeAdapter[Message]) -> Message | None:
+        """What a text message says; None for one that was refused."""
+        if len(text) > self._max_message_chars:
+            limit = f"a message may have {self._max_message_chars} characters"
+            await self._refuse(problem(413, limit))
+            return None
+        try:
+            return shape.validate_json(text)
+        except ValidationError as error:
+            errors = validation_sentences(error.errors(include_input=False))
+            await self._refuse(problem(422, "the message is wrong", errors=errors), _id_in(text))
+            return None
+
+    # --- to the helper ------------------------------------------------------------------------
+
+    async def _send(self, message: BaseModel) -> None:
+        await self._websocket.send_text(message.model_dump_json())
+
+    async def _refuse(self, refusal: Problem, to: str | int | None = None) -> None:
+        """Say what cannot be done; the connection stays. `to`: the id of what was asked for."""
+        fields = refusal.model_dump(include={"status", "title", "detail", "answered_by", "errors"})
+        await self._send(Error(id=to, **fields))
+
+    async def _turn_away(self, refusal: Problem) -> None:
+        """Say why this connection cannot be served, and close it."""
+        await self._refuse(refusal)
+        await self._websocket.close(POLICY_VIOLATION, refusal.detail[:MAX_REASON_CHARS])
+
+
+async def until_one_ends(*works: Coroutine[Any, Any, None]) -> None:
+    """Run what sends and what receives; raises what either of them raised."""
+    tasks = [asyncio.create_task(work) for work in works]
+    await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+    for task in tasks:
+        task.cancel()
+    for outcome in await asyncio.gather(*tasks, return_exceptions=True):
+        if isinstance(outcome, Exception):
+            raise outcome
+
+
+def _id_in(text: str) -> str | int | None:
+    """The `id` of a message that is otherwise wrong, so that its sender knows which it was."""
+    try:
+        message = json.loads(text)
+    except (ValueError, RecursionError):
+        return None
+    found = message.get("id") if isinstance(message, dict) else None
+    if isinstance(found, str):
+        return found[:128].encode("utf-8", "replace").decode()
+    return found if type(found) is int else None

@@ -1,0 +1,37 @@
+"""What goes wrong for a client of the service; each message is one sentence for people."""
+
+from server.api.helper_messages import Error
+from server.api.problems import Problem
+
+
+class ClientError(Exception):
+    """Base of everything that a client of the service raises on purpose."""
+
+
+class UnreachableError(ClientError):
+    """No service answers at the address."""
+
+
+class RefusedError(ClientError):
+    """The service refused a request; `problem` says why."""
+
+    def __init__(self, refusal: Problem) -> None:
+        more = [each for each in refusal.errors or [] if each != refusal.detail]
+        super().__init__("\n".join([refusal.detail, *more]))
+        self.problem = refusal
+
+
+class StreamRefusedError(ClientError):
+    """The service does not let this client in, or is of a version that it cannot read."""
+
+
+class CommandRefusedError(ClientError):
+    """The service refused an answer, a claim or a release; `error` says why."""
+
+    def __init__(self, error: Error) -> None:
+        super().__init__(error.detail)
+        self.error = error
+
+
+class ConnectionLostError(ClientError):
+    """The connection went away; what was sent last may have been done."""

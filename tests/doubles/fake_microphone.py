@@ -1,0 +1,49 @@
+"""Browsers whose microphone is a sound file: flite says the words."""
+
+import subprocess
+from pathlib import Path
+from shutil import which
+
+import numpy as np
+from playwright.async_api import Browser, Playwright
+from scipy.io import wavfile
+from scipy.signal import resample_poly
+
+RATE_HZ = 48_000
+"""What browsers expect of such a file."""
+
+LEAD_S = 1.2
+"""Long enough for a console to begin to listen."""
+PAUSE_S = 3.0
+
+
+def utter(words: str, folder: Path) -> Path:
+    """A microphone's sound: some silence, the words, and silence again."""
+    file = folder / f"{words.replace(' ', '_')}.wav"
+    subprocess.run(["flite", "-voice", "slt", "-t", words, "-o", file], check=True)
+    rate_hz, said = wavfile.read(file)
+    resampled = resample_poly(said.astype(float), RATE_HZ, rate_hz)
+    sound = np.pad(resampled, (round(LEAD_S * RATE_HZ), round(PAUSE_S * RATE_HZ)))
+    wavfile.write(file, RATE_HZ, np.clip(sound, -32768, 32767).astype(np.int16))
+    return file
+
+
+async def launch_speaking(
+    playwright: Playwright, words: str, folder: Path, *, again: bool
+) -> Browser:
+    """A browser in which somebody says the words each time the microphone is opened.
+
+    `again`: and then every few seconds.
+    """
+    sound = f"{utter(words, folder)}{'' if again else '%noloop'}"
+    return await playwright.chromium.launch(
+        executable_path=which("chromium") or which("google-chrome"),
+        headless=True,
+        args=[
+            "--no-sandbox",
+            "--use-fake-device-for-media-stream",
+            "--use-fake-ui-for-media-stream",
+            f"--use-file-for-fake-audio-capture={sound}",
+            "--autoplay-policy=no-user-gesture-required",
+        ],
+    )

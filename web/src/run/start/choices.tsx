@@ -1,0 +1,83 @@
+// The choices that say what they mean: in which world, and who answers.
+import { Mistake } from "./field";
+import type { Choices, Filled } from "./filled";
+import type { StartMistakes } from "./start_mistakes";
+
+interface PartProps {
+  filled: Filled;
+  fill: (change: Partial<Filled>) => void;
+  mistakes: StartMistakes;
+}
+
+export function WorldChoice({ choices, filled, fill, mistakes }: PartProps & { choices: Choices }) {
+  const toggle = (robot: string, wanted: boolean) =>
+    fill({ robots: wanted ? [...filled.robots, robot] : filled.robots.filter((each) => each !== robot) });
+  return (
+    <fieldset class="panel" aria-describedby="start-world-mistake">
+      <legend>Where</legend>
+      <div class="choices">
+        {choices.worlds.map(({ name, available, reason }) => (
+          <label key={name} class="choice">
+            <input type="radio" name="world" disabled={!available} checked={filled.world === name} onChange={() => fill({ world: name })} />
+            <span>
+              <strong>{name}</strong>
+              <span class="small quiet">{reason ?? WORLDS[name] ?? "A world of its own."}</span>
+            </span>
+          </label>
+        ))}
+      </div>
+      <Mistake field="world" mistakes={mistakes} />
+      {filled.world === "live" && (
+        <fieldset class="start-robots" aria-describedby="start-robots-mistake">
+          <legend>Robots</legend>
+          {choices.robots.filter((each) => !each.simulated).length === 0 && <p class="quiet">No robot is connected.</p>}
+          {choices.robots
+            .filter((each) => !each.simulated)
+            .map(({ robot, state }) => (
+              <label key={robot} class="choice">
+                <input type="checkbox" checked={filled.robots.includes(robot)} onChange={(event) => toggle(robot, event.currentTarget.checked)} />
+                <span>
+                  <strong>{robot}</strong>
+                  <span class="small quiet">{state}</span>
+                </span>
+              </label>
+            ))}
+        </fieldset>
+      )}
+      <Mistake field="robots" mistakes={mistakes} />
+    </fieldset>
+  );
+}
+
+/** What the worlds that come with Mend are; others say nothing of themselves. */
+const WORLDS: Readonly<Record<string, string>> = {
+  workcell: "A PR2 at a table, simulated with its cameras and contacts.",
+  tabletop: "The same task without physics: quick, for trying things out.",
+  live: "Real robots that are connected to this service.",
+};
+
+export function AnswerChoice({ scripted, filled, fill, mistakes }: PartProps & { scripted: boolean }) {
+  const ways: readonly (readonly [Filled["answers"], string, string, boolean])[] = [
+    ["live", "Live helpers", "You, and whoever else has this console open.", true],
+    ["scenario", "The scenario", scripted ? "As its script says." : "Choose a scenario that has answers first.", scripted],
+    ["random", "Chance", "Yes, no or silence, by the seed.", true],
+    ["none", "Nobody", "Every question stays without an answer.", true],
+  ];
+  return (
+    <fieldset class="panel" aria-describedby="start-answers-mistake">
+      <legend>Who answers the robot</legend>
+      <div class="choices pairs">
+        {ways.map(([value, name, about, possible]) => (
+          <label key={value} class="choice">
+            <input type="radio" name="answers" disabled={!possible} checked={filled.answers === value} onChange={() => fill({ answers: value })} />
+            <span>
+              <strong>{name}</strong>
+              <span class="small quiet">{about}</span>
+            </span>
+          </label>
+        ))}
+      </div>
+      <Mistake field="answers" mistakes={mistakes} />
+    </fieldset>
+  );
+}

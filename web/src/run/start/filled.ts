@@ -1,0 +1,92 @@
+// What can be chosen for a new run, what is filled in, and the request that it makes.
+import * as rest from "../../wire/rest";
+import type { RobotView, RunRequest, Scenario, TreeSummary, WorldView } from "../../wire/types";
+
+const LARGEST_SEED = 2 ** 31;
+const PREFERRED_WORLD = "workcell";
+
+export interface Choices {
+  trees: readonly TreeSummary[];
+  worlds: readonly WorldView[];
+  scenarios: readonly Scenario[];
+  robots: readonly RobotView[];
+}
+
+/** What is filled in, as the fields hold it. */
+export interface Filled {
+  tree: string;
+  world: string;
+  robots: readonly string[];
+  scenario: string;
+  speed: string;
+  seed: string;
+  answers: "live" | "scenario" | "random" | "none";
+  interventions: boolean;
+  maxAttempts: string;
+}
+
+/** Read what can be chosen. */
+export async function readChoices(): Promise<Choices> {
+  const [trees, worlds, scenarios, robots] = await Promise.all([
+    rest.trees(),
+    rest.worlds(),
+    rest.scenarios(),
+    rest.robots(),
+  ]);
+  return { trees, worlds: worlds.toSorted((a, b) => rank(a) - rank(b)), scenarios, robots };
+}
+
+/** Simulated worlds first, and of these the fullest. */
+function rank({ name }: WorldView): number {
+  if (name === PREFERRED_WORLD) return 0;
+  return name === "live" ? 2 : 1;
+}
+
+/** What the form holds at first. */
+export function firstFilled(tree: string | null, { trees, worlds }: Choices): Filled {
+  const available = worlds.filter((each) => each.available);
+  const world = available.find((each) => each.name === PREFERRED_WORLD) ?? available[0];
+  return {
+    tree: tree ?? trees[0]?.name ?? "",
+    world: world?.name ?? "",
+    robots: [],
+    scenario: "",
+    speed: "1",
+    seed: String(Math.floor(Math.random() * LARGEST_SEED)),
+    answers: "live",
+    interventions: false,
+    maxAttempts: "3",
+  };
+}
+
+/** What no longer goes together after a change is let go. */
+export function settled(filled: Filled, { scenarios }: Choices): Filled {
+  const scenario = scenarios.find((each) => each.name === filled.scenario && each.tree === filled.tree);
+  const scripted = (scenario?.answers.length ?? 0) > 0;
+  return {
+    ...filled,
+    scenario: scenario?.name ?? "",
+    answers: filled.answers === "scenario" && !scripted ? "live" : filled.answers,
+  };
+}
+
+/** The request for what is filled in. */
+export function request(filled: Filled): RunRequest {
+  return {
+    tree: filled.tree,
+    world: filled.world,
+    robots: filled.world === "live" ? [...filled.robots] : [],
+    scenario: filled.scenario || null,
+    speed: filled.speed === "max" ? "max" : Number(filled.speed),
+    // An empty field is no number: the service says so at it.
+    seed: Number.parseFloat(filled.seed),
+    max_attempts: Number.parseFloat(filled.maxAttempts),
+    answers: filled.answers === "scenario" ? null : filled.answers,
+    interventions: filled.interventions && filled.world !== "live" ? "random" : null,
+  };
+}
+
+/** The names to choose from, with the chosen one even where it is gone. */
+export function withChosen(names: readonly string[], chosen: string): readonly string[] {
+  return names.includes(chosen) || chosen === "" ? names : [...names, chosen];
+}
