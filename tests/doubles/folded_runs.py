@@ -47,7 +47,7 @@ async def random_events(seed: int) -> Sequence[ev.Event]:
         person=Person(never=0.3),
         max_attempts=1 + seed % 3,
     )
-    settings = Settings(port=0, journal=Path(IN_MEMORY), log_level="error")
+    settings = Settings(port=0, journal=Path(IN_MEMORY), log_level="error", speech_voice="none")
     async with open_service(settings) as service:
         await service.trees.save("random", json.dumps(task))
         run = await service.runtime.start_run(request)

@@ -8,7 +8,7 @@ from typing import Any
 from playwright.async_api import Page, WebSocket
 
 PATIENCE_S = 60.0
-UTTERANCE_S = 25.0
+UTTERANCE_S = 12.0
 """Long after the words must have been heard: said again, they would answer the next question."""
 TRIES = 4
 

@@ -43,7 +43,7 @@ async def test_fault_of_a_robot_is_told_in_plain_words_with_its_picture(
     part = "pink_bar"
     steal = Intervention.model_validate({"act": "steal", "object": part})
     with service.journal.subscribe(service.journal.head, 10_000) as events:
-        run = await service.runtime.start_run(RunRequest(tree="eket", world="tabletop", speed=1.0))
+        run = await service.runtime.start_run(RunRequest(tree="eket", world="tabletop", speed=3.0))
         async for record in events:
             event = json.loads(record.text)
             if event["type"] == "step_started" and (event["name"], event["step"]) == (part, step):

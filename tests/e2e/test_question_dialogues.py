@@ -18,6 +18,10 @@ pytestmark = pytest.mark.asyncio(loop_scope="session")
 
 SCRIPTS = load_scripts()
 
+# A little longer than the page takes answers after showing a question, and holds back a final one.
+ARMED_AFTER_MS = 550
+HELD_MS = 3_100
+
 Answer = Callable[[Page, str], Awaitable[None]]
 
 
@@ -35,7 +39,7 @@ async def by_key(page: Page, answer: str) -> None:
 @pytest.mark.parametrize("kind", sorted(SCRIPTS))
 async def test_every_branch_of_a_dialogue(stage: Stage, kind: str, answer: Answer) -> None:
     page = await stage.open_page()
-    # Answers that are held back for a moment are sent as soon as the test says so.
+    # Time passes as soon as the test says so.
     await page.clock.install()
     issue = Issue(kind, "pr2", "/0", "yellow_bar", "yellow_bar", "yellow_bar_place", 5)
     for path in every_branch(SCRIPTS[kind], issue):
@@ -58,11 +62,12 @@ async def make(stage: Stage, page: Page, dialogue: UUID, call: str, answer: Answ
     prompt = stage.runs.dialogue(dialogue).prompt
     assert prompt is not None
     final = next(each.final for each in prompt.answers if each.value == call)
+    await page.clock.fast_forward(ARMED_AFTER_MS)
     await answer(page, call)
     held = page.get_by_role("button", name="Undo")
     if final:
         await expect(held).to_be_visible()
-        await page.clock.fast_forward(3_100)
+        await page.clock.fast_forward(HELD_MS)
     await expect(held).to_be_hidden()
 
 

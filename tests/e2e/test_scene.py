@@ -115,7 +115,7 @@ async def test_held_part_moves_in_the_picture(service: Service, open_page: OpenP
 
 
 async def test_part_is_stolen_by_a_click_on_it(service: Service, open_page: OpenPage) -> None:
-    run = await start(service, 1.0)
+    run = await start(service, 2.0)
     page = await open_page(f"/runs/{run}")
     canvas = await drawn_canvas(page)
     await page.get_by_role("button", name="Names").click()
@@ -133,7 +133,7 @@ async def test_part_is_stolen_by_a_click_on_it(service: Service, open_page: Open
 async def test_part_is_stolen_from_the_list_with_keys(
     service: Service, open_page: OpenPage
 ) -> None:
-    run = await start(service, 1.0)
+    run = await start(service, 2.0)
     page = await open_page(f"/runs/{run}")
     button = page.get_by_role("button", name=f"Intervene: {LATE}")
     await button.focus(timeout=LONG_MS)

@@ -67,7 +67,7 @@ async def spoken(tmp_path: Path) -> AsyncIterator[Spoken]:
 
 
 async def test_yes_is_heard_and_answers(spoken: Spoken) -> None:
-    runs, dialogue, page = await spoken("yes please")
+    runs, dialogue, page = await spoken("yes i will")
     await expect(page.get_by_text("The robot watches for")).to_be_visible(timeout=40_000)
     assert runs.dialogue(dialogue).answered_by == "anna"
     assert runs.dialogue(dialogue).help is not None

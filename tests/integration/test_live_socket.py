@@ -189,7 +189,7 @@ async def test_a_watcher_that_does_not_read_holds_up_nobody_and_costs_no_memory(
 
 @pytest.mark.slow
 async def test_a_whole_run_is_watched_and_replayed(tmp_path: Path) -> None:
-    settings = Settings(port=0, data_dir=tmp_path, log_level="critical")
+    settings = Settings(port=0, data_dir=tmp_path, log_level="critical", speech_voice="none")
     async with open_service(settings) as service:
         request = RunRequest(
             tree="eket", world="tabletop", speed=10.0, seed=1, answers=["yes"] * 50

@@ -26,7 +26,7 @@ async def test_operators_are_written_to_and_the_run_gives_up_when_they_are_silen
             sender="mend@example.org",
             operators=("ops@example.org",),
         )
-        settings = Settings(port=0, data_dir=tmp_path, mail=mail)
+        settings = Settings(port=0, data_dir=tmp_path, mail=mail, speech_voice="none")
         async with open_service(settings) as service:
             request = RunRequest(
                 tree="eket",

@@ -42,7 +42,7 @@ RESOLUTIONS = [
 async def test_the_base_is_built_through_every_fault(
     world: str, options: dict[str, Any], tmp_path: Path
 ) -> None:
-    settings = Settings(port=0, data_dir=tmp_path)
+    settings = Settings(port=0, data_dir=tmp_path, speech_voice="none")
     async with open_service(settings) as service:
         request = RunRequest(
             tree="eket",

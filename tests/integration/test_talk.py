@@ -62,7 +62,7 @@ async def help_by_voice(
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("says", "answer"), [("yes please", "yes"), ("no thank you", "no")])
+@pytest.mark.parametrize(("says", "answer"), [("yes i will", "yes"), ("no thank you", "no")])
 async def test_a_spoken_answer_is_an_answer(
     service: ServiceUnderTest, voice: CommandVoice, says: str, answer: str
 ) -> None:
