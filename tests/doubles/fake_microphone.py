@@ -12,7 +12,7 @@ from scipy.signal import resample_poly
 RATE_HZ = 48_000
 """What browsers expect of such a file."""
 
-LEAD_S = 1.2
+LEAD_S = 1.6
 """Long enough for a console to begin to listen."""
 PAUSE_S = 3.0
 

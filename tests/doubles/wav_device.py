@@ -10,14 +10,25 @@ from scipy.signal import resample_poly
 
 FRAME_BYTES = 640
 FRAME_S = 0.02
+HESITATION_BYTES = 16_000
 
 
 class WavDevice:
-    """Implements `server.cli.sound_device.SoundDevice`; says its WAV file again and again."""
+    """Implements `server.cli.sound_device.SoundDevice`; says its WAV file when it is listened to.
 
-    def __init__(self, says: bytes, pause_s: float = 1.5) -> None:
-        self._sound = bytes(16_000) + pcm_of(says) + bytes(int(pause_s * 32_000))
+    `tell` is what the helper tells its person: that person waits, as one does, to be listened to.
+    """
+
+    def __init__(self, says: bytes) -> None:
+        self._words = bytes(HESITATION_BYTES) + pcm_of(says)
+        self._unsaid = b""
         self.played: list[bytes] = []
+        self.told: list[str] = []
+
+    def tell(self, line: str) -> None:
+        self.told.append(line)
+        if line == "(listening)":
+            self._unsaid = self._words
 
     async def play(self, wav: bytes) -> None:
         self.played.append(wav)
@@ -25,9 +36,9 @@ class WavDevice:
     async def microphone(self) -> AsyncIterator[bytes]:
         # At the pace of a real one: the service drops what comes while it does not listen.
         while True:
-            for start in range(0, len(self._sound) - FRAME_BYTES, FRAME_BYTES):
-                yield self._sound[start : start + FRAME_BYTES]
-                await asyncio.sleep(FRAME_S)
+            said, self._unsaid = self._unsaid[:FRAME_BYTES], self._unsaid[FRAME_BYTES:]
+            yield said.ljust(FRAME_BYTES, b"\0")
+            await asyncio.sleep(FRAME_S)
 
 
 def pcm_of(wav: bytes) -> bytes:

@@ -25,7 +25,6 @@ async def test_a_dialogue_is_answered_by_voice_alone(tmp_path: Path) -> None:
     if isinstance(choose_ears(True, 1), NoEars):
         pytest.skip("pocketsphinx is not installed")
     device = WavDevice(await person.render("no thank you"))
-    told: list[str] = []
     settings = Settings(port=0, data_dir=tmp_path, journal=tmp_path / "journal.db")
     request = RunRequest(tree="eket", world="tabletop", speed="max", seed=7, interventions="random")
     async with (
@@ -34,7 +33,7 @@ async def test_a_dialogue_is_answered_by_voice_alone(tmp_path: Path) -> None:
         MendClient(service.url) as client,
         client.follow("watcher") as events,
     ):
-        helping = asyncio.create_task(SpokenHelper(client, "anna", device, told.append).run())
+        helping = asyncio.create_task(SpokenHelper(client, "anna", device, device.tell).run())
         run = await client.start_run(request)
         answered = None
         async for event in events:
@@ -44,7 +43,7 @@ async def test_a_dialogue_is_answered_by_voice_alone(tmp_path: Path) -> None:
                 break
         assert answered is not None
         assert (answered.helper, answered.answer) == ("anna", "no")
-        assert 'You: "no thank you"' in told
+        assert 'You: "no thank you"' in device.told
         assert device.played
         await client.abort(run.id)
         helping.cancel()
