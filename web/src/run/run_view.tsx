@@ -119,11 +119,11 @@ function Shown({ feed, version, state, latest }: ShownProps) {
     [feed, version, goToEvent],
   );
   const world = useMemo(
-    () => (
-      <ScenePanel run={state.started.run} moment={moment}>
-        <Cameras run={state.started.run} moment={moment} status={latest.status} />
-      </ScenePanel>
-    ),
+    () => <ScenePanel run={state.started.run} moment={moment} />,
+    [state.started.run, moment],
+  );
+  const cameras = useMemo(
+    () => <Cameras run={state.started.run} moment={moment} status={latest.status} />,
     [state.started.run, moment, latest.status],
   );
   const transcript = (
@@ -141,7 +141,7 @@ function Shown({ feed, version, state, latest }: ShownProps) {
           <Tabs
             panels={[
               { id: "tree", name: "Tree", content: [tree, choice] },
-              { id: "world", name: "Scene", content: world },
+              { id: "world", name: "Scene", content: [world, cameras] },
               { id: "timeline", name: "Timeline", content: timeline },
               { id: "transcript", name: "Transcript", content: transcript },
             ]}
@@ -154,6 +154,7 @@ function Shown({ feed, version, state, latest }: ShownProps) {
           <div class="run-area timeline">{timeline}</div>
           <div class="run-area side">
             <Talk state={state} newest={newest} />
+            {cameras}
             {choice}
             {transcript}
           </div>

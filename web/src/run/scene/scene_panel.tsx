@@ -1,5 +1,4 @@
 // The run's scene: robot and objects in 3-D at the moment that is shown, and what a person may do there.
-import type { ComponentChildren } from "preact";
 import { useEffect, useMemo, useState } from "preact/hooks";
 import { helperName } from "../../state/preferences";
 import { onEvent, runs } from "../../state/service";
@@ -24,11 +23,9 @@ interface OpenMenu {
 interface ScenePanelProps {
   run: string;
   moment: Moment;
-  /** What is looked at with the picture, and so comes before the list of the objects. */
-  children?: ComponentChildren;
 }
 
-export function ScenePanel({ run, moment, children }: ScenePanelProps) {
+export function ScenePanel({ run, moment }: ScenePanelProps) {
   const source = useMemo(() => createPoseSource(run, helperName.peek(), moment), [run, moment]);
   useEffect(() => () => source.close(), [source]);
   const [pointed, setPointed] = useState<string | null>(null);
@@ -117,7 +114,6 @@ export function ScenePanel({ run, moment, children }: ScenePanelProps) {
           />
         )}
       </section>
-      {children}
       {layout !== null && (
         <section class="panel scene" aria-labelledby="objects-title">
           <h2 id="objects-title">Objects</h2>
