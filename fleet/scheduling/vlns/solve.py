@@ -11,6 +11,9 @@ from fleet.scheduling.dice import Dice, dice_from
 from fleet.scheduling.item_way import item_ways
 from fleet.scheduling.objective import cost
 from fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit
+from fleet.scheduling.routing.arrays import unsupported
+from fleet.scheduling.routing.solve import prepare as prepare_alns
+from fleet.scheduling.routing.solve import solve_alns
 from fleet.scheduling.schedule import Schedule
 from fleet.scheduling.solution import Progress, Solution, Status
 from fleet.scheduling.timing import Untimeable, earliest_schedule
@@ -68,6 +71,7 @@ def solve_vlns(
 @cache
 def prepare() -> None:
     """Compile the kernels, or load them from the disk; once in a process."""
+    prepare_alns()
     travel = Travel.euclidean(((0.0, 0.0), (1.0, 0.0)))
     robots = (Robot("a", 0, 0, 1.0), Robot("b", 1, 1, 1.0))
     item = Item("parcel", 1.0, Visit(0), Visit(1))
@@ -90,6 +94,8 @@ class _Planner:
         chain = CHAIN if start is None else max(CHAIN, _longest_chain(problem, start))
         self.arrays: ProblemArrays = problem_arrays(problem, chain)
         self.search: Search = search_for(self.arrays)
+        self._problem = problem
+        self._seed = seed
         self._dice: Dice = dice_from(np.random.default_rng(seed))
         self._clock = clock
         self._begun_s = clock()
@@ -102,13 +108,29 @@ class _Planner:
         if not self.arrays.load.size:
             self._take_over(empty_plan(self.arrays))
             return
-        self._search_for(seconds * ALONE if transfers else seconds, 0)
+        if transfers and unsupported(self._problem) is None:
+            self._plan_routes(seconds * ALONE)
+        else:
+            self._search_for(seconds * ALONE if transfers else seconds, 0)
         if self._start is not None:
             self._take_over(self._start)
         if transfers:
             self._search_for(seconds - self._elapsed_s(), self.arrays.chain)
         elif self._start is not None:
             self._search_for(seconds - self._elapsed_s(), 0)
+
+    def _plan_routes(self, seconds: float) -> None:
+        """Begin with what the search that knows no transfers finds: it is the better one at that,
+        above all where few plans are possible."""
+        alone = solve_alns(
+            self._problem.without_transfers(),
+            seconds=seconds,
+            seed=self._seed,
+            clock=self._clock,
+        )
+        if alone.schedule is not None:
+            self._take_over(plan_of(self.arrays, self._problem, alone.schedule.routes))
+            self._report()
 
     def _elapsed_s(self) -> float:
         return self._clock() - self._begun_s
