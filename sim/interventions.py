@@ -10,6 +10,8 @@ from tasks.scenario import ScriptedIntervention, Trigger
 from tasks.scene import StrictModel
 
 SCENARIO = "scenario"
+HELPER = "helper"
+"""Who acts where a promise is kept."""
 """In whose name scripted interventions happen."""
 
 _EPSILON = 1e-9

@@ -26,8 +26,9 @@ from robots.link.messages import (
     TakePicture,
 )
 from robots.robot import Robot, TaskProgress
-from sim.interventions import Deed, PendingInterventions, PendingSnapshot
+from sim.interventions import HELPER, Deed, PendingInterventions, PendingSnapshot
 from sim.world import ShownWorld, World
+from tasks.intervention import Act, Intervention
 from tasks.scenario import ScriptedIntervention
 from tasks.scene import StrictModel
 
@@ -39,6 +40,7 @@ _WITH_WORLD = (StepStarted, Finished, Holding, Intervened)
 
 _LET_HOLD_GO_ON = (Intervene, TakePicture)
 
+_PUT_DOWN = (Act.PUT_BACK, Act.PLACE)
 _LAST_STEP = 2**31
 
 _EPSILON_S = 1e-9
@@ -223,6 +225,11 @@ class SimulatedAgent:
             self._intervene(deed)
 
     def _intervene(self, deed: Deed) -> None:
+        if deed.by == HELPER and deed.do.act in _PUT_DOWN:
+            # What somebody stands in front of would be put down in vain: the robot is to see it.
+            step_aside = Intervention(act=Act.RELEASE)
+            if not self._world.intervene(step_aside):
+                self._pass_on(Intervened(intervention=step_aside, by=HELPER), self.time_s(), None)
         problem = self._world.intervene(deed.do)
         report = Intervened(
             intervention=deed.do, by=deed.by, ok=not problem, detail=problem, command=deed.command

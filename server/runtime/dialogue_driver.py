@@ -24,6 +24,7 @@ from server.runtime.context import RunContext
 from server.runtime.dialogue_events import DialogueEvents
 from server.runtime.robot_side import Purpose, RobotSide
 from server.runtime.run_state import EXPECTED, MOST_EXTENSIONS, DialogueState, rehearse
+from sim.interventions import HELPER
 from sim.person import Promise, deed
 from tasks.scenario import Person
 
@@ -336,7 +337,7 @@ class DialogueDriver:
         if done is not None:
             promised = awaiting.until - self._context.settings.help_window_s
             at = self._context.clock.to_robot(promised + done.delay_s)
-            side.intervene(command, done.intervention, "helper", at)
+            side.intervene(command, done.intervention, HELPER, at)
 
     async def _help_looked_for(
         self,

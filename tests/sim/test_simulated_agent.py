@@ -311,6 +311,17 @@ def test_a_rebuilt_agent_that_is_told_again_what_it_knows_does_it_once() -> None
     assert [each.body.by for each in again.of(Intervened)] == ["helper"]
 
 
+def test_who_keeps_a_promise_first_gets_whoever_hides_it_out_of_sight() -> None:
+    driver = Driver(make_agent())
+    driver.send(Intervene(intervention=Intervention(act=Act.BLOCK), by="mischief"))
+    for _ in range(2):
+        driver.send(Intervene(intervention=PUT_BACK_A, by="helper"))
+    done = [(each.body.intervention.act, each.body.ok) for each in driver.of(Intervened)]
+    assert done == [
+        (Act.BLOCK, True), (Act.RELEASE, True), (Act.PUT_BACK, True), (Act.PUT_BACK, True),
+    ]  # fmt: skip
+
+
 def test_a_snapshot_that_does_not_fit_is_refused() -> None:
     kept = make_agent().snapshot()
     kept["world"]["gone"] = ["piano"]
