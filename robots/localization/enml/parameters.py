@@ -100,11 +100,11 @@ class EnmlParameters:
     """How far around the last pose a lost robot is looked for first (published)."""
     recovery_every_m: float = 0.7
     """A lost robot looks for its place again after driving this far (ours)."""
+    recovery_move_costs: float = 0.2
+    """What any place but its own counts less, for a robot that was not carried, in shares of the
+    returns (ours)."""
     recovery_lead: float = 0.12
     """How much better than all others, in shares of the returns, the place has to be at first..."""
-    recovery_move_costs: float = 0.2
-    """What any place but that of a robot that was not carried counts less, in shares of the returns
-    (ours)."""
     recovery_patience_m: float = 8.0
     """... which becomes less until, after driving this far, the best will do (ours)."""
 
