@@ -65,7 +65,8 @@ class LongTermFeatures:
 
     def _cast(self, node: PoseNode, pose: Poses, segments: Floats) -> tuple[Floats, Indices]:
         sensor = compose(pose, node.sensor_offset)
-        return cast_bearings(segments, sensor, node.bearings, self._max_range_m)
+        reach_m = min(self._max_range_m, node.reach_m)
+        return cast_bearings(segments, sensor, node.bearings, reach_m)
 
 
 def cast_bearings(

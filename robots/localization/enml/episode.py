@@ -61,12 +61,16 @@ class Episode:
             or travel.turned_rad >= self._parameters.min_rotation_rad
         )
 
-    def begin_anew(self, prior_whitening: Floats) -> None:
-        """Keep only the newest pose, and believe its place no more than a new prior says."""
+    def keep_newest(self) -> None:
+        """Let go of all poses but the newest: they were elsewhere."""
         self.nodes = self.nodes[-1:]
         self.poses = self.poses[-1:]
+
+    def leave_map(self, prior_whitening: Floats) -> None:
+        """Believe the place of the poses no more than a new prior says, and nothing of the map."""
         self.prior, self.prior_whitening = self.poses[0].copy(), prior_whitening
-        self.nodes[0].take_off_map()
+        for node in self.nodes:
+            node.take_off_map()
 
     def move(self, newest: Poses, prior_whitening: Floats) -> None:
         """Shift all poses alike, so that the newest comes to a place; all are open to doubt."""

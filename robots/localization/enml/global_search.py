@@ -16,8 +16,8 @@ Grid = NDArray[np.float32]
 _COARSE_M = 0.4
 _COARSE_WIDTH_M = 0.3
 _HEADINGS = 72
-_COARSE_POINTS = 100
-_FINE_POINTS = 120
+_COARSE_POINTS = 150
+_FINE_POINTS = 150
 _FINE_WIDTH_M = 0.15
 _FINE_STEPS = ((0.2, np.radians(3.0)), (0.1, np.radians(1.5)), (0.05, np.radians(0.75)))
 _APART_M = 0.7
@@ -40,42 +40,52 @@ class Region:
         return cls(x - reach_m, y - reach_m, x + reach_m, y + reach_m)
 
 
-def best_places(field: DistanceField, points: Floats, region: Region, count: int) -> list[Poses]:
-    """At most so many poses within a region at which points (robot's frame) fit, best first.
+class GlobalSearch:
+    """Lays points over a map at every place of a lattice, and climbs from the best."""
 
-    They are some way apart from each other, and refined to a few centimetres.
-    """
-    if not len(points):
-        return []
-    coarse = points[_spread(len(points), _COARSE_POINTS)]
-    step = max(round(_COARSE_M / field.cell_m), 1)
-    first = np.floor((np.array([region.x_min, region.y_min]) - field.origin) / field.cell_m)
-    size = np.array([region.x_max - region.x_min, region.y_max - region.y_min])
-    columns, rows = np.ceil(size / (step * field.cell_m)).astype(np.int64) + 1
-    headings = np.linspace(0.0, 2.0 * np.pi, _HEADINGS, endpoint=False)
-    scores = np.zeros((len(headings), rows, columns), dtype=np.float32)
-    score_places(
-        _phases(fits(field, _COARSE_WIDTH_M), step),
-        first.astype(np.int64),
-        field.cell_m,
-        coarse,
-        headings,
-        scores,
-    )
-    corner = field.origin + first * field.cell_m
-    xs = corner[0] + np.arange(columns) * step * field.cell_m
-    ys = corner[1] + np.arange(rows) * step * field.cell_m
-    some = points[_spread(len(points), _FINE_POINTS)]
-    candidates = _peaks(scores, headings, xs, ys, 4 * count)
-    fine = fits(field, _FINE_WIDTH_M)
-    refined = np.empty((len(candidates), 4))
-    for row, candidate in enumerate(candidates):
-        pose = candidate.copy()
-        score = 0.0
-        for step_m, step_rad in _FINE_STEPS:
-            score = refine(fine, field.origin, field.cell_m, some, pose, step_m, step_rad)
-        refined[row, :3], refined[row, 3] = pose, score
-    return _distinct(refined[np.argsort(-refined[:, 3], kind="stable")], count)
+    def __init__(self, field: DistanceField) -> None:
+        self._origin, self._cell_m = field.origin, field.cell_m
+        self._step = max(round(_COARSE_M / field.cell_m), 1)
+        self._coarse = _phases(fits(field, _COARSE_WIDTH_M), self._step)
+        self._fine = fits(field, _FINE_WIDTH_M)
+
+    def best_places(self, points: Floats, region: Region, count: int) -> list[Poses]:
+        """At most so many poses within a region at which points (robot's frame) fit, best first.
+
+        They are some way apart from each other, and refined to a few centimetres.
+        """
+        if not len(points):
+            return []
+        candidates = self._candidates(points, region, 4 * count)
+        some = points[_spread(len(points), _FINE_POINTS)]
+        refined = np.empty((len(candidates), 4))
+        for row, candidate in enumerate(candidates):
+            pose = candidate.copy()
+            score = 0.0
+            for step_m, step_rad in _FINE_STEPS:
+                score = refine(self._fine, self._origin, self._cell_m, some, pose, step_m, step_rad)
+            refined[row, :3], refined[row, 3] = pose, score
+        return _distinct(refined[np.argsort(-refined[:, 3], kind="stable")], count)
+
+    def _candidates(self, points: Floats, region: Region, count: int) -> list[Poses]:
+        lattice_m = self._step * self._cell_m
+        first = np.floor((np.array([region.x_min, region.y_min]) - self._origin) / self._cell_m)
+        size = np.array([region.x_max - region.x_min, region.y_max - region.y_min])
+        columns, rows = np.ceil(size / lattice_m).astype(np.int64) + 1
+        headings = np.linspace(0.0, 2.0 * np.pi, _HEADINGS, endpoint=False)
+        scores = np.zeros((len(headings), rows, columns), dtype=np.float32)
+        score_places(
+            self._coarse,
+            first.astype(np.int64),
+            self._cell_m,
+            points[_spread(len(points), _COARSE_POINTS)],
+            headings,
+            scores,
+        )
+        corner = self._origin + first * self._cell_m
+        xs = corner[0] + np.arange(columns) * lattice_m
+        ys = corner[1] + np.arange(rows) * lattice_m
+        return _peaks(scores, headings, xs, ys, count)
 
 
 def _spread(count: int, wanted: int) -> NDArray[np.int64]:

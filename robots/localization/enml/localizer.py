@@ -9,6 +9,7 @@ from maps.vector_map import VectorMap
 from robots.localization.distance_field import distance_field
 from robots.localization.enml import normal_equations
 from robots.localization.enml.alignment import Aligner
+from robots.localization.enml.carried import seen_through
 from robots.localization.enml.classification import LongTermFeatures
 from robots.localization.enml.correspondences import ShortTermFeatures
 from robots.localization.enml.episode import Episode, Ties
@@ -30,8 +31,7 @@ _FIELD_REACH_M = 1.0
 _LOST_STD = np.array([10.0, 10.0, np.pi])
 _FOUND_STD = np.array([0.3, 0.3, np.radians(5.0)])
 _LEAST_VARIANCE = 1e-8
-_LEAST_JUDGED = 3
-_LEAST_RETURNS = 20.0
+_LEAST_RETURNS = 40.0
 _FIRST_STD = np.array([0.1, 0.1, np.radians(3.0)])
 
 
@@ -70,7 +70,8 @@ class EnmlLocalizer:
         )
         self._mode = Mode.TRACKING
         self._evidence = Evidence()
-        self._judged = 0
+        self._surprises = 0
+        self._may_be_anywhere = False
         self._driven_m = self._next_search_m = 0.0
         self._short_term = ShortTermFeatures(self._parameters)
         self.reset(np.zeros(3) if start is None else start)
@@ -86,10 +87,13 @@ class EnmlLocalizer:
         covariance = np.asarray(covariance, dtype=np.float64) + _LEAST_VARIANCE * np.eye(3)
         self._stream = ScanStream()
         self._short_term.forget()
-        if covariance[0, 0] + covariance[1, 1] > self._parameters.recovery_near_m**2:
-            self._lose()
-        else:
-            self._track(Evidence())
+        self._driven_m, self._next_search_m = 0.0, self._parameters.recovery_every_m
+        self._track(Evidence())
+        self._may_be_anywhere = bool(
+            covariance[0, 0] + covariance[1, 1] > self._parameters.recovery_near_m**2
+        )
+        if self._may_be_anywhere:
+            self._mode = Mode.LOST
         self._episode = Episode(
             self._parameters, np.asarray(pose, dtype=np.float64), whitening_of(covariance)
         )
@@ -106,13 +110,13 @@ class EnmlLocalizer:
         """
         motion = self._stream.accept(odometry, scan)
         self._episode.extend(motion, scan, scan_points(scan))
-        self._align()
+        self._driven_m += float(np.hypot(motion[0], motion[1]))
+        self._notice_being_carried(self._align())
         self._set_first_gate()
         covariance = self._settle()
         if self._mode is Mode.TRACKING:
-            self._look_for_doubt()
-        else:
-            self._driven_m += float(np.hypot(motion[0], motion[1]))
+            self._weigh_evidence()
+        if self._mode is Mode.LOST or self._in_doubt:
             covariance = self._look_for_place(covariance)
         return self._estimate(covariance)
 
@@ -123,30 +127,58 @@ class EnmlLocalizer:
         classes = np.full(len(node.scan_points), PointClass.DF, dtype=np.int8)
         classes[node.is_stf] = PointClass.STF
         classes[node.is_ltf] = PointClass.LTF
-        lost = self._evidence.lost if self._mode is Mode.TRACKING else 1.0
-        return Estimate(pose, covariance, node.scan_points, classes, lost, self._mode is Mode.LOST)
+        is_lost = self._mode is Mode.LOST
+        lost = 1.0 if is_lost else max(self._evidence.lost, self._evidence.contradiction)
+        return Estimate(
+            pose, covariance, node.scan_points, classes, lost, is_lost or self._in_doubt
+        )
 
-    def _look_for_doubt(self) -> None:
+    def _notice_being_carried(self, fit: float) -> None:
+        """Whoever sees neither the map nor what was there just before was carried elsewhere."""
+        self._surprises = self._surprises + 1 if self._is_surprised(fit) else 0
+        if self._mode is Mode.TRACKING and self._surprises >= self._parameters.carried_after_scans:
+            self._episode.keep_newest()
+            self._lose()
+            self._may_be_anywhere = True
+
+    def _is_surprised(self, fit: float) -> bool:
+        nodes, poses, parameters = self._episode.nodes, self._episode.poses, self._parameters
+        if len(nodes) < 2 or len(nodes[-1].scan_points) < _LEAST_RETURNS:
+            return False
+        return (
+            fit < parameters.carried_below
+            and seen_through(nodes[-2], poses[-2], nodes[-1], poses[-1]) > parameters.carried_above
+        )
+
+    def _weigh_evidence(self) -> None:
         """Judge by the newest scans whether the robot is where it is believed to be."""
         self._evidence = self._evidence.faded(
             self._parameters.evidence_fading, evidence_of(self._episode.nodes[-1])
         )
-        self._judged += 1
         if (
-            self._judged >= _LEAST_JUDGED
+            self._driven_m >= self._next_search_m
+            and self._evidence.contradiction > self._parameters.lost_above
             and self._evidence.returns >= _LEAST_RETURNS
-            and self._evidence.lost > self._parameters.lost_above
         ):
             self._lose()
-            self._episode.begin_anew(np.diag(1.0 / _LOST_STD))
+            self._next_search_m = 0.0
+
+    @property
+    def _in_doubt(self) -> bool:
+        return (
+            self._evidence.contradiction > self._parameters.doubt_above
+            and self._evidence.returns >= _LEAST_RETURNS
+        )
 
     def _look_for_place(self, covariance: Floats) -> Floats:
         """Search the map every so often; take the episode to where it clearly belongs."""
         if self._driven_m < self._next_search_m:
             return covariance
-        self._next_search_m += self._parameters.recovery_every_m
-        found = self._recovery.search(self._episode, self._episode.poses[-1], self._driven_m)
-        if found is None:
+        self._next_search_m = self._driven_m + self._parameters.recovery_every_m
+        expected = None if self._may_be_anywhere else self._episode.poses[-1]
+        path_m = self._driven_m if self._mode is Mode.LOST else 0.0
+        found = self._recovery.search(self._episode, expected, path_m)
+        if found is None or (self._mode is Mode.TRACKING and found.pose is expected):
             return covariance
         self._episode.move(found.pose, np.diag(1.0 / _FOUND_STD))
         for node in self._episode.nodes:
@@ -156,13 +188,14 @@ class EnmlLocalizer:
 
     def _lose(self) -> None:
         self._mode = Mode.LOST
-        self._driven_m = 0.0
-        self._next_search_m = self._parameters.recovery_every_m
+        self._driven_m, self._next_search_m = 0.0, self._parameters.recovery_every_m
+        self._episode.leave_map(np.diag(1.0 / _LOST_STD))
 
     def _track(self, seen: Evidence) -> None:
         self._mode = Mode.TRACKING
         self._evidence = seen
-        self._judged = 0
+        self._surprises = 0
+        self._may_be_anywhere = False
 
     def _settle(self) -> Floats:
         """Find the best poses, let go of what the episode needs no more; the covariance."""
@@ -176,8 +209,8 @@ class EnmlLocalizer:
         self._episode.forget_before(boundary, ties)
         return solution.covariance_of(-1)
 
-    def _align(self) -> None:
-        """Move the newest prediction to where its scan fits clearly better."""
+    def _align(self) -> float:
+        """Move the newest prediction to where its scan fits clearly better; how much fits there."""
         episode, parameters = self._episode, self._parameters
         nodes, poses = episode.nodes, episode.poses
         recent = [
@@ -194,8 +227,10 @@ class EnmlLocalizer:
             newest.travel.deviations(parameters),
             on_map=self._mode is Mode.TRACKING,
         )
-        if aligned.gain > parameters.alignment_min_gain:
+        believed = aligned.fit >= parameters.carried_below
+        if believed and aligned.gain > parameters.alignment_min_gain:
             poses[-1] = aligned.pose
+        return aligned.fit
 
     def _set_first_gate(self) -> None:
         """Open the newest pose's gate as wide as its prediction is uncertain."""

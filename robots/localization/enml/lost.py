@@ -12,6 +12,9 @@ _AT_WALL_M = 0.15
 _BEHIND_WALL_M = 0.4
 _BEHIND_COUNTS = 3.0
 """Right poses see a few percent of their returns behind walls that are gone, wrong ones a third."""
+_CONTRADICTION_COUNTS = 6.0
+_USUALLY_BEHIND = 0.02
+"""The share of returns from behind walls that is nothing unusual at a right pose."""
 _BEFORE_COUNTS = 0.05
 """What stands in front of a wall, or where the map is empty, may be furniture or a wall that nobody
 mapped: it hardly speaks against a pose."""
@@ -31,6 +34,16 @@ class Evidence:
     @property
     def returns(self) -> float:
         return self.on_map + self.behind + self.before
+
+    @property
+    def contradiction(self) -> float:
+        """From 0 to 1, by what cannot be seen from where the map explains the rest.
+
+        What is seen where the map is empty says nothing against a pose here.
+        """
+        against = _CONTRADICTION_COUNTS * max(self.behind - _USUALLY_BEHIND * self.returns, 0.0)
+        total = against + self.on_map
+        return against / total if total > 0.0 else 0.0
 
     @property
     def lost(self) -> float:

@@ -36,24 +36,26 @@ class EnmlParameters:
 
     laser_std_m: float = 0.05
     """Standard deviation of a point's distance from what it was measured on (published)."""
-    robust_width_m: float = 0.1
+    robust_width_m: float = 0.05
     """Distance at which a point's pull is half of what plain least squares gives it (ours)."""
 
-    ltf_gate_m: float = 0.25
-    """A point farther from the map's line than this is no long-term feature (published)."""
+    ltf_gate_m: float = 0.15
+    """A point farther from the map's line than this is no long-term feature (ours; published 0.25:
+    among furniture, too much of what stands near walls is then taken for them)."""
     ltf_widest_gate_m: float = 1.0
     """Where the gate starts when the prediction is at its most uncertain (ours)."""
     ltf_max_angle_rad: float = radians(35.0)
     """Largest angle between a point's normal and its line's (published)."""
-    ltf_correlation: float = 1.0 / 10.0
+    ltf_correlation: float = 1.0 / 20.0
     """How much one of many correlated rays counts (ours; published 1/50 over 1,000 rays)."""
 
     stf_gate_m: float = 0.15
     """Two points farther apart than this are not the same thing (published)."""
     stf_max_angle_rad: float = radians(25.0)
     """Largest angle between the normals of two corresponding points (published)."""
-    stf_correlation: float = 1.0 / 40.0
-    """How much one of many correlated correspondences counts (published)."""
+    stf_correlation: float = 1.0 / 10.0
+    """How much one of many correlated correspondences counts (ours; published 1/40: what one robot
+    saw from two places is more surely one thing than what it sees near a line of the map)."""
     stf_min_matches: int = 10
     """Two poses with no more correspondences than this are not tied to each other (published)."""
     stf_separations: tuple[int, ...] = (1, 2, 4, 8, 16)
@@ -81,14 +83,26 @@ class EnmlParameters:
 
     evidence_fading: float = 0.8
     """What is left of earlier scans' evidence for being lost or not, per update (ours)."""
-    lost_above: float = 0.5
-    """The robot is lost once its measure is above this (ours)."""
+    doubt_above: float = 0.5
+    """The robot is looked for elsewhere once the map contradicts it by more than this (ours)..."""
+    lost_above: float = 0.75
+    """... and is lost, found or not, once it does by more than this (ours)."""
+    carried_below: float = 0.55
+    """A robot was carried away if a smaller share of what it sees than this fits the map or the
+    scans before (ours: 0.61 to 0.88 in the worst hundredth of drives, 0.3 to 0.5 elsewhere)..."""
+    carried_above: float = 0.08
+    """... and a larger share than this is seen through what stood there before (ours)..."""
+    carried_after_scans: int = 2
+    """... in so many scans in a row (ours)."""
     found_below: float = 0.3
     """No place with a measure above this is taken for where a lost robot is (ours)."""
     recovery_near_m: float = 2.5
     """How far around the last pose a lost robot is looked for first (published)."""
-    recovery_every_m: float = 1.0
+    recovery_every_m: float = 0.7
     """A lost robot looks for its place again after driving this far (ours)."""
+    recovery_move_costs: float = 0.2
+    """What any place but its own counts less, for a robot that was not carried, in shares of the
+    returns (ours)."""
     recovery_lead: float = 0.12
     """How much better than all others, in shares of the returns, the place has to be at first..."""
     recovery_patience_m: float = 8.0

@@ -78,6 +78,11 @@ class PoseNode:
             gate_m,
         )
 
+    @property
+    def reach_m(self) -> float:
+        """How far the map has to be known to say something about what was seen from here."""
+        return float(self.ranges_m.max()) + 1.0 if len(self.ranges_m) else 1.0
+
     def take_off_map(self) -> None:
         """Forget what lay on lines of the map."""
         self.cast_pose = None

@@ -1,0 +1,66 @@
+"""What speaks for and against a robot's place: what it sees through, and what the map explains."""
+
+import numpy as np
+import pytest
+
+from maps.ray_cast import cast
+from robots.localization.enml.carried import seen_through
+from robots.localization.enml.lost import Evidence
+from robots.localization.enml.motion_model import Travel
+from robots.localization.enml.pose_node import PoseNode
+from robots.localization.points import scan_points
+from robots.localization.pose import Poses
+from robots.localization.scan import Scan
+
+ROOM = np.array([[-3, -2, 3, -2], [3, -2, 3, 2], [3, 2, -3, 2], [-3, 2, -3, -2]], dtype=np.float64)
+HALL = 2.0 * ROOM
+PERSON = np.array([[0.6, -0.5, 0.6, 0.5]])
+HERE = np.zeros(3)
+
+
+def seen(world: np.ndarray, pose: Poses) -> PoseNode:
+    angles = np.linspace(-2.0, 2.0, 121)
+    ranges, _ = cast(world, float(pose[0]), float(pose[1]), pose[2] + angles, 20.0)
+    scan = Scan(ranges, -2.0, float(angles[1] - angles[0]), 20.0)
+    return PoseNode.of(0, scan, scan_points(scan), Travel(), 0.15)
+
+
+def test_driving_on_sees_through_nothing() -> None:
+    on = np.array([0.5, 0.1, 0.3])
+    assert seen_through(seen(ROOM, HERE), HERE, seen(ROOM, on), on) == 0.0
+
+
+def test_who_steps_before_the_robot_is_not_seen_through() -> None:
+    assert seen_through(seen(ROOM, HERE), HERE, seen(np.vstack([ROOM, PERSON]), HERE), HERE) == 0.0
+
+
+def test_a_larger_room_is_seen_through_the_walls_of_a_smaller() -> None:
+    assert seen_through(seen(ROOM, HERE), HERE, seen(HALL, HERE), HERE) > 0.9
+
+
+def test_what_was_not_looked_at_is_not_seen_through() -> None:
+    behind = np.array([0.0, 0.0, np.pi])
+    share = seen_through(seen(ROOM, HERE), HERE, seen(HALL, behind), behind)
+    assert 0.1 < share < 0.6
+
+
+def test_nothing_seen_is_nothing_seen_through() -> None:
+    nowhere = np.array([50.0, 50.0, 0.0])
+    assert seen_through(seen(ROOM, HERE), HERE, seen(ROOM, nowhere), HERE) == 0.0
+    assert seen_through(seen(ROOM, nowhere), HERE, seen(ROOM, HERE), HERE) == 0.0
+
+
+@pytest.mark.parametrize("before", [0.0, 50.0, 500.0])
+def test_what_the_map_does_not_show_contradicts_no_place(before: float) -> None:
+    assert Evidence(on_map=50.0, before=before).contradiction == 0.0
+
+
+def test_returns_from_behind_walls_contradict_a_place() -> None:
+    few, many = (Evidence(on_map=50.0, behind=behind, before=50.0) for behind in (2.0, 30.0))
+    assert few.contradiction < 0.1
+    assert many.contradiction > 0.75
+
+
+def test_no_return_neither_speaks_for_nor_against() -> None:
+    assert Evidence().contradiction == 0.0
+    assert Evidence().lost == 1.0
