@@ -70,7 +70,8 @@ def _untrue_missing(
         level = rest is not None and rest.lean_rad <= LEVEL_RAD
         there = level and aside_m <= AT_PLACE_M and above_m <= AT_PLACE_M
         away = aside_m > AWAY_M or above_m > TOO_HIGH_M
-        if there and done.node in told and not blocked:
+        unsure = blocked or _is_under(leaf, [leaves[node] for node in told], scene)
+        if there and done.node in told and not unsure:
             wrong.append(f"'{leaf.object}' is told to be missing, but is at its place")
         if away and done.node not in told:
             wrong.append(f"'{leaf.object}' is not at its place, but is not told to be missing")
@@ -101,15 +102,36 @@ def _somebody_stands_there(events: Sequence[ev.Event]) -> bool:
     return acts[-1:] == ["block"]
 
 
+def _is_under(leaf: BehaviorNode, missing: Sequence[BehaviorNode], scene: Scene) -> bool:
+    """Whether a part may be hidden by one that is told to be missing from a place above it."""
+    if leaf.object is None or leaf.place is None:
+        return False
+    part, pose = scene.objects[leaf.object], scene.places[leaf.place].pose
+    for other in missing:
+        if other.object is None or other.place is None:
+            continue
+        above, at = scene.objects[other.object], scene.places[other.place].pose
+        reach_m = (max(part.size[:2]) + max(above.size[:2])) / 2
+        near = math.hypot(at.x - pose.x, at.y - pose.y) < reach_m
+        if near and (at.z or 0.0) > (pose.z or 0.0):
+            return True
+    return False
+
+
 def _disturbed_since(events: Sequence[ev.Event], node: str, handled: str) -> bool:
-    """Whether a person has touched a part since its leaf was last started."""
+    """Whether a person may have touched a part since its leaf was last started.
+
+    Who clears the way puts aside whatever lies in it.
+    """
     begun = max(
         index
         for index, each in enumerate(events)
         if isinstance(each, ev.NodeStarted) and each.node == node
     )
     return any(
-        isinstance(each, ev.InterventionDone) and each.object == handled and each.ok
+        isinstance(each, ev.InterventionDone)
+        and each.ok
+        and (each.object == handled or each.act == "release")
         for each in events[begun:]
     )
 

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 from robots.link.messages import Sighting
 from server.journal.events import MissingPart
@@ -16,31 +17,61 @@ def missing_parts(state: RunState, seen: Mapping[str, Sighting]) -> list[Missing
     """The objects of finished leaves that are seen elsewhere, or unseen with nothing above them.
 
     A part that another finished part rests above (a leg under a table top) may be out of sight:
-    only a sighting somewhere else counts against it.
+    only a sighting somewhere else counts against it. But what is above it and not where it belongs
+    (a top that hangs down) is no reason to believe in what it hides.
     """
-    tree, scene = state.tree, state.scene
-    done = [
-        (leaf, name, place_name, scene.objects.get(name), scene.places.get(place_name))
-        for leaf in tree.leaves
-        if tree.done(leaf)
-        and (name := tree.leaf_definition(leaf).object) is not None
-        and (place_name := tree.leaf_definition(leaf).place) is not None
+    tree = state.tree
+    done = [each for leaf in tree.leaves if tree.done(leaf) and (each := _finished(state, leaf))]
+    missing: set[int] = set()
+    for each in sorted(done, key=lambda each: -each.bottom_m):
+        covers = [other for other in done if other.leaf not in missing]
+        hidden = any(other.covers(each) for other in covers)
+        if not _at_its_place(seen.get(each.name), each.place, state.scene, hidden):
+            missing.add(each.leaf)
+    return [
+        MissingPart(
+            node=tree.path_of(each.leaf),
+            name=tree.name_of(each.leaf),
+            object=each.name,
+            place=each.place_name,
+        )
+        for each in done
+        if each.leaf in missing
     ]
-    missing = []
-    for leaf, name, place_name, part, place in done:
-        if part is None or place is None:
-            continue
-        covers = [(p, q) for _, other, _, p, q in done if other != name]
-        if not _at_its_place(seen.get(name), place, scene, _hidden(part, place, covers)):
-            missing.append(
-                MissingPart(
-                    node=tree.path_of(leaf),
-                    name=tree.name_of(leaf),
-                    object=name,
-                    place=place_name,
-                )
-            )
-    return missing
+
+
+@dataclass(frozen=True, slots=True)
+class _Finished:
+    """What a finished leaf put where."""
+
+    leaf: int
+    name: str
+    place_name: str
+    part: SceneObject
+    place: Place
+
+    @property
+    def bottom_m(self) -> float:
+        """How high its place is (0: the table)."""
+        return self.place.pose.z or 0.0
+
+    def covers(self, other: "_Finished") -> bool:
+        """Whether it rests so near above another part that it may hide it."""
+        if self.bottom_m <= other.bottom_m:
+            return False
+        reach_m = (max(self.part.size[:2]) + max(other.part.size[:2])) / 2
+        mine, its = self.place.pose, other.place.pose
+        return math.hypot(mine.x - its.x, mine.y - its.y) < reach_m
+
+
+def _finished(state: RunState, leaf: int) -> _Finished | None:
+    definition, scene = state.tree.leaf_definition(leaf), state.scene
+    if definition.object is None or definition.place is None:
+        return None
+    part, place = scene.objects.get(definition.object), scene.places.get(definition.place)
+    if part is None or place is None:
+        return None
+    return _Finished(leaf, definition.object, definition.place, part, place)
 
 
 def _at_its_place(sighting: Sighting | None, place: Place, scene: Scene, hidden: bool) -> bool:
@@ -51,16 +82,3 @@ def _at_its_place(sighting: Sighting | None, place: Place, scene: Scene, hidden:
     # Of a part that is half covered only a piece is seen, whose centre is off.
     distance_m = math.hypot(sighting.x - place.pose.x, sighting.y - place.pose.y)
     return distance_m <= 4 * TOLERANCE_M
-
-
-def _hidden(
-    part: SceneObject, place: Place, others: list[tuple[SceneObject | None, Place | None]]
-) -> bool:
-    bottom = place.pose.z or 0.0
-    for other, at in others:
-        if other is None or at is None or (at.pose.z or 0.0) <= bottom:
-            continue
-        reach_m = (max(other.size[:2]) + max(part.size[:2])) / 2
-        if math.hypot(at.pose.x - place.pose.x, at.pose.y - place.pose.y) < reach_m:
-            return True
-    return False

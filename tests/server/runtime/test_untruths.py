@@ -5,12 +5,14 @@ from typing import Any
 
 import pytest
 from pretend_service import pretend_service
+from recorded_service import recorded_events
 from task_documents import definition_of
 
 from server.journal import events as ev
 from server.journal.untruths import Rest, find_untruths
 from sim.tabletop.layout import lay_out
 from tasks.intervention import Act, Intervention
+from tasks.scene import Scene
 
 NAMES = [("part_1", "spot_1"), ("part_2", "spot_2")]
 SCENE = lay_out(NAMES, seed=1)
@@ -84,6 +86,40 @@ async def test_a_leaf_done_without_its_part_is_untrue_even_if_that_is_told() -> 
     assert find_untruths(events, {**at_places(), "part_1": None}) == [
         "'/0' is done, but 'part_1' never was at its place"
     ]
+
+
+def test_what_lies_under_something_missing_may_be_told_to_be_missing_too() -> None:
+    events = recorded_events()
+    started = events[0]
+    assert isinstance(started, ev.RunStarted)
+    scene = Scene.model_validate(started.scene, strict=False)
+    resting: dict[str, Rest | None] = dict.fromkeys(scene.objects)
+    for name, place in scene.places.items():
+        z = scene.table.height if place.pose.z is None else place.pose.z
+        resting[name] = Rest(place.pose.x, place.pose.y, z)
+    top = resting["purple_top"]
+    assert top is not None
+    resting["purple_top"] = replace(top, z=top.z - 0.0197, lean_rad=0.33)
+    done = {each.name: each for each in events if isinstance(each, ev.NodeDone)}
+    told = [
+        ev.MissingPart(node=done[name].node, name=name, object=name, place=name)
+        for name in ("green_leg", "purple_top")
+    ]
+    assert find_untruths(with_end(events, missing=told), resting) == []
+    assert find_untruths(with_end(events, missing=told[:1]), resting) == [
+        "'green_leg' is told to be missing, but is at its place"
+    ]
+
+
+async def test_who_clears_the_way_may_have_moved_any_part() -> None:
+    told = ev.MissingPart(node="/0", name="part_1", object="part_1", place="spot_1")
+    *before, end = with_end(await events_of("then"), missing=[told])
+    act = Intervention(act=Act.RELEASE, object="part_2", place="spot_2")
+    stamp = {"time": end.time, "wall_time": end.wall_time, "run": end.run}
+    cleared = ev.InterventionDone(
+        **stamp, act="release", object="part_2", intervention=act, by="helper"
+    )
+    assert find_untruths([*before, cleared, end], {**at_places(), "part_1": None}) == []
 
 
 async def test_a_failure_after_three_failed_attempts_is_true() -> None:
