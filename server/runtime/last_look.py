@@ -1,7 +1,7 @@
-"""The last look: which finished leaf's object is not at its place when the task is done."""
+"""The last look, and those before: whose object is not at its place when the task is done."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from robots.link.messages import Sighting
@@ -11,33 +11,6 @@ from server.runtime.run_state import RunState
 from tasks.scene import Place, Scene, SceneObject
 
 TOLERANCE_M = 0.05
-
-
-def missing_parts(state: RunState, seen: Mapping[str, Sighting]) -> list[MissingPart]:
-    """The objects of finished leaves that are seen elsewhere, or unseen with nothing above them.
-
-    A part that another finished part rests above (a leg under a table top) may be out of sight:
-    only a sighting somewhere else counts against it. But what is above it and not where it belongs
-    (a top that hangs down) is no reason to believe in what it hides.
-    """
-    tree = state.tree
-    done = [each for leaf in tree.leaves if tree.done(leaf) and (each := _finished(state, leaf))]
-    missing: set[int] = set()
-    for each in sorted(done, key=lambda each: -each.bottom_m):
-        covers = [other for other in done if other.leaf not in missing]
-        hidden = any(other.covers(each) for other in covers)
-        if not _at_its_place(seen.get(each.name), each.place, state.scene, hidden):
-            missing.add(each.leaf)
-    return [
-        MissingPart(
-            node=tree.path_of(each.leaf),
-            name=tree.name_of(each.leaf),
-            object=each.name,
-            place=each.place_name,
-        )
-        for each in done
-        if each.leaf in missing
-    ]
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,6 +35,75 @@ class _Finished:
         reach_m = (max(self.part.size[:2]) + max(other.part.size[:2])) / 2
         mine, its = self.place.pose, other.place.pose
         return math.hypot(mine.x - its.x, mine.y - its.y) < reach_m
+
+
+class PlacedParts:
+    """What the looks of a run have told of the objects of finished leaves.
+
+    Not durable: after a restart only what can be seen still counts.
+    """
+
+    def __init__(self) -> None:
+        self._seen: set[int] = set()
+        """Leaves whose object was seen at its place since they were done."""
+        self._missed: set[int] = set()
+        """Leaves whose object was not, though nothing could have hidden it."""
+
+    def note(self, state: RunState, seen: Mapping[str, Sighting]) -> None:
+        """Take note of what a look saw while the robot was out of its own sight."""
+        done = _all_finished(state)
+        leaves = {each.leaf for each in done}
+        self._seen &= leaves
+        self._missed &= leaves
+        for each, hidden in _with_hidden(done, seen, state.scene):
+            if _at_its_place(seen.get(each.name), each.place, state.scene, hidden=False):
+                self._seen.add(each.leaf)
+            elif not hidden:
+                self._missed.add(each.leaf)
+
+    def missing(self, state: RunState, seen: Mapping[str, Sighting]) -> list[MissingPart]:
+        """The objects of finished leaves that are seen elsewhere, or unseen where they should be.
+
+        A part that another finished part rests above (a leg under a table top) may be out of sight:
+        only a sighting somewhere else counts against it, or that it was missed before it was
+        covered. But what is above it and not where it belongs (a top that hangs down) is no reason
+        to believe in what it hides.
+        """
+        tree, done = state.tree, _all_finished(state)
+        gone = {
+            each.leaf
+            for each, hidden in _with_hidden(done, seen, state.scene)
+            if not _at_its_place(seen.get(each.name), each.place, state.scene, hidden)
+            or (each.name not in seen and each.leaf in self._missed - self._seen)
+        }
+        return [
+            MissingPart(
+                node=tree.path_of(each.leaf),
+                name=tree.name_of(each.leaf),
+                object=each.name,
+                place=each.place_name,
+            )
+            for each in done
+            if each.leaf in gone
+        ]
+
+
+def _with_hidden(
+    done: Sequence[_Finished], seen: Mapping[str, Sighting], scene: Scene
+) -> Iterator[tuple[_Finished, bool]]:
+    """Each finished leaf, highest place first, and whether what is at a place above may hide it."""
+    fallen: set[int] = set()
+    for each in sorted(done, key=lambda each: -each.bottom_m):
+        hidden = any(other.covers(each) for other in done if other.leaf not in fallen)
+        if not _at_its_place(seen.get(each.name), each.place, scene, hidden):
+            fallen.add(each.leaf)
+        yield each, hidden
+
+
+def _all_finished(state: RunState) -> list[_Finished]:
+    tree = state.tree
+    found = (_finished(state, leaf) for leaf in tree.leaves if tree.done(leaf))
+    return [each for each in found if each is not None]
 
 
 def _finished(state: RunState, leaf: int) -> _Finished | None:

@@ -36,7 +36,7 @@ from server.runtime.giving_up import GivingUp
 from server.runtime.hardware import Hardware
 from server.runtime.inbox import Inbox, Item, Task
 from server.runtime.interventions import Interventions
-from server.runtime.last_look import missing_parts
+from server.runtime.last_look import PlacedParts
 from server.runtime.pose_sink import PoseSink
 from server.runtime.presence import Presence
 from server.runtime.report_events import ReportEvents
@@ -69,6 +69,7 @@ class Run:
         self._poses = poses
         self._reports = ReportEvents(context, dialogues)
         self._claims = Claims(context)
+        self._placed = PlacedParts()
         self._interventions = Interventions(context)
         self._inbox = Inbox()
         self._presence = Presence(
@@ -237,6 +238,8 @@ class Run:
                 side.doing = Doing.IDLE
             case Looked():
                 purpose = side.take_look(body, self._context.clock.now())
+                if purpose in (Purpose.CHOOSE, Purpose.LAST):
+                    self._placed.note(self._context.state, side.seen)
                 if purpose is not None:
                     await self._looked(side, purpose, bool(body.fulfilled))
             case Intervened():
@@ -337,7 +340,7 @@ class Run:
     # --- The end ------------------------------------------------------------------------------
 
     async def _finish(self, side: RobotSide) -> None:
-        missing = missing_parts(self._context.state, side.seen)
+        missing = self._placed.missing(self._context.state, side.seen)
         await self._context.commit([ev.RunFinished(**self._context.stamp(), missing=missing)])
 
     # --- What people ask for ------------------------------------------------------------------

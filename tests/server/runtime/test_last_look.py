@@ -6,7 +6,7 @@ from recorded_service import recorded_events
 from dialogue.registry import load_scripts
 from robots.link.messages import Sighting
 from server.journal import events as ev
-from server.runtime.last_look import missing_parts
+from server.runtime.last_look import PlacedParts
 from server.runtime.run_state import RunState
 
 
@@ -36,7 +36,7 @@ def all_seen(state: RunState) -> dict[str, Sighting]:
 
 
 def told(state: RunState, seen: dict[str, Sighting]) -> list[str]:
-    return [each.object for each in missing_parts(state, seen)]
+    return [each.object for each in PlacedParts().missing(state, seen)]
 
 
 def test_nothing_is_missing_where_all_is_seen_at_its_place(state: RunState) -> None:
@@ -60,3 +60,19 @@ def test_what_is_hidden_by_something_that_hangs_down_is_missing_too(state: RunSt
     del seen["green_leg"]
     seen["purple_top"] = seen["purple_top"].model_copy(update={"z": 0.7})
     assert told(state, seen) == ["green_leg", "purple_top"]
+
+
+def test_a_part_that_was_missed_before_it_was_covered_is_missing(state: RunState) -> None:
+    placed, seen = PlacedParts(), all_seen(state)
+    uncovered = seen | {"purple_top": seen["purple_top"].model_copy(update={"y": -0.6})}
+    del seen["green_leg"], uncovered["green_leg"]
+    placed.note(state, uncovered)
+    assert [each.object for each in placed.missing(state, seen)] == ["green_leg"]
+
+
+def test_a_part_that_was_seen_at_its_place_is_believed_to_be_there(state: RunState) -> None:
+    placed, seen = PlacedParts(), all_seen(state)
+    placed.note(state, seen)
+    del seen["green_leg"]
+    placed.note(state, seen)
+    assert placed.missing(state, seen) == []
