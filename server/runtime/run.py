@@ -36,7 +36,7 @@ from server.runtime.giving_up import GivingUp
 from server.runtime.hardware import Hardware
 from server.runtime.inbox import Inbox, Item, Task
 from server.runtime.interventions import Interventions
-from server.runtime.last_look import PlacedParts
+from server.runtime.placed_parts import PlacedParts
 from server.runtime.pose_sink import PoseSink
 from server.runtime.presence import Presence
 from server.runtime.report_events import ReportEvents

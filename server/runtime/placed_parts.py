@@ -1,4 +1,4 @@
-"""The last look, and those before: whose object is not at its place when the task is done."""
+"""What became of parts that were placed: whose object is not at its place when the task is done."""
 
 import math
 from collections.abc import Iterator, Mapping, Sequence

@@ -1,4 +1,4 @@
-"""The last look: which parts are told to be missing when a task is done."""
+"""Which parts are told to be missing when a task is done."""
 
 import pytest
 from recorded_service import recorded_events
@@ -6,7 +6,7 @@ from recorded_service import recorded_events
 from dialogue.registry import load_scripts
 from robots.link.messages import Sighting
 from server.journal import events as ev
-from server.runtime.last_look import PlacedParts
+from server.runtime.placed_parts import PlacedParts
 from server.runtime.run_state import RunState
 
 
