@@ -79,6 +79,11 @@ async def wait_for_motion(page: Page, name: str, before: tuple[float, float]) ->
     pytest.fail(f"{name} is still drawn at {before}")
 
 
+async def open_list(page: Page) -> None:
+    """Show the objects below the scene."""
+    await page.get_by_role("button", name="Objects as a list").click(timeout=LONG_MS)
+
+
 async def raised_issue(service: Service, run: UUID, page: Page) -> None:
     """Wait until the robot has noticed and asks."""
     await expect(page.get_by_role("button", name="YES")).to_be_visible(timeout=LONG_MS)
@@ -126,6 +131,7 @@ async def test_part_is_stolen_by_a_click_on_it(service: Service, open_page: Open
     await expect(page.get_by_role("status").filter(has_text=LATE)).to_have_text(
         f"The {LATE} is taken away."
     )
+    await open_list(page)
     await expect(page.locator(".scene-row", has_text=LATE)).to_contain_text("taken away")
     await raised_issue(service, run, page)
 
@@ -135,6 +141,10 @@ async def test_part_is_stolen_from_the_list_with_keys(
 ) -> None:
     run = await start(service, 2.0)
     page = await open_page(f"/runs/{run}")
+    opens = page.get_by_role("button", name="Objects as a list")
+    await opens.focus(timeout=LONG_MS)
+    await page.keyboard.press("Enter")
+    await expect(opens).to_have_attribute("aria-expanded", "true")
     button = page.get_by_role("button", name=f"Intervene: {LATE}")
     await button.focus(timeout=LONG_MS)
     await page.keyboard.press("Enter")
@@ -156,6 +166,7 @@ async def test_refused_intervention_says_why(service: Service, open_page: OpenPa
     )
     page = await open_page(f"/runs/{run}")
     await raised_issue(service, run, page)
+    await open_list(page)
     await page.get_by_role("button", name=f"Intervene: {LATE}").click()
     await page.get_by_role("menuitem", name="Hand over").click()
     await expect(page.locator(".scene-note")).to_contain_text("held out")
@@ -167,7 +178,8 @@ async def test_refused_intervention_says_why(service: Service, open_page: OpenPa
 async def test_arm_is_blocked_from_the_list(service: Service, open_page: OpenPage) -> None:
     run = await start(service, 0.5)
     page = await open_page(f"/runs/{run}")
-    await page.get_by_role("button", name="Intervene: the arm’s way").click(timeout=LONG_MS)
+    await open_list(page)
+    await page.get_by_role("button", name="Intervene: the arm’s way").click()
     await page.get_by_role("menuitem", name="Block").click()
     await expect(page.locator(".scene-row", has_text="arm’s way")).to_contain_text("blocked")
 
@@ -176,6 +188,7 @@ async def test_part_is_moved_by_a_click_on_the_table(service: Service, open_page
     run = await start(service, 0.5)
     page = await open_page(f"/runs/{run}")
     canvas = await drawn_canvas(page)
+    await open_list(page)
     await page.get_by_role("button", name="Names").click()
     before = await place_of_name(page, "orange top")
     await page.get_by_role("button", name="Intervene: orange top").click()
@@ -197,6 +210,8 @@ async def test_replay_shows_where_everything_was(service: Service, open_page: Op
     at_the_end = await place_of_name(page, "green leg")
     await page.get_by_label("Moment of the run").fill("0")
     await wait_for_motion(page, "green leg", at_the_end)
+    await open_list(page)
+    await expect(page.locator(".scene-row", has_text="green leg")).to_be_visible()
     await expect(page.get_by_role("button", name="Intervene: green leg")).to_have_count(0)
 
 

@@ -1,5 +1,5 @@
 // The run's scene: robot and objects in 3-D at the moment that is shown, and what a person may do there.
-import { useEffect, useMemo, useState } from "preact/hooks";
+import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import { helperName } from "../../state/preferences";
 import { onEvent, runs } from "../../state/service";
 import * as rest from "../../wire/rest";
@@ -13,6 +13,9 @@ import { SceneCanvas } from "./scene_canvas";
 import type { Pointed } from "./scene_view";
 import { WhereForm } from "./where_form";
 import "./scene.css";
+
+/** The column of the scene is shorter than that of the tree there. */
+const ROOM_BELOW = "(720px <= width < 1200px)";
 
 interface OpenMenu {
   readonly target: Target;
@@ -32,7 +35,9 @@ export function ScenePanel({ run, moment }: ScenePanelProps) {
   const [menu, setMenu] = useState<OpenMenu | null>(null);
   const [putting, setPutting] = useState<string | null>(null);
   const [failure, setFailure] = useState<string | null>(null);
-  const [note, setNote] = useState("");
+  const { note, setNote, intervene } = useInterventions(run);
+  const [listed, setListed] = useState(() => matchMedia(ROOM_BELOW).matches);
+  const list = useRef<HTMLDivElement>(null);
 
   const layout = source.layout.value;
   const whereabouts = source.whereabouts.value;
@@ -41,6 +46,94 @@ export function ScenePanel({ run, moment }: ScenePanelProps) {
   const offered = layout?.simulated === true && running && moment.live.value;
   const choosing = offered && putting !== null;
 
+  const act = (intervention: Intervention) => {
+    setPutting(null);
+    void intervene(intervention);
+  };
+  const toggleList = () => {
+    setListed(!listed);
+    // What has just been opened must not stay below the edge of what scrolls.
+    requestAnimationFrame(() => list.current?.scrollIntoView({ block: "nearest" }));
+  };
+  const takeOffer = (offer: Offer, target: Target) => {
+    setMenu(null);
+    if (offer.act !== "where") act(offer.act);
+    else if (target.kind === "object") setPutting(target.name);
+  };
+  const choose = (what: Pointed, at: { x: number; y: number }) => {
+    if (choosing) {
+      if (what.kind === "table") act({ act: "move", object: putting, to: spotOnTable(what) });
+      return;
+    }
+    const target = what.kind === "table" || !offered ? null : targetOf(what, source);
+    setMenu(target === null ? null : { target, ...at });
+  };
+  const withList = listed || failure !== null;
+  return (
+    <section class="panel scene" aria-labelledby="scene-title">
+      <div class="panel-bar">
+        <h2 id="scene-title">Scene</h2>
+        {layout !== null && failure === null && (
+          <button type="button" class="small-button" aria-expanded={listed} onClick={toggleList}>
+            Objects as a list
+          </button>
+        )}
+      </div>
+      {layout !== null && failure === null && (
+        <SceneCanvas
+          layout={layout}
+          poses={source}
+          pointed={pointed}
+          choosing={choosing}
+          onPoint={setPointed}
+          onChoose={choose}
+          onFailure={setFailure}
+          onNote={setNote}
+        >
+          {offered && menu !== null && (
+            <OfferMenu
+              key={titleOf(menu.target)}
+              label={titleOf(menu.target)}
+              offers={offersFor(menu.target, places)}
+              style={{ "--x": `${menu.x}px`, "--y": `${menu.y}px` }}
+              onChoose={(offer) => takeOffer(offer, menu.target)}
+              onClose={() => setMenu(null)}
+            />
+          )}
+        </SceneCanvas>
+      )}
+      {layout !== null && failure !== null && <p>{failure}</p>}
+      <p class="scene-state small quiet">{stateSentence(source, moment)}</p>
+      <p class="scene-note" role="status">
+        {note}
+      </p>
+      {choosing && (
+        <WhereForm
+          key={putting}
+          object={putting}
+          places={places}
+          drawn={failure === null}
+          onPlace={(place) => act({ act: "place", object: putting, place })}
+          onCancel={() => setPutting(null)}
+        />
+      )}
+      {layout !== null && withList && (
+        <div ref={list}>
+          <ObjectList
+            whereabouts={whereabouts}
+            places={places}
+            offered={offered}
+            onChoose={takeOffer}
+            onPoint={setPointed}
+          />
+        </div>
+      )}
+    </section>
+  );
+}
+
+function useInterventions(run: string) {
+  const [note, setNote] = useState("");
   // The service passes an intervention on at once; whether the world could do it comes as an event.
   useEffect(
     () =>
@@ -51,83 +144,13 @@ export function ScenePanel({ run, moment }: ScenePanelProps) {
     [run],
   );
   const intervene = async (intervention: Intervention) => {
-    setPutting(null);
     try {
       await rest.intervene(run, intervention);
     } catch (error) {
       setNote((error as Error).message);
     }
   };
-  const takeOffer = (offer: Offer, target: Target) => {
-    setMenu(null);
-    if (offer.act !== "where") void intervene(offer.act);
-    else if (target.kind === "object") setPutting(target.name);
-  };
-  const choose = (what: Pointed, at: { x: number; y: number }) => {
-    if (choosing) {
-      if (what.kind === "table") void intervene({ act: "move", object: putting, to: spotOnTable(what) });
-      return;
-    }
-    const target = what.kind === "table" || !offered ? null : targetOf(what, source);
-    setMenu(target === null ? null : { target, ...at });
-  };
-  return (
-    <>
-      <section class="panel scene" aria-labelledby="scene-title">
-        <h2 id="scene-title">Scene</h2>
-        {layout !== null && failure === null && (
-          <SceneCanvas
-            layout={layout}
-            poses={source}
-            pointed={pointed}
-            choosing={choosing}
-            onPoint={setPointed}
-            onChoose={choose}
-            onFailure={setFailure}
-            onNote={setNote}
-          >
-            {offered && menu !== null && (
-              <OfferMenu
-                key={titleOf(menu.target)}
-                label={titleOf(menu.target)}
-                offers={offersFor(menu.target, places)}
-                style={{ "--x": `${menu.x}px`, "--y": `${menu.y}px` }}
-                onChoose={(offer) => takeOffer(offer, menu.target)}
-                onClose={() => setMenu(null)}
-              />
-            )}
-          </SceneCanvas>
-        )}
-        {layout !== null && failure !== null && <p>{failure}</p>}
-        <p class="scene-state small quiet">{stateSentence(source, moment)}</p>
-        <p class="scene-note" role="status">
-          {note}
-        </p>
-        {choosing && (
-          <WhereForm
-            key={putting}
-            object={putting}
-            places={places}
-            drawn={failure === null}
-            onPlace={(place) => void intervene({ act: "place", object: putting, place })}
-            onCancel={() => setPutting(null)}
-          />
-        )}
-      </section>
-      {layout !== null && (
-        <section class="panel scene" aria-labelledby="objects-title">
-          <h2 id="objects-title">Objects</h2>
-          <ObjectList
-            whereabouts={whereabouts}
-            places={places}
-            offered={offered}
-            onChoose={takeOffer}
-            onPoint={setPointed}
-          />
-        </section>
-      )}
-    </>
-  );
+  return { note, setNote, intervene };
 }
 
 function targetOf(what: Exclude<Pointed, { kind: "table" }>, source: PoseSource): Target | null {

@@ -24,7 +24,7 @@ export function Timeline(props: TimelineProps) {
   const zoom = (factor: number, around = middleOf(shown, props.moment.time.peek())) => setSpan(zoomed(shown, factor, around, whole));
   return (
     <section class="timeline" aria-label="Timeline">
-      <div class="timeline-bar">
+      <div class="panel-bar">
         <h2>Timeline</h2>
         <button type="button" class="small-button" aria-pressed={asList} onClick={() => setAsList(!asList)}>
           As a list
