@@ -10,7 +10,7 @@ import numpy as np
 from server.speech.commands import Command
 from server.speech.decoding import Hypothesis
 
-QUIET_MARGIN = 0.025
+QUIET_MARGIN = 0.03
 NOISY_MARGIN = 0.035
 NOISY_BELOW_DB = 17.0
 """Where a voice stands out less from what else is to be heard, more resembles a command."""

@@ -8,7 +8,7 @@ back.
 """
 
 import csv
-from collections.abc import Iterable
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -71,10 +71,9 @@ def _take(number: int, line: str, content: _Content, path: Path) -> None:
 
 
 def _steps(content: _Content, names: list[str], path: Path) -> list[LogStep]:
-    column = {name: place for place, name in enumerate(names)}
     known = {"time_s", *_ODOMETRY, *_REFERENCE}
-    beams = [place for place, name in enumerate(names) if name not in known]
-    with_reference = all(name in column for name in _REFERENCE)
+    beams = [(place, name) for place, name in enumerate(names) if name not in known]
+    with_reference = all(name in names for name in _REFERENCE)
     offset = np.array([content.laser.get(name, 0.0) for name in _SENSOR])
     angle_min, angle_increment, max_range = (content.laser[name] for name in _LASER)
     steps: list[LogStep] = []
@@ -83,13 +82,12 @@ def _steps(content: _Content, names: list[str], path: Path) -> list[LogStep]:
         try:
             if len(fields) != len(names):
                 raise ValueError(f"expected {len(names)} columns, found {len(fields)}")
-            odometry = _pose(fields[column[name]] for name in _ODOMETRY)
-            ranges = np.array([float(fields[place] or "inf") for place in beams])
-            time_s = float(fields[column["time_s"]])
+            row = dict(zip(names, fields, strict=True))
+            odometry = _pose(row, _ODOMETRY)
+            ranges = np.array([_number(name, fields[at] or "inf") for at, name in beams])
+            time_s = _number("time_s", row["time_s"])
             scan = Scan(ranges, angle_min, angle_increment, max_range, time_s, offset)
-            reference = (
-                _pose(fields[column[name]] for name in _REFERENCE) if with_reference else None
-            )
+            reference = _pose(row, _REFERENCE) if with_reference else None
         except (ValueError, InvalidScanError) as error:
             content.mistakes.append(f"{path}:{number}: {error}")
             continue
@@ -99,11 +97,18 @@ def _steps(content: _Content, names: list[str], path: Path) -> list[LogStep]:
     return steps
 
 
-def _pose(fields: Iterable[str]) -> Poses:
-    pose = np.array([float(each) for each in fields])
+def _pose(row: Mapping[str, str], names: Sequence[str]) -> Poses:
+    pose = np.array([_number(name, row[name]) for name in names])
     if not np.isfinite(pose).all():
-        raise ValueError("a pose has to be finite")
+        raise ValueError(f"{', '.join(names)} have to be finite")
     return pose
+
+
+def _number(column: str, text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise ValueError(f"{column} has to be a number, which '{text[:40]}' is not") from None
 
 
 def write_csv(log: Log, path: Path) -> None:

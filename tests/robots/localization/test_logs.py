@@ -177,8 +177,8 @@ def test_csv_is_read_as_it_was_written(tmp_path: Path) -> None:
     ("row", "said"),
     [
         ("0.2,0,0", "drive.csv:6: expected 6 columns, found 3"),
-        ("0.2,0,0,nan,1,2", "drive.csv:6: a pose has to be finite"),
-        ("0.2,0,0,0,1,wall", "drive.csv:6: could not convert"),
+        ("0.2,0,0,nan,1,2", "drive.csv:6: odom_x, odom_y, odom_theta have to be finite"),
+        ("0.2,0,0,0,1,wall", "drive.csv:6: b has to be a number, which 'wall' is not"),
     ],
 )
 def test_mistakes_in_csv_are_told_with_their_line(tmp_path: Path, row: str, said: str) -> None:
