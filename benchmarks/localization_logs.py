@@ -6,6 +6,8 @@ runs have no reference and no map: a map is built from run 2, and on it the othe
 from no idea where they are: what is told is how far they drove until the method no longer said that
 it was lost, and how much of what it saw since the map explained.
 
+MRPT's `pf-localization` runs beside them where it is installed, without its idea of being lost.
+
     python benchmarks/localization_logs.py [--data FOLDER] [--log NAME ...] [--method enml ...]
         [--drop 0.33] [--scans N] [--seed 1] [--quick]
 """
@@ -18,6 +20,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from peers import mrpt
 
 from maps.vector_map import VectorMap
 from maps.vector_map_file import read_vector_map
@@ -60,6 +63,15 @@ def localized(method: str, vector_map: VectorMap, log: Log, seed: int) -> Summar
     assert log.start is not None
     localizer.reset(log.start)
     return summarize(follow(localizer, log), log)
+
+
+def beside(vector_map: VectorMap, log: Log) -> Summary | None:
+    """MRPT on one log, in the wall time that it tells; None where it cannot."""
+    try:
+        return summarize(mrpt.mrpt_trace(vector_map, log), log)
+    except mrpt.MrptError as error:
+        print(error)
+        return None
 
 
 def wean(folder: Path, methods: list[str], scans: int | None, seed: int) -> None:
@@ -106,6 +118,9 @@ def main() -> None:
     methods = given.method or list(METHODS)
     for method in methods:
         warm_up(method)
+    with_mrpt = given.method is None and mrpt.installed()
+    if given.method is None and not with_mrpt:
+        print(mrpt.MISSING)
     print(HEADINGS)
     for path in sorted((given.data / "logs").glob("*.log.gz")):
         name = path.name.removesuffix(".log.gz").removesuffix("-corrected")
@@ -120,6 +135,8 @@ def main() -> None:
         vector_map = thinned(read_vector_map(map_path), given.drop, given.seed)
         for method in methods:
             print(line(name, method, localized(method, vector_map, log, given.seed)), flush=True)
+        if with_mrpt and (summary := beside(vector_map, log)) is not None:
+            print(line(name, "mrpt", summary), flush=True)
     if (given.data / "wean").is_dir() and not given.log:
         wean(given.data / "wean", methods, scans, given.seed)
 
