@@ -43,6 +43,9 @@ def describe_mistake(mistake: ErrorDetails, model: type[BaseModel]) -> str:
         return f"'{where}': {message}" if where else message
     if mistake["type"] == "string_pattern_mismatch":
         message = "must be a name: a letter, then at most 63 letters, digits, '_' or '-'"
+    if mistake["type"] == "too_short":
+        count = mistake["ctx"]["min_length"]
+        message = f"must have at least {count} {'entry' if count == 1 else 'entries'}"
     message = message.replace("Input should be", "must be", 1)
     return f"'{where}' {message}, but it is {_show(mistake['input'])}"
 

@@ -25,6 +25,7 @@ FORMATS = ("auto", "problem", *READERS)
 class ReadFile:
     """A problem, what certainly cannot hold in it, and whether robots count before distance."""
 
+    path: Path
     problem: Problem
     contradictions: tuple[str, ...]
     robots_first: bool
@@ -45,7 +46,7 @@ def read_delivery(path: Path, format_name: str, *, transfers: bool) -> ReadFile:
         delivery = read_delivery_file(path)
         if transfers:
             told = tuple(each.describe(str(path)) for each in delivery.contradictions)
-            return ReadFile(delivery.problem, told, robots_first=False)
+            return ReadFile(path, delivery.problem, told, robots_first=False)
         problem = delivery.problem
     else:
         try:
@@ -54,7 +55,7 @@ def read_delivery(path: Path, format_name: str, *, transfers: bool) -> ReadFile:
             raise CommandLineError(f"{path}: {error}") from error
     problem = problem if transfers else problem.without_transfers()
     told = tuple(f"{path}: {each.sentence}" for each in contradictions(problem))
-    return ReadFile(problem, told, robots_first=kind == "li_lim")
+    return ReadFile(path, problem, told, robots_first=kind == "li_lim")
 
 
 def format_of(path: Path, text: str) -> str:

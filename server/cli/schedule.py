@@ -1,12 +1,11 @@
 """`mend schedule`: plan the deliveries of a file."""
 
-import time
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from server.cli.failures import INTERRUPTED, NOT_FINISHED, CommandLineError, told_plainly
+from server.cli.failures import NOT_FINISHED, CommandLineError, told_plainly
 from server.cli.output import print_rows
 
 
@@ -38,13 +37,11 @@ def schedule(
     The exit code is 0 only if there is a schedule.
     """
     # Imported only here: solvers would make every other command wait.
-    from rich.console import Console
-
     from fleet.scheduling.drawing.picture import picture
-    from fleet.scheduling.methods import METHODS, solve
-    from fleet.scheduling.solution import Solution, Status, UnsupportedError
+    from fleet.scheduling.methods import METHODS
     from server.cli import schedule_output as output
     from server.cli.delivery_files import read_delivery
+    from server.cli.delivery_search import Search, searched
 
     if method not in ("auto", *METHODS):
         names = ", ".join(("auto", *METHODS))
@@ -55,26 +52,7 @@ def schedule(
         read = read_delivery(file, format_name, transfers=transfers)
         problem = read.problem
         measure = output.Measure(problem, read.robots_first)
-        told = read.contradictions
-        if told:
-            solution = Solution(Status.INFEASIBLE, None, None, None, 0.0)
-        else:
-            console = Console(stderr=True, highlight=False, soft_wrap=True)
-            try:
-                with output.ProgressOutput(measure, console) as progress:
-                    solution = solve(
-                        problem,
-                        method,
-                        seconds=seconds,
-                        seed=seed,
-                        on_progress=progress.take,
-                        on_prepare=lambda: progress.say(output.PREPARING),
-                        clock=time.monotonic,
-                    )
-            except UnsupportedError as error:
-                raise CommandLineError(str(error)) from error
-            except KeyboardInterrupt as error:
-                raise CommandLineError("stopped before the search was over", INTERRUPTED) from error
+        solution, why = searched(read, measure, Search(method, seconds, seed))
         summary = output.summary(measure, solution)
         if plot is not None and solution.schedule is not None:
             plot.parent.mkdir(parents=True, exist_ok=True)
@@ -85,4 +63,4 @@ def schedule(
         typer.echo(summary)
         print_rows(output.table(problem, solution.schedule), output.HEADINGS)
     if solution.schedule is None:
-        raise CommandLineError("\n".join(told) or f"{file}: {summary}", NOT_FINISHED)
+        raise CommandLineError("\n".join(why) or f"{file}: {summary}", NOT_FINISHED)

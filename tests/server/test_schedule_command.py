@@ -112,6 +112,16 @@ def test_without_transfers_the_corridor_has_no_schedule(mend: Any) -> None:
     assert "may be away for 90 s" in err
 
 
+def test_items_that_cannot_all_be_delivered_are_named(mend: Any, tmp_path: Path) -> None:
+    shorter = Path(CORRIDOR).read_text().replace("max_duration_s: 90", "max_duration_s: 70")
+    code, out, err = mend("schedule", write(tmp_path, shorter, "shorter.yaml"))
+    assert (code, out) == (1, "")
+    assert err.splitlines()[-1].endswith(
+        "shorter.yaml: items 'letters', 'parcel' and 'lunch' cannot all be delivered, though all "
+        "but any one of them could: it would take more time away (max_duration_s)"
+    )
+
+
 @pytest.mark.parametrize("example", sorted(EXAMPLES.glob("*.yaml")), ids=lambda path: path.stem)
 def test_picture_is_svg_with_every_item_and_no_name_over_another(
     mend: Any, tmp_path: Path, example: Path

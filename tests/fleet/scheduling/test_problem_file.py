@@ -153,6 +153,11 @@ def test_several_mistakes_are_told_in_the_order_of_their_lines() -> None:
     assert [line.split(":")[1] for line in told(text)] == ["15", "19", "21"]
 
 
+def test_file_without_items_is_told_what_is_missing() -> None:
+    text = TEXT[: TEXT.index("items:")] + "items: []\n"
+    assert "'items' must have at least 1 entry, but it is []" in "; ".join(told(text))
+
+
 @pytest.mark.parametrize("text", ["", "[1, 2]", "name: x", "\t{", "name: !!python/object x"])
 def test_what_is_no_delivery_file_is_refused(text: str) -> None:
     assert told(text)

@@ -1,0 +1,67 @@
+"""The search of `mend schedule`, told as it goes on; and why, where there is no schedule."""
+
+import time
+from dataclasses import dataclass
+
+from rich.console import Console
+
+from fleet.scheduling.joint_contradictions import in_words, joint_contradiction
+from fleet.scheduling.methods import solve
+from fleet.scheduling.solution import Solution, Status, UnsupportedError
+from server.cli import schedule_output as output
+from server.cli.delivery_files import ReadFile
+from server.cli.failures import INTERRUPTED, CommandLineError
+
+EXPLAINING_S = 10.0
+"""At most, and never more than the search was given."""
+EXPLAINING = "there is no schedule; looking for what cannot hold together"
+
+
+@dataclass(frozen=True, slots=True)
+class Search:
+    """How to search, and for how long."""
+
+    method: str
+    seconds: float
+    seed: int
+
+
+def searched(
+    read: ReadFile, measure: output.Measure, search: Search
+) -> tuple[Solution, tuple[str, ...]]:
+    """The solution, and sentences about why there is no schedule, if there is none.
+
+    Raises `CommandLineError` where the method cannot do the problem, and on Ctrl-C.
+    """
+    if read.contradictions:
+        return Solution(Status.INFEASIBLE, None, None, None, 0.0), read.contradictions
+    console = Console(stderr=True, highlight=False, soft_wrap=True)
+    try:
+        with output.ProgressOutput(measure, console) as progress:
+            solution = solve(
+                read.problem,
+                search.method,
+                seconds=search.seconds,
+                seed=search.seed,
+                on_progress=progress.take,
+                on_prepare=lambda: progress.say(output.PREPARING),
+                clock=time.monotonic,
+            )
+            if solution.status is not Status.INFEASIBLE:
+                return solution, ()
+            progress.say(EXPLAINING)
+            return solution, (_explained(read, search),)
+    except UnsupportedError as error:
+        raise CommandLineError(str(error)) from error
+    except KeyboardInterrupt as error:
+        raise CommandLineError("stopped before the search was over", INTERRUPTED) from error
+
+
+def _explained(read: ReadFile, search: Search) -> str:
+    found = joint_contradiction(
+        read.problem,
+        seconds=min(search.seconds, EXPLAINING_S),
+        seed=search.seed,
+        clock=time.monotonic,
+    )
+    return f"{read.path}: {in_words(read.problem, found)}"
