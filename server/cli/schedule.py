@@ -41,6 +41,7 @@ def schedule(
     from rich.console import Console
 
     from fleet.scheduling.drawing.picture import picture
+    from fleet.scheduling.exact.clash import clash_words
     from fleet.scheduling.methods import METHODS, solve
     from fleet.scheduling.solution import Solution, Status, UnsupportedError
     from server.cli import schedule_output as output
@@ -71,6 +72,11 @@ def schedule(
                         on_prepare=lambda: progress.say(output.PREPARING),
                         clock=time.monotonic,
                     )
+                    if solution.status is Status.INFEASIBLE:
+                        progress.say(output.EXPLAINING)
+                        left_s = max(1.0, seconds - solution.seconds)
+                        why = clash_words(problem, seconds=left_s, clock=time.monotonic)
+                        told = (f"{file}: {why}",)
             except UnsupportedError as error:
                 raise CommandLineError(str(error)) from error
             except KeyboardInterrupt as error:
