@@ -26,8 +26,8 @@ from fleet.scheduling.solution import Solution, Status, UnsupportedError
 from fleet.scheduling.vlns.solve import prepare, solve_vlns
 
 OUT = Path("out/scheduling_building.svg")
-LARGE = replace(BINDING, floors=4, robots=4, items=40, capacity=10.0, shift_s=1000.0, wing_m=100.0)
-"""Four robots that bring forty items."""
+LARGE = replace(BINDING, floors=4, robots=4, items=40, capacity=10.0, shift_s=1100.0, wing_m=100.0)
+"""Four robots that bring forty items, in shifts long enough for three wings but not for four."""
 HELPS = 1e-4
 """From which share on a saving is one."""
 WARM_S = 1.0

@@ -41,11 +41,12 @@ def describe_mistake(mistake: ErrorDetails, model: type[BaseModel]) -> str:
     message = mistake["msg"].removeprefix("Value error, ")
     if mistake["type"] == "value_error":
         return f"'{where}': {message}" if where else message
+    if mistake["type"] == "too_short":
+        least, known = mistake["ctx"]["min_length"], mistake["ctx"]["actual_length"]
+        entries = "entry" if least == 1 else "entries"
+        return f"'{where}' must have at least {least} {entries}, but it has {known}"
     if mistake["type"] == "string_pattern_mismatch":
         message = "must be a name: a letter, then at most 63 letters, digits, '_' or '-'"
-    if mistake["type"] == "too_short":
-        count = mistake["ctx"]["min_length"]
-        message = f"must have at least {count} {'entry' if count == 1 else 'entries'}"
     message = message.replace("Input should be", "must be", 1)
     return f"'{where}' {message}, but it is {_show(mistake['input'])}"
 

@@ -8,27 +8,16 @@ import numpy as np
 
 from fleet.scheduling.constraint import Constraint, ConstraintKind
 from fleet.scheduling.item_way import Leg as CarriedLeg
-from fleet.scheduling.leg_search import (
-    ANYWHERE,
-    FAR,
-    Ends,
-    Floats,
-    Legs,
-    Prices,
-    RouteTimes,
-    find_legs,
-    no_legs,
-)
+from fleet.scheduling.leg_search import ANYWHERE, RouteTimes
+from fleet.scheduling.leg_tables import LegTables
 from fleet.scheduling.objective import cost
 from fleet.scheduling.partial_routes import items_in, part_schedule, without_items
-from fleet.scheduling.problem import Problem, Visit
+from fleet.scheduling.problem import Problem
 from fleet.scheduling.schedule import Action, Route, Task
 from fleet.scheduling.temporal_network import Conflict
 from fleet.scheduling.timing import TimedRoutes, service_s
-from fleet.scheduling.trajectories import Leg, Trajectory, TransferGraph
+from fleet.scheduling.trajectories import Leg, Trajectory
 
-BEST_PLACES = 8
-"""How many transfer places are tried for an item: those with the smallest detour."""
 COMPARED = 6
 """How many possible trajectories are compared where more than distance and robots counts."""
 SAME = 1e-9
@@ -62,12 +51,8 @@ class GrowingRoutes(TimedRoutes):
         super().__init__(problem, routes, _whole_items(routes, self.begun))
         self.nearest: Conflict[Constraint] | None = None
         self._held = [0] * len(problem.robots) if held is None else list(held)
-        self._distance_m = _finite(problem.travel.distance_m)
-        self._time_s = _finite(problem.travel.time_s)
-        self._fastest = max(robot.speed for robot in problem.robots)
         self._task_of = self._tasks_by_event()
-        self._times: dict[int, tuple[int, RouteTimes]] = {}
-        self._tables: dict[tuple[int, int, bool], tuple[int, Legs]] = {}
+        self._tables = LegTables(problem)
         weights = problem.weights
         self._timeless = _only_distance_and_robots_count(problem)
         self._bounded = not weights.makespan
@@ -81,7 +66,7 @@ class GrowingRoutes(TimedRoutes):
     def bid(self, item: int, *, transfers: bool = True) -> Bid | None:
         """The lowest marginal cost of an item that was found; None where it has no place."""
         self.nearest = None
-        graph = self._graph(item, transfers)
+        graph = self._tables.graph(item, self._carrier(item), transfers=transfers)
         direct = self._lowest(item, graph.direct(), inf)
         if not transfers:
             return direct
@@ -108,8 +93,8 @@ class GrowingRoutes(TimedRoutes):
         of those that have would do it cheaper alone."""
         if any(leg.robot in changed for leg in bid.trajectory.legs):
             return False
-        ends, prices = self._ends(item, ()), self._prices(item)
-        return all(self._legs(item, k, ends, prices).extra[0, 0, 0] >= bid.cost for k in changed)
+        carrier = self._carrier(item)
+        return all(self._tables.alone(item, carrier, k) >= bid.cost for k in changed)
 
     def _lowest(self, item: int, trajectories: Iterable[Trajectory], limit: float) -> Bid | None:
         lowest: Bid | None = None
@@ -275,93 +260,14 @@ class GrowingRoutes(TimedRoutes):
             for event, task in zip(events, route, strict=True)
         }
 
-    # --- where it could be put --------------------------------------------------------------------
-
-    def _graph(self, item: int, transfers: bool) -> TransferGraph:
-        places = self._transfer_places(item) if transfers else []
-        ends, prices = self._ends(item, places), self._prices(item)
-        legs = [self._legs(item, robot, ends, prices) for robot in range(len(self.routes))]
-        handling = self.problem.transfers
-        return TransferGraph(legs, places, 0.0 if handling.together else handling.service_s)
-
-    def _legs(self, item: int, robot: int, ends: Ends, prices: Prices) -> Legs:
-        version, times = self._times[robot]
-        key = (item, robot, len(ends.load_place) > 1)
-        known = self._tables.get(key)
-        if known is not None and known[0] == version:
-            return known[1]
-        described = self.problem.items[item]
-        carrier = self._carrier(item)
-        legs = no_legs(len(ends.load_place))
-        find_legs(
-            self._distance_m, self._time_s, times, ends, prices, float(described.load),
-            carrier == robot, carrier in (None, robot), legs,
-        )  # fmt: skip
-        self._tables[key] = version, legs
-        return legs
-
-    def _transfer_places(self, item: int) -> list[int]:
-        visits = self.problem.items[item]
-        places = np.array(self.problem.transfers.places, dtype=np.intp)
-        if len(self.problem.robots) < 2 or not len(places):
-            return []
-        origin, destination = self._origin(item), visits.delivery.place
-        detours_m = self._distance_m[origin, places] + self._distance_m[places, destination]
-        nearest = np.argsort(detours_m, kind="stable")[:BEST_PLACES]
-        return [int(place) for place in places[nearest[detours_m[nearest] < FAR]]]
+    def _refresh_times(self) -> set[int]:
+        """Look at the times of all robots again; the robots that have others now."""
+        robots = range(len(self.routes))
+        return {robot for robot in robots if self._tables.see(robot, self._route_times(robot))}
 
     def _carrier(self, item: int) -> int | None:
         """The robot that must begin the item's way."""
         return self.begun.get(item, self.problem.items[item].aboard)
-
-    def _origin(self, item: int) -> int:
-        carrier = self._carrier(item)
-        if carrier is not None:
-            return self.problem.robots[carrier].start
-        return self.problem.items[item].pickup.place
-
-    def _ends(self, item: int, places: Sequence[int]) -> Ends:
-        visits, handling = self.problem.items[item], self.problem.transfers
-        origin, goal = self._origin(item), visits.delivery
-        pickup = visits.pickup if self._carrier(item) is None else Visit(origin)
-        begin_s = pickup.window.earliest_s + pickup.service_s
-        over = list(places)
-        given_from = begin_s + self._time_s[origin, over] / self._fastest
-        until = goal.window.latest_s - self._time_s[over, goal.place] / self._fastest
-        until -= handling.service_s
-        wait_s = 0.0 if handling.together else handling.service_s
-        service = [handling.service_s] * len(over)
-        return Ends(
-            load_place=np.array([origin, *over], dtype=np.int64),
-            load_s=np.array([pickup.service_s, *service]),
-            load_from_s=np.array([pickup.window.earliest_s, *(given_from + wait_s)]),
-            load_until_s=np.array([pickup.window.latest_s, *until]),
-            unload_place=np.array([goal.place, *over], dtype=np.int64),
-            unload_s=np.array([goal.service_s, *service]),
-            unload_from_s=np.array([goal.window.earliest_s, *given_from]),
-            unload_until_s=np.array([goal.window.latest_s, *(until - wait_s)]),
-        )
-
-    def _prices(self, item: int) -> Prices:
-        weights = self.problem.weights
-        return Prices(
-            metre=float(weights.distance + weights.makespan) or SAME,
-            second=float(weights.completion),
-            late_second=float(weights.lateness),
-            due_s=float(self.problem.items[item].delivery.due_s),
-            robot=float(weights.robots),
-        )
-
-    def _refresh_times(self) -> set[int]:
-        """Look at the times of all robots again; the robots that have others now."""
-        changed = set()
-        for robot in range(len(self.routes)):
-            times = self._route_times(robot)
-            known = self._times.get(robot)
-            if known is None or not _same(known[1], times):
-                self._times[robot] = (0 if known is None else known[0] + 1), times
-                changed.add(robot)
-        return changed
 
     def _route_times(self, robot: int) -> RouteTimes:
         problem, route, network = self.problem, self.routes[robot], self.network
@@ -387,17 +293,6 @@ class GrowingRoutes(TimedRoutes):
 
 def _whole_items(routes: Sequence[Route], begun: Mapping[int, int]) -> list[int]:
     return [item for item in items_in(routes) if item not in begun]
-
-
-def _finite(matrix: Floats) -> Floats:
-    return np.ascontiguousarray(np.where(np.isfinite(matrix), matrix, FAR))
-
-
-def _same(first: RouteTimes, second: RouteTimes) -> bool:
-    return first.end_latest_s == second.end_latest_s and all(
-        np.array_equal(getattr(first, name), getattr(second, name))
-        for name in ("place", "begin_s", "latest_s")
-    )
 
 
 def _only_distance_and_robots_count(problem: Problem) -> bool:

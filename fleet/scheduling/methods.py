@@ -28,9 +28,9 @@ Clock = Callable[[], float]
 EXACT_ITEMS = 12
 """Up to this many items the exact method is worth its time."""
 WARM_UP_SHARE = 0.2
-"""The share of the time that goes to heuristics before the exact method begins."""
-
-
+"""The share of the time that goes to heuristics before the exact method begins, at most."""
+WARM_UP_S = 0.25
+"""How much of it they need for each item (seconds): few items are soon as good as they get."""
 EXACT_SIZE = 2_000_000
 """How large the exact model may be (robots times visits squared times items) to fit in memory."""
 
@@ -79,9 +79,10 @@ def _exact_after_heuristics(
     """
     began_s = clock()
     fits = _exact_size(problem) <= EXACT_SIZE
+    warm_up_s = min(WARM_UP_SHARE * seconds, WARM_UP_S * len(problem.items))
     warm = best_heuristic(
         problem,
-        seconds=(WARM_UP_SHARE if fits else 1.0) * seconds,
+        seconds=warm_up_s if fits else seconds,
         seed=seed,
         start=start,
         on_progress=on_progress,
@@ -127,7 +128,9 @@ def _vlns(
 
 
 METHODS: Mapping[str, Method] = {
-    "exact": Method(_exact_after_heuristics, False, True, "optimal, or with a proved bound"),
+    "exact": Method(
+        _exact_after_heuristics, False, True, "optimal, or with a proved bound", prepare_vlns
+    ),
     "vlns": Method(_vlns, False, False, "very large neighbourhoods with transfers", prepare_vlns),
     "alns": Method(
         solve_alns, False, False, "adaptive large neighbourhoods, no transfers", prepare_alns
@@ -141,8 +144,8 @@ METHODS: Mapping[str, Method] = {
     ),
 }
 
-HEURISTICS = ("greedy", "insertion")
-"""What the exact method begins with, quickest first."""
+HEURISTICS = ("greedy", "insertion", "auction", "vlns")
+"""What the exact method begins with, quickest first; the last one takes what time is left."""
 
 
 def best_heuristic(
@@ -157,10 +160,11 @@ def best_heuristic(
     """The best of all heuristics, each of which begins with the best so far."""
     best = Solution(Status.UNKNOWN, start, None, None, 0.0)
     began_s = clock()
-    for name in HEURISTICS:
+    for number, name in enumerate(HEURISTICS):
+        left_s = max(0.0, seconds - (clock() - began_s))
         best = METHODS[name].solve(
             problem,
-            seconds=seconds / len(HEURISTICS),
+            seconds=left_s / (len(HEURISTICS) - number),
             seed=seed,
             start=best.schedule,
             on_progress=_later(on_progress, began_s, clock),

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from rich.console import Console
 
-from fleet.scheduling.joint_contradictions import in_words, joint_contradiction
+from fleet.scheduling.exact.clash import clash_words
 from fleet.scheduling.methods import solve
 from fleet.scheduling.solution import Solution, Status, UnsupportedError
 from server.cli import schedule_output as output
@@ -14,7 +14,6 @@ from server.cli.failures import INTERRUPTED, CommandLineError
 
 EXPLAINING_S = 10.0
 """At most, and never more than the search was given."""
-EXPLAINING = "there is no schedule; looking for what cannot hold together"
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +48,7 @@ def searched(
             )
             if solution.status is not Status.INFEASIBLE:
                 return solution, ()
-            progress.say(EXPLAINING)
+            progress.say(output.EXPLAINING)
             return solution, (_explained(read, search),)
     except UnsupportedError as error:
         raise CommandLineError(str(error)) from error
@@ -58,10 +57,5 @@ def searched(
 
 
 def _explained(read: ReadFile, search: Search) -> str:
-    found = joint_contradiction(
-        read.problem,
-        seconds=min(search.seconds, EXPLAINING_S),
-        seed=search.seed,
-        clock=time.monotonic,
-    )
-    return f"{read.path}: {in_words(read.problem, found)}"
+    seconds = min(search.seconds, EXPLAINING_S)
+    return f"{read.path}: {clash_words(read.problem, seconds=seconds, clock=time.monotonic)}"

@@ -18,7 +18,7 @@ from fleet.scheduling.vlns.arrays import (
 from fleet.scheduling.vlns.insertion import Manner, insert_all, items_room, refresh
 from fleet.scheduling.vlns.removal import choose_items
 from fleet.scheduling.vlns.times import Times, times_for
-from fleet.scheduling.vlns.ways import Ways, ways_for
+from fleet.scheduling.vlns.ways import Ways, lift_bars, ways_for
 
 TRIED = 12
 """How many items of the bank are tried in one step."""
@@ -69,10 +69,11 @@ def take_step(
     copy_plan(current, trial)
     if not refresh(problem, trial, times):
         return False
-    count = choose_items(problem, trial, times, dice, chosen)
+    count = choose_items(problem, trial, times, dice, chosen, search.ways.barred)
     for at in range(count):
         take_out(problem, trial, chosen[at])
     if not refresh(problem, trial, times):
+        lift_bars(search.ways)
         return False
     banked = 0
     for item in range(trial.transfers.size):
@@ -92,6 +93,7 @@ def take_step(
         problem, trial, times, search.ways, dice, chosen, count, manner,
         limit - max(0, banked - TRIED) * problem.penalty,
     )  # fmt: skip
+    lift_bars(search.ways)
     left += max(0, banked - TRIED)
     trial.value[TOTAL] += left * problem.penalty
     if not trial.value[TOTAL] < limit:

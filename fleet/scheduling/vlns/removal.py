@@ -1,4 +1,7 @@
-"""Which items are removed from a plan together: by chance, or because they belong together."""
+"""Which items are removed from a plan together: by chance, or because they belong together.
+
+A removed visit may be barred to its robot: others must then do it, or it is done over transfers.
+"""
 
 from math import inf
 
@@ -6,6 +9,7 @@ from fleet.scheduling.compiled import compiled
 from fleet.scheduling.dice import Dice, one_of, throw
 from fleet.scheduling.vlns.arrays import (
     BANKED,
+    DROP,
     GIVE,
     NOWHERE,
     Integers,
@@ -20,23 +24,27 @@ SMALL = 8
 
 @compiled
 def choose_items(
-    problem: ProblemArrays, plan: Plan, times: Times, dice: Dice, chosen: Integers
-) -> int:
+    problem: ProblemArrays, plan: Plan, times: Times, dice: Dice, chosen: Integers,
+    barred: Integers,
+) -> int:  # fmt: skip
     """Write the items to remove to `chosen`, in one of several manners; how many they are.
 
-    Those in the bank are not among them. `times` are those of the plan.
+    Those in the bank are not among them. `times` are those of the plan. `barred` by node: the robot
+    that must not do it for now; nothing is barred when this is called.
     """
     items = problem.load.size
     wanted = 1 + one_of(dice, items if items <= SMALL else min(items, 4 + items // 5))
     manner = throw(dice)
-    if manner < 0.25:
+    if manner < 0.2:
         return _by_chance(plan, dice, chosen, 0, wanted)
-    if manner < 0.5:
+    if manner < 0.4:
         return _related(problem, plan, times, dice, chosen, wanted)
-    if manner < 0.75:
+    if manner < 0.6:
         return _strings(problem, plan, dice, chosen, wanted)
-    if manner < 0.9:
+    if manner < 0.75:
         return _worst(problem, plan, dice, chosen, wanted)
+    if manner < 0.9:
+        return _visit(problem, plan, dice, chosen, barred, wanted)
     if manner < 0.95:
         return _with_same_transfer(problem, plan, dice, chosen, wanted)
     return _whole_robot(problem, plan, dice, chosen, wanted)
@@ -212,3 +220,77 @@ def _whole_robot(
             chosen[count] = item
             count += 1
     return _by_chance(plan, dice, chosen, count, wanted)
+
+
+@compiled
+def _visit(
+    problem: ProblemArrays, plan: Plan, dice: Dice, chosen: Integers, barred: Integers, wanted: int
+) -> int:  # fmt: skip
+    """All for which one robot goes to some neighbourhood, barred to it; then what is near there.
+
+    Its way is spared only when all of it is done by others, so that no single item shows the gain.
+    """
+    k = one_of(dice, plan.length.size)
+    if plan.length[k] == 0:
+        return _by_chance(plan, dice, chosen, 0, wanted)
+    first = _far_leg(problem, plan, dice, k)
+    far_m = _leg_m(problem, plan, k, first)
+    last = first + 1
+    while last < plan.length[k] and _leg_m(problem, plan, k, last) < far_m:
+        last += 1
+    count = 0
+    for at in range(first, last):
+        node = plan.route[k, at]
+        item = problem.item[node]
+        if problem.kind[node] <= DROP:
+            barred[node] = k
+        if not _has(chosen, count, item):
+            chosen[count] = item
+            count += 1
+    return _near(problem, plan, dice, chosen, count, plan.place[plan.route[k, first]], wanted)
+
+
+@compiled
+def _far_leg(problem: ProblemArrays, plan: Plan, dice: Dice, robot: int) -> int:
+    """The position before which the robot goes far: each as probable as it is long."""
+    whole_m = 0.0
+    found = 0
+    for at in range(plan.length[robot]):
+        leg_m = _leg_m(problem, plan, robot, at)
+        whole_m += leg_m
+        if throw(dice) * whole_m < leg_m:
+            found = at
+    return found
+
+
+@compiled
+def _leg_m(problem: ProblemArrays, plan: Plan, robot: int, at: int) -> float:
+    """How far the robot goes to get to a position of its route (metres)."""
+    before = problem.start[robot] if at == 0 else plan.place[plan.route[robot, at - 1]]
+    return problem.distance_m[before, plan.place[plan.route[robot, at]]]  # type: ignore[no-any-return]
+
+
+@compiled
+def _near(
+    problem: ProblemArrays, plan: Plan, dice: Dice, chosen: Integers, count: int, place: int,
+    more: int,
+) -> int:  # fmt: skip
+    """Add up to so many items more, mostly those with a pickup or delivery near a place."""
+    items = problem.load.size
+    for _ in range(more):
+        nearest, found = inf, NOWHERE
+        for _ in range(1 + items // 4):
+            item = one_of(dice, items)
+            if plan.transfers[item] == BANKED or _has(chosen, count, item):
+                continue
+            away = min(
+                problem.distance_m[place, problem.place[item]],
+                problem.distance_m[place, problem.place[items + item]],
+            )
+            if away < nearest:
+                nearest, found = away, item
+        if found == NOWHERE:
+            break
+        chosen[count] = found
+        count += 1
+    return count

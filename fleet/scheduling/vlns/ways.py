@@ -39,9 +39,11 @@ ROBOT, PLACE, RANK, PARENT, TRANSFERS = 0, 1, 2, 3, 4
 class Ways(NamedTuple):
     """The cheapest ways, by their order: what they probably cost and their last leg.
 
-    `place` has the transfer place of each end; `known`: how many labels and how many ways.
+    `place` has the transfer place of each end; `known`: how many labels and how many ways;
+    `barred` by node: the robot that must not do it for now, or `NOWHERE`.
     """
 
+    barred: Integers
     ends: Ends
     legs: Legs
     place: Integers
@@ -57,6 +59,7 @@ def ways_for(problem: ProblemArrays) -> Ways:
     """Room for the ways of one item."""
     most = min(problem.transfer_place.size, MOST_PLACES)
     return Ways(
+        barred=np.full(problem.place.size, NOWHERE, np.int64),
         ends=ends_for(most),
         legs=legs_for(problem.start.size, most),
         place=np.zeros(most + 1, np.int64),
@@ -70,6 +73,13 @@ def ways_for(problem: ProblemArrays) -> Ways:
 
 
 @compiled
+def lift_bars(ways: Ways) -> None:
+    """Let every robot do everything again."""
+    for node in range(ways.barred.size):
+        ways.barred[node] = NOWHERE
+
+
+@compiled
 def find_ways(
     problem: ProblemArrays, plan: Plan, times: Times, ways: Ways, dice: Dice,
     item: int, fewest: int, most: int, blink: float,
@@ -79,9 +89,10 @@ def find_ways(
     _choose_places(problem, plan, ways, dice, item, most)
     _open_ends(problem, ways, item)
     limit = problem.metre * UNREACHABLE / 2
+    drop = problem.load.size + item
     if fewest == 0:
         for k in range(plan.length.size):
-            if _useless(problem, plan, k, item):
+            if _useless(problem, plan, k, item) or ways.barred[item] == k or ways.barred[drop] == k:
                 continue
             find_legs(
                 problem, plan, times, ways.ends, ways.legs, dice, k, item, HOME, HOME, limit,
@@ -188,7 +199,8 @@ def _find_parts(
     """The cheapest legs from and to transfer places, and between them for two transfers or more."""
     places = ways.ends.known[0]
     for k in range(plan.length.size):
-        first = not _useless(problem, plan, k, item)
+        first = not _useless(problem, plan, k, item) and ways.barred[item] != k
+        last = ways.barred[problem.load.size + item] != k
         for place in range(1, places + 1):
             ways.legs.known[k, 0, place] = 0
             if first:
@@ -196,20 +208,12 @@ def _find_parts(
                     problem, plan, times, ways.ends, ways.legs, dice, k, item, HOME, place, limit,
                     blink,
                 )  # fmt: skip
-            find_legs(
-                problem,
-                plan,
-                times,
-                ways.ends,
-                ways.legs,
-                dice,
-                k,
-                item,
-                place,
-                HOME,
-                limit,
-                blink,
-            )
+            ways.legs.known[k, place, 0] = 0
+            if last:
+                find_legs(
+                    problem, plan, times, ways.ends, ways.legs, dice, k, item, place, HOME, limit,
+                    blink,
+                )  # fmt: skip
             for other in range(1, places + 1):
                 if most > 1 and other != place:
                     find_legs(

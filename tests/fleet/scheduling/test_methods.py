@@ -13,7 +13,7 @@ from ticking_clock import TickingClock
 from fleet.scheduling.checker import check
 from fleet.scheduling.instances.li_lim import read_li_lim
 from fleet.scheduling.instances.transfer_benchmark import read_transfer_benchmark
-from fleet.scheduling.methods import METHODS, solve, suited_method
+from fleet.scheduling.methods import METHODS, best_heuristic, solve, suited_method
 from fleet.scheduling.objective import cost
 from fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit, Weights, Window
 from fleet.scheduling.schedule import Schedule
@@ -123,7 +123,7 @@ def test_insertion_stops_when_the_time_is_over() -> None:
 def test_exact_tells_of_the_heuristics_and_ends_optimal() -> None:
     told: list[Progress] = []
     problem = corridor(items=(parcel(), parcel("back", 4, 0)))
-    found = solve(problem, "exact", seconds=20.0, on_progress=told.append, clock=TickingClock())
+    found = solve(problem, "exact", seconds=20.0, on_progress=told.append, clock=TickingClock(0.5))
     assert found.status is Status.OPTIMAL
     assert told[0].bound is None
     assert found.bound == pytest.approx(found.cost.total if found.cost else None)
@@ -132,10 +132,22 @@ def test_exact_tells_of_the_heuristics_and_ends_optimal() -> None:
 def test_exact_leaves_to_the_heuristics_what_is_too_large(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("fleet.scheduling.methods.EXACT_SIZE", 10)
     problem = corridor(items=(parcel(), parcel("back", 4, 0)))
-    found = solve(problem, "exact", seconds=60.0, clock=TickingClock())
+    found = solve(problem, "exact", seconds=10.0, clock=TickingClock(0.5))
     assert found.schedule is not None
     assert check(problem, found.schedule) == []
     assert (found.status, found.bound) == (Status.FEASIBLE, None)
+
+
+def test_exact_begins_with_the_best_of_the_heuristics() -> None:
+    items = tuple(parcel(f"p{n}", n % 5, (3 * n + 1) % 5) for n in range(6))
+    problem = corridor(items=items, robots=two_robots(max_duration_s=150.0))
+    best = best_heuristic(
+        problem, seconds=20.0, seed=1, start=None, on_progress=None, clock=TickingClock(0.5)
+    )
+    assert best.cost is not None
+    for name in ("greedy", "insertion", "auction", "vlns"):
+        alone = solve(problem, name, seconds=2.0, seed=1, clock=TickingClock(0.5))
+        assert alone.cost is None or best.cost.total <= alone.cost.total
 
 
 def with_a_door(problem: Problem) -> Problem:
@@ -148,7 +160,7 @@ def with_a_door(problem: Problem) -> Problem:
 def test_exact_is_not_offered_where_doors_close() -> None:
     problem = with_a_door(corridor(items=(parcel(),)))
     with pytest.raises(UnsupportedError, match="greedy"):
-        solve(problem, "exact", seconds=1.0, clock=TickingClock())
+        solve(problem, "exact", seconds=1.0, clock=TickingClock(0.5))
     assert suited_method(problem) == "insertion"
 
 
@@ -181,7 +193,7 @@ def test_window_that_nobody_meets_leaves_no_schedule() -> None:
     late = Item("late", 1.0, Visit(4), Visit(0, Window(0.0, 10.0)))
     problem = corridor(items=(late,))
     assert solve(problem, "insertion", seconds=9.0, clock=TickingClock()).status is Status.UNKNOWN
-    assert solve(problem, "exact", seconds=9.0, clock=TickingClock()).status is Status.INFEASIBLE
+    assert solve(problem, "exact", seconds=9.0, clock=TickingClock(0.5)).status is Status.INFEASIBLE
 
 
 @pytest.mark.slow

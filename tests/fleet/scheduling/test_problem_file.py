@@ -155,7 +155,7 @@ def test_several_mistakes_are_told_in_the_order_of_their_lines() -> None:
 
 def test_file_without_items_is_told_what_is_missing() -> None:
     text = TEXT[: TEXT.index("items:")] + "items: []\n"
-    assert "'items' must have at least 1 entry, but it is []" in "; ".join(told(text))
+    assert "'items' must have at least 1 entry, but it has 0" in "; ".join(told(text))
 
 
 @pytest.mark.parametrize("text", ["", "[1, 2]", "name: x", "\t{", "name: !!python/object x"])

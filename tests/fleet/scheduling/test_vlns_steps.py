@@ -19,6 +19,7 @@ from fleet.scheduling.vlns.annealing import search_for, take_step
 from fleet.scheduling.vlns.arrays import (
     BANKED,
     DISTANCE,
+    NOWHERE,
     TOTAL,
     Plan,
     ProblemArrays,
@@ -27,8 +28,9 @@ from fleet.scheduling.vlns.arrays import (
     take_out,
 )
 from fleet.scheduling.vlns.insertion import refresh
+from fleet.scheduling.vlns.removal import choose_items
 from fleet.scheduling.vlns.routes import plan_of, routes_in
-from fleet.scheduling.vlns.ways import find_ways, follow
+from fleet.scheduling.vlns.ways import find_ways, follow, lift_bars
 
 STEPS = 40
 CHAIN = 3
@@ -161,6 +163,42 @@ def test_first_item_changes_robots_when_it_must() -> None:
     assert follow(arrays, plan, search.ways, 0, 0)
     actions = [task.action for task in routes_in(arrays, plan)[0]]
     assert actions == [Action.PICK, Action.GIVE]
+
+
+@pytest.mark.parametrize("task", [0, 1], ids=["pickup", "delivery"])
+def test_what_is_barred_to_a_robot_others_do(task: int) -> None:
+    problem = corridor(items=(parcel(destination=1),))
+    arrays = problem_arrays(problem, CHAIN)
+    search, dice = search_for(arrays), dice_from(np.random.default_rng(0))
+    assert refresh(arrays, search.current, search.times)
+    for bars, robot in ((False, 0), (True, 1)):
+        copy_plan(search.current, search.trial)
+        if bars:
+            search.ways.barred[task] = 0
+        find_ways(arrays, search.trial, search.times, search.ways, dice, 0, 0, 1, 0.0)
+        assert follow(arrays, search.trial, search.ways, 0, 0)
+        assert search.trial.robot[task] == robot
+
+
+def test_a_visit_that_is_spared_leaves_nothing_barred() -> None:
+    problem = scattered(10, 3)
+    arrays = problem_arrays(problem, CHAIN)
+    search, dice = search_for(arrays), dice_from(np.random.default_rng(3))
+    barred = 0
+    for _ in range(STEPS):
+        take_step(arrays, search, dice, CHAIN, 20.0)
+        assert (search.ways.barred == NOWHERE).all()
+        copy_plan(search.current, search.trial)
+        assert refresh(arrays, search.trial, search.times)
+        count = choose_items(
+            arrays, search.trial, search.times, dice, search.chosen, search.ways.barred
+        )
+        tasks = np.flatnonzero(search.ways.barred != NOWHERE)
+        barred += len(tasks)
+        assert set(arrays.item[tasks]) <= set(search.chosen[:count])
+        assert (search.ways.barred[tasks] == search.trial.robot[tasks]).all()
+        lift_bars(search.ways)
+    assert barred > 0
 
 
 @given(seeds, st.integers(1, 50))
