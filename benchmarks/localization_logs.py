@@ -33,6 +33,7 @@ from robots.localization.methods import METHODS, warm_up
 from robots.localization.scan_matching import matched_poses
 
 DATA = Path(os.environ.get("MEND_DATA", Path(__file__).parents[2] / "shared/data"))
+PEER = "mrpt"
 QUICK_SCANS = 150
 HEADINGS = (
     f"{'log':20s} {'method':6s} {'scans':>6s} {'path':>7s} {'median':>8s} {'p95':>7s} {'max':>7s} "
@@ -65,13 +66,12 @@ def localized(method: str, vector_map: VectorMap, log: Log, seed: int) -> Summar
     return summarize(follow(localizer, log), log)
 
 
-def beside(vector_map: VectorMap, log: Log) -> Summary | None:
-    """MRPT on one log, in the wall time that it tells; None where it cannot."""
+def peer_line(name: str, vector_map: VectorMap, log: Log) -> str:
+    """MRPT's row, in the wall time that it tells, or why there is none."""
     try:
-        return summarize(mrpt.mrpt_trace(vector_map, log), log)
+        return line(name, PEER, summarize(mrpt.mrpt_trace(vector_map, log), log))
     except mrpt.MrptError as error:
-        print(error)
-        return None
+        return f"{name:20s} {PEER:6s} {error}"
 
 
 def wean(folder: Path, methods: list[str], scans: int | None, seed: int) -> None:
@@ -108,19 +108,20 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--data", type=Path, default=DATA / "localization")
     parser.add_argument("--log", action="append", help="only this one; may be repeated")
-    parser.add_argument("--method", action="append", choices=list(METHODS))
+    parser.add_argument("--method", action="append", choices=[*METHODS, PEER])
     parser.add_argument("--drop", type=float, default=0.0)
     parser.add_argument("--scans", type=int, help="only the first so many of each log")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--quick", action="store_true", help=f"{QUICK_SCANS} scans of each log")
     given = parser.parse_args()
     scans = QUICK_SCANS if given.quick else given.scans
-    methods = given.method or list(METHODS)
+    wanted = given.method or [*METHODS, PEER]
+    methods = [each for each in wanted if each != PEER]
+    with_peer = PEER in wanted and mrpt.installed()
+    if PEER in wanted and not with_peer:
+        print(mrpt.MISSING)
     for method in methods:
         warm_up(method)
-    with_mrpt = given.method is None and mrpt.installed()
-    if given.method is None and not with_mrpt:
-        print(mrpt.MISSING)
     print(HEADINGS)
     for path in sorted((given.data / "logs").glob("*.log.gz")):
         name = path.name.removesuffix(".log.gz").removesuffix("-corrected")
@@ -135,8 +136,8 @@ def main() -> None:
         vector_map = thinned(read_vector_map(map_path), given.drop, given.seed)
         for method in methods:
             print(line(name, method, localized(method, vector_map, log, given.seed)), flush=True)
-        if with_mrpt and (summary := beside(vector_map, log)) is not None:
-            print(line(name, "mrpt", summary), flush=True)
+        if with_peer:
+            print(peer_line(name, vector_map, log), flush=True)
     if (given.data / "wean").is_dir() and not given.log:
         wean(given.data / "wean", methods, scans, given.seed)
 

@@ -83,7 +83,10 @@ def _run(folder: Path, *command: str) -> str:
     done = subprocess.run(
         command, cwd=folder, capture_output=True, text=True, timeout=TIMEOUT_S, check=False
     )
-    return done.stdout + done.stderr
+    said = done.stdout + done.stderr
+    if done.returncode:
+        raise MrptError(f"{command[0]} ended with {done.returncode}: {said[-300:].strip()}")
+    return said
 
 
 def _write_carmen(log: Log, path: Path) -> None:
