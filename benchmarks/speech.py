@@ -193,15 +193,20 @@ class GrammarDecoder:
         grammar = f"#JSGF V1.0;\ngrammar commands;\npublic <command> = {words};\n"
         self._decoder.add_jsgf_string("commands", grammar)
         self._decoder.activate_search("commands")
+        self._begun = False
 
     def begin(self) -> None:
+        if self._begun:
+            self._decoder.end_utt()
         self._decoder.start_utt()
+        self._begun = True
 
     def take(self, sound: bytes) -> None:
         self._decoder.process_raw(sound)
 
     def end(self) -> Hypothesis:
         self._decoder.end_utt()
+        self._begun = False
         found = self._decoder.hyp()
         words = str(found.hypstr) if found is not None else ""
         command, phrase = command_in(words) or (None, None)

@@ -32,7 +32,7 @@ PHRASES: Mapping[Command, tuple[str, ...]] = {
         "yes thank you", "yes thanks", "yes indeed", "by all means", "yes yes", "yes yes yes",
         "yeah yeah", "i'm on it", "with pleasure", "yes it is", "yes i think so", "i think so",
         "yes sir", "oh yes", "well yes", "um yes", "why yes", "yes robot", "okay robot",
-        "sure why not", "happy to", "i'd be happy to", "right away",
+        "sure why not", "happy to", "i'd be happy to", "right away", "affirmative", "exactly",
     ),
     Command.NO: (
         "no", "nope", "no thanks", "no thank you", "nope sorry", "no way", "no sorry", "sorry no",
@@ -48,7 +48,8 @@ PHRASES: Mapping[Command, tuple[str, ...]] = {
         "no not today", "leave it", "no leave it", "no leave it alone", "no not really",
         "not really", "no it is not", "no it isn't", "that's wrong", "no that's wrong",
         "no way jose", "oh no", "well no", "um no", "no robot", "no sir", "no don't try again",
-        "don't try again", "please do not", "no please", "no i did not",
+        "don't try again", "please do not", "no please", "no i did not", "no can do",
+        "not at the moment", "no not at the moment", "sorry i can't", "no sorry i can't",
     ),
     Command.REPEAT: (
         "repeat", "repeat that", "repeat it", "repeat please", "please repeat",
