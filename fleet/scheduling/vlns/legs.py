@@ -120,7 +120,7 @@ def _detour_cost(
     loads there costs less."""
     after = _place_at(problem, plan, robot, at)
     detour_m = way_m(problem, before, place) + way_m(problem, place, after)
-    return problem.metre * (detour_m - way_m(problem, before, after))  # type: ignore[no-any-return]
+    return problem.metre * (detour_m - way_m(problem, before, after))
 
 
 @compiled
