@@ -43,6 +43,7 @@ def schedule(
     from fleet.scheduling.drawing.picture import picture
     from fleet.scheduling.exact.clash import clash_words
     from fleet.scheduling.methods import METHODS, solve
+    from fleet.scheduling.no_place import left_over_words
     from fleet.scheduling.solution import Solution, Status, UnsupportedError
     from server.cli import schedule_output as output
     from server.cli.delivery_files import read_delivery
@@ -82,6 +83,9 @@ def schedule(
             except KeyboardInterrupt as error:
                 raise CommandLineError("stopped before the search was over", INTERRUPTED) from error
         summary = output.summary(measure, solution)
+        if solution.status is Status.UNKNOWN:
+            left_over = left_over_words(problem, seconds=seconds, clock=time.monotonic)
+            told = (f"{file}: {summary}" + ("" if left_over is None else f"; {left_over}"),)
         if plot is not None and solution.schedule is not None:
             plot.parent.mkdir(parents=True, exist_ok=True)
             plot.write_text(picture(problem, solution.schedule, summary), encoding="utf-8")
