@@ -37,17 +37,20 @@ NAIVE_TRIALS = 3
 
 @dataclass(frozen=True, slots=True)
 class Figure:
-    """One line of the table: milliseconds, the target for the 95 % quantile, the naive way's."""
+    """One line of the table: milliseconds, the target for the 95 % quantile (`at_most`: for the
+    longest), the naive way's."""
 
     what: str
     size: str
     took_ms: list[float]
     target_ms: float
     naive_ms: list[float]
+    at_most: bool = False
 
     def line(self) -> str:
         p95_ms = self.took_ms[ceil(0.95 * len(self.took_ms)) - 1]
-        verdict = "ok" if p95_ms <= self.target_ms else "MISSED"
+        judged_ms = self.took_ms[-1] if self.at_most else p95_ms
+        verdict = "ok" if judged_ms <= self.target_ms else "MISSED"
         return (
             f"{self.what:20} {self.size:>12} {len(self.took_ms):5d} {median(self.took_ms):9.2f} "
             f"{p95_ms:9.2f} {self.took_ms[-1]:9.2f} {self.target_ms:8.0f} {verdict:7}"
@@ -100,6 +103,8 @@ def measured(
     event: Callable[[RunningFleet, NavigationGraph, Random], Event],
     options: argparse.Namespace,
     clock: Clock,
+    *,
+    at_most: bool = False,
 ) -> Figure:
     """Apply an event to copies of the same fleets again and again."""
     chance = Random(options.seed)
@@ -115,7 +120,8 @@ def measured(
         copy.plan()
         if trial < NAIVE_TRIALS:
             naive_ms.append(everything_anew(copy, clock))
-    figure = Figure(what, f"{size[0]} x {size[1]}", sorted(took_ms), target_ms, naive_ms)
+    named = f"{size[0]} x {size[1]}"
+    figure = Figure(what, named, sorted(took_ms), target_ms, naive_ms, at_most)
     print(figure.line(), flush=True)
     return figure
 
@@ -218,8 +224,8 @@ def main() -> None:
     )
     measured("new item", (4, 15), 50.0, some_item, options, clock)
     measured("new item", (10, 100), 200.0, some_item, options, clock)
-    measured("failed robot", (4, 30), 300.0, some_failure, options, clock)
-    measured("failed robot", (10, 100), 1000.0, some_failure, options, clock)
+    measured("failed robot", (4, 30), 300.0, some_failure, options, clock, at_most=True)
+    measured("failed robot", (10, 100), 1000.0, some_failure, options, clock, at_most=True)
     measure_delays(options, clock)
     run_long(options, clock)
 

@@ -49,17 +49,22 @@ def solve_by_insertion(
 
 
 def insert_items(
-    problem: Problem, routes: Sequence[Route], items: Sequence[int], goes_on: Callable[[], bool]
+    problem: Problem,
+    routes: Sequence[Route],
+    items: Sequence[int],
+    goes_on: Callable[[], bool],
+    *,
+    transfers: bool = True,
 ) -> tuple[tuple[Route, ...] | None, int | None]:
     """The routes with more items in them, or None and the item that has no place.
 
-    `routes` hold all items but these.
+    `routes` hold all items but these; `transfers`: whether these may change robots.
     """
     growing = GrowingRoutes(problem, routes)
     if growing.conflict is not None:
         return None, items[0] if items else None
     for item in items:
-        bid = growing.bid(item) if goes_on() else None
+        bid = growing.bid(item, transfers=transfers) if goes_on() else None
         if bid is None:
             return None, item
         growing.award(item, bid)

@@ -14,6 +14,7 @@ from fleet.scheduling.nearest_next import solve_by_nearest_next
 from fleet.scheduling.one_destination import solve_to_one_destination
 from fleet.scheduling.one_task_bidder import solve_one_task_each
 from fleet.scheduling.problem import Problem
+from fleet.scheduling.reinsertion import solve_by_reinsertion
 from fleet.scheduling.routing.arrays import unsupported
 from fleet.scheduling.routing.solve import prepare as prepare_alns
 from fleet.scheduling.routing.solve import solve_alns
@@ -29,7 +30,7 @@ EXACT_ITEMS = 12
 """Up to this many items the exact method is worth its time."""
 WARM_UP_SHARE = 0.2
 """The share of the time that goes to heuristics before the exact method begins, at most."""
-WARM_UP_S = 0.25
+WARM_UP_S = 0.5
 """How much of it they need for each item (seconds): few items are soon as good as they get."""
 EXACT_SIZE = 2_000_000
 """How large the exact model may be (robots times visits squared times items) to fit in memory."""
@@ -119,10 +120,9 @@ def _vlns(
     on_progress: Callable[[Progress], None] | None,
     clock: Clock,
 ) -> Solution:
-    """The search with transfers, which does not know doors that open and close."""
-    if problem.travel.epochs:
-        raise UnsupportedError("the search 'vlns' does not plan around doors; use 'insertion'")
-    return solve_vlns(
+    """The search with transfers; around doors that open and close the one that knows them."""
+    search = solve_by_reinsertion if problem.travel.epochs else solve_vlns
+    return search(
         problem, seconds=seconds, seed=seed, start=start, on_progress=on_progress, clock=clock
     )
 
@@ -131,7 +131,7 @@ METHODS: Mapping[str, Method] = {
     "exact": Method(
         _exact_after_heuristics, False, True, "optimal, or with a proved bound", prepare_vlns
     ),
-    "vlns": Method(_vlns, False, False, "very large neighbourhoods with transfers", prepare_vlns),
+    "vlns": Method(_vlns, True, False, "very large neighbourhoods with transfers", prepare_vlns),
     "alns": Method(
         solve_alns, False, False, "adaptive large neighbourhoods, no transfers", prepare_alns
     ),
@@ -177,7 +177,7 @@ def suited_method(problem: Problem) -> str:
     """The name of the method for a problem of this size and with these features."""
     small = len(problem.items) <= EXACT_ITEMS
     if problem.travel.epochs:
-        return "insertion"
+        return "vlns"
     if small:
         return "exact"
     alone = not problem.transfers.places and unsupported(problem) is None
@@ -206,7 +206,8 @@ def solve(
         raise UnsupportedError(
             f"the method '{method}' cannot plan with doors that open and close; {able} can"
         )
-    if chosen.prepare is not None:
+    # Nothing that plans around doors is compiled for long.
+    if chosen.prepare is not None and not problem.travel.epochs:
         if on_prepare is not None:
             on_prepare()
         chosen.prepare()

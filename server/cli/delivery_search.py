@@ -7,6 +7,7 @@ from rich.console import Console
 
 from fleet.scheduling.exact.clash import clash_words
 from fleet.scheduling.methods import solve
+from fleet.scheduling.no_place import left_over_words
 from fleet.scheduling.solution import Solution, Status, UnsupportedError
 from server.cli import schedule_output as output
 from server.cli.delivery_files import ReadFile
@@ -46,16 +47,22 @@ def searched(
                 on_prepare=lambda: progress.say(output.PREPARING),
                 clock=time.monotonic,
             )
-            if solution.status is not Status.INFEASIBLE:
+            if solution.schedule is not None:
                 return solution, ()
             progress.say(output.EXPLAINING)
-            return solution, (_explained(read, search),)
+            why = _explained(read, measure, search, solution)
+            return solution, (f"{read.path}: {why}",)
     except UnsupportedError as error:
         raise CommandLineError(str(error)) from error
     except KeyboardInterrupt as error:
         raise CommandLineError("stopped before the search was over", INTERRUPTED) from error
 
 
-def _explained(read: ReadFile, search: Search) -> str:
+def _explained(read: ReadFile, measure: output.Measure, search: Search, solution: Solution) -> str:
+    """What clashes, where that is proved; else an item for which no place was found."""
     seconds = min(search.seconds, EXPLAINING_S)
-    return f"{read.path}: {clash_words(read.problem, seconds=seconds, clock=time.monotonic)}"
+    if solution.status is Status.INFEASIBLE:
+        return clash_words(read.problem, seconds=seconds, clock=time.monotonic)
+    left_over = left_over_words(read.problem, seconds=seconds, clock=time.monotonic)
+    summary = output.summary(measure, solution)
+    return summary if left_over is None else f"{summary}; {left_over}"

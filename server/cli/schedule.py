@@ -63,4 +63,4 @@ def schedule(
         typer.echo(summary)
         print_rows(output.table(problem, solution.schedule), output.HEADINGS)
     if solution.schedule is None:
-        raise CommandLineError("\n".join(why) or f"{file}: {summary}", NOT_FINISHED)
+        raise CommandLineError("\n".join(why), NOT_FINISHED)

@@ -17,7 +17,7 @@ BOUND_EVERY_S = 1.0
 
 PREPARING = "getting the search ready; its first use compiles it, which takes up to a minute"
 
-EXPLAINING = "there is no schedule; looking for what cannot hold together"
+EXPLAINING = "no schedule was found; looking for what is in the way"
 
 HEADINGS = ("robot", "arrival", "begin", "departure", "place", "what")
 

@@ -53,25 +53,35 @@ def write(folder: Path, text: str, name: str = "instance.txt") -> Path:
     return path
 
 
-def test_items_that_clash_are_named_with_what_does_not_hold_together(
-    mend: Any, tmp_path: Path
-) -> None:
-    file = write(
-        tmp_path,
-        """\
+CLASH = """\
 name: clash
 travel: {coordinates: {places: {a: [0, 0], b: [40, 0]}}}
 robots: [{name: ada, start: a, capacity: 1}]
 items:
 - {name: post, load: 1, pickup: {place: a}, delivery: {place: b, window_s: [0, 50]}}
 - {name: tea, load: 1, pickup: {place: a}, delivery: {place: b, window_s: [0, 50]}}
-""",
-        "clash.yaml",
-    )
+"""
+
+
+def test_items_that_clash_are_named_with_what_does_not_hold_together(
+    mend: Any, tmp_path: Path
+) -> None:
+    file = write(tmp_path, CLASH, "clash.yaml")
     code, out, err = mend("schedule", file, "--seconds", "5")
     assert (code, out) == (1, "")
     assert "items 'post' and 'tea' cannot all be delivered" in err
     assert "ada carries no more than 1" in err
+
+
+def test_an_item_that_was_left_over_is_named_where_nothing_is_proved(
+    mend: Any, tmp_path: Path
+) -> None:
+    file = write(tmp_path, CLASH, "clash.yaml")
+    code, out, err = mend("schedule", file, "--seconds", "5", "--method", "greedy")
+    assert (code, out) == (1, "")
+    assert "unknown" in err
+    assert "item 'tea' has no place in time beside what the robots have to do already" in err
+    assert "to drop tea at b must begin by 50 s" in err
 
 
 def test_getting_ready_is_announced(mend: Any, tmp_path: Path) -> None:

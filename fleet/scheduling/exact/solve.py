@@ -101,10 +101,12 @@ def _not_worse(problem: Problem, solution: Solution, start: Schedule | None) -> 
     if start is None:
         return solution
     begun = cost(problem, start)
-    if solution.cost is not None and solution.cost.total <= begun.total:
+    # What is as good is left as it is: another schedule may change robots more often for nothing.
+    if solution.cost is not None and solution.cost.total < begun.total * (1 - SAME):
         return solution
     status = Status.OPTIMAL if solution.status is Status.OPTIMAL else Status.FEASIBLE
-    return Solution(status, start, begun, solution.bound, solution.seconds)
+    bound = None if solution.bound is None else min(solution.bound, begun.total)
+    return Solution(status, start, begun, bound, solution.seconds)
 
 
 def _with_flow_bound(

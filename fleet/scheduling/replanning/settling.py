@@ -10,8 +10,9 @@ from math import inf
 
 from fleet.scheduling.auction import Sale, sell
 from fleet.scheduling.checker import TOLERANCE_LOAD
-from fleet.scheduling.constraint import Constraint, ConstraintKind, sentence
+from fleet.scheduling.constraint import Constraint, ConstraintKind
 from fleet.scheduling.contradictions import contradictions
+from fleet.scheduling.no_place import conflict_words, no_place_words
 from fleet.scheduling.objective import cost
 from fleet.scheduling.partial_routes import part_schedule, without_items
 from fleet.scheduling.problem import Problem, Window
@@ -152,7 +153,7 @@ class Settling:
         elif late is not None:
             self._go_late(late, conflict)
         elif longer is not None:
-            self._work_longer(longer, self._conflict_words(conflict))
+            self._work_longer(longer, conflict_words(self.problem, conflict))
         else:
             on_routes = [task.item for k in robots for task in reversed(self.routes[k])]
             self._let_go([*items, *on_routes][0])
@@ -293,16 +294,4 @@ class Settling:
             for each in contradictions(alone):
                 if each.item == 0:
                     return each.sentence
-        if conflict is None:
-            return (
-                f"item '{described.name}' has no place: no robot has room for it on its way "
-                "beside what it has to do already"
-            )
-        return (
-            f"item '{described.name}' has no place in time beside what the robots have to do "
-            f"already: {self._conflict_words(conflict)}"
-        )
-
-    def _conflict_words(self, conflict: Conflict[Constraint]) -> str:
-        words = "; ".join(sentence(self.problem, each) for each in conflict.reasons)
-        return f"these cannot hold together: {words}"
+        return no_place_words(self.problem, item, conflict)

@@ -97,7 +97,10 @@ def find_legs(
             place = ends.loading_place[load]
             arrival_s = free_s + drive_s(problem, robot, before, place)
             begin_s = max(arrival_s, ends.loading_from_s[load])
-            if begin_s <= ends.loading_until_s[load] + TOLERANCE:
+            worth = _detour_cost(problem, plan, robot, at, before, place) < _worst_kept(
+                legs, robot, load, unload, limit
+            )
+            if worth and begin_s <= ends.loading_until_s[load] + TOLERANCE:
                 _unload_after(
                     problem, plan, times, ends, legs, dice, robot, load, unload, at, place,
                     begin_s + ends.loading_s[load], way_m(problem, before, place),
@@ -107,6 +110,25 @@ def find_legs(
             node = plan.route[robot, at]
             before = plan.place[node]
             free_s = times.begin_s[node] + problem.service_s[node]
+
+
+@compiled
+def _detour_cost(
+    problem: ProblemArrays, plan: Plan, robot: int, at: int, before: int, place: int
+) -> float:
+    """What going over a place alone costs; where ways keep the triangle inequality, no leg that
+    loads there costs less."""
+    after = _place_at(problem, plan, robot, at)
+    detour_m = way_m(problem, before, place) + way_m(problem, place, after)
+    return problem.metre * (detour_m - way_m(problem, before, after))
+
+
+@compiled
+def _worst_kept(legs: Legs, robot: int, load: int, unload: int, limit: float) -> float:
+    """What a leg must cost less than to be remembered."""
+    if legs.known[robot, load, unload] < KEPT:
+        return limit
+    return min(limit, legs.extra[robot, load, unload, KEPT - 1])  # type: ignore[no-any-return]
 
 
 @compiled

@@ -15,7 +15,7 @@ from fleet.scheduling.routing.arrays import unsupported
 from fleet.scheduling.routing.solve import prepare as prepare_alns
 from fleet.scheduling.routing.solve import solve_alns
 from fleet.scheduling.schedule import Schedule
-from fleet.scheduling.solution import Progress, Solution, Status
+from fleet.scheduling.solution import Progress, Solution, Status, UnsupportedError
 from fleet.scheduling.timing import Untimeable, earliest_schedule
 from fleet.scheduling.travel import Travel
 from fleet.scheduling.vlns.annealing import Search, anneal, search_for
@@ -57,8 +57,11 @@ def solve_vlns(
 
     It first plans without transfers and goes on from there, so that it is never worse than that.
     The time to compile is not counted. The status is unknown where not every item could be
-    delivered. Raises `ScheduleError` or `BrokenWayError` for a `start` that is not valid.
+    delivered. Raises `ScheduleError` or `BrokenWayError` for a `start` that is not valid, and
+    `UnsupportedError` where doors open and close: its travel times are fixed.
     """
+    if problem.travel.epochs:
+        raise UnsupportedError("the compiled search does not know doors that open and close")
     prepare()
     if start is not None:
         require_valid(problem, start)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from benchmark_instances import DATA
-from delivery_problems import corridor, corridor_items, parcel
+from delivery_problems import HANDED_OVER, corridor, corridor_items, parcel
 from hypothesis import HealthCheck, given, settings
 
 from fleet.scheduling.checker import check
@@ -120,6 +120,20 @@ def test_item_aboard_is_delivered_by_who_has_it_or_whom_it_is_given() -> None:
     assert solution.schedule is not None
     assert solution.cost is not None
     assert solution.cost.total == 80.0
+
+
+ALONE: tuple[Route, ...] = ((Task(0, Action.PICK, 0), Task(4, Action.DROP, 0)), ())
+
+
+@pytest.mark.parametrize("routes", [ALONE, HANDED_OVER], ids=["alone", "handed over"])
+def test_start_that_is_as_good_as_any_stays_as_it_is(routes: tuple[Route, ...]) -> None:
+    problem = corridor(items=(parcel(),))
+    start = earliest_schedule(problem, routes)
+    assert isinstance(start, Schedule)
+    solution = solve_exactly(problem, seconds=SECONDS, start=start)
+    assert solution.status is Status.OPTIMAL
+    assert solution.schedule == start
+    assert solution.gap == 0.0
 
 
 def test_start_is_never_made_worse() -> None:

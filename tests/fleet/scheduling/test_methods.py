@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from math import inf
+from random import Random
 
 import pytest
 from benchmark_instances import DATA
@@ -11,15 +12,18 @@ from hypothesis import strategies as st
 from ticking_clock import TickingClock
 
 from fleet.scheduling.checker import check
+from fleet.scheduling.instances.building import BuildingPlan, building_deliveries
 from fleet.scheduling.instances.li_lim import read_li_lim
 from fleet.scheduling.instances.transfer_benchmark import read_transfer_benchmark
 from fleet.scheduling.methods import METHODS, best_heuristic, solve, suited_method
 from fleet.scheduling.objective import cost
 from fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit, Weights, Window
+from fleet.scheduling.problem_file import problem_of
 from fleet.scheduling.schedule import Schedule
 from fleet.scheduling.solution import Progress, Status, UnsupportedError
 from fleet.scheduling.timing import earliest_schedule
 from fleet.scheduling.travel import Epoch, Travel
+from fleet.scheduling.vlns.solve import solve_vlns
 
 HEURISTICS = ("auction", "greedy", "insertion", "one_task")
 
@@ -161,7 +165,44 @@ def test_exact_is_not_offered_where_doors_close() -> None:
     problem = with_a_door(corridor(items=(parcel(),)))
     with pytest.raises(UnsupportedError, match="greedy"):
         solve(problem, "exact", seconds=1.0, clock=TickingClock(0.5))
-    assert suited_method(problem) == "insertion"
+    assert suited_method(problem) == "vlns"
+
+
+@given(items=corridor_items(), seed=st.integers(0, 99))
+@settings(deadline=None, max_examples=12)
+def test_search_around_doors_is_valid_and_no_worse_than_insertion(
+    items: tuple[Item, ...], seed: int
+) -> None:
+    problem = with_a_door(corridor(items=items, robots=two_robots()))
+    first = solve(problem, "insertion", seconds=30.0, seed=seed, clock=TickingClock(0.1))
+    found = solve(problem, "vlns", seconds=30.0, seed=seed, clock=TickingClock(0.1))
+    assert (found.schedule is None) == (first.schedule is None)
+    if found.schedule is not None and first.cost is not None:
+        assert check(problem, found.schedule) == []
+        assert cost(problem, found.schedule).total <= first.cost.total
+
+
+def test_search_around_doors_mends_what_insertion_missed() -> None:
+    plan = BuildingPlan(robots=2, items=8, office_hours=3, shift_s=None)
+    problem = problem_of(building_deliveries(plan, Random(5)))
+    assert problem.travel.epochs
+    told: list[Progress] = []
+    plain = solve(problem, "insertion", seconds=1000.0, seed=1, clock=TickingClock(1.0))
+    found = solve(
+        problem, "vlns", seconds=300.0, seed=1, on_progress=told.append, clock=TickingClock(1.0)
+    )
+    assert found.cost is not None
+    assert plain.cost is not None
+    assert found.cost.total < plain.cost.total
+    costs = [each.incumbent for each in told]
+    assert costs == sorted(costs, reverse=True)
+    assert costs[-1] == pytest.approx(found.cost.total)
+
+
+def test_compiled_search_refuses_doors() -> None:
+    problem = with_a_door(corridor(items=(parcel(),)))
+    with pytest.raises(UnsupportedError, match="doors"):
+        solve_vlns(problem, seconds=1.0, clock=TickingClock(0.5))
 
 
 @pytest.mark.parametrize("method", HEURISTICS)
