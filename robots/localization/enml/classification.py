@@ -34,22 +34,10 @@ class LongTermFeatures:
         expected_m, seen = self._cast(node, pose, segments)
         points = transform(pose, node.scan_points.points)
         normals = turn(float(pose[2]), node.scan_points.normals)
-        found = np.empty(len(points), dtype=np.int64)
-        lines = np.empty((len(points), 3))
-        match_lines(
-            segments,
-            points,
-            normals,
-            seen,
-            _NEIGHBORS,
-            node.gate_m,
-            self._cos_max_angle,
-            found,
-            lines,
-        )
-        node.is_ltf = found >= 0
-        rows = np.flatnonzero(node.is_ltf)
-        node.ltf = LtfMatches(rows, node.scan_points.points[rows], lines[rows, :2], lines[rows, 2])
+        rows, lines = lines_of(segments, points, normals, seen, node.gate_m, self._cos_max_angle)
+        node.is_ltf = np.zeros(len(points), dtype=np.bool_)
+        node.is_ltf[rows] = True
+        node.ltf = LtfMatches(rows, node.scan_points.points[rows], lines[:, :2], lines[:, 2])
         node.cast_pose, node.cast_gate_m, node.expected_m = pose.copy(), node.gate_m, expected_m
         return True
 
@@ -79,6 +67,25 @@ def cast_bearings(
     ranges, indices = np.empty(len(angles)), np.empty(len(angles), dtype=np.int64)
     cast_sorted(segments, sensor[0], sensor[1], angles, max_range_m, ranges, indices)
     return np.roll(ranges, first), np.roll(indices, first)
+
+
+def lines_of(
+    segments: Floats,
+    points: Floats,
+    normals: Floats,
+    seen: Indices,
+    gate_m: float,
+    cos_max_angle: float,
+) -> tuple[Indices, Floats]:
+    """Which points (map's frame) lie on a line that the map shows there, and those lines.
+
+    `seen` is the segment along each point's bearing; a line is its normal (2) and offset.
+    """
+    found = np.empty(len(points), dtype=np.int64)
+    lines = np.empty((len(points), 3))
+    match_lines(segments, points, normals, seen, _NEIGHBORS, gate_m, cos_max_angle, found, lines)
+    rows = np.flatnonzero(found >= 0)
+    return rows, lines[rows]
 
 
 class _Nearby:

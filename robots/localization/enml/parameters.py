@@ -87,13 +87,15 @@ class EnmlParameters:
     """The robot is looked for elsewhere once the map contradicts it by more than this (ours)..."""
     lost_above: float = 0.75
     """... and is lost, found or not, once it does by more than this (ours)."""
-    carried_below: float = 0.55
-    """A robot was carried away if a smaller share of what it sees than this fits the map or the
-    scans before (ours: 0.61 to 0.88 in the worst hundredth of drives, 0.3 to 0.5 elsewhere)..."""
-    carried_above: float = 0.08
-    """... and a larger share than this is seen through what stood there before (ours)..."""
+    carried_above: float = 0.5
+    """A robot was carried away if the share of what it sees that has changed since a scan before,
+    and the share that fits neither the map nor the scans before, are more than this together
+    (ours: up to 0.43 on recorded drives, 0.53 in a crowd, 0.52 to 1.5 for robots carried)..."""
     carried_after_scans: int = 2
     """... in so many scans in a row (ours)."""
+    alignment_believed_above: float = 0.55
+    """The pre-alignment is followed if it lays more than this share of a scan on something (ours:
+    0.61 to 0.88 in the worst hundredth of drives)."""
     found_below: float = 0.3
     """No place with a measure above this is taken for where a lost robot is (ours)."""
     recovery_near_m: float = 2.5
@@ -101,12 +103,14 @@ class EnmlParameters:
     recovery_every_m: float = 0.7
     """A lost robot looks for its place again after driving this far (ours)."""
     recovery_move_costs: float = 0.2
-    """What any place but its own counts less, for a robot that was not carried, in shares of the
-    returns (ours)."""
-    recovery_lead: float = 0.12
+    """What any place but its own counts less at first, for a robot that was not carried, in shares
+    of the returns (ours)."""
+    recovery_lead: float = 0.06
     """How much better than all others, in shares of the returns, the place has to be at first..."""
-    recovery_patience_m: float = 8.0
-    """... which becomes less until, after driving this far, the best will do (ours)."""
+    recovery_patience_m: float = 4.0
+    """... both become less until, after driving this far, the best will do (ours)."""
+    probation_m: float = 3.0
+    """A place that was found is held against the others that were open for this far (ours)."""
 
     def __post_init__(self) -> None:
         for field in fields(self):
