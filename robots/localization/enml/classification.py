@@ -61,12 +61,33 @@ def cast_bearings(
     segments: Floats, sensor: Poses, bearings: Floats, max_range_m: float
 ) -> tuple[Floats, Indices]:
     """Expected range and segment along ascending bearings from a sensor's pose."""
+    ranges_m, seen = np.empty(len(bearings)), np.empty(len(bearings), dtype=np.int64)
+    cast_around(segments, sensor, bearings, max_range_m, ranges_m, seen)
+    return ranges_m, seen
+
+
+@compiled
+def cast_around(
+    segments: Floats,
+    sensor: Floats,
+    bearings: Floats,
+    max_range_m: float,
+    ranges_m: Floats,
+    seen: Indices,
+) -> None:
+    """The kernel of `cast_bearings`; results go to the last two."""
+    count = bearings.shape[0]
+    if count == 0:
+        return
     angles = np.mod(bearings + sensor[2], 2.0 * np.pi)
-    first = int(np.argmin(angles)) if len(angles) else 0
-    angles = np.roll(angles, -first)
-    ranges, indices = np.empty(len(angles)), np.empty(len(angles), dtype=np.int64)
-    cast_sorted(segments, sensor[0], sensor[1], angles, max_range_m, ranges, indices)
-    return np.roll(ranges, first), np.roll(indices, first)
+    # They ascend from the smallest on, once around.
+    first = np.argmin(angles)
+    ascending = np.concatenate((angles[first:], angles[:first]))
+    found_m, found = np.empty(count), np.empty(count, dtype=np.int64)
+    cast_sorted(segments, sensor[0], sensor[1], ascending, max_range_m, found_m, found)
+    for index in range(count):
+        ranges_m[(first + index) % count] = found_m[index]
+        seen[(first + index) % count] = found[index]
 
 
 def lines_of(

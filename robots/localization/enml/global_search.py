@@ -124,18 +124,15 @@ def _peaks(scores: Counts, headings: Floats, xs: Floats, ys: Floats, count: int)
     return found
 
 
-def distinct(places: list[Poses]) -> list[Poses]:
-    """Those that are not the same place as one before them."""
-    kept = np.empty((len(places), 3))
-    count = 0
-    for place in places:
-        x, y, heading = kept[:count].T
-        near = np.hypot(x - place[0], y - place[1]) < _APART_M
-        if not np.any(near & (np.abs(wrap(heading - place[2])) < _APART_RAD)):
-            kept[count] = place
-            kept[count, 2] = wrap(place[2])
-            count += 1
-    return list(kept[:count])
+def distinct(places: Poses) -> list[int]:
+    """The rows of those that are not the same place as one before them."""
+    kept: list[int] = []
+    for row, place in enumerate(places.reshape(-1, 3)):
+        before = places.reshape(-1, 3)[kept]
+        near = np.hypot(before[:, 0] - place[0], before[:, 1] - place[1]) < _APART_M
+        if not np.any(near & (np.abs(wrap(before[:, 2] - place[2])) < _APART_RAD)):
+            kept.append(row)
+    return kept
 
 
 def same_place(a: Poses, b: Poses) -> bool:
@@ -182,9 +179,17 @@ def score_places(
             left, below = column // step, row // step
             plane = phases[row - below * step, column - left * step]
             begin, end = max(0, -left), min(columns, width - left)
+            if begin >= end:
+                continue
             for y in range(max(0, -below), min(rows, height - below)):
-                for x in range(begin, end):
-                    scores[heading, y, x] += np.uint16(plane[below + y, left + x])
+                add_row(scores[heading, y, begin:end], plane[below + y, left + begin : left + end])
+
+
+@compiled
+def add_row(sums: Counts, row: Bytes) -> None:
+    """Add to sums in place. On its own, over whole slices, this loop becomes vector code."""
+    for x in range(sums.shape[0]):
+        sums[x] += np.uint16(row[x])
 
 
 @compiled

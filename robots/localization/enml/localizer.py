@@ -14,16 +14,16 @@ from robots.localization.enml.classification import LongTermFeatures
 from robots.localization.enml.correspondences import ShortTermFeatures
 from robots.localization.enml.episode import Episode, Ties
 from robots.localization.enml.episodes import episode_start
-from robots.localization.enml.global_search import Region
+from robots.localization.enml.global_search import Region, same_place
 from robots.localization.enml.lost import Evidence, evidence_of
 from robots.localization.enml.parameters import EnmlParameters
 from robots.localization.enml.prior import whitening_of
 from robots.localization.enml.problem import Floats
-from robots.localization.enml.recovery import Recovery
+from robots.localization.enml.recovery import Found, Recovery
 from robots.localization.enml.solver import Linearize, Solution, solve
 from robots.localization.localizer import Estimate, PointClass
 from robots.localization.points import DEFAULT_MAX_RANGE_M, scan_points
-from robots.localization.pose import Poses, transform, wrap, wrap_angle
+from robots.localization.pose import Poses, relative, transform, wrap, wrap_angle
 from robots.localization.scan import Scan, ScanStream
 
 _FIELD_CELL_M = 0.1
@@ -143,16 +143,21 @@ class EnmlLocalizer:
         if before is None:
             return
         change = changed(nodes[before], poses[before], nodes[-1], poses[-1])
-        if change + unexplained <= parameters.carried_above:
+        apart = np.abs(relative(poses[before], poses[-1]))
+        usual = parameters.carried_above_per_m * float(np.hypot(*apart[:2]) + apart[2])
+        if self._mode is Mode.TRACKING:
+            change += unexplained
+        if change <= parameters.carried_above + usual:
             self._familiar, self._surprises = None, 0
             return
         self._familiar = nodes[before].identity
         self._surprises += 1
         if self._surprises >= parameters.carried_after_scans:
             self._episode.keep_newest()
+            self._recovery.forget()
+            self._probation_until_m = 0.0
             self._lose()
             self._may_be_anywhere = True
-            self._recovery.forget()
 
     def _last_familiar(self) -> int | None:
         """The last pose before the newest that saw nothing surprising; None if too little was."""
@@ -179,7 +184,7 @@ class EnmlLocalizer:
             and self._evidence.returns >= _LEAST_RETURNS
         ):
             self._lose()
-            self._next_search_m = 0.0
+            self._next_search_m = self._driven_m
 
     @property
     def _in_doubt(self) -> bool:
@@ -194,22 +199,30 @@ class EnmlLocalizer:
             return covariance
         self._next_search_m = self._driven_m + self._parameters.recovery_every_m
         here = self._episode.poses[-1]
-        if self._mode is Mode.TRACKING and not self._in_doubt:
+        anywhere = self._may_be_anywhere or self._on_probation
+        proven = self._evidence.lost < self._parameters.proven_below
+        if self._mode is Mode.TRACKING and proven and not self._in_doubt:
             found = self._recovery.reconsider(self._episode, here)
         else:
             found = self._recovery.search(
                 self._episode,
-                None if self._may_be_anywhere else here,
-                self._driven_m if self._mode is Mode.LOST else 0.0,
-                believed=self._mode is Mode.TRACKING,
+                None if anywhere else here,
+                self._driven_m if anywhere or self._mode is Mode.LOST else 0.0,
             )
-        if found is None or (self._mode is Mode.TRACKING and found.pose is here):
+            if found is None and self._on_probation:
+                self._lose()
+        if found is None or (self._mode is Mode.TRACKING and same_place(found.pose, here)):
             return covariance
+        return self._move(found, proven=not anywhere and same_place(found.pose, here))
+
+    def _move(self, found: Found, *, proven: bool) -> Floats:
+        """Take the episode to where it was found; unless that is proven, be on one's guard."""
         self._episode.move(found.pose, np.diag(1.0 / _FOUND_STD))
         for node in self._episode.nodes:
             node.gate_m = 2.0 * self._parameters.ltf_gate_m
         self._track(found.evidence)
-        self._probation_until_m = self._driven_m + self._parameters.probation_m
+        if not proven:
+            self._probation_until_m = self._driven_m + self._parameters.probation_m
         return self._settle()
 
     @property
@@ -217,9 +230,14 @@ class EnmlLocalizer:
         return self._driven_m < self._probation_until_m
 
     def _lose(self) -> None:
+        """Believe the map no more. A place on probation that is lost was never the right one."""
         self._mode = Mode.LOST
-        self._driven_m, self._next_search_m = 0.0, self._parameters.recovery_every_m
+        if self._on_probation:
+            self._may_be_anywhere = True
+        else:
+            self._driven_m = 0.0
         self._probation_until_m = 0.0
+        self._next_search_m = self._driven_m + self._parameters.recovery_every_m
         self._episode.leave_map(np.diag(1.0 / _LOST_STD))
 
     def _track(self, seen: Evidence) -> None:

@@ -66,7 +66,7 @@ def weigh(visible: Visible, field: DistanceField, looks: list[Look], place: Pose
     total, sharp = Evidence(), 0.0
     for look in looks:
         sensor = compose(place, look.sensor)
-        expected_m, _, _ = visible.cast(sensor, look.bearings, look.reach_m)
+        expected_m = visible.cast(sensor, look.bearings, look.reach_m)
         away_m = field.at(transform(place, look.points))
         in_view = np.abs(look.ranges_m - expected_m) < _IN_VIEW_M
         on_map = (away_m < _ON_WALL_M) & in_view
@@ -80,7 +80,7 @@ def glance(visible: Visible, look: Look, place: Poses) -> float:
     if not len(look.ranges_m):
         return 0.0
     sensor = compose(place, look.sensor)
-    expected_m, _, _ = visible.cast(sensor, look.bearings, look.reach_m)
+    expected_m = visible.cast(sensor, look.bearings, look.reach_m)
     beyond_m = look.ranges_m - expected_m
     on_map = np.mean(np.abs(beyond_m) < _ROUGHLY_M)
     behind = np.mean(beyond_m > 2.0 * _ROUGHLY_M)

@@ -19,9 +19,10 @@ _THINNED_M = 0.25
 _CANDIDATES = 2000
 """So many places of the lattice are glanced at with a few beams..."""
 _BEAMS_GLANCED = 60
-_CLIMBERS = 200
+_CLIMBERS = 300
 """... the best of them moved to where the points fit, and weighed by two scans..."""
-_FINALISTS = 40
+_FIRST_GATES_M = (0.6, 0.4, 0.25)
+_FINALISTS = 80
 """... and the best of those polished and weighed by more."""
 _SCANS_POLISHED = 3
 _SCANS_WEIGHED = 6
@@ -86,14 +87,11 @@ class Recovery:
         if len(self._open):
             self._open = compose(self._open, motion)
 
-    def search(
-        self, episode: Episode, expected: Poses | None, path_m: float, *, believed: bool
-    ) -> Found | None:
+    def search(self, episode: Episode, expected: Poses | None, path_m: float) -> Found | None:
         """Where the newest pose is, near where it is `expected` or else anywhere; None if unclear.
 
         `path_m` is how far the robot has driven since it was lost: the farther, the more of the
-        surroundings is in the episode, and the smaller a lead has to be to be believed. While the
-        expected place itself is still `believed`, none that explains less is taken instead.
+        surroundings is in the episode, and the smaller a lead has to be to be believed.
         """
         if not len(self._segments):
             return None
@@ -102,10 +100,9 @@ class Recovery:
             regions.insert(0, Region.around(expected, self._parameters.recovery_near_m))
         points = _submap(episode)
         places = [place for region in regions for place in self._climbers(episode, points, region)]
-        two = looks_of(episode, 2)
-        promising = sorted(self._found(distinct(places), two), key=lambda each: -each.score)
-        found = self._weigh(episode, [each.pose for each in promising[:_FINALISTS]], expected)
-        return self._clear_winner(found, expected, path_m, believed=believed)
+        promising = _ranked(self._found(places, looks_of(episode, 2)))[:_FINALISTS]
+        found = self._weigh(episode, [each.pose for each in promising], expected)
+        return self._clear_winner(found, expected, path_m)
 
     def reconsider(self, episode: Episode, expected: Poses) -> Found | None:
         """An open place that is clearly better than the one found; None if none is."""
@@ -114,7 +111,7 @@ class Recovery:
         found = self._weigh(episode, [], expected)
         best = max(found, key=lambda each: each.score)
         here = next(each for each in found if each.pose is expected)
-        better = best.score - here.score > self._parameters.recovery_lead
+        better = best.score - here.score > _LEAST_DOUBT * self._parameters.recovery_lead
         return best if better and self._explains(best) else None
 
     def _climbers(self, episode: Episode, points: Floats, region: Region) -> list[Poses]:
@@ -123,7 +120,17 @@ class Recovery:
         candidates = self._search.candidates(points, region, _CANDIDATES)
         merits = np.array([glance(self._visible, newest, each) for each in candidates])
         best = np.argsort(-merits, kind="stable")[:_CLIMBERS]
-        return [self._search.climb(points, candidates[index]) for index in best]
+        looks = looks_of(episode, 1)
+        return [
+            polish(
+                self._visible,
+                looks,
+                self._search.climb(points, candidates[index]),
+                self._parameters,
+                _FIRST_GATES_M,
+            )
+            for index in best
+        ]
 
     def _weigh(self, episode: Episode, places: list[Poses], expected: Poses | None) -> list[Found]:
         """Places new and still open, with what speaks for each; the best of them stay open."""
@@ -132,26 +139,24 @@ class Recovery:
             polish(self._visible, few, place, self._parameters) for place in [*self._open, *places]
         ]
         claims = [] if expected is None else [expected]
-        found = self._found([*claims, *distinct(polished)], looks)
-        ranked = sorted(found, key=lambda each: -each.score)[:_FINALISTS]
-        self._open = np.array([each.pose for each in ranked]).reshape(-1, 3)
+        found = self._found([*claims, *polished], looks)
+        self._open = np.array([each.pose for each in _ranked(found)[:_FINALISTS]]).reshape(-1, 3)
         return found
 
     def _found(self, places: list[Poses], looks: list[Look]) -> list[Found]:
         return [Found(place, weigh(self._visible, self._field, looks, place)) for place in places]
 
     def _clear_winner(
-        self, found: list[Found], expected: Poses | None, path_m: float, *, believed: bool
+        self, found: list[Found], expected: Poses | None, path_m: float
     ) -> Found | None:
         parameters = self._parameters
-        doubt = max(0.0, 1.0 - path_m / parameters.recovery_patience_m)
 
         def worth(each: Found) -> float:
             moves = expected is not None and not same_place(each.pose, expected)
-            return each.score - doubt * parameters.recovery_move_costs * moves
+            return each.score - parameters.recovery_move_costs * moves
 
         here = next((each for each in found if each.pose is expected), None)
-        if here is not None and believed:
+        if here is not None:
             # Walls may be gone, but no place is left for one that explains less.
             found = [each for each in found if each.evidence.on_map >= here.evidence.on_map]
         if not found:
@@ -159,7 +164,8 @@ class Recovery:
         best = max(found, key=worth)
         rivals = [worth(each) for each in found if not same_place(each.pose, best.pose)]
         lead = worth(best) - max(rivals, default=-_BEHIND_COUNTS)
-        clear = lead >= max(doubt, _LEAST_DOUBT) * parameters.recovery_lead
+        doubt = max(_LEAST_DOUBT, 1.0 - path_m / parameters.recovery_patience_m)
+        clear = lead >= doubt * parameters.recovery_lead
         return best if clear and self._explains(best) else None
 
     def _explains(self, found: Found) -> bool:
@@ -167,6 +173,12 @@ class Recovery:
         seen = found.evidence
         enough = seen.on_map >= max(_LEAST_EXPLAINED * seen.returns, _LEAST_ON_MAP)
         return enough and seen.lost <= self._parameters.found_below
+
+
+def _ranked(found: list[Found]) -> list[Found]:
+    """The best first, and of those at the same place only the best."""
+    ranked = sorted(found, key=lambda each: -each.score)
+    return [ranked[index] for index in distinct(np.array([each.pose for each in ranked]))]
 
 
 def _submap(episode: Episode) -> Floats:
