@@ -27,7 +27,7 @@ class LongTermFeatures:
         self._cos_max_angle = cos(parameters.ltf_max_angle_rad)
 
     def classify(self, node: PoseNode, pose: Poses) -> bool:
-        """Bring the node's long-term features up to a pose; whether there was anything to do."""
+        """Bring the node's long-term features up to a pose; whether that changed which they are."""
         if self._settled(node, pose):
             return False
         segments = self._nearby.around(pose)
@@ -35,11 +35,13 @@ class LongTermFeatures:
         points = transform(pose, node.scan_points.points)
         normals = turn(float(pose[2]), node.scan_points.normals)
         rows, lines = lines_of(segments, points, normals, seen, node.gate_m, self._cos_max_angle)
-        node.is_ltf = np.zeros(len(points), dtype=np.bool_)
-        node.is_ltf[rows] = True
+        is_ltf = np.zeros(len(points), dtype=np.bool_)
+        is_ltf[rows] = True
+        changed = not np.array_equal(is_ltf, node.is_ltf)
+        node.is_ltf = is_ltf
         node.ltf = LtfMatches(rows, node.scan_points.points[rows], lines[:, :2], lines[:, 2])
         node.cast_pose, node.cast_gate_m, node.expected_m = pose.copy(), node.gate_m, expected_m
-        return True
+        return changed
 
     def _settled(self, node: PoseNode, pose: Poses) -> bool:
         before = node.cast_pose
