@@ -17,6 +17,7 @@ import time
 from dataclasses import replace
 from pathlib import Path
 
+import mrpt_peer
 import numpy as np
 
 from maps.vector_map import VectorMap
@@ -30,6 +31,7 @@ from robots.localization.methods import METHODS, warm_up
 from robots.localization.scan_matching import matched_poses
 
 DATA = Path(os.environ.get("MEND_DATA", Path(__file__).parents[2] / "shared/data"))
+PEER = "mrpt"
 QUICK_SCANS = 150
 HEADINGS = (
     f"{'log':20s} {'method':6s} {'scans':>6s} {'path':>7s} {'median':>8s} {'p95':>7s} {'max':>7s} "
@@ -60,6 +62,14 @@ def localized(method: str, vector_map: VectorMap, log: Log, seed: int) -> Summar
     assert log.start is not None
     localizer.reset(log.start)
     return summarize(follow(localizer, log), log)
+
+
+def peer_line(name: str, vector_map: VectorMap, log: Log) -> str:
+    """MRPT's row, or why there is none."""
+    try:
+        return line(name, PEER, summarize(mrpt_peer.mrpt_trace(vector_map, log), log))
+    except RuntimeError as error:
+        return f"{name:20s} {PEER:6s} {error}"
 
 
 def wean(folder: Path, methods: list[str], scans: int | None, seed: int) -> None:
@@ -96,14 +106,18 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--data", type=Path, default=DATA / "localization")
     parser.add_argument("--log", action="append", help="only this one; may be repeated")
-    parser.add_argument("--method", action="append", choices=list(METHODS))
+    parser.add_argument("--method", action="append", choices=[*METHODS, PEER])
     parser.add_argument("--drop", type=float, default=0.0)
     parser.add_argument("--scans", type=int, help="only the first so many of each log")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--quick", action="store_true", help=f"{QUICK_SCANS} scans of each log")
     given = parser.parse_args()
     scans = QUICK_SCANS if given.quick else given.scans
-    methods = given.method or list(METHODS)
+    wanted = given.method or [*METHODS, PEER]
+    methods = [each for each in wanted if each != PEER]
+    peer = PEER in wanted and mrpt_peer.installed()
+    if PEER in wanted and not peer:
+        print(mrpt_peer.MISSING)
     for method in methods:
         warm_up(method)
     print(HEADINGS)
@@ -120,6 +134,8 @@ def main() -> None:
         vector_map = thinned(read_vector_map(map_path), given.drop, given.seed)
         for method in methods:
             print(line(name, method, localized(method, vector_map, log, given.seed)), flush=True)
+        if peer:
+            print(peer_line(name, vector_map, log), flush=True)
     if (given.data / "wean").is_dir() and not given.log:
         wean(given.data / "wean", methods, scans, given.seed)
 
