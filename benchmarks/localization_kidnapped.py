@@ -122,12 +122,13 @@ def told(method: str, outcomes: list[Outcome]) -> str:
     soon = sum(each <= WITHIN_M for each in back)
     said = [each.said_m for each in outcomes if each.said_m is not None]
     silent = [each.silent_m for each in outcomes]
+    recovered = f", median {np.median(back):.1f} m" if back else ""
+    told_it = f", after {np.median(said):.1f} m in the median" if said else ""
     return (
         f"{method:5s} recovered within {WITHIN_M:g} m: {soon} of {len(outcomes)} "
-        f"({soon / len(outcomes):.0%}), median {np.median(back) if back else np.inf:.1f} m; said "
-        f"that it was lost: {len(said)}, after {np.median(said) if said else np.inf:.1f} m in the "
-        f"median; wrong and silent: median {np.median(silent):.1f} m, more than 1 m in "
-        f"{sum(each > 1.0 for each in silent)}; longest update "
+        f"({soon / len(outcomes):.0%}){recovered}; said that it was lost: "
+        f"{len(said)}{told_it}; wrong and silent: median {np.median(silent):.1f} m, more than "
+        f"1 m in {sum(each > 1.0 for each in silent)}; longest update "
         f"{max(each.longest_ms for each in outcomes):.0f} ms of processor time"
     )
 

@@ -53,8 +53,8 @@ def looks_of(episode: Episode, scans: int, most_beams: int = _MOST_BEAMS) -> lis
                 compose(pose, node.sensor_offset),
                 transform(pose, node.scan_points.points[some]),
                 turn(float(pose[2]), node.scan_points.normals[some]),
-                node.bearings[some],
-                node.ranges_m[some],
+                np.ascontiguousarray(node.bearings[some]),
+                np.ascontiguousarray(node.ranges_m[some]),
                 node.reach_m,
             )
         )
