@@ -1,14 +1,18 @@
-"""Speed: the ray cast against the plain way, updates with 271 beams, memory of a run.
+"""Speed: the ray cast against the plain way, updates with 271 beams, memory of a long run.
 
 python benchmarks/localization_speed.py [--maps FOLDER] [--map GHC4] [--updates 600]
-    [--explained 0.45] [--quick]
+    [--explained 0.45] [--quick] [--hours 8]
+
+With --hours, EnML drives to and fro over the made-up floor for so long (a scan every 2 s of the
+floor's time), and its resident memory is told every hour.
 """
 
 # ruff: noqa: T201
 import argparse
 import os
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -16,18 +20,24 @@ import psutil
 from numpy.typing import NDArray
 
 from maps.ray_cast import cast
+from maps.vector_map import VectorMap
 from maps.vector_map_file import read_vector_map
 from robots.localization.evaluation import follow
-from robots.localization.localizer import Timed
+from robots.localization.localizer import Estimate, Timed
+from robots.localization.logs.log import LogStep
 from robots.localization.methods import METHODS, warm_up
+from robots.localization.pose import relative
 from robots.localization.synthetic.settings import SceneSettings
-from robots.localization.synthetic.world import scene
+from robots.localization.synthetic.world import Scene, scene
 
 DATA = Path(os.environ.get("MEND_DATA", Path(__file__).parents[2] / "shared/data"))
 Matrix = NDArray[np.float64]
 RAYS = 1000
 RANGE_M = 30.0
 STEP_M = 0.1
+SCAN_EVERY_S = 2.0
+LONG_RUN_EVERY = 4
+"""A scan each 0.4 m: a slow robot."""
 
 
 def plain_cast(segments: Matrix, x: float, y: float, angles: Matrix) -> Matrix:
@@ -54,6 +64,38 @@ def median_ms(work: Callable[[], object], times: int) -> float:
     return 1e3 * float(np.median(taken))
 
 
+def to_and_fro(made_up: Scene, every: int, count: int) -> Iterator[LogStep]:
+    """A drive back and forth over every so-manieth place of another, with what was seen there."""
+    steps, truth = made_up.log.steps[::every], made_up.truth[::every]
+    there_and_back = [*range(len(steps)), *range(len(steps) - 2, 0, -1)]
+    before = truth[0]
+    for number in range(count):
+        at = there_and_back[number % len(there_and_back)]
+        scan = replace(steps[at].scan, time_s=SCAN_EVERY_S * number)
+        yield LogStep(relative(before, truth[at]), scan, truth[at])
+        before = truth[at]
+
+
+def long_run(vector_map: VectorMap, made_up: Scene, hours: int) -> None:
+    """Resident memory of EnML over so many hours."""
+    localizer = METHODS["enml"](vector_map, 1)
+    localizer.reset(made_up.truth[0])
+    process = psutil.Process()
+    hourly = round(3600 / SCAN_EVERY_S)
+    resident, errors = [], []
+    for number, step in enumerate(to_and_fro(made_up, LONG_RUN_EVERY, hours * hourly)):
+        estimate = localizer.update(step.odometry, step.scan)
+        assert step.reference is not None
+        errors.append(np.hypot(*(estimate.pose - step.reference)[:2]))
+        if number % hourly == hourly - 1:
+            resident.append(process.memory_info().rss / 2**20)
+    told = ", ".join(f"{each:.1f}" for each in resident)
+    print(
+        f"enml  {hours} h, {len(errors)} updates, median error {np.median(errors):.3f} m, largest "
+        f"{max(errors):.2f} m; resident after each hour: {told} MB"
+    )
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--maps", type=Path, default=DATA / "localization/maps")
@@ -61,6 +103,7 @@ def main() -> None:
     parser.add_argument("--updates", type=int, default=600)
     parser.add_argument("--explained", type=float, default=0.45)
     parser.add_argument("--quick", action="store_true", help="100 updates")
+    parser.add_argument("--hours", type=int, default=0, help="a long run of so many hours too")
     given = parser.parse_args()
     updates = 100 if given.quick else given.updates
     vector_map = read_vector_map(given.maps / f"{given.map}.vectormap.txt")
@@ -84,11 +127,11 @@ def main() -> None:
         localizer = Timed(make(vector_map, 1), time.process_time)
         localizer.reset(made_up.truth[0])
         resident: list[int] = []
-        trace = follow(
-            localizer,
-            made_up.log,
-            on_estimate=lambda _, __, seen=resident: seen.append(process.memory_info().rss),
-        )
+
+        def take(_: int, __: Estimate, seen: list[int] = resident) -> None:
+            seen.append(process.memory_info().rss)
+
+        trace = follow(localizer, made_up.log, on_estimate=take)
         p50, p95 = 1e3 * np.percentile(trace.durations_s, (50, 95))
         grown = (resident[-1] - resident[len(resident) // 2]) / 2**20
         print(
@@ -96,6 +139,8 @@ def main() -> None:
             f"explained: median {p50:.1f} ms, p95 {p95:.1f} ms of processor time; memory "
             f"{grown:+.1f} MB over the second half"
         )
+    if given.hours:
+        long_run(vector_map, made_up, given.hours)
 
 
 if __name__ == "__main__":

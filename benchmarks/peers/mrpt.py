@@ -1,4 +1,7 @@
-"""MRPT's particle filter: a log and a map go to its programs, its poses come back."""
+"""MRPT's particle filter: a log and a map go to its programs, its poses come back.
+
+It is not tuned to the logs, and how noisy it takes odometry to be is set by its converter alone.
+"""
 
 import re
 import shutil

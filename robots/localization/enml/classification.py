@@ -27,31 +27,21 @@ class LongTermFeatures:
         self._cos_max_angle = cos(parameters.ltf_max_angle_rad)
 
     def classify(self, node: PoseNode, pose: Poses) -> bool:
-        """Bring the node's long-term features up to a pose; whether there was anything to do."""
+        """Bring the node's long-term features up to a pose; whether that changed which they are."""
         if self._settled(node, pose):
             return False
         segments = self._nearby.around(pose)
         expected_m, seen = self._cast(node, pose, segments)
         points = transform(pose, node.scan_points.points)
         normals = turn(float(pose[2]), node.scan_points.normals)
-        found = np.empty(len(points), dtype=np.int64)
-        lines = np.empty((len(points), 3))
-        match_lines(
-            segments,
-            points,
-            normals,
-            seen,
-            _NEIGHBORS,
-            node.gate_m,
-            self._cos_max_angle,
-            found,
-            lines,
-        )
-        node.is_ltf = found >= 0
-        rows = np.flatnonzero(node.is_ltf)
-        node.ltf = LtfMatches(rows, node.scan_points.points[rows], lines[rows, :2], lines[rows, 2])
+        rows, lines = lines_of(segments, points, normals, seen, node.gate_m, self._cos_max_angle)
+        is_ltf = np.zeros(len(points), dtype=np.bool_)
+        is_ltf[rows] = True
+        changed = not np.array_equal(is_ltf, node.is_ltf)
+        node.is_ltf = is_ltf
+        node.ltf = LtfMatches(rows, node.scan_points.points[rows], lines[:, :2], lines[:, 2])
         node.cast_pose, node.cast_gate_m, node.expected_m = pose.copy(), node.gate_m, expected_m
-        return True
+        return changed
 
     def _settled(self, node: PoseNode, pose: Poses) -> bool:
         before = node.cast_pose
@@ -73,12 +63,52 @@ def cast_bearings(
     segments: Floats, sensor: Poses, bearings: Floats, max_range_m: float
 ) -> tuple[Floats, Indices]:
     """Expected range and segment along ascending bearings from a sensor's pose."""
+    ranges_m, seen = np.empty(len(bearings)), np.empty(len(bearings), dtype=np.int64)
+    cast_around(segments, sensor, bearings, max_range_m, ranges_m, seen)
+    return ranges_m, seen
+
+
+@compiled
+def cast_around(
+    segments: Floats,
+    sensor: Floats,
+    bearings: Floats,
+    max_range_m: float,
+    ranges_m: Floats,
+    seen: Indices,
+) -> None:
+    """The kernel of `cast_bearings`; results go to the last two."""
+    count = bearings.shape[0]
+    if count == 0:
+        return
     angles = np.mod(bearings + sensor[2], 2.0 * np.pi)
-    first = int(np.argmin(angles)) if len(angles) else 0
-    angles = np.roll(angles, -first)
-    ranges, indices = np.empty(len(angles)), np.empty(len(angles), dtype=np.int64)
-    cast_sorted(segments, sensor[0], sensor[1], angles, max_range_m, ranges, indices)
-    return np.roll(ranges, first), np.roll(indices, first)
+    # They ascend from the smallest on, once around.
+    first = np.argmin(angles)
+    ascending = np.concatenate((angles[first:], angles[:first]))
+    found_m, found = np.empty(count), np.empty(count, dtype=np.int64)
+    cast_sorted(segments, sensor[0], sensor[1], ascending, max_range_m, found_m, found)
+    for index in range(count):
+        ranges_m[(first + index) % count] = found_m[index]
+        seen[(first + index) % count] = found[index]
+
+
+def lines_of(
+    segments: Floats,
+    points: Floats,
+    normals: Floats,
+    seen: Indices,
+    gate_m: float,
+    cos_max_angle: float,
+) -> tuple[Indices, Floats]:
+    """Which points (map's frame) lie on a line that the map shows there, and those lines.
+
+    `seen` is the segment along each point's bearing; a line is its normal (2) and offset.
+    """
+    found = np.empty(len(points), dtype=np.int64)
+    lines = np.empty((len(points), 3))
+    match_lines(segments, points, normals, seen, _NEIGHBORS, gate_m, cos_max_angle, found, lines)
+    rows = np.flatnonzero(found >= 0)
+    return rows, lines[rows]
 
 
 class _Nearby:

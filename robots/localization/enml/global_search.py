@@ -12,14 +12,18 @@ from robots.localization.enml.problem import Floats, Indices
 from robots.localization.pose import Poses, wrap
 
 Grid = NDArray[np.float32]
+Bytes = NDArray[np.uint8]
+Counts = NDArray[np.uint16]
 
 _COARSE_M = 0.4
 _COARSE_WIDTH_M = 0.3
 _HEADINGS = 72
 _COARSE_POINTS = 150
+_FULL_FIT = 255.0
+"""Coarse fits are bytes, and all points of a place fit into two: the search is then fastest."""
 _FINE_POINTS = 150
 _FINE_WIDTH_M = 0.15
-_FINE_STEPS = ((0.2, np.radians(3.0)), (0.1, np.radians(1.5)), (0.05, np.radians(0.75)))
+_FINE_STEPS = ((0.2, np.radians(3.0)), (0.1, np.radians(1.5)))
 _APART_M = 0.7
 _APART_RAD = np.radians(15.0)
 
@@ -46,34 +50,28 @@ class GlobalSearch:
     def __init__(self, field: DistanceField) -> None:
         self._origin, self._cell_m = field.origin, field.cell_m
         self._step = max(round(_COARSE_M / field.cell_m), 1)
-        self._coarse = _phases(fits(field, _COARSE_WIDTH_M), self._step)
+        coarse = np.rint(_FULL_FIT * fits(field, _COARSE_WIDTH_M)).astype(np.uint8)
+        self._coarse = _phases(coarse, self._step)
         self._fine = fits(field, _FINE_WIDTH_M)
 
-    def best_places(self, points: Floats, region: Region, count: int) -> list[Poses]:
-        """At most so many poses within a region at which points (robot's frame) fit, best first.
+    def climb(self, points: Floats, place: Poses) -> Poses:
+        """The pose near a place of the lattice at which points (robot's frame) fit best."""
+        some = points[_spread(len(points), _FINE_POINTS)]
+        pose = np.array(place, dtype=np.float64)
+        for step_m, step_rad in _FINE_STEPS:
+            refine(self._fine, self._origin, self._cell_m, some, pose, step_m, step_rad)
+        return pose
 
-        They are some way apart from each other, and refined to a few centimetres.
-        """
+    def candidates(self, points: Floats, region: Region, count: int) -> list[Poses]:
+        """At most so many places of a region's lattice where points (robot's frame) fit best."""
         if not len(points):
             return []
-        candidates = self._candidates(points, region, 4 * count)
-        some = points[_spread(len(points), _FINE_POINTS)]
-        refined = np.empty((len(candidates), 4))
-        for row, candidate in enumerate(candidates):
-            pose = candidate.copy()
-            score = 0.0
-            for step_m, step_rad in _FINE_STEPS:
-                score = refine(self._fine, self._origin, self._cell_m, some, pose, step_m, step_rad)
-            refined[row, :3], refined[row, 3] = pose, score
-        return _distinct(refined[np.argsort(-refined[:, 3], kind="stable")], count)
-
-    def _candidates(self, points: Floats, region: Region, count: int) -> list[Poses]:
         lattice_m = self._step * self._cell_m
         first = np.floor((np.array([region.x_min, region.y_min]) - self._origin) / self._cell_m)
         size = np.array([region.x_max - region.x_min, region.y_max - region.y_min])
         columns, rows = np.ceil(size / lattice_m).astype(np.int64) + 1
         headings = np.linspace(0.0, 2.0 * np.pi, _HEADINGS, endpoint=False)
-        scores = np.zeros((len(headings), rows, columns), dtype=np.float32)
+        scores = np.zeros((len(headings), rows, columns), dtype=np.uint16)
         score_places(
             self._coarse,
             first.astype(np.int64),
@@ -85,7 +83,7 @@ class GlobalSearch:
         corner = self._origin + first * self._cell_m
         xs = corner[0] + np.arange(columns) * lattice_m
         ys = corner[1] + np.arange(rows) * lattice_m
-        return _peaks(scores, headings, xs, ys, count)
+        return _peaks(scores, headings, xs, ys, count // 2)
 
 
 def _spread(count: int, wanted: int) -> NDArray[np.int64]:
@@ -99,7 +97,7 @@ def fits(field: DistanceField, width_m: float) -> Grid:
     return np.asarray(fit)
 
 
-def _peaks(scores: Grid, headings: Floats, xs: Floats, ys: Floats, count: int) -> list[Poses]:
+def _peaks(scores: Counts, headings: Floats, xs: Floats, ys: Floats, count: int) -> list[Poses]:
     """The places with the highest scores, of neighbours only the best.
 
     Once for the best heading of each place, and once for the best of the other half of the circle:
@@ -117,22 +115,23 @@ def _peaks(scores: Grid, headings: Floats, xs: Floats, ys: Floats, count: int) -
         (other.max(axis=0), other_heading),
     ):
         peak = values == maximum_filter(values, size=3)
-        order = np.argsort(-np.where(peak, values, -1.0), axis=None, kind="stable")[:count]
+        order = np.argsort(-np.where(peak, values.astype(np.int64), -1), axis=None, kind="stable")[
+            :count
+        ]
         for at in order:
             row, column = divmod(int(at), values.shape[1])
             found.append(np.array([xs[column], ys[row], headings[chosen[row, column]]]))
     return found
 
 
-def _distinct(ranked: Floats, count: int) -> list[Poses]:
-    kept: list[Poses] = []
-    for row in ranked:
-        pose = row[:3].copy()
-        if all(not same_place(pose, other) for other in kept):
-            pose[2] = wrap(pose[2])
-            kept.append(pose)
-            if len(kept) == count:
-                break
+def distinct(places: Poses) -> list[int]:
+    """The rows of those that are not the same place as one before them."""
+    kept: list[int] = []
+    for row, place in enumerate(places.reshape(-1, 3)):
+        before = places.reshape(-1, 3)[kept]
+        near = np.hypot(before[:, 0] - place[0], before[:, 1] - place[1]) < _APART_M
+        if not np.any(near & (np.abs(wrap(before[:, 2] - place[2])) < _APART_RAD)):
+            kept.append(row)
     return kept
 
 
@@ -143,13 +142,13 @@ def same_place(a: Poses, b: Poses) -> bool:
     )
 
 
-def _phases(fit: Grid, step: int) -> Grid:
+def _phases(fit: Bytes, step: int) -> Bytes:
     """Every `step`-th row and column of a grid, for each of the first ones to start from.
 
     What a coarse lattice reads for one point then lies side by side in memory.
     """
     height, width = (-(-size // step) for size in fit.shape)
-    padded = np.zeros((height * step, width * step), dtype=np.float32)
+    padded = np.zeros((height * step, width * step), dtype=np.uint8)
     padded[: fit.shape[0], : fit.shape[1]] = fit
     split = padded.reshape(height, step, width, step).transpose(1, 3, 0, 2)
     return np.ascontiguousarray(split)
@@ -157,12 +156,12 @@ def _phases(fit: Grid, step: int) -> Grid:
 
 @compiled
 def score_places(
-    phases: Grid,
+    phases: Bytes,
     first: Indices,
     cell_m: float,
     points: Floats,
     headings: Floats,
-    scores: Grid,
+    scores: Counts,
 ) -> None:
     """Sum of how well all points fit, for each heading, row and column of the lattice.
 
@@ -180,9 +179,17 @@ def score_places(
             left, below = column // step, row // step
             plane = phases[row - below * step, column - left * step]
             begin, end = max(0, -left), min(columns, width - left)
+            if begin >= end:
+                continue
             for y in range(max(0, -below), min(rows, height - below)):
-                for x in range(begin, end):
-                    scores[heading, y, x] += plane[below + y, left + x]
+                add_row(scores[heading, y, begin:end], plane[below + y, left + begin : left + end])
+
+
+@compiled
+def add_row(sums: Counts, row: Bytes) -> None:
+    """Add to sums in place. On its own, over whole slices, this loop becomes vector code."""
+    for x in range(sums.shape[0]):
+        sums[x] += np.uint16(row[x])
 
 
 @compiled

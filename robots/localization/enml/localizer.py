@@ -9,21 +9,21 @@ from maps.vector_map import VectorMap
 from robots.localization.distance_field import distance_field
 from robots.localization.enml import normal_equations
 from robots.localization.enml.alignment import Aligner
-from robots.localization.enml.carried import seen_through
+from robots.localization.enml.carried import changed
 from robots.localization.enml.classification import LongTermFeatures
 from robots.localization.enml.correspondences import ShortTermFeatures
 from robots.localization.enml.episode import Episode, Ties
 from robots.localization.enml.episodes import episode_start
-from robots.localization.enml.global_search import Region
+from robots.localization.enml.global_search import Region, same_place
 from robots.localization.enml.lost import Evidence, evidence_of
 from robots.localization.enml.parameters import EnmlParameters
 from robots.localization.enml.prior import whitening_of
 from robots.localization.enml.problem import Floats
-from robots.localization.enml.recovery import Recovery
+from robots.localization.enml.recovery import Found, Recovery
 from robots.localization.enml.solver import Linearize, Solution, solve
 from robots.localization.localizer import Estimate, PointClass
 from robots.localization.points import DEFAULT_MAX_RANGE_M, scan_points
-from robots.localization.pose import Poses, transform, wrap, wrap_angle
+from robots.localization.pose import Poses, relative, transform, wrap, wrap_angle
 from robots.localization.scan import Scan, ScanStream
 
 _FIELD_CELL_M = 0.1
@@ -70,9 +70,9 @@ class EnmlLocalizer:
         )
         self._mode = Mode.TRACKING
         self._evidence = Evidence()
-        self._surprises = 0
+        self._familiar: int | None = None
         self._may_be_anywhere = False
-        self._driven_m = self._next_search_m = 0.0
+        self._driven_m = self._next_search_m = self._probation_until_m = 0.0
         self._short_term = ShortTermFeatures(self._parameters)
         self.reset(np.zeros(3) if start is None else start)
 
@@ -88,6 +88,8 @@ class EnmlLocalizer:
         self._stream = ScanStream()
         self._short_term.forget()
         self._driven_m, self._next_search_m = 0.0, self._parameters.recovery_every_m
+        self._probation_until_m = 0.0
+        self._recovery.forget()
         self._track(Evidence())
         self._may_be_anywhere = bool(
             covariance[0, 0] + covariance[1, 1] > self._parameters.recovery_near_m**2
@@ -111,12 +113,13 @@ class EnmlLocalizer:
         motion = self._stream.accept(odometry, scan)
         self._episode.extend(motion, scan, scan_points(scan))
         self._driven_m += float(np.hypot(motion[0], motion[1]))
+        self._recovery.move(motion)
         self._notice_being_carried(self._align())
         self._set_first_gate()
         covariance = self._settle()
         if self._mode is Mode.TRACKING:
             self._weigh_evidence()
-        if self._mode is Mode.LOST or self._in_doubt:
+        if self._mode is Mode.LOST or self._in_doubt or self._on_probation:
             covariance = self._look_for_place(covariance)
         return self._estimate(covariance)
 
@@ -133,22 +136,42 @@ class EnmlLocalizer:
             pose, covariance, node.scan_points, classes, lost, is_lost or self._in_doubt
         )
 
-    def _notice_being_carried(self, fit: float) -> None:
+    def _notice_being_carried(self, unexplained: float) -> None:
         """Whoever sees neither the map nor what was there just before was carried elsewhere."""
-        self._surprises = self._surprises + 1 if self._is_surprised(fit) else 0
-        if self._mode is Mode.TRACKING and self._surprises >= self._parameters.carried_after_scans:
+        nodes, poses, parameters = self._episode.nodes, self._episode.poses, self._parameters
+        before = self._last_familiar()
+        if before is None:
+            return
+        change = changed(nodes[before], poses[before], nodes[-1], poses[-1])
+        apart = np.abs(relative(poses[before], poses[-1]))
+        usual = parameters.carried_above_per_m * float(np.hypot(*apart[:2]) + apart[2])
+        if self._mode is Mode.TRACKING:
+            change += unexplained
+        if change <= parameters.carried_above + usual:
+            self._familiar, self._surprises = None, 0
+            return
+        self._familiar = nodes[before].identity
+        self._surprises += 1
+        if self._surprises >= parameters.carried_after_scans:
             self._episode.keep_newest()
+            self._recovery.forget()
+            self._probation_until_m = 0.0
             self._lose()
             self._may_be_anywhere = True
 
-    def _is_surprised(self, fit: float) -> bool:
-        nodes, poses, parameters = self._episode.nodes, self._episode.poses, self._parameters
-        if len(nodes) < 2 or len(nodes[-1].scan_points) < _LEAST_RETURNS:
-            return False
-        return (
-            fit < parameters.carried_below
-            and seen_through(nodes[-2], poses[-2], nodes[-1], poses[-1]) > parameters.carried_above
+    def _last_familiar(self) -> int | None:
+        """The last pose before the newest that saw nothing surprising; None if too little was."""
+        nodes = self._episode.nodes
+        before = next(
+            (index for index, node in enumerate(nodes[:-1]) if node.identity == self._familiar),
+            len(nodes) - 2,
         )
+        if (
+            before < 0
+            or min(len(nodes[each].scan_points) for each in (before, -1)) < _LEAST_RETURNS
+        ):
+            return None
+        return before
 
     def _weigh_evidence(self) -> None:
         """Judge by the newest scans whether the robot is where it is believed to be."""
@@ -161,7 +184,7 @@ class EnmlLocalizer:
             and self._evidence.returns >= _LEAST_RETURNS
         ):
             self._lose()
-            self._next_search_m = 0.0
+            self._next_search_m = self._driven_m
 
     @property
     def _in_doubt(self) -> bool:
@@ -175,26 +198,52 @@ class EnmlLocalizer:
         if self._driven_m < self._next_search_m:
             return covariance
         self._next_search_m = self._driven_m + self._parameters.recovery_every_m
-        expected = None if self._may_be_anywhere else self._episode.poses[-1]
-        path_m = self._driven_m if self._mode is Mode.LOST else 0.0
-        found = self._recovery.search(self._episode, expected, path_m)
-        if found is None or (self._mode is Mode.TRACKING and found.pose is expected):
+        here = self._episode.poses[-1]
+        anywhere = self._may_be_anywhere or self._on_probation
+        proven = self._evidence.lost < self._parameters.proven_below
+        if self._mode is Mode.TRACKING and proven and not self._in_doubt:
+            found = self._recovery.reconsider(self._episode, here)
+        else:
+            found = self._recovery.search(
+                self._episode,
+                None if anywhere else here,
+                self._driven_m if anywhere or self._mode is Mode.LOST else 0.0,
+            )
+            if found is None and self._on_probation:
+                self._lose()
+        if found is None or (self._mode is Mode.TRACKING and same_place(found.pose, here)):
             return covariance
+        return self._move(found, proven=not anywhere and same_place(found.pose, here))
+
+    def _move(self, found: Found, *, proven: bool) -> Floats:
+        """Take the episode to where it was found; unless that is proven, be on one's guard."""
         self._episode.move(found.pose, np.diag(1.0 / _FOUND_STD))
         for node in self._episode.nodes:
             node.gate_m = 2.0 * self._parameters.ltf_gate_m
         self._track(found.evidence)
+        if not proven:
+            self._probation_until_m = self._driven_m + self._parameters.probation_m
         return self._settle()
 
+    @property
+    def _on_probation(self) -> bool:
+        return self._driven_m < self._probation_until_m
+
     def _lose(self) -> None:
+        """Believe the map no more. A place on probation that is lost was never the right one."""
         self._mode = Mode.LOST
-        self._driven_m, self._next_search_m = 0.0, self._parameters.recovery_every_m
+        if self._on_probation:
+            self._may_be_anywhere = True
+        else:
+            self._driven_m = 0.0
+        self._probation_until_m = 0.0
+        self._next_search_m = self._driven_m + self._parameters.recovery_every_m
         self._episode.leave_map(np.diag(1.0 / _LOST_STD))
 
     def _track(self, seen: Evidence) -> None:
         self._mode = Mode.TRACKING
         self._evidence = seen
-        self._surprises = 0
+        self._surprises, self._familiar = 0, None
         self._may_be_anywhere = False
 
     def _settle(self) -> Floats:
@@ -210,7 +259,7 @@ class EnmlLocalizer:
         return solution.covariance_of(-1)
 
     def _align(self) -> float:
-        """Move the newest prediction to where its scan fits clearly better; how much fits there."""
+        """Move the newest prediction to where its scan fits better; the share that fits nothing."""
         episode, parameters = self._episode, self._parameters
         nodes, poses = episode.nodes, episode.poses
         recent = [
@@ -227,10 +276,10 @@ class EnmlLocalizer:
             newest.travel.deviations(parameters),
             on_map=self._mode is Mode.TRACKING,
         )
-        believed = aligned.fit >= parameters.carried_below
+        believed = aligned.fit >= parameters.alignment_believed_above
         if believed and aligned.gain > parameters.alignment_min_gain:
             poses[-1] = aligned.pose
-        return aligned.fit
+        return aligned.unexplained
 
     def _set_first_gate(self) -> None:
         """Open the newest pose's gate as wide as its prediction is uncertain."""

@@ -42,6 +42,7 @@ class PoseNode:
 
     identity: int
     scan_points: ScanPoints
+    beam_spacing_rad: float
     bearings: Floats
     ranges_m: Floats
     sensor_offset: Floats
@@ -71,6 +72,7 @@ class PoseNode:
         return cls(
             identity,
             scan_points,
+            scan.angle_increment,
             scan.angles[scan_points.beams],
             scan.ranges[scan_points.beams],
             scan.sensor_offset,

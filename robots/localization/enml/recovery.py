@@ -5,29 +5,35 @@ from dataclasses import dataclass
 import numpy as np
 
 from robots.localization.distance_field import DistanceField
-from robots.localization.enml.classification import cast_bearings
 from robots.localization.enml.episode import Episode
-from robots.localization.enml.global_search import GlobalSearch, Region, same_place
-from robots.localization.enml.lost import Evidence, evidence
+from robots.localization.enml.global_search import GlobalSearch, Region, distinct, same_place
+from robots.localization.enml.looks import Look, Weight, glance, looks_of, weigh
+from robots.localization.enml.lost import Evidence
 from robots.localization.enml.parameters import EnmlParameters
+from robots.localization.enml.polishing import polish
 from robots.localization.enml.problem import Floats
+from robots.localization.enml.visible import Visible
 from robots.localization.pose import Poses, compose, relative, transform
 
 _THINNED_M = 0.25
-_CANDIDATES = 160
-_GLANCES = 2
-"""All candidates are weighed by so many scans..."""
-_FINALISTS = 40
-"""... and the best of them by more."""
-_SCANS_WEIGHED = 5
+_CANDIDATES = 2000
+"""So many places of the lattice are glanced at with a few beams..."""
+_BEAMS_GLANCED = 60
+_CLIMBERS = 300
+"""... the best of them moved to where the points fit, and weighed by two scans..."""
+_FIRST_GATES_M = (0.6, 0.4, 0.25)
+_FINALISTS = 80
+"""... and the best of those polished and weighed by more."""
+_SCANS_POLISHED = 3
+_SCANS_WEIGHED = 6
 _LEAST_EXPLAINED = 0.15
 """Where the map explains fewer of the returns, no robot is found."""
 _LEAST_ON_MAP = 40.0
 """No robot is found by fewer returns than these."""
-_ON_WALL_M = 0.15
+_LEAST_DOUBT = 0.25
+"""However far it has driven, a robot does not choose between places that are all the same to it."""
 _BEHIND_COUNTS = 8.0
 """Right places have hardly any return from behind a wall, those that look alike a few percent."""
-_BEFORE_COUNTS = 0.15
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,11 +41,26 @@ class Found:
     """A place for the newest pose, and what speaks for it."""
 
     pose: Poses
-    evidence: Evidence
+    weight: Weight
+
+    @property
+    def evidence(self) -> Evidence:
+        """What the map says about what is seen from there."""
+        return self.weight.evidence
+
+    @property
+    def score(self) -> float:
+        """At most 1: how well the map explains the returns, less those that could not be."""
+        returns = self.evidence.returns
+        against = _BEHIND_COUNTS * self.evidence.behind
+        return (self.weight.sharp - against) / returns if returns else 0.0
 
 
 class Recovery:
-    """Searches a map for where the newest pose of an episode may be."""
+    """Searches a map for where the newest pose of an episode may be.
+
+    Places that one search leaves open are weighed again by the next, with what was seen since.
+    """
 
     def __init__(
         self,
@@ -51,10 +72,20 @@ class Recovery:
     ) -> None:
         self._segments = segments
         self._everywhere = region
-        self._field = field
         self._search = GlobalSearch(field)
-        self._max_range_m = max_range_m
+        self._field = field
+        self._visible = Visible(segments, max_range_m)
         self._parameters = parameters
+        self.forget()
+
+    def forget(self) -> None:
+        """Begin anew: the robot may be elsewhere than all places so far."""
+        self._open: Floats = np.zeros((0, 3))
+
+    def move(self, motion: Poses) -> None:
+        """Let the open places come along with the robot."""
+        if len(self._open):
+            self._open = compose(self._open, motion)
 
     def search(self, episode: Episode, expected: Poses | None, path_m: float) -> Found | None:
         """Where the newest pose is, near where it is `expected` or else anywhere; None if unclear.
@@ -68,15 +99,52 @@ class Recovery:
         if expected is not None:
             regions.insert(0, Region.around(expected, self._parameters.recovery_near_m))
         points = _submap(episode)
-        places = [
-            place
-            for region in regions
-            for place in self._search.best_places(points, region, _CANDIDATES)
-        ]
-        glanced = sorted(places, key=lambda place: -_score(self._weigh(episode, place, _GLANCES)))
-        finalists = glanced[:_FINALISTS] if expected is None else [expected, *glanced[:_FINALISTS]]
-        found = [Found(each, self._weigh(episode, each, _SCANS_WEIGHED)) for each in finalists]
+        places = [place for region in regions for place in self._climbers(episode, points, region)]
+        promising = _ranked(self._found(places, looks_of(episode, 2)))[:_FINALISTS]
+        found = self._weigh(episode, [each.pose for each in promising], expected)
         return self._clear_winner(found, expected, path_m)
+
+    def reconsider(self, episode: Episode, expected: Poses) -> Found | None:
+        """An open place that is clearly better than the one found; None if none is."""
+        if not len(self._open):
+            return None
+        found = self._weigh(episode, [], expected)
+        best = max(found, key=lambda each: each.score)
+        here = next(each for each in found if each.pose is expected)
+        better = best.score - here.score > _LEAST_DOUBT * self._parameters.recovery_lead
+        return best if better and self._explains(best) else None
+
+    def _climbers(self, episode: Episode, points: Floats, region: Region) -> list[Poses]:
+        """The places of a region's lattice that look right, each where the points fit best."""
+        (newest,) = looks_of(episode, 1, _BEAMS_GLANCED)
+        candidates = self._search.candidates(points, region, _CANDIDATES)
+        merits = np.array([glance(self._visible, newest, each) for each in candidates])
+        best = np.argsort(-merits, kind="stable")[:_CLIMBERS]
+        looks = looks_of(episode, 1)
+        return [
+            polish(
+                self._visible,
+                looks,
+                self._search.climb(points, candidates[index]),
+                self._parameters,
+                _FIRST_GATES_M,
+            )
+            for index in best
+        ]
+
+    def _weigh(self, episode: Episode, places: list[Poses], expected: Poses | None) -> list[Found]:
+        """Places new and still open, with what speaks for each; the best of them stay open."""
+        few, looks = looks_of(episode, _SCANS_POLISHED), looks_of(episode, _SCANS_WEIGHED)
+        polished = [
+            polish(self._visible, few, place, self._parameters) for place in [*self._open, *places]
+        ]
+        claims = [] if expected is None else [expected]
+        found = self._found([*claims, *polished], looks)
+        self._open = np.array([each.pose for each in _ranked(found)[:_FINALISTS]]).reshape(-1, 3)
+        return found
+
+    def _found(self, places: list[Poses], looks: list[Look]) -> list[Found]:
+        return [Found(place, weigh(self._visible, self._field, looks, place)) for place in places]
 
     def _clear_winner(
         self, found: list[Found], expected: Poses | None, path_m: float
@@ -85,7 +153,7 @@ class Recovery:
 
         def worth(each: Found) -> float:
             moves = expected is not None and not same_place(each.pose, expected)
-            return _score(each.evidence) - parameters.recovery_move_costs * moves
+            return each.score - parameters.recovery_move_costs * moves
 
         here = next((each for each in found if each.pose is expected), None)
         if here is not None:
@@ -94,39 +162,23 @@ class Recovery:
         if not found:
             return None
         best = max(found, key=worth)
-        seen = best.evidence
-        explained = seen.on_map >= max(_LEAST_EXPLAINED * seen.returns, _LEAST_ON_MAP)
-        if seen.lost > parameters.found_below or not explained:
-            return None
         rivals = [worth(each) for each in found if not same_place(each.pose, best.pose)]
         lead = worth(best) - max(rivals, default=-_BEHIND_COUNTS)
-        enough = parameters.recovery_lead * max(0.0, 1.0 - path_m / parameters.recovery_patience_m)
-        return best if lead >= enough else None
+        doubt = max(_LEAST_DOUBT, 1.0 - path_m / parameters.recovery_patience_m)
+        clear = lead >= doubt * parameters.recovery_lead
+        return best if clear and self._explains(best) else None
 
-    def _weigh(self, episode: Episode, place: Poses, scans: int) -> Evidence:
-        """What so many scans, spread over the episode, say about the newest being at a place."""
-        total = Evidence()
-        newest = episode.poses[-1]
-        chosen = np.unique(np.linspace(len(episode) - 1, 0, scans).astype(int))
-        for index in chosen:
-            node = episode.nodes[index]
-            pose = compose(place, relative(newest, episode.poses[index]))
-            sensor = compose(pose, node.sensor_offset)
-            reach_m = min(self._max_range_m, node.reach_m)
-            expected_m, _ = cast_bearings(self._segments, sensor, node.bearings, reach_m)
-            seen = transform(pose, node.scan_points.points)
-            on_wall = self._field.at(seen) < _ON_WALL_M
-            in_view = np.abs(node.ranges_m - expected_m) < 2.0
-            total = total.faded(1.0, evidence(node.ranges_m, expected_m, on_wall & in_view))
-        return total
+    def _explains(self, found: Found) -> bool:
+        """Whether a place explains enough of what is seen to be believed at all."""
+        seen = found.evidence
+        enough = seen.on_map >= max(_LEAST_EXPLAINED * seen.returns, _LEAST_ON_MAP)
+        return enough and seen.lost <= self._parameters.found_below
 
 
-def _score(seen: Evidence) -> float:
-    """At most 1: explained returns, less those that could not be."""
-    if not seen.returns:
-        return 0.0
-    against = _BEHIND_COUNTS * seen.behind + _BEFORE_COUNTS * seen.before
-    return (seen.on_map - against) / seen.returns
+def _ranked(found: list[Found]) -> list[Found]:
+    """The best first, and of those at the same place only the best."""
+    ranked = sorted(found, key=lambda each: -each.score)
+    return [ranked[index] for index in distinct(np.array([each.pose for each in ranked]))]
 
 
 def _submap(episode: Episode) -> Floats:

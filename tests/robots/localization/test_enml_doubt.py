@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from maps.ray_cast import cast
-from robots.localization.enml.carried import seen_through
+from robots.localization.enml.carried import changed, seen_through
 from robots.localization.enml.lost import Evidence
 from robots.localization.enml.motion_model import Travel
 from robots.localization.enml.pose_node import PoseNode
@@ -25,29 +25,38 @@ def seen(world: np.ndarray, pose: Poses) -> PoseNode:
     return PoseNode.of(0, scan, scan_points(scan), Travel(), 0.15)
 
 
-def test_driving_on_sees_through_nothing() -> None:
+def test_driving_on_changes_nothing() -> None:
     on = np.array([0.5, 0.1, 0.3])
-    assert seen_through(seen(ROOM, HERE), HERE, seen(ROOM, on), on) == 0.0
+    assert changed(seen(ROOM, HERE), HERE, seen(ROOM, on), on) == 0.0
 
 
-def test_who_steps_before_the_robot_is_not_seen_through() -> None:
-    assert seen_through(seen(ROOM, HERE), HERE, seen(np.vstack([ROOM, PERSON]), HERE), HERE) == 0.0
+def test_what_comes_into_view_from_behind_an_edge_has_not_changed() -> None:
+    edge = np.vstack([HALL, [[1.0, 0.3, 1.0, 4.0]]])
+    on = np.array([1.5, 0.0, 0.4])
+    assert changed(seen(edge, HERE), HERE, seen(edge, on), on) < 0.02
 
 
-def test_a_larger_room_is_seen_through_the_walls_of_a_smaller() -> None:
-    assert seen_through(seen(ROOM, HERE), HERE, seen(HALL, HERE), HERE) > 0.9
+def test_who_steps_before_the_robot_appears_and_hides_what_did_not_vanish() -> None:
+    alone, met = seen(ROOM, HERE), seen(np.vstack([ROOM, PERSON]), HERE)
+    assert seen_through(met, HERE, alone, HERE) == 0.0
+    assert 0.2 < changed(alone, HERE, met, HERE) < 0.4
 
 
-def test_what_was_not_looked_at_is_not_seen_through() -> None:
+def test_a_smaller_room_is_seen_through_from_a_larger() -> None:
+    assert seen_through(seen(HALL, HERE), HERE, seen(ROOM, HERE), HERE) > 0.9
+    assert changed(seen(ROOM, HERE), HERE, seen(HALL, HERE), HERE) > 0.9
+
+
+def test_only_what_both_looked_at_is_compared() -> None:
     behind = np.array([0.0, 0.0, np.pi])
-    share = seen_through(seen(ROOM, HERE), HERE, seen(HALL, behind), behind)
-    assert 0.1 < share < 0.6
+    assert changed(seen(ROOM, HERE), HERE, seen(ROOM, behind), behind) < 0.02
+    assert changed(seen(ROOM, HERE), HERE, seen(HALL, behind), behind) > 0.9
 
 
-def test_nothing_seen_is_nothing_seen_through() -> None:
+def test_nothing_seen_is_nothing_changed() -> None:
     nowhere = np.array([50.0, 50.0, 0.0])
-    assert seen_through(seen(ROOM, HERE), HERE, seen(ROOM, nowhere), HERE) == 0.0
-    assert seen_through(seen(ROOM, nowhere), HERE, seen(ROOM, HERE), HERE) == 0.0
+    assert changed(seen(ROOM, nowhere), HERE, seen(ROOM, HERE), HERE) == 0.0
+    assert changed(seen(ROOM, HERE), HERE, seen(ROOM, nowhere), HERE) == 0.0
 
 
 @pytest.mark.parametrize("before", [0.0, 50.0, 500.0])
