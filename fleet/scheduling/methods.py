@@ -30,7 +30,7 @@ EXACT_ITEMS = 12
 """Up to this many items the exact method is worth its time."""
 WARM_UP_SHARE = 0.2
 """The share of the time that goes to heuristics before the exact method begins, at most."""
-WARM_UP_S = 0.5
+WARM_UP_S = 1.0
 """How much of it they need for each item (seconds): few items are soon as good as they get."""
 EXACT_SIZE = 2_000_000
 """How large the exact model may be (robots times visits squared times items) to fit in memory."""
