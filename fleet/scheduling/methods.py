@@ -4,7 +4,7 @@ A method is added here: a solver with the signature of `Solver`, and what it can
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 from fleet.scheduling.auction import solve_by_auction
@@ -30,8 +30,10 @@ EXACT_ITEMS = 12
 """Up to this many items the exact method is worth its time."""
 WARM_UP_SHARE = 0.2
 """The share of the time that goes to heuristics before the exact method begins, at most."""
-WARM_UP_S = 0.5
+WARM_UP_S = 0.25
 """How much of it they need for each item (seconds): few items are soon as good as they get."""
+LAST_SHARE = 0.1
+"""The share of the time after it for what it has not proved: a search may still find better."""
 EXACT_SIZE = 2_000_000
 """How large the exact model may be (robots times visits squared times items) to fit in memory."""
 
@@ -94,11 +96,24 @@ def _exact_after_heuristics(
     spent_s = clock() - began_s
     solution = solve_exactly(
         problem,
-        seconds=max(0.1, seconds - spent_s),
+        seconds=max(0.1, (1 - LAST_SHARE) * (seconds - spent_s)),
         seed=seed,
         start=warm.schedule,
         on_progress=_later(on_progress, began_s, clock),
     )
+    if solution.status in (Status.FEASIBLE, Status.UNKNOWN):
+        last = _vlns(
+            problem,
+            seconds=max(0.0, seconds - (clock() - began_s)),
+            seed=seed,
+            start=solution.schedule,
+            on_progress=None,
+            clock=clock,
+        )
+        if last.schedule is not None:
+            solution = replace(
+                solution, status=Status.FEASIBLE, schedule=last.schedule, cost=last.cost
+            )
     status = solution.status
     # Incumbent and bound may differ by the rounding of the model alone.
     if solution.cost is not None and solution.gap == 0.0:
