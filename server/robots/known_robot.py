@@ -145,7 +145,10 @@ class KnownRobot:
             await self._sink.robot_connected(self.name, self.hello)
 
     async def _tell_lost(self, reason: str) -> None:
-        if self.session is None and self._sink is not None and self._sink_sees_it:
+        # Who is about to take the ended connection's place has not gone away.
+        async with self.taking_over:
+            gone = self.session is None
+        if gone and self._sink is not None and self._sink_sees_it:
             self._sink_sees_it = False
             await self._sink.robot_lost(self.name, reason)
 

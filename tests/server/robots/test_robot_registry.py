@@ -276,6 +276,31 @@ async def test_a_newer_connection_replaces_the_older_one(
     assert sink.lost == []
 
 
+async def test_a_robot_is_not_lost_while_a_newer_connection_is_being_made(
+    registry: RobotRegistry,
+    sink: RecordingSink,
+    journal: SqliteJournal,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    older, newer = PlayedRobot(registry), PlayedRobot(registry)
+    await older.greet(hello())
+    absence_over = asyncio.Event()
+    received = journal.received
+
+    async def received_late(robot: str, boot: str) -> int:
+        # The loop keeps to the order of its timers: that of the absence has run out by then.
+        asyncio.get_running_loop().call_later(2 * QUICK.absence_s, absence_over.set)
+        await absence_over.wait()
+        return await received(robot, boot)
+
+    monkeypatch.setattr(journal, "received", received_late)
+    await newer.greet(hello())
+    await newer.deliver(report(1))
+    assert absence_over.is_set()
+    assert registry.connected("arm")
+    assert sink.lost == []
+
+
 async def test_a_robot_whose_connection_ended_is_lost_after_a_while_and_only_once(
     registry: RobotRegistry, sink: RecordingSink
 ) -> None:
