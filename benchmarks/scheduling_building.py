@@ -64,11 +64,15 @@ def measure_exactly(problem: Problem, seconds: float, seed: int) -> Draw:
     """The proved optimum without transfers, and the best that is found with them."""
     apart = problem.without_transfers()
     begin = solve_alns(apart, seconds=WARM_S, seed=seed, clock=time.perf_counter)
-    alone = solve_exactly(apart, seconds=seconds, seed=seed, start=begin.schedule)
+    alone = solve_exactly(
+        apart, seconds=seconds, seed=seed, start=begin.schedule, clock=time.perf_counter
+    )
     warm = solve_vlns(
         problem, seconds=WARM_S, seed=seed, start=alone.schedule, clock=time.perf_counter
     )
-    shared = solve_exactly(problem, seconds=seconds, seed=seed, start=warm.schedule)
+    shared = solve_exactly(
+        problem, seconds=seconds, seed=seed, start=warm.schedule, clock=time.perf_counter
+    )
     return Draw(problem.name, alone, shared)
 
 

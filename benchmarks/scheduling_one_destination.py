@@ -61,7 +61,7 @@ def main() -> None:
         walk = total(solve_to_one_destination(problem, seconds=0.0, clock=clock))
         shared = solve_to_one_destination(problem, seconds=2.0, seed=1, clock=clock)
         naive = total(solve_one_task_each(problem, seconds=1.0, clock=clock))
-        best = solve_exactly(problem, seconds=options.seconds, start=shared.schedule)
+        best = solve_exactly(problem, seconds=options.seconds, start=shared.schedule, clock=clock)
         proved = best.status is Status.OPTIMAL
         least = total(best) if proved else (best.bound or 0.0)
         mark = "" if proved else " (only its bound)"

@@ -9,6 +9,7 @@ from typing import Protocol
 
 from fleet.scheduling.auction import solve_by_auction
 from fleet.scheduling.cheapest_insertion import solve_by_insertion
+from fleet.scheduling.exact.route_bound import prepare as prepare_routes
 from fleet.scheduling.exact.solve import solve_exactly
 from fleet.scheduling.nearest_next import solve_by_nearest_next
 from fleet.scheduling.one_destination import solve_to_one_destination
@@ -100,6 +101,7 @@ def _exact_after_heuristics(
         seed=seed,
         start=warm.schedule,
         on_progress=_later(on_progress, began_s, clock),
+        clock=clock,
     )
     if solution.status in (Status.FEASIBLE, Status.UNKNOWN):
         last = _vlns(
@@ -142,9 +144,14 @@ def _vlns(
     )
 
 
+def _prepare_exact() -> None:
+    prepare_vlns()
+    prepare_routes()
+
+
 METHODS: Mapping[str, Method] = {
     "exact": Method(
-        _exact_after_heuristics, False, True, "optimal, or with a proved bound", prepare_vlns
+        _exact_after_heuristics, False, True, "optimal, or with a proved bound", _prepare_exact
     ),
     "vlns": Method(_vlns, True, False, "very large neighbourhoods with transfers", prepare_vlns),
     "alns": Method(

@@ -118,3 +118,12 @@ class Travel:
             if leaves_s + lasts_s <= epoch.until_s + TOLERANCE_S:
                 shortest_s = min(shortest_s, lasts_s)
         return shortest_s
+
+
+def shortest_ways(matrix: Matrix) -> Matrix:
+    """From place to place, also by way of others; in the unit of the matrix."""
+    shortest = matrix.copy()
+    for place in range(shortest.shape[0]):
+        by_way = shortest[:, place, None] + shortest[None, place, :]
+        np.minimum(shortest, by_way, out=shortest)
+    return shortest

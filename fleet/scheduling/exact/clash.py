@@ -37,7 +37,7 @@ def clash_words(problem: Problem, *, seconds: float, clock: Callable[[], float])
         left_s = seconds - (clock() - began_s)
         if left_s <= 0:
             return False
-        found = solve_exactly(candidate, seconds=PROOF_SHARE * left_s)
+        found = solve_exactly(candidate, seconds=PROOF_SHARE * left_s, clock=clock)
         return found.status is Status.INFEASIBLE
 
     core = _fewest_items(replace(problem, weights=ANYTHING), infeasible)

@@ -10,11 +10,11 @@ from collections import defaultdict
 from math import inf, isfinite
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fleet.scheduling.exact.linear_program import LinearProgram
 from fleet.scheduling.exact.nodes import Node, NodeKind, arcs, nodes_of, travel
 from fleet.scheduling.problem import Problem, Visit
+from fleet.scheduling.travel import shortest_ways
 
 TOLERANCE = 1e-6
 """The share by which HiGHS may be wrong."""
@@ -166,7 +166,7 @@ class _FlowProgram:
         """A visit begins when a robot can be there from the visit before, or from its start."""
         problem, program = self.problem, self.program
         fastest = max(robot.speed for robot in problem.robots)
-        shortest_s = _shortest(problem.travel.time_s) / fastest
+        shortest_s = shortest_ways(problem.travel.time_s) / fastest
         for item, described in enumerate(problem.items):
             pick, drop = self._picks[item], self._drops[item]
             if described.aboard is None:
@@ -214,15 +214,6 @@ class _FlowProgram:
                 if weights.lateness and isfinite(visit.due_s):
                     late = program.variable(0.0, inf, cost=weights.lateness)
                     program.row({late: 1.0, begin: -1.0}, -visit.due_s)
-
-
-def _shortest(time_s: NDArray[np.float64]) -> NDArray[np.float64]:
-    """By place and place, also by way of others."""
-    shortest_s = time_s.copy()
-    for place in range(shortest_s.shape[0]):
-        by_way_s = shortest_s[:, place, None] + shortest_s[None, place, :]
-        np.minimum(shortest_s, by_way_s, out=shortest_s)
-    return shortest_s
 
 
 def _difference(some: Terms, others: Terms) -> Terms:

@@ -1,26 +1,23 @@
-"""Solving the constraint model: incumbents and bounds as they come, and the schedule at the end."""
+"""The optimal schedule: by way of routes, else by constraints alone, with a bound from flows."""
 
 from collections.abc import Callable
 from dataclasses import replace
-from math import isfinite
+from math import inf, isfinite
 
-from ortools.sat.python import cp_model
-
-from fleet.scheduling.checker import require_valid
 from fleet.scheduling.exact.flow_bound import flow_bound, windows_are_wide
-from fleet.scheduling.exact.hint import hint_from
-from fleet.scheduling.exact.model import SCALE, ExactModel, Rounding
-from fleet.scheduling.exact.routes import routes_in
+from fleet.scheduling.exact.model import Rounding
+from fleet.scheduling.exact.route_search import at_least, solve_by_routes
+from fleet.scheduling.exact.search import Effort, search
 from fleet.scheduling.objective import cost
 from fleet.scheduling.problem import Problem
 from fleet.scheduling.schedule import Schedule
 from fleet.scheduling.solution import Progress, Solution, Status, UnsupportedError
-from fleet.scheduling.timing import Untimeable, earliest_schedule
 
 CONSTRAINTS_SHARE = 0.65
 """The share of the time for constraint programming where flows may give a better bound."""
 SAME = 1e-6
 """A cost and a bound that differ by less than this share are the same."""
+SETTLED = (Status.OPTIMAL, Status.INFEASIBLE)
 
 
 def solve_exactly(
@@ -31,70 +28,56 @@ def solve_exactly(
     workers: int = 2,
     start: Schedule | None = None,
     on_progress: Callable[[Progress], None] | None = None,
+    clock: Callable[[], float],
 ) -> Solution:
-    """The optimal schedule, or the best within `seconds` with a bound.
+    """The optimal schedule, or the best within `seconds` of the clock with a bound.
 
     `start` is where the search begins; the result is never worse. What is infeasible is proved so
     with times rounded down, apart from a doubt that is smaller than a thousandth of a second.
-    Where windows are wide and constraint programming has proved nothing in the most of the time,
-    the rest goes to a bound from flows.
+    What routes do not settle is left to constraint programming alone; where windows are wide and
+    that has proved nothing in the most of the time, the rest goes to a bound from flows.
     Raises `UnsupportedError` where doors open and close: the model's travel times are fixed.
     """
     if problem.travel.epochs:
         raise UnsupportedError(
             "the exact method cannot plan with doors that open and close; another method can"
         )
+    began_s = clock()
+    effort = Effort(seconds, seed, workers, on_progress)
+    routed = solve_by_routes(problem, effort, start, clock)
+    if routed.status is Status.INFEASIBLE and start is None:
+        return routed
+    best = _not_worse(problem, routed, start)
+    if best.status is Status.OPTIMAL:
+        return best
+    left_s = max(0.1, seconds - (clock() - began_s))
+    if best.bound is not None:
+        effort = replace(effort, on_progress=at_least(best.bound, on_progress))
+    found = _by_constraints(problem, replace(effort, seconds=left_s), best.schedule)
+    return replace(_with_bound(found, best.bound), seconds=clock() - began_s)
+
+
+def _by_constraints(problem: Problem, effort: Effort, start: Schedule | None) -> Solution:
+    """By constraint programming, and where windows are wide by flows after it."""
     wide = windows_are_wide(problem)
-    most = CONSTRAINTS_SHARE * seconds if wide else seconds
-    solution = _solve(problem, Rounding.UP, most, seed, workers, start, on_progress)
-    if solution.status is not Status.INFEASIBLE:
-        solution = _not_worse(problem, solution, start)
-        if wide and solution.status is not Status.OPTIMAL:
-            return _with_flow_bound(problem, solution, seconds, on_progress)
+    most_s = CONSTRAINTS_SHARE * effort.seconds if wide else effort.seconds
+    solution = search(problem, Rounding.UP, replace(effort, seconds=most_s), start)
+    if solution.status is Status.INFEASIBLE and start is None:
+        left = replace(effort, seconds=max(1.0, effort.seconds - solution.seconds))
+        return search(problem, Rounding.DOWN, replace(left, on_progress=None))
+    solution = _not_worse(problem, solution, start)
+    if wide and solution.status is not Status.OPTIMAL:
+        return _with_flow_bound(problem, solution, effort.seconds, effort.on_progress)
+    return solution
+
+
+def _with_bound(solution: Solution, bound: float | None) -> Solution:
+    """The solution with a bound that was proved before, if that is better."""
+    if bound is None or solution.status in SETTLED or bound <= (solution.bound or -inf):
         return solution
-    left = max(1.0, seconds - solution.seconds)
-    again = _solve(problem, Rounding.DOWN, left, seed, workers, start, None)
-    proved = again.status is Status.INFEASIBLE
-    status = Status.INFEASIBLE if proved else Status.UNKNOWN
-    return Solution(status, None, None, None, solution.seconds + again.seconds)
-
-
-def _solve(
-    problem: Problem,
-    rounding: Rounding,
-    seconds: float,
-    seed: int,
-    workers: int,
-    start: Schedule | None,
-    on_progress: Callable[[Progress], None] | None,
-) -> Solution:
-    exact = ExactModel(problem, rounding)
-    if start is not None:
-        hint_from(exact, start)
-    solver = cp_model.CpSolver()
-    solver.parameters.max_time_in_seconds = seconds
-    solver.parameters.num_workers = workers
-    solver.parameters.random_seed = seed
-    reporter = _Reporter(on_progress) if on_progress else None
-    if reporter is not None:
-        solver.best_bound_callback = reporter.take_bound
-    code = solver.solve(exact.model, reporter)
-    status = {
-        cp_model.OPTIMAL: Status.OPTIMAL,
-        cp_model.FEASIBLE: Status.FEASIBLE,
-        cp_model.INFEASIBLE: Status.INFEASIBLE,
-    }.get(code, Status.UNKNOWN)
-    if status in (Status.INFEASIBLE, Status.UNKNOWN):
-        bound = solver.best_objective_bound / SCALE if status is Status.UNKNOWN else None
-        return Solution(status, None, None, bound, solver.wall_time)
-    if rounding is Rounding.DOWN:
-        return Solution(Status.UNKNOWN, None, None, None, solver.wall_time)
-    schedule = earliest_schedule(problem, routes_in(exact, solver))
-    assert not isinstance(schedule, Untimeable), "the model's own times fit"
-    require_valid(problem, schedule)
-    found = cost(problem, schedule)
-    bound = found.total if status is Status.OPTIMAL else solver.best_objective_bound / SCALE
-    return Solution(status, schedule, found, bound, solver.wall_time)
+    if solution.cost is not None and bound >= solution.cost.total * (1 - SAME):
+        return replace(solution, status=Status.OPTIMAL, bound=solution.cost.total)
+    return replace(solution, bound=bound)
 
 
 def _not_worse(problem: Problem, solution: Solution, start: Schedule | None) -> Solution:
@@ -126,23 +109,3 @@ def _with_flow_bound(
         incumbent = None if solution.cost is None else solution.cost.total
         on_progress(Progress(incumbent, bound, seconds))
     return replace(solution, status=status, bound=bound, seconds=seconds)
-
-
-class _Reporter(cp_model.CpSolverSolutionCallback):
-    """Tells of better incumbents and bounds."""
-
-    def __init__(self, tell: Callable[[Progress], None]) -> None:
-        super().__init__()
-        self._tell = tell
-        self._incumbent: float | None = None
-        self._bound: float | None = None
-
-    def on_solution_callback(self) -> None:
-        self._incumbent = self.objective_value / SCALE
-        self._bound = self.best_objective_bound / SCALE
-        self._tell(Progress(self._incumbent, self._bound, self.wall_time))
-
-    def take_bound(self, bound: float) -> None:
-        """CP-SAT's own callback for bounds."""
-        self._bound = bound / SCALE
-        self._tell(Progress(self._incumbent, self._bound, 0.0))

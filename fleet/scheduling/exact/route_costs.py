@@ -1,0 +1,148 @@
+"""The kernels behind `route_bound`: what a robot's routes cost when moves have prices.
+
+Every state has a staircase: the later it is left, the more the cheapest way on from it costs.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fleet.scheduling.exact.state_expansion import TOLERANCE, Moves
+from maps.compiled import compiled
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+MOST_STEPS = 4096
+"""On one state's staircase."""
+
+
+class Staircases(NamedTuple):
+    """By state, from `first[state]` to `first[state] + steps[state]`, cheapest first: who leaves
+    until `leave_by_s` can end for `cost`. Nothing at all where there was not enough room."""
+
+    first: Integers
+    steps: Integers
+    leave_by_s: Floats
+    cost: Floats
+
+
+@compiled
+def add_step(by_s: Floats, cost: Floats, count: int, new_by_s: float, new_cost: float) -> int:
+    """Add a step unless another is as late and as cheap; drop those that it makes useless."""
+    for step in range(count):
+        if by_s[step] >= new_by_s and cost[step] <= new_cost:
+            return count
+    kept = 0
+    for step in range(count):
+        if by_s[step] > new_by_s or cost[step] < new_cost:
+            by_s[kept], cost[kept] = by_s[step], cost[step]
+            kept += 1
+    by_s[kept], cost[kept] = new_by_s, new_cost
+    return kept + 1
+
+
+@compiled
+def staircases(
+    first_move: Integers,
+    moves: Moves,
+    travel_s: Floats,
+    move_cost: Floats,
+    end_s: Floats,
+    end_cost: Floats,
+    ends_by_s: float,
+    most: int,
+) -> Staircases:
+    """What the rest of a route costs, for all states, from the last to the first."""
+    count = len(end_s)
+    first, steps = np.zeros(count, np.int64), np.zeros(count, np.int64)
+    leave_by_s, cost = np.empty(most), np.empty(most)
+    by_s, costs = np.empty(MOST_STEPS), np.empty(MOST_STEPS)
+    used = 0
+    for state in range(count - 1, -1, -1):
+        found = 0
+        if end_s[state] < np.inf:
+            found = add_step(by_s, costs, found, ends_by_s - end_s[state], end_cost[state])
+        for move in range(first_move[state], first_move[state + 1]):
+            after = moves.target[move]
+            for step in range(first[after], first[after] + steps[after]):
+                if moves.over_from_s[move] > leave_by_s[step] + TOLERANCE:
+                    continue
+                arrive_s = min(moves.arrives_by_s[move], leave_by_s[step] - moves.lasts_s[move])
+                whole = move_cost[move] + cost[step]
+                found = add_step(by_s, costs, found, arrive_s - travel_s[move], whole)
+                if found == MOST_STEPS:
+                    return Staircases(first[:0], steps[:0], leave_by_s[:0], cost[:0])
+        if used + found > most:
+            return Staircases(first[:0], steps[:0], leave_by_s[:0], cost[:0])
+        cheapest = np.argsort(costs[:found])
+        leave_by_s[used : used + found] = by_s[:found][cheapest]
+        cost[used : used + found] = costs[:found][cheapest]
+        first[state], steps[state] = used, found
+        used += found
+    return Staircases(first, steps, leave_by_s[:used], cost[:used])
+
+
+@compiled
+def rest_of(stairs: Staircases, state: int, leaves_s: float) -> float:
+    """The least cost to end from a state that is left at a time; infinite if impossible."""
+    for step in range(stairs.first[state], stairs.first[state] + stairs.steps[state]):
+        if stairs.leave_by_s[step] >= leaves_s - TOLERANCE:
+            return float(stairs.cost[step])
+    return np.inf
+
+
+@compiled
+def routes_below(
+    first_move: Integers,
+    moves: Moves,
+    travel_s: Floats,
+    move_cost: Floats,
+    end_s: Floats,
+    end_cost: Floats,
+    starts_s: float,
+    ends_by_s: float,
+    stairs: Staircases,
+    ceiling: float,
+    most: int,
+    longest: int,
+) -> tuple[Integers, Floats]:
+    """Routes that cost no more than a ceiling: their moves (-1 after the last), and their costs.
+
+    At most `most` routes of at most `longest` moves, in the order of the moves.
+    """
+    routes, costs = np.full((most, longest), -1, np.int64), np.empty(most)
+    state, next_move = np.zeros(longest + 1, np.int64), np.zeros(longest + 1, np.int64)
+    route, spent = np.full(longest, -1, np.int64), np.zeros(longest + 1)
+    leaves_s = np.full(longest + 1, starts_s)
+    found, depth = 0, 0
+    entered = True
+    while depth >= 0:
+        here = state[depth]
+        if entered:
+            next_move[depth] = first_move[here]
+            whole = spent[depth] + end_cost[here]
+            if whole <= ceiling and leaves_s[depth] + end_s[here] <= ends_by_s + TOLERANCE:
+                if found == most:
+                    break
+                routes[found, :depth], costs[found] = route[:depth], whole
+                found += 1
+        move = next_move[depth]
+        entered = False
+        if move == first_move[here + 1]:
+            depth -= 1
+            continue
+        next_move[depth] += 1
+        arrives_s = leaves_s[depth] + travel_s[move]
+        if arrives_s > moves.arrives_by_s[move] + TOLERANCE:
+            continue
+        over_s = max(arrives_s + moves.lasts_s[move], moves.over_from_s[move])
+        after = moves.target[move]
+        cost = spent[depth] + move_cost[move]
+        if cost + rest_of(stairs, after, over_s) <= ceiling:
+            route[depth] = move
+            depth += 1
+            state[depth], leaves_s[depth], spent[depth] = after, over_s, cost
+            entered = True
+    return routes[:found], costs[:found]
