@@ -7,7 +7,7 @@ from robots.localization.enml.pose_node import PoseNode
 from robots.localization.enml.problem import Floats
 from robots.localization.pose import Poses, compose, relative, transform
 
-_THROUGH_M = 0.4
+_THROUGH_M = 0.3
 _BEAMS_ASIDE = 2
 """A point is seen through only if its neighbouring beams go past it too: edges move a little."""
 _GAP_IN_BEAMS = 2.5

@@ -4,7 +4,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import maximum_filter
 
 from maps.compiled import compiled
 from robots.localization.distance_field import DistanceField
@@ -18,6 +17,8 @@ Counts = NDArray[np.uint16]
 _COARSE_M = 0.4
 _COARSE_WIDTH_M = 0.3
 _HEADINGS = 72
+_SQUARE = 3
+"""Places of the lattice along the side of a square, of which only the best counts."""
 _COARSE_POINTS = 150
 _FULL_FIT = 255.0
 """Coarse fits are bytes, and all points of a place fit into two: the search is then fastest."""
@@ -98,10 +99,11 @@ def fits(field: DistanceField, width_m: float) -> Grid:
 
 
 def _peaks(scores: Counts, headings: Floats, xs: Floats, ys: Floats, count: int) -> list[Poses]:
-    """The places with the highest scores, of neighbours only the best.
+    """The places with the highest scores, of each small square only the best.
 
     Once for the best heading of each place, and once for the best of the other half of the circle:
-    corridors look much the same both ways.
+    corridors look much the same both ways, and from one end to the other, so that the best of all
+    neighbours would leave most of a corridor out.
     """
     best_heading = scores.argmax(axis=0)
     rows, columns = np.indices(best_heading.shape)
@@ -114,7 +116,7 @@ def _peaks(scores: Counts, headings: Floats, xs: Floats, ys: Floats, count: int)
         (scores.max(axis=0), best_heading),
         (other.max(axis=0), other_heading),
     ):
-        peak = values == maximum_filter(values, size=3)
+        peak = values == _best_around(values)
         order = np.argsort(-np.where(peak, values.astype(np.int64), -1), axis=None, kind="stable")[
             :count
         ]
@@ -122,6 +124,15 @@ def _peaks(scores: Counts, headings: Floats, xs: Floats, ys: Floats, count: int)
             row, column = divmod(int(at), values.shape[1])
             found.append(np.array([xs[column], ys[row], headings[chosen[row, column]]]))
     return found
+
+
+def _best_around(values: Counts) -> Counts:
+    """The highest value of the square that each place is in."""
+    height, width = values.shape
+    padded = np.pad(values, ((0, -height % _SQUARE), (0, -width % _SQUARE)))
+    blocks = padded.reshape(len(padded) // _SQUARE, _SQUARE, -1, _SQUARE).max(axis=(1, 3))
+    spread = blocks.repeat(_SQUARE, axis=0).repeat(_SQUARE, axis=1)
+    return np.asarray(spread[:height, :width])
 
 
 def distinct(places: Poses) -> list[int]:

@@ -146,7 +146,7 @@ class EnmlLocalizer:
         apart = np.abs(relative(poses[before], poses[-1]))
         usual = parameters.carried_above_per_m * float(np.hypot(*apart[:2]) + apart[2])
         if self._mode is Mode.TRACKING:
-            change += unexplained
+            change += parameters.carried_unexplained_counts * unexplained
         if change <= parameters.carried_above + usual:
             self._familiar, self._surprises = None, 0
             return
@@ -154,7 +154,8 @@ class EnmlLocalizer:
         self._surprises += 1
         if self._surprises >= parameters.carried_after_scans:
             self._episode.keep_newest()
-            self._recovery.forget()
+            # Much may have changed at once where it is.
+            self._recovery.forget(self._episode.poses[-1])
             self._probation_until_m = 0.0
             self._lose()
             self._may_be_anywhere = True
@@ -219,7 +220,7 @@ class EnmlLocalizer:
         """Take the episode to where it was found; unless that is proven, be on one's guard."""
         self._episode.move(found.pose, np.diag(1.0 / _FOUND_STD))
         for node in self._episode.nodes:
-            node.gate_m = 2.0 * self._parameters.ltf_gate_m
+            node.gate_m = self._parameters.ltf_gate_m
         self._track(found.evidence)
         if not proven:
             self._probation_until_m = self._driven_m + self._parameters.probation_m

@@ -1,6 +1,7 @@
 """Finding a lost robot again: what it saw since, laid over the map near by, then everywhere."""
 
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 
@@ -16,14 +17,18 @@ from robots.localization.enml.visible import Visible
 from robots.localization.pose import Poses, compose, relative, transform
 
 _THINNED_M = 0.25
-_CANDIDATES = 2000
+_CANDIDATES = 4000
 """So many places of the lattice are glanced at with a few beams..."""
 _BEAMS_GLANCED = 60
 _CLIMBERS = 300
 """... the best of them moved to where the points fit, and weighed by two scans..."""
 _FIRST_GATES_M = (0.6, 0.4, 0.25)
-_FINALISTS = 80
-"""... and the best of those polished and weighed by more."""
+_LAST_GATES_M = (0.25, 0.15, 0.15)
+_AROUND_M = (-0.6, -0.4, -0.2, 0.0, 0.2, 0.4, 0.6)
+"""How far from where points have been moved to they may fit still better."""
+_LEAST_FINALISTS, _MOST_FINALISTS = 40, 240
+_IN_THE_RUNNING = 0.15
+"""... and the best of those polished and weighed by more: many where many look much the same."""
 _SCANS_POLISHED = 3
 _SCANS_WEIGHED = 6
 _LEAST_EXPLAINED = 0.15
@@ -78,14 +83,20 @@ class Recovery:
         self._parameters = parameters
         self.forget()
 
-    def forget(self) -> None:
-        """Begin anew: the robot may be elsewhere than all places so far."""
-        self._open: Floats = np.zeros((0, 3))
+    def forget(self, last: Poses | None = None) -> None:
+        """Begin anew: the robot may be elsewhere than all places so far.
+
+        Where it was `last` is believed sooner than other places, as much may just have changed.
+        """
+        self._last = last
+        self._open: Floats = np.zeros((0, 3)) if last is None else last[None].copy()
 
     def move(self, motion: Poses) -> None:
         """Let the open places come along with the robot."""
         if len(self._open):
             self._open = compose(self._open, motion)
+        if self._last is not None:
+            self._last = compose(self._last, motion)
 
     def search(self, episode: Episode, expected: Poses | None, path_m: float) -> Found | None:
         """Where the newest pose is, near where it is `expected` or else anywhere; None if unclear.
@@ -100,9 +111,10 @@ class Recovery:
             regions.insert(0, Region.around(expected, self._parameters.recovery_near_m))
         points = _submap(episode)
         places = [place for region in regions for place in self._climbers(episode, points, region)]
-        promising = _ranked(self._found(places, looks_of(episode, 2)))[:_FINALISTS]
+        promising = _in_the_running(self._found(places, looks_of(episode, 2)))
         found = self._weigh(episode, [each.pose for each in promising], expected)
-        return self._clear_winner(found, expected, path_m)
+        winner = self._clear_winner(found, expected, path_m)
+        return winner and self._sharpened(winner, episode)
 
     def reconsider(self, episode: Episode, expected: Poses) -> Found | None:
         """An open place that is clearly better than the one found; None if none is."""
@@ -140,8 +152,23 @@ class Recovery:
         ]
         claims = [] if expected is None else [expected]
         found = self._found([*claims, *polished], looks)
-        self._open = np.array([each.pose for each in _ranked(found)[:_FINALISTS]]).reshape(-1, 3)
+        self._open = np.array([each.pose for each in _in_the_running(found)]).reshape(-1, 3)
         return found
+
+    def _sharpened(self, found: Found, episode: Episode) -> Found:
+        """The best place around one: along a corridor points slide only so far by themselves."""
+        few, looks = looks_of(episode, _SCANS_POLISHED), looks_of(episode, _SCANS_WEIGHED)
+        around = [
+            polish(
+                self._visible,
+                few,
+                compose(found.pose, np.array([ahead_m, left_m, 0.0])),
+                self._parameters,
+                _LAST_GATES_M,
+            )
+            for ahead_m, left_m in product(_AROUND_M, _AROUND_M)
+        ]
+        return max([found, *self._found(around, looks)], key=lambda each: each.score)
 
     def _found(self, places: list[Poses], looks: list[Look]) -> list[Found]:
         return [Found(place, weigh(self._visible, self._field, looks, place)) for place in places]
@@ -165,6 +192,8 @@ class Recovery:
         rivals = [worth(each) for each in found if not same_place(each.pose, best.pose)]
         lead = worth(best) - max(rivals, default=-_BEHIND_COUNTS)
         doubt = max(_LEAST_DOUBT, 1.0 - path_m / parameters.recovery_patience_m)
+        if self._last is not None and same_place(best.pose, self._last):
+            doubt = _LEAST_DOUBT
         clear = lead >= doubt * parameters.recovery_lead
         return best if clear and self._explains(best) else None
 
@@ -179,6 +208,15 @@ def _ranked(found: list[Found]) -> list[Found]:
     """The best first, and of those at the same place only the best."""
     ranked = sorted(found, key=lambda each: -each.score)
     return [ranked[index] for index in distinct(np.array([each.pose for each in ranked]))]
+
+
+def _in_the_running(found: list[Found]) -> list[Found]:
+    """The distinct places that are not much worse than the best, best first."""
+    ranked = _ranked(found)
+    if not ranked:
+        return ranked
+    near = sum(each.score > ranked[0].score - _IN_THE_RUNNING for each in ranked)
+    return ranked[: max(_LEAST_FINALISTS, min(near, _MOST_FINALISTS))]
 
 
 def _submap(episode: Episode) -> Floats:
