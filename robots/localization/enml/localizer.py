@@ -72,7 +72,8 @@ class EnmlLocalizer:
         self._evidence = Evidence()
         self._familiar: int | None = None
         self._may_be_anywhere = False
-        self._driven_m = self._next_search_m = self._probation_until_m = 0.0
+        self._driven_m = self._next_search_m = 0.0
+        self._probation_until_m = self._confirmed_until_m = 0.0
         self._short_term = ShortTermFeatures(self._parameters)
         self.reset(np.zeros(3) if start is None else start)
 
@@ -133,7 +134,7 @@ class EnmlLocalizer:
         is_lost = self._mode is Mode.LOST
         lost = 1.0 if is_lost else max(self._evidence.lost, self._evidence.contradiction)
         return Estimate(
-            pose, covariance, node.scan_points, classes, lost, is_lost or self._in_doubt
+            pose, covariance, node.scan_points, classes, lost, is_lost or self._says_doubt
         )
 
     def _notice_being_carried(self, unexplained: float) -> None:
@@ -194,6 +195,11 @@ class EnmlLocalizer:
             and self._evidence.returns >= _LEAST_RETURNS
         )
 
+    @property
+    def _says_doubt(self) -> bool:
+        """Whether it is doubtful where the robot is, and no search has just found it there."""
+        return self._in_doubt and self._driven_m >= self._confirmed_until_m
+
     def _look_for_place(self, covariance: Floats) -> Floats:
         """Search the map every so often; take the episode to where it clearly belongs."""
         if self._driven_m < self._next_search_m:
@@ -212,7 +218,11 @@ class EnmlLocalizer:
             )
             if found is None and self._on_probation:
                 self._lose()
-        if found is None or (self._mode is Mode.TRACKING and same_place(found.pose, here)):
+        if found is None:
+            return covariance
+        if self._mode is Mode.TRACKING and same_place(found.pose, here):
+            if found.evidence.lost < self._parameters.proven_below:
+                self._confirmed_until_m = self._driven_m + 2.0 * self._parameters.recovery_every_m
             return covariance
         return self._move(found, proven=not anywhere and same_place(found.pose, here))
 
@@ -246,6 +256,7 @@ class EnmlLocalizer:
         self._evidence = seen
         self._surprises, self._familiar = 0, None
         self._may_be_anywhere = False
+        self._confirmed_until_m = 0.0
 
     def _settle(self) -> Floats:
         """Find the best poses, let go of what the episode needs no more; the covariance."""
