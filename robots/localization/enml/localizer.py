@@ -221,7 +221,7 @@ class EnmlLocalizer:
         if found is None:
             return covariance
         if self._mode is Mode.TRACKING and same_place(found.pose, here):
-            if found.evidence.lost < self._parameters.proven_below:
+            if found.evidence.lost < self._parameters.confirmed_below:
                 self._confirmed_until_m = self._driven_m + 2.0 * self._parameters.recovery_every_m
             return covariance
         return self._move(found, proven=not anywhere and same_place(found.pose, here))

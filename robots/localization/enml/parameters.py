@@ -104,6 +104,9 @@ class EnmlParameters:
     0.61 to 0.88 in the worst hundredth of drives)."""
     found_below: float = 0.3
     """No place with a measure above this is taken for where a lost robot is (ours)."""
+    confirmed_below: float = 0.1
+    """A doubtful place that a search finds again, with a measure below this, is doubted no more for
+    twice the way between searches (ours)."""
     recovery_near_m: float = 2.5
     """How far around the last pose a lost robot is looked for first (published)."""
     recovery_every_m: float = 0.7

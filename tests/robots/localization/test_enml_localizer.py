@@ -173,6 +173,28 @@ def test_a_kidnapped_robot_says_so_and_finds_itself_again() -> None:
     assert found
 
 
+@pytest.mark.parametrize(("confirmed_below", "says_so"), [(0.001, True), (0.3, False)])
+def test_beside_a_wall_that_is_gone_a_robot_that_is_found_again_is_not_lost(
+    confirmed_below: float, says_so: bool
+) -> None:
+    niche = [[6, 0, 6, -2], [7.4, 0, 7.4, -2], [6, -2, 7.4, -2]]
+    rest = [
+        [0, 0, 6, 0], [7.4, 0, 16, 0], [16, 0, 16, 6], [16, 6, 0, 6], [0, 6, 0, 0],
+        [3, 6, 3, 4], *box(1, 4.8, 2, 5.4), [10, 6, 10, 4.5], *box(12, 4.9, 13.5, 5.5),
+    ]  # fmt: skip
+    along = np.column_stack([np.arange(1.5, 10.0, 0.1), np.full(85, 0.7), np.zeros(85)])
+    localizer = EnmlLocalizer(
+        VectorMap.of([*rest, [6, 0, 7.4, 0]]),
+        start=along[0],
+        parameters=EnmlParameters(confirmed_below=confirmed_below),
+    )
+    seen = drive(along, world=np.array([*rest, *niche], dtype=np.float64))
+    estimates = [localizer.update(motion, scan) for motion, scan in seen]
+    assert max(off(*each)[0] for each in zip(estimates, along, strict=True)) < 0.05
+    assert max(each.lost for each in estimates) > EnmlParameters().doubt_above
+    assert any(each.is_lost for each in estimates[20:]) == says_so
+
+
 @pytest.mark.slow
 def test_a_robot_that_starts_anywhere_says_that_it_is_lost_until_it_finds_itself() -> None:
     poses = way(40)

@@ -183,6 +183,34 @@ def test_a_place_left_open_is_taken_once_it_is_clearly_better() -> None:
     assert recovery.reconsider(seen_along(WAY, FLOOR, WAY[0]), wrong) is None
 
 
+def test_where_it_was_before_a_robot_is_believed_sooner_than_elsewhere() -> None:
+    """The other room has its cupboard 0.3 m farther on, too little to be sure at first."""
+    cupboard = box(31.3, 4.5, 32.3, 5)
+    other = [[x0 + 30, y0, x1 + 30, y1] for x0, y0, x1, y1 in HERE[:-4]]
+    alike = VectorMap.of([*HERE, *other, *cupboard])
+    episode = seen_along(WAY, alike, np.array([20.0, 3.0, 0.0]))
+    recovery = recovery_on(alike)
+    assert recovery.search(episode, None, 0.0) is None
+    recovery.forget(last=WAY[-1] + np.array([30.0, 0.0, 0.0]))
+    assert recovery.search(episode, None, 0.0) is None
+    recovery.forget(last=WAY[-1])
+    found = recovery.search(episode, None, 0.0)
+    assert found is not None
+    assert off_m(found.pose, WAY[-1]) < 0.02
+
+
+def test_in_a_corridor_there_are_candidates_from_one_end_to_the_other() -> None:
+    narrowing = VectorMap.of(
+        [[0, -1.6, 30, -1.0], [0, 1.6, 30, 1.0], [0, -1.6, 0, 1.6], [30, -1.0, 30, 1.0]]
+    )
+    way = np.array([[9.0 + 0.4 * step, 0.0, 0.0] for step in range(4)])
+    points = seen_along(way, narrowing, way[0]).nodes[-1].scan_points.points
+    found = GlobalSearch(field_of(narrowing)).candidates(points, Region(0, -1.6, 30, 1.6), 200)
+    ahead = [each[0] for each in found if abs(wrap_angle(each[2])) < 0.2 and abs(each[1]) < 0.7]
+    for along_m in np.arange(2.0, 26.0, 0.5):
+        assert min(np.abs(np.array(ahead) - along_m)) <= 0.8
+
+
 def test_on_an_empty_map_nobody_is_found() -> None:
     nothing = VectorMap.of([])
     assert recovery_on(nothing).search(seen_along(WAY, FLOOR, WAY[0]), None, 5.0) is None
