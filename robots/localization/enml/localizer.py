@@ -148,6 +148,11 @@ class EnmlLocalizer:
         usual = parameters.carried_above_per_m * float(np.hypot(*apart[:2]) + apart[2])
         if self._mode is Mode.TRACKING:
             change += parameters.carried_unexplained_counts * unexplained
+            if change > parameters.carried_maybe_above + usual:
+                now, then = (
+                    self._recovery.behind(nodes[each], poses[each]) for each in (-1, before)
+                )
+                change += parameters.carried_behind_counts * max(now - then, 0.0)
         if change <= parameters.carried_above + usual:
             self._familiar, self._surprises = None, 0
             return

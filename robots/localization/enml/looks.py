@@ -7,6 +7,7 @@ import numpy as np
 from robots.localization.distance_field import DistanceField
 from robots.localization.enml.episode import Episode
 from robots.localization.enml.lost import Evidence, evidence
+from robots.localization.enml.pose_node import PoseNode
 from robots.localization.enml.problem import Floats
 from robots.localization.enml.visible import Visible
 from robots.localization.pose import Poses, compose, relative, transform, turn
@@ -44,21 +45,23 @@ class Weight:
 def looks_of(episode: Episode, scans: int, most_beams: int = _MOST_BEAMS) -> list[Look]:
     """So many scans, spread over an episode, the newest among them; of each so many beams."""
     newest = episode.poses[-1]
-    looks = []
-    for index in np.unique(np.linspace(len(episode) - 1, 0, scans).astype(int))[::-1]:
-        node, pose = episode.nodes[index], relative(newest, episode.poses[index])
-        some = slice(None, None, max(-(-len(node.bearings) // most_beams), 1))
-        looks.append(
-            Look(
-                compose(pose, node.sensor_offset),
-                transform(pose, node.scan_points.points[some]),
-                turn(float(pose[2]), node.scan_points.normals[some]),
-                np.ascontiguousarray(node.bearings[some]),
-                np.ascontiguousarray(node.ranges_m[some]),
-                node.reach_m,
-            )
-        )
-    return looks
+    return [
+        look_of(episode.nodes[index], relative(newest, episode.poses[index]), most_beams)
+        for index in np.unique(np.linspace(len(episode) - 1, 0, scans).astype(int))[::-1]
+    ]
+
+
+def look_of(node: PoseNode, pose: Poses, most_beams: int = _MOST_BEAMS) -> Look:
+    """So many beams of a scan, from its pose in the frame of the newest pose."""
+    some = slice(None, None, max(-(-len(node.bearings) // most_beams), 1))
+    return Look(
+        compose(pose, node.sensor_offset),
+        transform(pose, node.scan_points.points[some]),
+        turn(float(pose[2]), node.scan_points.normals[some]),
+        np.ascontiguousarray(node.bearings[some]),
+        np.ascontiguousarray(node.ranges_m[some]),
+        node.reach_m,
+    )
 
 
 def weigh(visible: Visible, field: DistanceField, looks: list[Look], place: Poses) -> Weight:

@@ -87,13 +87,17 @@ class EnmlParameters:
     """The robot is looked for elsewhere once the map contradicts it by more than this (ours)..."""
     lost_above: float = 0.75
     """... and is lost, found or not, once it does by more than this (ours)."""
-    carried_above: float = 0.43
+    carried_above: float = 0.65
     """A robot was carried away if the share of what it sees that has changed since a scan before,
-    and the share that fits neither the map nor the scans before, are more than this together
-    (ours: 0.28 at most in simulated and most recorded drives, 0.42 where somebody steps before a
-    robot that stands, more for 203 of 210 robots put down elsewhere)..."""
+    the share that fits neither the map nor the scans before, and the share newly seen behind
+    walls of the map are more than this together (ours: 0.63 at most in simulated and recorded
+    drives)..."""
     carried_unexplained_counts: float = 2.0
     """... where what fits nothing counts so many times (ours)..."""
+    carried_behind_counts: float = 5.0
+    """... and what is behind walls so many times (ours)..."""
+    carried_maybe_above: float = 0.25
+    """... if the others alone are more than this (ours)..."""
     carried_above_per_m: float = 0.5
     """... and this for each metre moved and radian turned since that scan (ours: what is seen from
     far apart has less in common)..."""

@@ -8,10 +8,11 @@ import numpy as np
 from robots.localization.distance_field import DistanceField
 from robots.localization.enml.episode import Episode
 from robots.localization.enml.global_search import GlobalSearch, Region, distinct, same_place
-from robots.localization.enml.looks import Look, Weight, glance, looks_of, weigh
+from robots.localization.enml.looks import Look, Weight, glance, look_of, looks_of, weigh
 from robots.localization.enml.lost import Evidence
 from robots.localization.enml.parameters import EnmlParameters
 from robots.localization.enml.polishing import polish
+from robots.localization.enml.pose_node import PoseNode
 from robots.localization.enml.problem import Floats
 from robots.localization.enml.visible import Visible
 from robots.localization.pose import Poses, compose, relative, transform
@@ -37,6 +38,8 @@ _LEAST_ON_MAP = 40.0
 """No robot is found by fewer returns than these."""
 _LEAST_DOUBT = 0.25
 """However far it has driven, a robot does not choose between places that are all the same to it."""
+_LEAST_SCORE_ELSEWHERE = 0.35
+"""A robot that was not carried goes to no other place that fits less well."""
 _BEHIND_COUNTS = 8.0
 """Right places have hardly any return from behind a wall, those that look alike a few percent."""
 
@@ -98,6 +101,11 @@ class Recovery:
         if self._last is not None:
             self._last = compose(self._last, motion)
 
+    def behind(self, node: PoseNode, pose: Poses) -> float:
+        """The share of a scan's returns from behind walls of the map, seen from a pose."""
+        seen = weigh(self._visible, self._field, [look_of(node, np.zeros(3))], pose).evidence
+        return seen.behind / seen.returns if seen.returns else 0.0
+
     def search(self, episode: Episode, expected: Poses | None, path_m: float) -> Found | None:
         """Where the newest pose is, near where it is `expected` or else anywhere; None if unclear.
 
@@ -114,7 +122,9 @@ class Recovery:
         promising = _in_the_running(self._found(places, looks_of(episode, 2)))
         found = self._weigh(episode, [each.pose for each in promising], expected)
         winner = self._clear_winner(found, expected, path_m)
-        return winner and self._sharpened(winner, episode)
+        if winner is None or expected is not None:
+            return winner
+        return self._sharpened(winner, episode)
 
     def reconsider(self, episode: Episode, expected: Poses) -> Found | None:
         """An open place that is clearly better than the one found; None if none is."""
@@ -195,6 +205,8 @@ class Recovery:
         if self._last is not None and same_place(best.pose, self._last):
             doubt = _LEAST_DOUBT
         clear = lead >= doubt * parameters.recovery_lead
+        if expected is not None and not same_place(best.pose, expected):
+            clear = clear and best.score >= _LEAST_SCORE_ELSEWHERE
         return best if clear and self._explains(best) else None
 
     def _explains(self, found: Found) -> bool:
