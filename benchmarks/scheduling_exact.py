@@ -21,8 +21,8 @@ from pathlib import Path
 from statistics import median
 
 from fleet.scheduling.drawing.bars import BarGroup, bars
+from fleet.scheduling.exact.constraint_search import Effort, search
 from fleet.scheduling.exact.model import Rounding
-from fleet.scheduling.exact.search import Effort, search
 from fleet.scheduling.instances.transfer_benchmark import read_transfer_benchmark
 from fleet.scheduling.methods import solve
 from fleet.scheduling.problem import Problem

@@ -1,4 +1,4 @@
-"""How the numeric kernels of maps and localization are compiled."""
+"""How numeric kernels are compiled that may make arrays of their own."""
 
 from collections.abc import Callable
 from typing import Any, TypeVar, cast

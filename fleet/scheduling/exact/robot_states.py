@@ -7,16 +7,20 @@ nothing can be taken before it could be there, nor given when it is too late to 
 
 from dataclasses import dataclass
 from math import inf
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from fleet.scheduling.exact.state_expansion import Limits, Moves, expand, with_robot
+from fleet.scheduling.exact.state_expansion import (
+    Floats,
+    Integers,
+    Limits,
+    Moves,
+    expand,
+    with_robot,
+)
 from fleet.scheduling.problem import Problem
 from fleet.scheduling.travel import shortest_ways
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 MOST_STATES = 200_000
 MOST_MOVES = 3_000_000
@@ -25,8 +29,7 @@ MOST_ITEMS = 12
 MOST_PLACES = 8
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class RobotStates:
+class RobotStates(NamedTuple):
     """One robot's states in an order in which every move leads to a later one; the first is the
     start. The moves from state s are those from `first_move[s]` to `first_move[s + 1]`.
 

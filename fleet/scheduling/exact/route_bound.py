@@ -15,8 +15,9 @@ import numpy as np
 from scipy.optimize import linprog
 from scipy.sparse import csc_array
 
-from fleet.scheduling.exact.robot_states import Floats, Integers, RobotStates, states_of
+from fleet.scheduling.exact.robot_states import RobotStates, states_of
 from fleet.scheduling.exact.route_costs import Staircases, routes_below, staircases
+from fleet.scheduling.exact.state_expansion import Floats, Integers
 from fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit
 from fleet.scheduling.travel import Travel
 
@@ -26,7 +27,7 @@ SMOOTHING = 0.5
 """How much of the best prices so far is in the prices that routes are looked for with."""
 MOST_PRICED, MOST_ADDED = 400, 60
 """Routes looked at and added for a robot and a round."""
-MOST_STEPS = 6_000_000
+MOST_STEPS_IN_ALL = 6_000_000
 """On all staircases of a robot."""
 
 
@@ -190,11 +191,7 @@ class _Robot:
 
     def staircases(self, move_cost: Floats) -> Staircases:
         """What the rest of a route costs from every state."""
-        states = self._states
-        return staircases(
-            states.first_move, states.moves, states.travel_s, move_cost,
-            states.end_s, self._end_cost, states.ends_by_s, MOST_STEPS,
-        )  # fmt: skip
+        return staircases(self._states, move_cost, self._end_cost, MOST_STEPS_IN_ALL)
 
     def cheapest(self, stairs: Staircases) -> float:
         """What the cheapest route costs."""
@@ -206,12 +203,9 @@ class _Robot:
         self, stairs: Staircases, move_cost: Floats, ceiling: float, most: int
     ) -> tuple[Integers, Floats]:
         """Routes that cost no more than a ceiling, by their moves."""
-        states = self._states
         return routes_below(
-            states.first_move, states.moves, states.travel_s, move_cost,
-            states.end_s, self._end_cost, states.starts_s, states.ends_by_s,
-            stairs, ceiling, most, self._longest,
-        )  # fmt: skip
+            self._states, move_cost, self._end_cost, stairs, ceiling, most, self._longest
+        )
 
     def route(self, row: Integers) -> RobotRoute:
         """The route of some moves."""

@@ -6,13 +6,10 @@ Every state has a staircase: the later it is left, the more the cheapest way on 
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from fleet.scheduling.exact.state_expansion import TOLERANCE, Moves
+from fleet.scheduling.exact.robot_states import RobotStates
+from fleet.scheduling.exact.state_expansion import TOLERANCE, Floats, Integers
 from maps.compiled import compiled
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 MOST_STEPS = 4096
 """On one state's staircase."""
@@ -44,34 +41,26 @@ def add_step(by_s: Floats, cost: Floats, count: int, new_by_s: float, new_cost: 
 
 
 @compiled
-def staircases(
-    first_move: Integers,
-    moves: Moves,
-    travel_s: Floats,
-    move_cost: Floats,
-    end_s: Floats,
-    end_cost: Floats,
-    ends_by_s: float,
-    most: int,
-) -> Staircases:
+def staircases(robot: RobotStates, move_cost: Floats, end_cost: Floats, most: int) -> Staircases:
     """What the rest of a route costs, for all states, from the last to the first."""
-    count = len(end_s)
+    moves, count = robot.moves, len(robot.end_s)
     first, steps = np.zeros(count, np.int64), np.zeros(count, np.int64)
     leave_by_s, cost = np.empty(most), np.empty(most)
     by_s, costs = np.empty(MOST_STEPS), np.empty(MOST_STEPS)
     used = 0
     for state in range(count - 1, -1, -1):
         found = 0
-        if end_s[state] < np.inf:
-            found = add_step(by_s, costs, found, ends_by_s - end_s[state], end_cost[state])
-        for move in range(first_move[state], first_move[state + 1]):
+        if robot.end_s[state] < np.inf:
+            home_by_s = robot.ends_by_s - robot.end_s[state]
+            found = add_step(by_s, costs, found, home_by_s, end_cost[state])
+        for move in range(robot.first_move[state], robot.first_move[state + 1]):
             after = moves.target[move]
             for step in range(first[after], first[after] + steps[after]):
                 if moves.over_from_s[move] > leave_by_s[step] + TOLERANCE:
                     continue
                 arrive_s = min(moves.arrives_by_s[move], leave_by_s[step] - moves.lasts_s[move])
                 whole = move_cost[move] + cost[step]
-                found = add_step(by_s, costs, found, arrive_s - travel_s[move], whole)
+                found = add_step(by_s, costs, found, arrive_s - robot.travel_s[move], whole)
                 if found == MOST_STEPS:
                     return Staircases(first[:0], steps[:0], leave_by_s[:0], cost[:0])
         if used + found > most:
@@ -95,14 +84,9 @@ def rest_of(stairs: Staircases, state: int, leaves_s: float) -> float:
 
 @compiled
 def routes_below(
-    first_move: Integers,
-    moves: Moves,
-    travel_s: Floats,
+    robot: RobotStates,
     move_cost: Floats,
-    end_s: Floats,
     end_cost: Floats,
-    starts_s: float,
-    ends_by_s: float,
     stairs: Staircases,
     ceiling: float,
     most: int,
@@ -115,26 +99,27 @@ def routes_below(
     routes, costs = np.full((most, longest), -1, np.int64), np.empty(most)
     state, next_move = np.zeros(longest + 1, np.int64), np.zeros(longest + 1, np.int64)
     route, spent = np.full(longest, -1, np.int64), np.zeros(longest + 1)
-    leaves_s = np.full(longest + 1, starts_s)
-    found, depth = 0, 0
+    leaves_s = np.full(longest + 1, robot.starts_s)
+    moves, found, depth = robot.moves, 0, 0
     entered = True
     while depth >= 0:
         here = state[depth]
         if entered:
-            next_move[depth] = first_move[here]
+            next_move[depth] = robot.first_move[here]
             whole = spent[depth] + end_cost[here]
-            if whole <= ceiling and leaves_s[depth] + end_s[here] <= ends_by_s + TOLERANCE:
+            home_s = leaves_s[depth] + robot.end_s[here]
+            if whole <= ceiling and home_s <= robot.ends_by_s + TOLERANCE:
                 if found == most:
                     break
                 routes[found, :depth], costs[found] = route[:depth], whole
                 found += 1
         move = next_move[depth]
         entered = False
-        if move == first_move[here + 1]:
+        if move == robot.first_move[here + 1]:
             depth -= 1
             continue
         next_move[depth] += 1
-        arrives_s = leaves_s[depth] + travel_s[move]
+        arrives_s = leaves_s[depth] + robot.travel_s[move]
         if arrives_s > moves.arrives_by_s[move] + TOLERANCE:
             continue
         over_s = max(arrives_s + moves.lasts_s[move], moves.over_from_s[move])

@@ -6,9 +6,9 @@ from collections.abc import Callable
 from dataclasses import replace
 from math import inf, isfinite
 
+from fleet.scheduling.exact.constraint_search import Effort, search
 from fleet.scheduling.exact.model import Rounding
 from fleet.scheduling.exact.route_bound import RobotRoute, RouteBound, route_bound
-from fleet.scheduling.exact.search import Effort, search
 from fleet.scheduling.objective import cost
 from fleet.scheduling.problem import Problem
 from fleet.scheduling.schedule import Schedule

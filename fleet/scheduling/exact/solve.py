@@ -4,10 +4,10 @@ from collections.abc import Callable
 from dataclasses import replace
 from math import inf, isfinite
 
+from fleet.scheduling.exact.constraint_search import Effort, search
 from fleet.scheduling.exact.flow_bound import flow_bound, windows_are_wide
 from fleet.scheduling.exact.model import Rounding
 from fleet.scheduling.exact.route_search import at_least, solve_by_routes
-from fleet.scheduling.exact.search import Effort, search
 from fleet.scheduling.objective import cost
 from fleet.scheduling.problem import Problem
 from fleet.scheduling.schedule import Schedule
@@ -100,12 +100,9 @@ def _with_flow_bound(
 ) -> Solution:
     """The solution with the better bound: its own, or that from flows in the time left."""
     proved = flow_bound(problem, max(0.1, seconds - solution.seconds))
-    if proved is None or not isfinite(proved):
-        return replace(solution, seconds=seconds)
-    bound, status = max(proved, solution.bound or 0.0), solution.status
-    if solution.cost is not None and bound >= solution.cost.total * (1 - SAME):
-        bound, status = solution.cost.total, Status.OPTIMAL
-    if on_progress is not None:
-        incumbent = None if solution.cost is None else solution.cost.total
-        on_progress(Progress(incumbent, bound, seconds))
-    return replace(solution, status=status, bound=bound, seconds=seconds)
+    if proved is not None and isfinite(proved):
+        solution = _with_bound(solution, proved)
+        if on_progress is not None:
+            incumbent = None if solution.cost is None else solution.cost.total
+            on_progress(Progress(incumbent, solution.bound, seconds))
+    return replace(solution, seconds=seconds)

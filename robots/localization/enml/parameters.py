@@ -90,8 +90,8 @@ class EnmlParameters:
     carried_above: float = 0.65
     """A robot was carried away if the share of what it sees that has changed since a scan before,
     the share that fits neither the map nor the scans before, and the share newly seen behind
-    walls of the map are more than this together (ours: 0.63 at most in simulated and recorded
-    drives)..."""
+    walls of the map are more than this together (ours: 0.63 in the worst of the
+    simulated drives that were looked into)..."""
     carried_unexplained_counts: float = 2.0
     """... where what fits nothing counts so many times (ours)..."""
     carried_behind_counts: float = 5.0

@@ -1,57 +1,20 @@
 """The bound from flows: never above the optimum, and what the exact method makes of it."""
 
 import csv
-import random
 import time
 from dataclasses import replace
 from math import inf
 
 import pytest
 from benchmark_instances import DATA
-from delivery_problems import corridor, parcel
+from delivery_problems import corridor, drawn_problem, parcel
 
 from fleet.scheduling.exact.flow_bound import flow_bound, windows_are_wide
 from fleet.scheduling.exact.linear_program import LinearProgram
 from fleet.scheduling.exact.solve import solve_exactly
 from fleet.scheduling.instances.transfer_benchmark import read_transfer_benchmark
-from fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit, Weights, Window
+from fleet.scheduling.problem import Item, Robot, Transfers, Visit, Weights, Window
 from fleet.scheduling.solution import Status
-
-
-def drawn_problem(seed: int) -> Problem:
-    """Two or three items in a corridor; windows, loads, ends and what counts differ by seed."""
-    dice = random.Random(seed)
-
-    def window() -> Window:
-        if dice.random() < 0.5:
-            return Window()
-        begin_s = dice.randint(0, 60)
-        return Window(float(begin_s), float(begin_s + dice.randint(60, 200)))
-
-    items = [
-        Item(
-            f"item{number}",
-            float(dice.randint(1, 2)),
-            Visit(dice.randrange(5), window(), due_s=40.0, service_s=float(dice.randint(0, 3))),
-            Visit(dice.randrange(5), window()),
-            max_on_board_s=dice.choice((inf, 120.0)),
-        )
-        for number in range(dice.randint(2, 3))
-    ]
-    if dice.random() < 0.3:
-        items[0] = replace(items[0], aboard=0)
-    robots = tuple(
-        Robot(f"robot{number}", place, dice.choice((place, None)), 2.0, Window(0.0, 300.0),
-              speed=dice.choice((1.0, 2.0)))
-        for number, place in enumerate((0, 4))
-    )  # fmt: skip
-    transfers = Transfers((2, 3), dice.random() < 0.3, float(dice.randint(0, 4)))
-    weights = dice.choice(
-        (Weights(), Weights(0.5, 1.0), Weights(1.0, 0.0, 0.5), Weights(1.0, 0.0, 0.0, 3.0, 20.0))
-    )
-    return replace(
-        corridor(items=tuple(items), robots=robots, transfers=transfers), weights=weights
-    )
 
 
 @pytest.mark.slow

@@ -7,16 +7,15 @@ from math import inf
 import numpy as np
 import pytest
 from benchmark_instances import DATA
-from delivery_problems import corridor, parcel
+from delivery_problems import corridor, drawn_problem, parcel
 from even_clock import EvenClock
-from test_flow_bound import drawn_problem
 
+from fleet.scheduling.exact.constraint_search import Effort, search
 from fleet.scheduling.exact.model import Rounding
 from fleet.scheduling.exact.robot_states import MOST_ITEMS
 from fleet.scheduling.exact.route_bound import RouteBound, route_bound
 from fleet.scheduling.exact.route_costs import add_step
 from fleet.scheduling.exact.route_search import solve_by_routes
-from fleet.scheduling.exact.search import Effort, search
 from fleet.scheduling.instances.transfer_benchmark import read_transfer_benchmark
 from fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit, Weights, Window
 from fleet.scheduling.schedule import Action
