@@ -157,9 +157,9 @@ async def test_playing_comes_to_the_end(service: Service, open_page: OpenPage) -
     shown = await replay(service, open_page)
     await shown.page.get_by_label("Speed").select_option("8")
     await shown.slider.fill(str(round(shown.events[-1].time - 4, 1)))
-    await shown.page.get_by_role("button", name="Play").click()
+    await shown.page.get_by_role("button", name="Play", exact=True).click()
     await expect(shown.page.get_by_text("The end", exact=True)).to_be_visible(timeout=WAIT_MS)
-    await expect(shown.page.get_by_role("button", name="Play")).to_be_visible()
+    await expect(shown.page.get_by_role("button", name="Play", exact=True)).to_be_visible()
     await wait_for_tree(shown.page, told_after(folded(shown.events)))
 
 
@@ -195,7 +195,7 @@ async def test_timeline_is_a_list_for_those_who_hear_it(
     service: Service, open_page: OpenPage
 ) -> None:
     shown = await replay(service, open_page)
-    await shown.page.get_by_role("button", name="As a list").click()
+    await shown.page.get_by_role("button", name="Events as a list").click()
     entries = shown.page.get_by_role("list", name="Timeline as a list").get_by_role("button")
     await entries.filter(has_text="Fault").first.click()
     await expect(shown.page.get_by_text("You are looking at")).to_be_visible()

@@ -66,7 +66,7 @@ async def test_run_is_followed_to_its_end(service: Service, open_page: OpenPage)
 async def test_run_is_paused_and_resumed(service: Service, open_page: OpenPage) -> None:
     run = await asked_run(service)
     page = await open_page(f"/runs/{run.id}")
-    await page.get_by_role("button", name="Pause").click()
+    await page.get_by_role("button", name="Pause", exact=True).click()
     await expect(status(page)).to_have_text("paused")
     assert service.runtime.run(run.id).status is RunStatus.PAUSED
     view = service.runtime.run(run.id)
@@ -86,7 +86,7 @@ async def test_abort_is_asked_once_before_it_is_done(service: Service, open_page
     await page.get_by_role("button", name="Abort …").click()
     await page.get_by_role("button", name="Abort the run").click()
     await expect(status(page)).to_have_text("aborted")
-    await expect(page.get_by_role("button", name="Pause")).to_have_count(0)
+    await expect(page.get_by_role("button", name="Pause", exact=True)).to_have_count(0)
     assert service.runtime.run(run.id).status is RunStatus.ABORTED
 
 

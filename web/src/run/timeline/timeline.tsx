@@ -27,7 +27,7 @@ export function Timeline(props: TimelineProps) {
       <div class="panel-bar">
         <h2>Timeline</h2>
         <button type="button" class="small-button" aria-pressed={asList} onClick={() => setAsList(!asList)}>
-          As a list
+          Events as a list
         </button>
         <div class="tree-zoom" role="group" aria-label="Span of the timeline">
           <button type="button" aria-label="Longer span" disabled={span === null} onClick={() => zoom(2)}>
