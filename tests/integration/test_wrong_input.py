@@ -17,8 +17,9 @@ SERVICE = build(allowed_hosts=["testserver"])
 SCHEMA = schemathesis.openapi.from_asgi("/openapi.json", SERVICE.app)
 
 
-@pytest.fixture(autouse=True, scope="module")
+@pytest.fixture(autouse=True, scope="session")
 def _close() -> Iterator[None]:
+    """At the very end: a worker may come back to this file after others."""
     yield
     SERVICE.journal.close()
 
