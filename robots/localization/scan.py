@@ -66,9 +66,17 @@ class Scan:
             )
         return usable
 
+    def is_covered(self, within_m: float) -> bool:
+        """Whether the laser sees hardly anything but what is nearer than that, all around."""
+        near = int(self.returns(0.0, within_m).sum())
+        beyond = int(self.returns(within_m, self.max_range).sum())
+        return 2 * near > len(self.ranges) and beyond < _LEAST_BEYOND_COVER * (near + beyond)
+
 
 MAX_BEAMS = 100_000
 """No planar laser has more beams; more is a mistake, not a scan."""
+_LEAST_BEYOND_COVER = 0.1
+"""A laser with a smaller share of its returns from farther away than its cover sees no place."""
 
 
 class ScanStream:

@@ -20,9 +20,10 @@ from robots.localization.enml.parameters import EnmlParameters
 from robots.localization.enml.prior import whitening_of
 from robots.localization.enml.problem import Floats
 from robots.localization.enml.recovery import Found, Recovery
+from robots.localization.enml.sight import Sight
 from robots.localization.enml.solver import Linearize, Solution, solve
 from robots.localization.localizer import Estimate, PointClass
-from robots.localization.points import DEFAULT_MAX_RANGE_M, scan_points
+from robots.localization.points import DEFAULT_MAX_RANGE_M
 from robots.localization.pose import Poses, relative, transform, wrap, wrap_angle
 from robots.localization.scan import Scan, ScanStream
 
@@ -87,6 +88,7 @@ class EnmlLocalizer:
             covariance = np.diag(_FIRST_STD**2)
         covariance = np.asarray(covariance, dtype=np.float64) + _LEAST_VARIANCE * np.eye(3)
         self._stream = ScanStream()
+        self._sight = Sight(self._parameters)
         self._short_term.forget()
         self._driven_m, self._next_search_m = 0.0, self._parameters.recovery_every_m
         self._probation_until_m = 0.0
@@ -112,8 +114,9 @@ class EnmlLocalizer:
         Raises `InvalidScanError`, and is then as it was before.
         """
         motion = self._stream.accept(odometry, scan)
-        self._episode.extend(motion, scan, scan_points(scan))
-        self._driven_m += float(np.hypot(motion[0], motion[1]))
+        moved_m = float(np.hypot(motion[0], motion[1]))
+        self._episode.extend(motion, scan, self._sight.take(scan, moved_m))
+        self._driven_m += moved_m
         self._recovery.move(motion)
         self._notice_being_carried(self._align())
         self._set_first_gate()
@@ -134,7 +137,12 @@ class EnmlLocalizer:
         is_lost = self._mode is Mode.LOST
         lost = 1.0 if is_lost else max(self._evidence.lost, self._evidence.contradiction)
         return Estimate(
-            pose, covariance, node.scan_points, classes, lost, is_lost or self._says_doubt
+            pose,
+            covariance,
+            node.scan_points,
+            classes,
+            self._sight.doubted(lost),
+            is_lost or self._says_doubt or self._sight.is_gone,
         )
 
     def _notice_being_carried(self, unexplained: float) -> None:
@@ -167,18 +175,17 @@ class EnmlLocalizer:
             self._may_be_anywhere = True
 
     def _last_familiar(self) -> int | None:
-        """The last pose before the newest that saw nothing surprising; None if too little was."""
-        nodes = self._episode.nodes
-        before = next(
-            (index for index, node in enumerate(nodes[:-1]) if node.identity == self._familiar),
-            len(nodes) - 2,
-        )
-        if (
-            before < 0
-            or min(len(nodes[each].scan_points) for each in (before, -1)) < _LEAST_RETURNS
-        ):
+        """The last pose before the newest that saw enough, and nothing surprising."""
+        *before, newest = self._episode.nodes
+        if len(newest.scan_points) < _LEAST_RETURNS:
             return None
-        return before
+        familiar = None
+        for index, node in enumerate(before):
+            if len(node.scan_points) >= _LEAST_RETURNS:
+                familiar = index
+            if node.identity == self._familiar:
+                break
+        return familiar
 
     def _weigh_evidence(self) -> None:
         """Judge by the newest scans whether the robot is where it is believed to be."""

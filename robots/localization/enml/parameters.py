@@ -61,6 +61,12 @@ class EnmlParameters:
     stf_separations: tuple[int, ...] = (1, 2, 4, 8, 16)
     """How many poses back correspondences are looked for (ours; published: every fourth pose)."""
 
+    covered_within_m: float = 0.4
+    """A scan in which hardly anything is farther away than this shows what covers the laser,
+    and is not used (ours)."""
+    blind_for_m: float = 4.0
+    """A robot that has driven this far without seeing anything is lost (ours)."""
+
     min_episode_length: int = 10
     """Poses that are kept even if nothing ties the newest to them (published)."""
     max_episode_length: int = 25

@@ -1,4 +1,8 @@
-"""People who walk past: round, never where the robot is, gone after a while."""
+"""People who walk past: round, and gone after a while.
+
+They do not look where the robot is. Now and then one walks right over it, and its laser then sees
+nothing else.
+"""
 
 from dataclasses import dataclass
 

@@ -33,6 +33,14 @@ FLOOR = VectorMap.of(
     ]
 )
 FURNITURE = np.array([*box(3.0, 1.2, 3.6, 1.8), *box(8.0, 6.6, 9.0, 7.4), *box(9.0, 2.0, 9.5, 2.6)])
+NOTHING = {
+    "not numbers": np.full(BEAMS, np.nan),
+    "zeros": np.zeros(BEAMS),
+    "infinite": np.full(BEAMS, np.inf),
+    "out of range": np.full(BEAMS, RANGE_M),
+    "negative": np.full(BEAMS, -1.0),
+    "covered": 0.2 + 0.1 * np.sin(0.1 * np.arange(BEAMS)),
+}
 OUTSIDE = np.array([-40.0, -40.0, 0.0])
 
 
@@ -157,13 +165,18 @@ def test_a_slip_of_the_wheels_does_not_mislead() -> None:
 
 
 @pytest.mark.slow
-def test_a_kidnapped_robot_says_so_and_finds_itself_again() -> None:
+@pytest.mark.parametrize("covered", [0, 6])
+def test_a_kidnapped_robot_says_so_and_finds_itself_again(covered: int) -> None:
     poses = way(60)
     elsewhere = way(60)[::-1] + np.array([4.0, 0.5, np.pi])
     before, after = drive(poses[:20]), drive(elsewhere, seed=1)
     localizer = EnmlLocalizer(FLOOR, start=poses[0])
     for step in before:
         localizer.update(*step)
+    for index in range(covered):
+        localizer.update(
+            np.zeros(3), replace(before[0][1], ranges=NOTHING["covered"], time_s=50 + index)
+        )
     told, found = False, False
     for index, ((motion, scan), pose) in enumerate(zip(after, elsewhere, strict=True)):
         estimate = localizer.update(motion, replace(scan, time_s=100.0 + index))
@@ -208,18 +221,8 @@ def test_a_robot_that_starts_anywhere_says_that_it_is_lost_until_it_finds_itself
         assert estimate.is_lost or off(estimate, pose)[0] < 0.5
 
 
-@pytest.mark.parametrize(
-    "ranges",
-    [
-        np.full(BEAMS, np.nan),
-        np.zeros(BEAMS),
-        np.full(BEAMS, np.inf),
-        np.full(BEAMS, RANGE_M),
-        np.full(BEAMS, -1.0),
-    ],
-    ids=["not numbers", "zeros", "infinite", "out of range", "negative"],
-)
-def test_scans_without_returns_leave_odometry_and_raise_the_measure(ranges: np.ndarray) -> None:
+@pytest.mark.parametrize("ranges", NOTHING.values(), ids=NOTHING)
+def test_scans_that_show_nothing_leave_odometry_and_raise_the_measure(ranges: np.ndarray) -> None:
     start = np.array([1.5, 5.0, 0.0])
     localizer = EnmlLocalizer(FLOOR, start=start)
     motion = np.array([0.2, 0.0, 0.1])
@@ -232,6 +235,31 @@ def test_scans_without_returns_leave_odometry_and_raise_the_measure(ranges: np.n
     assert estimate.lost > 0.9
     assert len(estimate.classes) == 0
     assert np.isfinite(estimate.covariance).all()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", NOTHING)
+def test_whoever_sees_nothing_on_the_way_is_in_doubt_until_something_is_seen_again(
+    name: str,
+) -> None:
+    poses = way(60)
+    localizer = EnmlLocalizer(FLOOR, start=poses[0])
+    steps = drive(poses)
+    steps[20:55] = [(motion, replace(scan, ranges=NOTHING[name])) for motion, scan in steps[20:55]]
+    driven_m = np.cumsum([np.hypot(motion[0], motion[1]) for motion, _ in steps])
+    measures = []
+    for index, step in enumerate(steps):
+        estimate = localizer.update(*step)
+        assert off(estimate, poses[index])[0] < 0.6
+        measures.append(estimate.lost)
+        too_long = driven_m[index] - driven_m[20] >= EnmlParameters().blind_for_m
+        assert estimate.is_lost == (too_long and index < 55)
+    assert driven_m[54] - driven_m[20] > EnmlParameters().blind_for_m
+    assert max(measures[:20]) < 0.2
+    assert min(measures[20:55]) >= 0.5
+    assert np.all(np.diff(measures[20:55]) > 0.0)
+    assert max(measures[55:]) < 0.2
+    assert off(estimate, poses[-1])[0] < 0.1
 
 
 def test_a_few_bad_ranges_among_good_ones_do_no_harm() -> None:

@@ -63,6 +63,25 @@ def test_nothing_came_back_gives_no_points() -> None:
     assert len(scan_points(_scan([np.inf] * 5))) == 0
 
 
+@pytest.mark.parametrize(
+    ("ranges", "covered"),
+    [
+        ([0.1] * 20, True),
+        ([0.1] * 11 + [np.inf] * 9, True),
+        ([0.1] * 10 + [np.inf] * 10, False),
+        ([0.1] * 19 + [3.0], True),
+        ([0.1] * 17 + [3.0] * 3, False),
+        ([0.5] * 20, False),
+        ([np.nan] * 20, False),
+        ([0.0] * 20, False),
+    ],
+)
+def test_a_laser_is_covered_that_sees_hardly_anything_but_its_cover(
+    ranges: list[float], covered: bool
+) -> None:
+    assert _scan(ranges).is_covered(0.4) == covered
+
+
 def test_points_are_in_the_robots_frame() -> None:
     scan = Scan(np.array([2.0, 2.0]), 0.0, 0.1, 8.0, 0.0, np.array([0.2, 0.1, np.pi / 2]))
     assert scan_points(scan).points[0] == pytest.approx([0.2, 2.1])
