@@ -9,11 +9,11 @@ from maps.vector_map import VectorMap
 from robots.localization.distance_field import distance_field
 from robots.localization.enml import normal_equations
 from robots.localization.enml.alignment import Aligner
-from robots.localization.enml.carried import changed
 from robots.localization.enml.classification import LongTermFeatures
 from robots.localization.enml.correspondences import ShortTermFeatures
 from robots.localization.enml.episode import Episode, Ties
 from robots.localization.enml.episodes import episode_start
+from robots.localization.enml.familiarity import LEAST_RETURNS, Familiarity
 from robots.localization.enml.global_search import Region, same_place
 from robots.localization.enml.lost import Evidence, evidence_of
 from robots.localization.enml.parameters import EnmlParameters
@@ -24,7 +24,7 @@ from robots.localization.enml.sight import Sight
 from robots.localization.enml.solver import Linearize, Solution, solve
 from robots.localization.localizer import Estimate, PointClass
 from robots.localization.points import DEFAULT_MAX_RANGE_M
-from robots.localization.pose import Poses, relative, transform, wrap, wrap_angle
+from robots.localization.pose import Poses, transform, wrap, wrap_angle
 from robots.localization.scan import Scan, ScanStream
 
 _FIELD_CELL_M = 0.1
@@ -32,7 +32,6 @@ _FIELD_REACH_M = 1.0
 _LOST_STD = np.array([10.0, 10.0, np.pi])
 _FOUND_STD = np.array([0.3, 0.3, np.radians(5.0)])
 _LEAST_VARIANCE = 1e-8
-_LEAST_RETURNS = 40.0
 _FIRST_STD = np.array([0.1, 0.1, np.radians(3.0)])
 
 
@@ -71,7 +70,7 @@ class EnmlLocalizer:
         )
         self._mode = Mode.TRACKING
         self._evidence = Evidence()
-        self._familiar: int | None = None
+        self._familiarity = Familiarity(self._recovery.behind, self._parameters)
         self._may_be_anywhere = False
         self._driven_m = self._next_search_m = 0.0
         self._probation_until_m = self._confirmed_until_m = 0.0
@@ -118,7 +117,10 @@ class EnmlLocalizer:
         self._episode.extend(motion, scan, self._sight.take(scan, moved_m))
         self._driven_m += moved_m
         self._recovery.move(motion)
-        self._notice_being_carried(self._align())
+        unexplained = self._align()
+        on_map = self._mode is Mode.TRACKING
+        if self._familiarity.has_changed(self._episode, unexplained, on_map=on_map):
+            self._take_for_carried()
         self._set_first_gate()
         covariance = self._settle()
         if self._mode is Mode.TRACKING:
@@ -145,57 +147,26 @@ class EnmlLocalizer:
             is_lost or self._says_doubt or self._sight.is_gone,
         )
 
-    def _notice_being_carried(self, unexplained: float) -> None:
-        """Whoever sees neither the map nor what was there just before was carried elsewhere."""
-        nodes, poses, parameters = self._episode.nodes, self._episode.poses, self._parameters
-        before = self._last_familiar()
-        if before is None:
-            return
-        change = changed(nodes[before], poses[before], nodes[-1], poses[-1])
-        apart = np.abs(relative(poses[before], poses[-1]))
-        usual = parameters.carried_above_per_m * float(np.hypot(*apart[:2]) + apart[2])
-        if self._mode is Mode.TRACKING:
-            change += parameters.carried_unexplained_counts * unexplained
-            if change > parameters.carried_maybe_above + usual:
-                now, then = (
-                    self._recovery.behind(nodes[each], poses[each]) for each in (-1, before)
-                )
-                change += parameters.carried_behind_counts * max(now - then, 0.0)
-        if change <= parameters.carried_above + usual:
-            self._familiar, self._surprises = None, 0
-            return
-        self._familiar = nodes[before].identity
-        self._surprises += 1
-        if self._surprises >= parameters.carried_after_scans:
-            self._episode.keep_newest()
-            # Much may have changed at once where it is.
-            self._recovery.forget(self._episode.poses[-1])
-            self._probation_until_m = 0.0
-            self._lose()
-            self._may_be_anywhere = True
-
-    def _last_familiar(self) -> int | None:
-        """The last pose before the newest that saw enough, and nothing surprising."""
-        *before, newest = self._episode.nodes
-        if len(newest.scan_points) < _LEAST_RETURNS:
-            return None
-        familiar = None
-        for index, node in enumerate(before):
-            if len(node.scan_points) >= _LEAST_RETURNS:
-                familiar = index
-            if node.identity == self._familiar:
-                break
-        return familiar
+    def _take_for_carried(self) -> None:
+        """Forget the way here; but much may have changed at once where the robot was."""
+        self._episode.keep_newest()
+        self._recovery.forget(self._episode.poses[-1])
+        self._probation_until_m = 0.0
+        self._lose()
+        self._may_be_anywhere = True
 
     def _weigh_evidence(self) -> None:
         """Judge by the newest scans whether the robot is where it is believed to be."""
+        if self._familiarity.is_among_strangers(self._episode):
+            self._take_for_carried()
+            return
         self._evidence = self._evidence.faded(
             self._parameters.evidence_fading, evidence_of(self._episode.nodes[-1])
         )
         if (
             self._driven_m >= self._next_search_m
             and self._evidence.contradiction > self._parameters.lost_above
-            and self._evidence.returns >= _LEAST_RETURNS
+            and self._evidence.returns >= LEAST_RETURNS
         ):
             self._lose()
             self._next_search_m = self._driven_m
@@ -204,7 +175,7 @@ class EnmlLocalizer:
     def _in_doubt(self) -> bool:
         return (
             self._evidence.contradiction > self._parameters.doubt_above
-            and self._evidence.returns >= _LEAST_RETURNS
+            and self._evidence.returns >= LEAST_RETURNS
         )
 
     @property
@@ -266,7 +237,7 @@ class EnmlLocalizer:
     def _track(self, seen: Evidence) -> None:
         self._mode = Mode.TRACKING
         self._evidence = seen
-        self._surprises, self._familiar = 0, None
+        self._familiarity.forget()
         self._may_be_anywhere = False
         self._confirmed_until_m = 0.0
 

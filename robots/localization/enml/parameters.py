@@ -109,6 +109,13 @@ class EnmlParameters:
     far apart has less in common)..."""
     carried_after_scans: int = 2
     """... in so many scans in a row (ours)."""
+    strange_above: float = 0.3
+    """A robot was carried away, too, if more than this share of what it sees is on no map..."""
+    strange_recognized_below: float = 0.15
+    """... and it recognizes less than this share of that from the poses before (ours: never twice
+    in a row in 4.8 km of simulated drives)..."""
+    strange_within: float = 0.7
+    """... of which the last is no more than so many metres and radians away, together (ours)."""
     alignment_believed_above: float = 0.55
     """The pre-alignment is followed if it lays more than this share of a scan on something (ours:
     0.61 to 0.88 in the worst hundredth of drives)."""

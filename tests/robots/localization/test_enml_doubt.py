@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from maps.ray_cast import cast
-from robots.localization.enml.carried import changed, seen_through
+from robots.localization.enml.change import changed, seen_through
 from robots.localization.enml.lost import Evidence
 from robots.localization.enml.motion_model import Travel
 from robots.localization.enml.pose_node import PoseNode

@@ -186,6 +186,39 @@ def test_a_kidnapped_robot_says_so_and_finds_itself_again(covered: int) -> None:
     assert found
 
 
+def shelves(x0: float, depth: float) -> list[list[float]]:
+    """Along both walls of a hall that is 3 m wide, from some place on."""
+    return [
+        side
+        for x in x0 + 0.2 + 2.1 * np.arange(9)
+        for corners in ((x, 0.05, x + 0.4, depth), (x + 0.9, 3.0 - depth, x + 1.3, 2.95))
+        for side in box(*corners)
+    ]
+
+
+@pytest.mark.parametrize("put_m", [2.1, 2.9])
+@pytest.mark.parametrize(("strange_above", "says_so"), [(0.99, False), (0.3, True)])
+def test_in_the_copy_of_a_hall_a_robot_notices_by_the_furniture_that_it_was_carried(
+    strange_above: float, says_so: bool, put_m: float
+) -> None:
+    halls = [*box(0, 0, 20, 3), *box(40, 0, 60, 3)]
+    localizer = EnmlLocalizer(
+        VectorMap.of(halls),
+        start=np.array([4.0, 1.5, 0.0]),
+        parameters=EnmlParameters(strange_above=strange_above),
+    )
+    world = np.array([*halls, *shelves(0.0, 0.22), *shelves(40.0, 0.42)])
+    here = np.column_stack([np.arange(4.0, 8.0, 0.1), np.full(40, 1.5), np.zeros(40)])
+    there = here + np.array([40.0 + put_m, 0.0, 0.0])
+    before = [localizer.update(*step).is_lost for step in drive(here, 0, world)]
+    after = [
+        localizer.update(motion, replace(scan, time_s=100.0 + index)).is_lost
+        for index, (motion, scan) in enumerate(drive(there, 9, world))
+    ]
+    assert not any(before)
+    assert any(after[:2]) == any(after) == says_so
+
+
 @pytest.mark.parametrize(("confirmed_below", "says_so"), [(0.001, True), (0.3, False)])
 def test_beside_a_wall_that_is_gone_a_robot_that_is_found_again_is_not_lost(
     confirmed_below: float, says_so: bool

@@ -1,4 +1,4 @@
-"""Whether a robot was carried between two scans: what stood there is gone, what was free is not."""
+"""What changed between two scans: what stood there is gone, or something stands where was none."""
 
 import numpy as np
 from numpy.typing import NDArray
