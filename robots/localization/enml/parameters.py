@@ -113,7 +113,7 @@ class EnmlParameters:
     """A robot was carried away, too, if more than this share of what it sees is on no map..."""
     strange_recognized_below: float = 0.15
     """... and it recognizes less than this share of that from the poses before (ours: never twice
-    in a row in 4.8 km of simulated drives)..."""
+    in a row in 23.9 km of simulated drives)..."""
     strange_within: float = 0.7
     """... of which the last is no more than so many metres and radians away, together (ours)."""
     alignment_believed_above: float = 0.55

@@ -7,6 +7,7 @@ from robots.localization.points import DEFAULT_MAX_RANGE_M, ScanPoints, scan_poi
 from robots.localization.scan import Scan
 
 _FEW_RETURNS = 10
+"""Fewer show nothing, unless the laser has hardly more beams."""
 
 
 class Sight:
@@ -20,7 +21,7 @@ class Sight:
         """What a scan shows after a motion: nothing, where something is right over the laser."""
         covered = scan.is_covered(self._parameters.covered_within_m)
         points = scan_points(scan, max_range=0.0 if covered else DEFAULT_MAX_RANGE_M)
-        if len(points) >= _FEW_RETURNS:
+        if len(points) >= min(_FEW_RETURNS, len(scan.ranges) // 2):
             self._blind_m = None
         else:
             self._blind_m = 0.0 if self._blind_m is None else self._blind_m + moved_m

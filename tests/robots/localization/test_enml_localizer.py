@@ -295,6 +295,17 @@ def test_whoever_sees_nothing_on_the_way_is_in_doubt_until_something_is_seen_aga
     assert off(estimate, poses[-1])[0] < 0.1
 
 
+def test_a_laser_of_few_beams_is_not_blind() -> None:
+    poses = way(20)
+    localizer = EnmlLocalizer(FLOOR, start=poses[0])
+    for motion, scan in drive(poses):
+        few = replace(scan, ranges=scan.ranges[::30], angle_increment=30.0 * scan.angle_increment)
+        estimate = localizer.update(motion, few)
+    assert len(estimate.classes) < 10
+    assert estimate.lost < 0.5
+    assert not estimate.is_lost
+
+
 def test_a_few_bad_ranges_among_good_ones_do_no_harm() -> None:
     poses = way(10)
     localizer = EnmlLocalizer(FLOOR, start=poses[0])
