@@ -33,7 +33,7 @@ class Familiarity:
         self._familiar: int | None = None
         self._changes = self._strangers = 0
 
-    def has_changed(self, episode: Episode, unexplained: float, *, on_map: bool) -> bool:
+    def notices_change(self, episode: Episode, unexplained: float, *, on_map: bool) -> bool:
         """Whether too much is seen that was not there before, in enough scans in a row.
 
         `unexplained` is the share of the newest scan that fits neither the map nor the scans
@@ -57,7 +57,7 @@ class Familiarity:
         self._changes += 1
         return self._changes >= parameters.carried_after_scans
 
-    def is_among_strangers(self, episode: Episode) -> bool:
+    def notices_strangers(self, episode: Episode) -> bool:
         """Whether nothing of what is on no map is recognized, however alike the walls.
 
         For an episode whose newest scan is classified; in enough scans in a row.

@@ -119,7 +119,7 @@ class EnmlLocalizer:
         self._recovery.move(motion)
         unexplained = self._align()
         on_map = self._mode is Mode.TRACKING
-        if self._familiarity.has_changed(self._episode, unexplained, on_map=on_map):
+        if self._familiarity.notices_change(self._episode, unexplained, on_map=on_map):
             self._take_for_carried()
         self._set_first_gate()
         covariance = self._settle()
@@ -157,7 +157,7 @@ class EnmlLocalizer:
 
     def _weigh_evidence(self) -> None:
         """Judge by the newest scans whether the robot is where it is believed to be."""
-        if self._familiarity.is_among_strangers(self._episode):
+        if self._familiarity.notices_strangers(self._episode):
             self._take_for_carried()
             return
         self._evidence = self._evidence.faded(

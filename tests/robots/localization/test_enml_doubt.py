@@ -5,8 +5,10 @@ import pytest
 
 from maps.ray_cast import cast
 from robots.localization.enml.change import changed, seen_through
+from robots.localization.enml.familiarity import seen_before
 from robots.localization.enml.lost import Evidence
 from robots.localization.enml.motion_model import Travel
+from robots.localization.enml.parameters import EnmlParameters
 from robots.localization.enml.pose_node import PoseNode
 from robots.localization.points import scan_points
 from robots.localization.pose import Poses
@@ -51,6 +53,23 @@ def test_only_what_both_looked_at_is_compared() -> None:
     behind = np.array([0.0, 0.0, np.pi])
     assert changed(seen(ROOM, HERE), HERE, seen(ROOM, behind), behind) < 0.02
     assert changed(seen(ROOM, HERE), HERE, seen(HALL, behind), behind) > 0.9
+
+
+def test_what_was_seen_before_is_recognized_after_driving_on() -> None:
+    on = np.array([0.3, 0.1, 0.2])
+    recognized = seen_before(seen(ROOM, HERE), seen(ROOM, on), on, EnmlParameters())
+    assert recognized.mean() > 0.8
+    elsewhere = seen_before(seen(ROOM, HERE), seen(HALL, on), on, EnmlParameters())
+    assert elsewhere.mean() < 0.05
+
+
+def test_what_faces_another_way_is_not_recognized() -> None:
+    straight, slanted = ([[2.0, -1.0, 2.0 + lean, 1.0]] for lean in (0.0, 2.0))
+    before, now = (seen(np.array(wall), HERE) for wall in (straight, slanted))
+    away_m, _ = before.tree.query(now.scan_points.points)
+    near = away_m < EnmlParameters().stf_gate_m
+    assert near.any()
+    assert not seen_before(before, now, HERE, EnmlParameters())[near].any()
 
 
 def test_nothing_seen_is_nothing_changed() -> None:
