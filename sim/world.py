@@ -8,9 +8,11 @@ from robots.agent import AgentCore
 from robots.body import Body
 from robots.link.messages import ShownObject, ShownPose
 from robots.vision.color_model import ColorModel
+from tasks.definition import BehaviorNode
 from tasks.intervention import Intervention
 from tasks.scenario import ScriptedIntervention
 from tasks.scene import Scene, StrictModel
+from tasks.scene_problem import SceneProblem
 
 
 class WorldSetup(StrictModel):
@@ -132,6 +134,19 @@ class ColorTeacher(Protocol):
         """Learn the colours of a scene's objects from rendered pictures of them.
 
         Raises `ColorModelError` for an object without a colour of its own, and
+        `WorldUnavailableError`.
+        """
+        ...
+
+
+@runtime_checkable
+class SceneChecker(Protocol):
+    """A world adapter that tells, before anything moves, what in a scene its robot cannot do."""
+
+    def check_scene(self, scene: Scene, leaves: Sequence[BehaviorNode]) -> list[SceneProblem]:
+        """What keeps its robot from doing `leaves` in `scene`; empty where nothing does.
+
+        Without leaves, every object of the scene is checked by itself. Raises
         `WorldUnavailableError`.
         """
         ...
