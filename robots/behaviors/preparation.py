@@ -112,28 +112,25 @@ def make_plan(assignment: Assignment, arm: Arm, senses: Senses, findings: Findin
     if waypoints and path is None:
         findings.path_found = False
         return None
-    findings.obstruction = _obstruction(assignment, waypoints, arm, senses, findings)
+    findings.obstruction = _obstruction(assignment, waypoints, senses, findings)
     return Plan(steps, first, path)
 
 
 def _obstruction(
     assignment: Assignment,
     waypoints: Sequence[ToolPose],
-    arm: Arm,
     senses: Senses,
     findings: Findings,
 ) -> Obstruction | None:
     """What is seen on the way, on the object, or at the place where that is to go."""
     if findings.image is not None:
-        on_the_way = senses.obstruction(findings.image, waypoints, arm.at_neutral)
+        on_the_way = senses.obstruction(findings.image, waypoints)
         if on_the_way is not None:
             return on_the_way
     if assignment.part is None:
         return None
     image = findings.image or senses.look()
-    return senses.occupant(
-        image, assignment.part, findings.sighting, assignment.target, arm.at_neutral
-    )
+    return senses.occupant(image, assignment.part, findings.sighting, assignment.target)
 
 
 def waypoints_of(steps: Sequence[Step]) -> list[ToolPose]:
