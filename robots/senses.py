@@ -94,16 +94,6 @@ class Senses:
                 seen[name] = sighting.to_message(part)
         return seen
 
-    def presence(self, image: CameraImage, part: Part, target: Location) -> Presence:
-        """Whether a head picture shows a part at its place."""
-        sighting = self.sight(part, image)
-        if sighting is not None and is_at(sighting, target, self.catalogue.height_of(target)):
-            return Presence.THERE
-        room = room_at_place(part, target, self.catalogue.height_of(target))
-        segmentation = self._understand(image).segmentation
-        hidden = find_occupant(image, segmentation, room, (), self._clearance, self._fit)
-        return Presence.GONE if hidden is None else Presence.HIDDEN
-
     def seen_boxes(self, image: CameraImage) -> Sequence[SeenBox]:
         """Everything that a head picture shows on the table."""
         boxes = []
@@ -116,6 +106,16 @@ class Senses:
             size = (part.size[0], part.size[1], height_m)
             boxes.append(SeenBox(seen.x, seen.y, seen.yaw, size, seen.z, name, seen.complete))
         return boxes
+
+    def presence(self, image: CameraImage, part: Part, target: Location) -> Presence:
+        """Whether a head picture shows a part at its place."""
+        sighting = self.sight(part, image)
+        if sighting is not None and is_at(sighting, target, self.catalogue.height_of(target)):
+            return Presence.THERE
+        room = room_at_place(part, target, self.catalogue.height_of(target))
+        segmentation = self._understand(image).segmentation
+        hidden = find_occupant(image, segmentation, room, (), self._clearance, self._fit)
+        return Presence.GONE if hidden is None else Presence.HIDDEN
 
     def gripper(self) -> Position:
         """Where the tool point is."""
