@@ -12,12 +12,14 @@ from robots.behaviors.execution_state import (
     follow,
     is_over,
 )
+from robots.behaviors.phase import Phase
 from robots.behaviors.preparation import (
     Assignment,
     Findings,
     Plan,
     check_carrying,
     find,
+    goes_on_carrying,
     is_at,
     make_plan,
     waypoints_of,
@@ -177,7 +179,8 @@ class Execution:
         """The plan to walk; None if there is nothing left to do. Raises `Interruption`."""
         self._step, self._plan, self._seen = BEFORE_FIRST_STEP, None, Findings()
         part, arm, senses = self._assignment.part, self._arm, self._senses
-        self._seen.carrying = yield from check_carrying(part, arm, senses)
+        carrying = yield from check_carrying(part, arm, senses)
+        self._seen.carrying = carrying and goes_on_carrying(self._assignment, senses)
         if not self._seen.carrying:
             yield from put_down(arm, senses, self._picked_at)
             yield from arm.go_to_neutral()
@@ -222,13 +225,20 @@ class Execution:
             yield
             self._forces_n.append(self._arm.body.contact_force_n())
 
+    @property
+    def _phase(self) -> Phase:
+        """What the step under way is for."""
+        if self._plan is None or self._step == BEFORE_FIRST_STEP:
+            return Phase.PREPARE
+        return self._plan.steps[self._step - 1].phase
+
     def _begin(self, plan: Plan, number: int, step: Step) -> None:
         part = self._assignment.part
         if isinstance(step.action, Move):
             if plan.path is not None:
                 self._arm.start(plan.path, plan.segment_of(number), step.action.speed)
         elif step.action.to == "closed":
-            if part is not None:
+            if part is not None and step.phase is Phase.GRASP:
                 self._senses.watch_grip(part)
             self._arm.start_closing()
         else:
@@ -241,14 +251,19 @@ class Execution:
         The last step in which they are looked at ends with one taken after the arm has arrived.
         """
         grip = self._senses.grip
-        if grip is None or not self._judges_grip(self._step):
+        if grip is None or self._plan is None or not self._judges_grip(self._phase):
             return False
-        if self._judges_grip(self._step + 1):
+        following = self._plan.steps[self._step : self._step + 1]
+        if following and self._judges_grip(following[0].phase):
             return grip.in_doubt
         return grip.in_doubt or self._read_s < arrived_s
 
-    def _judges_grip(self, step: int) -> bool:
-        return any(each.camera == FOREARM for each in self._monitors if each.watches(step))
+    def _judges_grip(self, phase: Phase) -> bool:
+        return any(each.camera == FOREARM for each in self._watching(phase))
+
+    def _watching(self, phase: Phase) -> list[Monitor[Any]]:
+        name = self._assignment.behavior.monitored_as
+        return [each for each in self._monitors if each.watches(name, phase)]
 
     def _check_if_due(self) -> None:
         """Check at the forearm camera's period. Raises `Interruption`."""
@@ -256,7 +271,7 @@ class Execution:
         if now < self._next_check_s - 1e-9:
             return
         self._next_check_s = now + self._senses.forearm_period_s
-        looking = self._judges_grip(self._step) and not self._closing()
+        looking = self._judges_grip(self._phase) and not self._closing()
         self._read_s = now if looking else self._read_s
         self._check(self._senses.read_grip() if looking else None)
 
@@ -271,8 +286,8 @@ class Execution:
         """Let the monitors of this step judge. Raises `Interruption` for the first that must."""
         view = self._view(grip)
         self._forces_n.clear()
-        for monitor in self._monitors:
-            if not monitor.watches(self._step) or monitor.issue in self._raised:
+        for monitor in self._watching(self._phase):
+            if monitor.issue in self._raised:
                 continue
             detection = monitor.check(view)
             if detection is None:
@@ -295,6 +310,7 @@ class Execution:
         return MonitorView(
             time_s=self._arm.body.time_s(),
             step=self._step,
+            phase=self._phase,
             part=self._assignment.part,
             needs_help=self._assignment.needs_help,
             reach=self._arm.body.reach,

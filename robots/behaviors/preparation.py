@@ -101,12 +101,9 @@ def make_plan(assignment: Assignment, arm: Arm, senses: Senses, findings: Findin
     sighting, part = findings.sighting, assignment.part
     if part is not None and sighting is None and not findings.carrying:
         return None
-    found = None
-    if sighting is not None:
-        found = Location(x=sighting.x, y=sighting.y, z=sighting.z, yaw=sighting.yaw)
-    situation = Situation(part, found, assignment.target, senses.catalogue.table.height)
-    steps = assignment.behavior.steps(assignment.parameters, situation)
-    first = assignment.behavior.carry_from if findings.carrying else 1
+    steps = _lay_out(assignment, sighting, senses)
+    first = assignment.behavior.first_carrying(steps) if findings.carrying else None
+    first = 1 if first is None else first
     waypoints = waypoints_of(steps[first - 1 :])
     path = arm.body.plan_path(waypoints) if waypoints else None
     if waypoints and path is None:
@@ -114,6 +111,22 @@ def make_plan(assignment: Assignment, arm: Arm, senses: Senses, findings: Findin
         return None
     findings.obstruction = _obstruction(assignment, waypoints, arm, senses, findings)
     return Plan(steps, first, path)
+
+
+def goes_on_carrying(assignment: Assignment, senses: Senses) -> bool:
+    """Whether the behavior has a step at which to go on with its object in the gripper."""
+    steps = _lay_out(assignment, None, senses)
+    return assignment.behavior.first_carrying(steps) is not None
+
+
+def _lay_out(
+    assignment: Assignment, sighting: HeadSighting | None, senses: Senses
+) -> Sequence[Step]:
+    found = None
+    if sighting is not None:
+        found = Location(x=sighting.x, y=sighting.y, z=sighting.z, yaw=sighting.yaw)
+    situation = Situation(assignment.part, found, assignment.target, senses.catalogue.table.height)
+    return assignment.behavior.steps(assignment.parameters, situation)
 
 
 def _obstruction(
