@@ -5,6 +5,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from robots.arm import Arm, Routine
+from robots.behaviors.assignment import Assignment, Findings
 from robots.behaviors.behavior import Move, SetGripper, Step
 from robots.behaviors.execution_state import (
     ExecutionState,
@@ -14,8 +15,6 @@ from robots.behaviors.execution_state import (
 )
 from robots.behaviors.phase import Phase
 from robots.behaviors.preparation import (
-    Assignment,
-    Findings,
     Plan,
     check_carrying,
     find,
@@ -180,7 +179,7 @@ class Execution:
         self._step, self._plan, self._seen = BEFORE_FIRST_STEP, None, Findings()
         part, arm, senses = self._assignment.part, self._arm, self._senses
         carrying = yield from check_carrying(part, arm, senses)
-        self._seen.carrying = carrying and goes_on_carrying(self._assignment, senses)
+        self._seen.carrying = carrying and goes_on_carrying(self._assignment, arm, senses)
         if not self._seen.carrying:
             yield from put_down(arm, senses, self._picked_at)
             yield from arm.go_to_neutral()
@@ -236,14 +235,16 @@ class Execution:
         part = self._assignment.part
         if isinstance(step.action, Move):
             if plan.path is not None:
+                if step.action.opening_m is not None:
+                    self._arm.start_opening_to(step.action.opening_m)
                 self._arm.start(plan.path, plan.segment_of(number), step.action.speed)
         elif step.action.to == "closed":
             if part is not None and step.phase is Phase.GRASP:
-                self._senses.watch_grip(part)
+                self._senses.watch_grip(part, plan.grasp)
             self._arm.start_closing()
         else:
             self._senses.let_go()
-            self._arm.start_opening()
+            self._arm.start_opening(step.action.opening_m)
 
     def _grip_is_open_question(self, arrived_s: float) -> bool:
         """Whether the pictures have yet to show what the gripper holds.
@@ -316,7 +317,7 @@ class Execution:
             reach=self._arm.body.reach,
             table_z=self._senses.catalogue.table.height,
             sighting=self._seen.sighting,
-            path_found=self._seen.path_found,
+            refusal=self._seen.refusal,
             obstruction=self._seen.obstruction,
             grip=grip,
             contact_forces_n=tuple(self._forces_n),

@@ -36,4 +36,4 @@ class SeenBox:
         signs = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
         local = signs * (self.size[0] / 2, self.size[1] / 2)
         turned: NDArray[np.float64] = local @ np.array([[cos, sin], [-sin, cos]])
-        return turned + np.array([self.x, self.y])
+        return np.asarray(turned + np.array([self.x, self.y]))
