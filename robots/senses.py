@@ -21,6 +21,7 @@ from robots.vision.obstruction import (
     find_obstruction,
 )
 from robots.vision.occupancy import Fit, find_occupant, room_above, room_at_place
+from robots.vision.presence import Presence, is_at
 from robots.vision.seen_box import SeenBox
 
 HEAD = "head"
@@ -105,6 +106,16 @@ class Senses:
             size = (part.size[0], part.size[1], height_m)
             boxes.append(SeenBox(seen.x, seen.y, seen.yaw, size, seen.z, name, seen.complete))
         return boxes
+
+    def presence(self, image: CameraImage, part: Part, target: Location) -> Presence:
+        """Whether a head picture shows a part at its place."""
+        sighting = self.sight(part, image)
+        if sighting is not None and is_at(sighting, target, self.catalogue.height_of(target)):
+            return Presence.THERE
+        room = room_at_place(part, target, self.catalogue.height_of(target))
+        segmentation = self._understand(image).segmentation
+        hidden = find_occupant(image, segmentation, room, (), self._clearance, self._fit)
+        return Presence.GONE if hidden is None else Presence.HIDDEN
 
     def gripper(self) -> Position:
         """Where the tool point is."""

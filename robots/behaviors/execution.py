@@ -7,6 +7,7 @@ from typing import Any
 from robots.arm import Arm, Routine
 from robots.behaviors.assignment import Assignment, Findings
 from robots.behaviors.behavior import Move, SetGripper, Step
+from robots.behaviors.confirmation import Outcome, look_at_outcome
 from robots.behaviors.execution_state import (
     ExecutionState,
     ExecutionTransitionError,
@@ -19,7 +20,6 @@ from robots.behaviors.preparation import (
     check_carrying,
     find,
     goes_on_carrying,
-    is_at,
     make_plan,
     waypoints_of,
 )
@@ -40,6 +40,7 @@ from robots.monitors.monitor import BEFORE_FIRST_STEP, Meanwhile, Monitor, Monit
 from robots.senses import FOREARM, HEAD, Senses
 from robots.vision.drawing import draw_detection, encode_jpeg
 from robots.vision.forearm import GripReading
+from robots.vision.presence import is_at
 
 _CAREFUL = 0.5
 """While a person's hands are near, motion is scaled by this."""
@@ -77,6 +78,7 @@ class Execution:
         self._plan: Plan | None = None
         self._picked_at: ToolPose | None = None
         self._seen = Findings()
+        self._outcome: Outcome | None = None
         self._raised: set[str] = set()
         self._forces_n: list[float] = []
         self._next_check_s = -math.inf
@@ -107,7 +109,7 @@ class Execution:
     @property
     def way(self) -> list[ToolPose]:
         """The poses that the steps still to come lead through."""
-        if self._plan is None:
+        if self._plan is None or self._outcome is not None:
             return []
         return waypoints_of(self._plan.steps[max(self._step, self._plan.first) - 1 :])
 
@@ -170,6 +172,7 @@ class Execution:
                 self._report(Resumed(execution=self.id, step=plan.first))
             for number in range(plan.first, len(plan.steps) + 1):
                 yield from self._walk(plan, number)
+            yield from self._confirm()
             self._finish(found_in_place=False)
         except Interruption as interruption:
             yield from self._react(interruption.monitor.meanwhile)
@@ -177,6 +180,7 @@ class Execution:
     def _prepare(self) -> Routine[Plan | None]:
         """The plan to walk; None if there is nothing left to do. Raises `Interruption`."""
         self._step, self._plan, self._seen = BEFORE_FIRST_STEP, None, Findings()
+        self._outcome = None
         part, arm, senses = self._assignment.part, self._arm, self._senses
         carrying = yield from check_carrying(part, arm, senses)
         self._seen.carrying = carrying and goes_on_carrying(self._assignment, arm, senses)
@@ -227,6 +231,8 @@ class Execution:
     @property
     def _phase(self) -> Phase:
         """What the step under way is for."""
+        if self._state is ExecutionState.CONFIRMING:
+            return Phase.CONFIRM
         if self._plan is None or self._step == BEFORE_FIRST_STEP:
             return Phase.PREPARE
         return self._plan.steps[self._step - 1].phase
@@ -303,9 +309,10 @@ class Execution:
                 raise Interruption(monitor)
 
     def _view(self, grip: GripReading | None) -> MonitorView:
-        pictures = {}
-        if self._seen.image is not None:
-            pictures[HEAD] = self._seen.image
+        pictures, outcome = {}, self._outcome
+        seen = self._seen if outcome is None else outcome
+        if seen.image is not None:
+            pictures[HEAD] = seen.image
         if grip is not None:
             pictures[FOREARM] = grip.image
         return MonitorView(
@@ -320,13 +327,16 @@ class Execution:
             refusal=self._seen.refusal,
             obstruction=self._seen.obstruction,
             grip=grip,
+            placed=None if outcome is None else outcome.sighting,
+            presence=None if outcome is None else outcome.presence,
             contact_forces_n=tuple(self._forces_n),
             pictures=pictures,
         )
 
     def _report_issue(self, monitor: Monitor[Any], detection: Detection, view: MonitorView) -> None:
         image = view.pictures.get(detection.camera)
-        if image is None or (self._step > BEFORE_FIRST_STEP and detection.camera == HEAD):
+        fresh = view.phase in (Phase.PREPARE, Phase.CONFIRM)
+        if image is None or (detection.camera == HEAD and not fresh):
             image = self._arm.body.cameras[detection.camera].capture()
         height, width = image.bgr.shape[:2]
         detection = detection.model_copy(update={"size_px": (width, height)})
@@ -342,6 +352,16 @@ class Execution:
         )
 
     # --- After the steps ----------------------------------------------------------------------
+
+    def _confirm(self) -> Routine[None]:
+        """Look whether the object is at its place. Raises `Interruption`."""
+        part, target = self._assignment.part, self._assignment.target
+        if part is None or target is None:
+            return
+        self._move_to(ExecutionState.CONFIRMING)
+        self._arm.be_careful(1.0)
+        self._outcome = yield from look_at_outcome(part, target, self._arm, self._senses)
+        self._check(None)
 
     def _react(self, meanwhile: Meanwhile) -> Routine[None]:
         if meanwhile is Meanwhile.GO_TO_NEUTRAL:

@@ -1,6 +1,5 @@
 """Before the first step: whether the object is held, where it is, how to grasp it, the path."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -11,18 +10,12 @@ from robots.behaviors.grasp_choice import crowded, others, ways_to_grasp
 from robots.body import ArmPath, ToolPose
 from robots.catalogue import Part
 from robots.grasp import Grasp, UngraspableError
-from robots.link.messages import Location
 from robots.senses import Senses
-from robots.vision.head import HeadSighting
 from robots.vision.obstruction import Obstruction
 
-AT_PLACE_M = 0.02
-"""A part is at its place if it is this near to it."""
-AT_PLACE_HEIGHT_M = 0.015
-
-_LOOKS = 3
+LOOKS = 3
 """So often a part that is not wholly seen is looked for before that is believed."""
-_LOOK_AGAIN_S = 0.1
+LOOK_AGAIN_S = 0.1
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +47,7 @@ def check_carrying(part: Part | None, arm: Arm, senses: Senses) -> Routine[bool]
     """Whether the object is in the gripper now, by fresh forearm pictures."""
     if part is None or not senses.holds(part.name):
         return False
-    for _ in range(_LOOKS):
+    for _ in range(LOOKS):
         senses.read_grip()
         yield from arm.wait(senses.forearm_period_s)
     return senses.holds(part.name)
@@ -62,9 +55,9 @@ def check_carrying(part: Part | None, arm: Arm, senses: Senses) -> Routine[bool]
 
 def find(part: Part | None, arm: Arm, senses: Senses, findings: Findings) -> Routine[None]:
     """Look for the object, again if it is not wholly seen."""
-    for attempt in range(_LOOKS):
+    for attempt in range(LOOKS):
         if attempt:
-            yield from arm.wait(_LOOK_AGAIN_S)
+            yield from arm.wait(LOOK_AGAIN_S)
         findings.image = senses.look()
         if part is None:
             return
@@ -144,9 +137,3 @@ def _obstruction(
 def waypoints_of(steps: Sequence[Step]) -> list[ToolPose]:
     """The poses that steps move through."""
     return [each.action.to for each in steps if isinstance(each.action, Move)]
-
-
-def is_at(sighting: HeadSighting, target: Location, target_z: float) -> bool:
-    """Whether an object rests where it is to be."""
-    near = math.hypot(sighting.x - target.x, sighting.y - target.y) <= AT_PLACE_M
-    return near and abs(sighting.z - target_z) <= AT_PLACE_HEIGHT_M

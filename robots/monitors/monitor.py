@@ -13,6 +13,7 @@ from robots.link.messages import Detection
 from robots.vision.forearm import GripReading
 from robots.vision.head import HeadSighting
 from robots.vision.obstruction import Obstruction
+from robots.vision.presence import Presence
 from tasks.scene import StrictModel
 
 BEFORE_FIRST_STEP = 0
@@ -49,6 +50,7 @@ class MonitorView:
     grasp and place it, and `obstruction` what it saw in the way; all three are from before the
     first step. `grip` is what the newest forearm picture says, from when the gripper has closed on
     the object until it opens.
+    `placed` and `presence` say where the object was seen in `CONFIRM`, after the last step.
     `contact_forces_n` are the readings of every control cycle since the last check.
     """
 
@@ -63,6 +65,8 @@ class MonitorView:
     refusal: str | None = None
     obstruction: Obstruction | None = None
     grip: GripReading | None = None
+    placed: HeadSighting | None = None
+    presence: Presence | None = None
     contact_forces_n: Sequence[float] = ()
     pictures: Mapping[str, CameraImage] = field(default_factory=dict)
 
