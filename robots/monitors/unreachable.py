@@ -49,6 +49,4 @@ class Unreachable(Monitor[UnreachableParameters]):
                 return f"{name} is {distance:.2f} m away; the arm grasps {low:.2f} to {high:.2f} m"
             if not view.sighting.upright(view.table_z):
                 return f"{name} has toppled over; the arm grasps it standing only"
-        if not view.path_found:
-            return f"the arm finds no path for {name}"
-        return None
+        return view.refusal
