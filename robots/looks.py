@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from robots.arm import Arm, Routine
-from robots.behaviors.preparation import is_at
 from robots.body import ToolPose
 from robots.catalogue import Part
 from robots.link.messages import Holding, Location, Look, Looked, ReportBody
@@ -14,6 +13,7 @@ from robots.senses import Senses
 from robots.understanding import Understanding
 from robots.vision.forearm import GripReading, GripState, steady
 from robots.vision.head import HeadSighting
+from robots.vision.presence import is_at
 
 LOOK_PERIOD_S = 0.5
 

@@ -164,7 +164,8 @@ class Robot:
         if execution is None or execution.over:
             return None
         name = None if execution.part is None else execution.part.name
-        fraction = 1.0 if not self._body.moving else self._body.progress
+        between = not self._body.moving or execution.state is ExecutionState.CONFIRMING
+        fraction = 1.0 if between else self._body.progress
         return TaskProgress(name, execution.step, fraction, self._attempts.get(name or "", 1))
 
     def pose_layout(self) -> PoseLayout:

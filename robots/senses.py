@@ -21,6 +21,8 @@ from robots.vision.obstruction import (
     find_obstruction,
 )
 from robots.vision.occupancy import Fit, find_occupant, room_above, room_at_place
+from robots.vision.presence import Presence, is_at
+from robots.vision.seen_box import SeenBox
 
 HEAD = "head"
 FOREARM = "forearm"
@@ -91,6 +93,29 @@ class Senses:
             if sighting is not None:
                 seen[name] = sighting.to_message(part)
         return seen
+
+    def seen_boxes(self, image: CameraImage) -> Sequence[SeenBox]:
+        """Everything that a head picture shows on the table."""
+        boxes = []
+        for name in self.catalogue.parts.keys() & set(self._model.names):
+            part = self.catalogue.parts[name]
+            seen = self.sight(part, image)
+            if seen is None:
+                continue
+            height_m = part.size[2] + (part.knob[2] if part.knob else 0.0)
+            size = (part.size[0], part.size[1], height_m)
+            boxes.append(SeenBox(seen.x, seen.y, seen.yaw, size, seen.z, name, seen.complete))
+        return boxes
+
+    def presence(self, image: CameraImage, part: Part, target: Location) -> Presence:
+        """Whether a head picture shows a part at its place."""
+        sighting = self.sight(part, image)
+        if sighting is not None and is_at(sighting, target, self.catalogue.height_of(target)):
+            return Presence.THERE
+        room = room_at_place(part, target, self.catalogue.height_of(target))
+        segmentation = self._understand(image).segmentation
+        hidden = find_occupant(image, segmentation, room, (), self._clearance, self._fit)
+        return Presence.GONE if hidden is None else Presence.HIDDEN
 
     def gripper(self) -> Position:
         """Where the tool point is."""

@@ -5,6 +5,7 @@ from dataclasses import replace
 from typing import ClassVar
 
 from robots.behaviors.behavior import Behavior, Move, SetGripper, Situation, Step
+from robots.behaviors.phase import Phase
 from robots.body import ToolPose
 from robots.grasp import RELEASE_CLEARANCE_M, Grasp, grasp_of, half_turn
 from robots.link.messages import Location
@@ -27,7 +28,6 @@ class PickAndPlace(Behavior):
 
     name: ClassVar[str] = "pick_and_place"
     parameters: ClassVar[type[StrictModel]] = PickAndPlaceParameters
-    carry_from: ClassVar[int] = 5
 
     def steps(self, parameters: StrictModel, situation: Situation) -> Sequence[Step]:  # noqa: ARG002
         """Raises `ValueError` where the part or the target is not known."""
@@ -42,14 +42,14 @@ class PickAndPlace(Behavior):
             # Parts look the same after half a turn: never carry one round by more than a quarter.
             place = replace(place, yaw=pick.yaw + half_turn(place.yaw - pick.yaw))
         return (
-            Step("above pick", Move(_above(pick), speed=1.0)),
-            Step("pick", Move(pick, speed=0.5)),
-            Step("close gripper", SetGripper("closed")),
-            Step("above pick", Move(_above(pick), speed=0.5)),
-            Step("above place", Move(_above(place), speed=0.75)),
-            Step("place", Move(place, speed=0.3), settle_s=0.1),
-            Step("open gripper", SetGripper("open")),
-            Step("above place", Move(_above(place), speed=0.5)),
+            Step("above pick", Move(_above(pick), speed=1.0), Phase.APPROACH),
+            Step("pick", Move(pick, speed=0.5), Phase.APPROACH),
+            Step("close gripper", SetGripper("closed"), Phase.GRASP),
+            Step("above pick", Move(_above(pick), speed=0.5), Phase.LIFT),
+            Step("above place", Move(_above(place), speed=0.75), Phase.CARRY),
+            Step("place", Move(place, speed=0.3), Phase.PLACE, settle_s=0.1),
+            Step("open gripper", SetGripper("open"), Phase.RELEASE),
+            Step("above place", Move(_above(place), speed=0.5), Phase.RETREAT),
         )
 
 

@@ -1,6 +1,5 @@
 """Before the first step: whether the object is held, where it is, and the path to walk."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -14,13 +13,9 @@ from robots.vision.head import HeadSighting
 from robots.vision.obstruction import Obstruction
 from tasks.scene import StrictModel
 
-AT_PLACE_M = 0.02
-"""A part is at its place if it is this near to it."""
-AT_PLACE_HEIGHT_M = 0.015
-
-_LOOKS = 3
+LOOKS = 3
 """So often a part that is not wholly seen is looked for before that is believed."""
-_LOOK_AGAIN_S = 0.1
+LOOK_AGAIN_S = 0.1
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +69,7 @@ def check_carrying(part: Part | None, arm: Arm, senses: Senses) -> Routine[bool]
     """Whether the object is in the gripper now, by fresh forearm pictures."""
     if part is None or not senses.holds(part.name):
         return False
-    for _ in range(_LOOKS):
+    for _ in range(LOOKS):
         senses.read_grip()
         yield from arm.wait(senses.forearm_period_s)
     return senses.holds(part.name)
@@ -82,9 +77,9 @@ def check_carrying(part: Part | None, arm: Arm, senses: Senses) -> Routine[bool]
 
 def find(part: Part | None, arm: Arm, senses: Senses, findings: Findings) -> Routine[None]:
     """Look for the object, again if it is not wholly seen."""
-    for attempt in range(_LOOKS):
+    for attempt in range(LOOKS):
         if attempt:
-            yield from arm.wait(_LOOK_AGAIN_S)
+            yield from arm.wait(LOOK_AGAIN_S)
         findings.image = senses.look()
         if part is None:
             return
@@ -101,12 +96,9 @@ def make_plan(assignment: Assignment, arm: Arm, senses: Senses, findings: Findin
     sighting, part = findings.sighting, assignment.part
     if part is not None and sighting is None and not findings.carrying:
         return None
-    found = None
-    if sighting is not None:
-        found = Location(x=sighting.x, y=sighting.y, z=sighting.z, yaw=sighting.yaw)
-    situation = Situation(part, found, assignment.target, senses.catalogue.table.height)
-    steps = assignment.behavior.steps(assignment.parameters, situation)
-    first = assignment.behavior.carry_from if findings.carrying else 1
+    steps = _lay_out(assignment, sighting, senses)
+    first = assignment.behavior.first_carrying(steps) if findings.carrying else None
+    first = 1 if first is None else first
     waypoints = waypoints_of(steps[first - 1 :])
     path = arm.body.plan_path(waypoints) if waypoints else None
     if waypoints and path is None:
@@ -114,6 +106,22 @@ def make_plan(assignment: Assignment, arm: Arm, senses: Senses, findings: Findin
         return None
     findings.obstruction = _obstruction(assignment, waypoints, arm, senses, findings)
     return Plan(steps, first, path)
+
+
+def goes_on_carrying(assignment: Assignment, senses: Senses) -> bool:
+    """Whether the behavior has a step at which to go on with its object in the gripper."""
+    steps = _lay_out(assignment, None, senses)
+    return assignment.behavior.first_carrying(steps) is not None
+
+
+def _lay_out(
+    assignment: Assignment, sighting: HeadSighting | None, senses: Senses
+) -> Sequence[Step]:
+    found = None
+    if sighting is not None:
+        found = Location(x=sighting.x, y=sighting.y, z=sighting.z, yaw=sighting.yaw)
+    situation = Situation(assignment.part, found, assignment.target, senses.catalogue.table.height)
+    return assignment.behavior.steps(assignment.parameters, situation)
 
 
 def _obstruction(
@@ -139,9 +147,3 @@ def _obstruction(
 def waypoints_of(steps: Sequence[Step]) -> list[ToolPose]:
     """The poses that steps move through."""
     return [each.action.to for each in steps if isinstance(each.action, Move)]
-
-
-def is_at(sighting: HeadSighting, target: Location, target_z: float) -> bool:
-    """Whether an object rests where it is to be."""
-    near = math.hypot(sighting.x - target.x, sighting.y - target.y) <= AT_PLACE_M
-    return near and abs(sighting.z - target_z) <= AT_PLACE_HEIGHT_M

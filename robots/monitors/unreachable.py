@@ -5,8 +5,9 @@ from typing import ClassVar
 
 from pydantic import Field
 
+from robots.behaviors.phase import Phase
 from robots.link.messages import Detection
-from robots.monitors.monitor import BEFORE_FIRST_STEP, Meanwhile, Monitor, MonitorView
+from robots.monitors.monitor import ANY_BEHAVIOR, Meanwhile, Monitor, MonitorView
 from tasks.scene import StrictModel
 
 
@@ -17,11 +18,11 @@ class UnreachableParameters(StrictModel):
 
 
 class Unreachable(Monitor[UnreachableParameters]):
-    """Raises `unreachable` before step 1."""
+    """Raises `unreachable` before step 1 of any behavior."""
 
     issue: ClassVar[str] = "unreachable"
-    start_step: ClassVar[int] = BEFORE_FIRST_STEP
-    stop_step: ClassVar[int] = BEFORE_FIRST_STEP
+    behaviors: ClassVar[frozenset[str]] = ANY_BEHAVIOR
+    phases: ClassVar[frozenset[Phase]] = frozenset({Phase.PREPARE})
     meanwhile: ClassVar[Meanwhile] = Meanwhile.DO_NOT_START
     camera: ClassVar[str | None] = "head"
     parameters: ClassVar[type[StrictModel]] = UnreachableParameters
