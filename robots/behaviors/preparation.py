@@ -7,7 +7,7 @@ from robots.arm import Arm, Routine
 from robots.behaviors.behavior import Behavior, Move, Situation, Step
 from robots.body import ArmPath, CameraImage, ToolPose
 from robots.catalogue import Part
-from robots.link.messages import Location
+from robots.link.messages import Location, WasDone
 from robots.senses import Senses
 from robots.vision.head import HeadSighting
 from robots.vision.obstruction import Obstruction
@@ -20,7 +20,7 @@ LOOK_AGAIN_S = 0.1
 
 @dataclass(frozen=True, slots=True)
 class Assignment:
-    """What is to be executed, under which id."""
+    """What is to be executed, under which id; `was_done` as a `start` command has it."""
 
     execution: str
     behavior: Behavior
@@ -28,6 +28,7 @@ class Assignment:
     part: Part | None
     target: Location | None
     needs_help: bool
+    was_done: WasDone | None = None
 
 
 @dataclass(frozen=True, slots=True)
