@@ -22,6 +22,7 @@ from robots.vision.obstruction import (
 )
 from robots.vision.occupancy import Fit, find_occupant, room_above, room_at_place
 from robots.vision.presence import Presence, is_at
+from robots.vision.seen_box import SeenBox
 
 HEAD = "head"
 FOREARM = "forearm"
@@ -92,6 +93,19 @@ class Senses:
             if sighting is not None:
                 seen[name] = sighting.to_message(part)
         return seen
+
+    def seen_boxes(self, image: CameraImage) -> Sequence[SeenBox]:
+        """Everything that a head picture shows on the table."""
+        boxes = []
+        for name in self.catalogue.parts.keys() & set(self._model.names):
+            part = self.catalogue.parts[name]
+            seen = self.sight(part, image)
+            if seen is None:
+                continue
+            height_m = part.size[2] + (part.knob[2] if part.knob else 0.0)
+            size = (part.size[0], part.size[1], height_m)
+            boxes.append(SeenBox(seen.x, seen.y, seen.yaw, size, seen.z, name, seen.complete))
+        return boxes
 
     def presence(self, image: CameraImage, part: Part, target: Location) -> Presence:
         """Whether a head picture shows a part at its place."""
