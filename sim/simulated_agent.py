@@ -92,6 +92,11 @@ class SimulatedAgent:
 
     # --- What it is ---------------------------------------------------------------------------
 
+    @property
+    def world(self) -> World:
+        """The world as it really is; for tests and benchmarks to judge by."""
+        return self._world
+
     def hello(self, boot: str) -> Hello:
         """What the robot is, and what it is doing now."""
         return self._robot.hello(boot).model_copy(update={"simulated": True})

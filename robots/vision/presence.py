@@ -8,12 +8,14 @@ import numpy as np
 
 from robots.catalogue import Part
 from robots.link.messages import Location
+from robots.vision.head import HeadSighting
 from robots.vision.projection import project
 from robots.vision.seen_box import SeenBox
 from robots.vision.table_view import TableView
 
-_AT_PLACE_M = 0.02
-_AT_HEIGHT_M = 0.015
+AT_PLACE_M = 0.02
+"""A part is at its place if it is this near to it."""
+AT_PLACE_HEIGHT_M = 0.015
 _SAMPLES = 9
 _SEEN_THROUGH = 0.6
 """A part is gone if more than this share of where its top would be lets the camera see behind."""
@@ -30,6 +32,12 @@ class Presence(StrEnum):
     """Its place is seen, and it is not there."""
     HIDDEN = "hidden"
     """Something in front of its place keeps the camera from telling."""
+
+
+def is_at(sighting: HeadSighting, target: Location, target_z: float) -> bool:
+    """Whether an object rests where it is to be."""
+    near = math.hypot(sighting.x - target.x, sighting.y - target.y) <= AT_PLACE_M
+    return near and abs(sighting.z - target_z) <= AT_PLACE_HEIGHT_M
 
 
 def judge_presence(
@@ -49,8 +57,8 @@ def judge_presence(
 
 
 def _stands_at(box: SeenBox, room: SeenBox) -> bool:
-    near = math.hypot(box.x - room.x, box.y - room.y) <= _AT_PLACE_M
-    return near and abs(box.bottom_z - room.bottom_z) <= _AT_HEIGHT_M
+    near = math.hypot(box.x - room.x, box.y - room.y) <= AT_PLACE_M
+    return near and abs(box.bottom_z - room.bottom_z) <= AT_PLACE_HEIGHT_M
 
 
 def _keeps_out(box: SeenBox, room: SeenBox, equals: Collection[str]) -> bool:
@@ -62,9 +70,9 @@ def _keeps_out(box: SeenBox, room: SeenBox, equals: Collection[str]) -> bool:
         return False
     overlap_m = min(box.top_z, room.top_z) - max(box.bottom_z, room.bottom_z)
     middle = np.array([[room.x, room.y, (box.bottom_z + box.top_z) / 2]])
-    if overlap_m < _AT_HEIGHT_M / 2 or not box.holds(middle, margin_m=0.0)[0]:
+    if overlap_m < AT_PLACE_HEIGHT_M / 2 or not box.holds(middle, margin_m=0.0)[0]:
         return False
-    return box.name is not None or abs(box.top_z - room.top_z) > _AT_HEIGHT_M
+    return box.name is not None or abs(box.top_z - room.top_z) > AT_PLACE_HEIGHT_M
 
 
 def _share_seen_through(view: TableView, room: SeenBox) -> float:
