@@ -110,6 +110,10 @@ class ColorModel:
     def settings(self) -> ColorSettings:
         return self._settings
 
+    def has_hue(self, name: str) -> bool:
+        """Whether an object is coloured enough to be found by hue and saturation."""
+        return bool(self._histograms[name].any())
+
     @classmethod
     def train(
         cls, samples: Mapping[str, Sequence[Sample]], settings: ColorSettings | None = None

@@ -44,7 +44,7 @@ class WorkcellWorld:
         """Raises `WorldUnavailableError` where the physics engine or the robot is missing."""
         chosen = options or WorkcellOptions()
         self._scene = scene
-        layout_rng, light_rng, self._rng = np.random.default_rng(seed).spawn(3)
+        layout_rng, light_rng, self._rng, self._sensor_rng = np.random.default_rng(seed).spawn(4)
         self._build(chosen, Lighting(chosen.light, chosen.camera_noise, light_rng))
         self._bench.lay_out(layout_rng)
         self._settle()
@@ -60,7 +60,7 @@ class WorkcellWorld:
         self._iterations = _REST_ITERATIONS
         self._bench = Bench(client, self._scene)
         self._pr2 = Pr2(client)
-        self._body = WorkcellBody(self._pr2, self._rng, self._step)
+        self._body = WorkcellBody(self._pr2, self._rng, self._sensor_rng, self._step)
         self._person = Person(client, self._bench, self._pr2, self._body)
         self._lighting = lighting
         self._renderer: Renderer = (
