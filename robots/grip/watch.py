@@ -28,7 +28,7 @@ from robots.vision.projection import project
 
 _SURE = 0.99
 _LONGEST_DOUBT = 12
-"""After so many readings that contradict one another the likelier verdict is taken."""
+"""After so many readings that leave it unsure the likelier verdict stands."""
 
 _PRESSES_SHARE = 0.5
 """Fingers press on something if they do so with this share of their force."""
@@ -74,7 +74,8 @@ class GripWatch:
         self._near = near_tool(part, grasp)
         self._belief = Belief()
         self._state = GripState.UNDECIDED
-        self._readings = 0
+        self._unsure = 0
+        """So many readings on end left it unsure."""
         self._shift: NDArray[np.float64] = np.zeros(2)
         self._read_s: float | None = None
 
@@ -90,7 +91,7 @@ class GripWatch:
     @property
     def in_doubt(self) -> bool:
         """Whether the next reading may change the verdict."""
-        wavering = self._state is GripState.HELD and self.probability < _SURE
+        wavering = self._state is GripState.HELD and 0 < self._unsure < _LONGEST_DOUBT
         return self._state is GripState.UNDECIDED or wavering
 
     def update(self, hand: Hand) -> GripReading:
@@ -100,7 +101,6 @@ class GripWatch:
         if self._read_s is not None:
             self._belief.predict(max(0.0, now_s - self._read_s))
         self._read_s = now_s
-        self._readings += 1
         self._belief.update(self._log_ratio(reading))
         if self._state is GripState.UNDECIDED:
             self._learn(reading)
@@ -153,7 +153,8 @@ class GripWatch:
 
     def _judge(self) -> None:
         sure = self.probability >= _SURE or self.probability <= 1.0 - _SURE
-        if self._state is GripState.UNDECIDED and (sure or self._readings >= _LONGEST_DOUBT):
+        self._unsure = 0 if sure else self._unsure + 1
+        if self._state is GripState.UNDECIDED and (sure or self._unsure >= _LONGEST_DOUBT):
             held = self.probability >= 0.5
             self._state = follow(self._state, GripState.HELD if held else GripState.ABSENT)
         elif self._state is GripState.HELD and self.probability <= 1.0 - _SURE:

@@ -217,6 +217,18 @@ def test_readings_that_contradict_one_another_are_decided_in_the_end() -> None:
         shows = "yellow_bar" if index % 4 == 3 else "itself"
         states.append(hand.read(shows=shows, opening_m=opening_m).state)
     assert states[-1] is not GripState.UNDECIDED
+    assert not hand.watch.in_doubt
+
+
+def test_a_doubt_that_no_reading_ends_does_not_last() -> None:
+    hand = ScriptedHand("pink_bar")
+    hand.hold()
+    doubts = []
+    for _ in range(40):
+        opening_m = hand.grasp.width_m + 0.0043
+        hand.read(shows=None, hidden=True, opening_m=opening_m)
+        doubts.append(hand.watch.in_doubt)
+    assert not doubts[-1]
 
 
 def test_tolerances_grow_with_the_picture() -> None:
