@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from robots.behaviors.behavior import Behavior
 from robots.body import CameraImage
 from robots.catalogue import Part
-from robots.link.messages import Location
+from robots.link.messages import Location, WasDone
 from robots.vision.head import HeadSighting
 from robots.vision.obstruction import Obstruction
 from tasks.scene import StrictModel
@@ -13,7 +13,7 @@ from tasks.scene import StrictModel
 
 @dataclass(frozen=True, slots=True)
 class Assignment:
-    """What is to be executed, under which id."""
+    """What is to be executed, under which id; `was_done` as a `start` command has it."""
 
     execution: str
     behavior: Behavior
@@ -21,6 +21,7 @@ class Assignment:
     part: Part | None
     target: Location | None
     needs_help: bool
+    was_done: WasDone | None = None
 
 
 @dataclass(slots=True)

@@ -40,7 +40,7 @@ from robots.monitors.monitor import BEFORE_FIRST_STEP, Meanwhile, Monitor, Monit
 from robots.senses import FOREARM, HEAD, Senses
 from robots.vision.drawing import draw_detection, encode_jpeg
 from robots.vision.forearm import GripReading
-from robots.vision.presence import is_at
+from robots.vision.presence import Presence, is_at
 
 _CAREFUL = 0.5
 """While a person's hands are near, motion is scaled by this."""
@@ -79,6 +79,7 @@ class Execution:
         self._picked_at: ToolPose | None = None
         self._seen = Findings()
         self._outcome: Outcome | None = None
+        self._was_done = assignment.was_done
         self._raised: set[str] = set()
         self._forces_n: list[float] = []
         self._next_check_s = -math.inf
@@ -163,16 +164,19 @@ class Execution:
 
     def _attempt(self, resumed: bool) -> Routine[None]:
         try:
-            plan = yield from self._prepare()
-            if plan is None:
-                self._finish(found_in_place=True)
-                return
-            self._move_to(ExecutionState.RUNNING)
-            if resumed:
-                self._report(Resumed(execution=self.id, step=plan.first))
-            for number in range(plan.first, len(plan.steps) + 1):
-                yield from self._walk(plan, number)
-            yield from self._confirm()
+            there = False
+            while not there:
+                plan = yield from self._prepare()
+                if plan is None:
+                    self._finish(found_in_place=True)
+                    return
+                self._move_to(ExecutionState.RUNNING)
+                if resumed:
+                    self._report(Resumed(execution=self.id, step=plan.first))
+                    resumed = False
+                for number in range(plan.first, len(plan.steps) + 1):
+                    yield from self._walk(plan, number)
+                there = yield from self._confirm()
             self._finish(found_in_place=False)
         except Interruption as interruption:
             yield from self._react(interruption.monitor.meanwhile)
@@ -202,16 +206,21 @@ class Execution:
 
     def _in_place(self) -> bool:
         sighting, target = self._seen.sighting, self._assignment.target
-        if sighting is None or target is None:
+        part, image, senses = self._assignment.part, self._seen.image, self._senses
+        if part is None or target is None or image is None:
             return False
-        return is_at(sighting, target, self._senses.catalogue.height_of(target))
+        if sighting is not None and is_at(sighting, target, senses.catalogue.height_of(target)):
+            return True
+        # What is out of sight at its place since it was seen there needs nobody to fetch it.
+        hidden = senses.presence(image, part, target) is Presence.HIDDEN
+        return self._was_done == "there" and hidden
 
     # --- The steps ----------------------------------------------------------------------------
 
     def _walk(self, plan: Plan, number: int) -> Routine[None]:
         """One step, checked at the camera's period. Raises `Interruption`."""
         step = plan.steps[number - 1]
-        self._step = number
+        self._step, self._was_done = number, None
         self._report(StepStarted(execution=self.id, step=number, name=step.name))
         self._begin(plan, number, step)
         arrived_s: float | None = None
@@ -321,6 +330,7 @@ class Execution:
             phase=self._phase,
             part=self._assignment.part,
             needs_help=self._assignment.needs_help,
+            was_done=self._was_done,
             reach=self._arm.body.reach,
             table_z=self._senses.catalogue.table.height,
             sighting=self._seen.sighting,
@@ -353,15 +363,23 @@ class Execution:
 
     # --- After the steps ----------------------------------------------------------------------
 
-    def _confirm(self) -> Routine[None]:
-        """Look whether the object is at its place. Raises `Interruption`."""
+    def _confirm(self) -> Routine[bool]:
+        """Whether the object is at its place, as far as is seen; if not, it is to be placed again.
+
+        Raises `Interruption`.
+        """
         part, target = self._assignment.part, self._assignment.target
         if part is None or target is None:
-            return
+            return True
         self._move_to(ExecutionState.CONFIRMING)
         self._arm.be_careful(1.0)
         self._outcome = yield from look_at_outcome(part, target, self._arm, self._senses)
         self._check(None)
+        if self._outcome.presence is not Presence.GONE:
+            return True
+        self._raised.clear()
+        self._move_to(ExecutionState.PREPARING)
+        return False
 
     def _react(self, meanwhile: Meanwhile) -> Routine[None]:
         if meanwhile is Meanwhile.GO_TO_NEUTRAL:
