@@ -36,6 +36,7 @@ class Undone(Monitor[UndoneParameters]):
         super().__init__(settings)
         self._again = settings.again
         self._goes_on = False
+        self._asked = False
 
     @property
     def interrupts(self) -> bool:
@@ -57,7 +58,10 @@ class Undone(Monitor[UndoneParameters]):
         ):
             # Where it is now is what people have to hear of: `unreachable` tells them.
             return None
+        if view.sighting is not None and self._asked:
+            return None
         self._goes_on = view.sighting is not None
+        self._asked = True
         return _detection(f"{name} is no longer at its place", view.sighting)
 
     def _after_the_last_step(self, name: str, view: MonitorView) -> Detection | None:
