@@ -4,8 +4,8 @@ from collections.abc import Collection, Mapping
 
 from pydantic import ValidationError
 
+from robots.behaviors.assignment import Assignment
 from robots.behaviors.behavior import Behavior
-from robots.behaviors.preparation import Assignment
 from robots.catalogue import Catalogue, Part
 from robots.link.messages import Location, Look, Start
 from robots.result import Result

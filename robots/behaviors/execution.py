@@ -5,6 +5,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from robots.arm import Arm, Routine
+from robots.behaviors.assignment import Assignment, Findings
 from robots.behaviors.behavior import Move, SetGripper, Step
 from robots.behaviors.confirmation import Outcome, look_at_outcome
 from robots.behaviors.execution_state import (
@@ -15,8 +16,6 @@ from robots.behaviors.execution_state import (
 )
 from robots.behaviors.phase import Phase
 from robots.behaviors.preparation import (
-    Assignment,
-    Findings,
     Plan,
     check_carrying,
     find,
@@ -188,7 +187,7 @@ class Execution:
         self._outcome = None
         part, arm, senses = self._assignment.part, self._arm, self._senses
         carrying = yield from check_carrying(part, arm, senses)
-        self._seen.carrying = carrying and goes_on_carrying(self._assignment, senses)
+        self._seen.carrying = carrying and goes_on_carrying(self._assignment, arm, senses)
         if not self._seen.carrying:
             yield from put_down(arm, senses, self._picked_at)
             yield from arm.go_to_neutral()
@@ -251,14 +250,16 @@ class Execution:
         part = self._assignment.part
         if isinstance(step.action, Move):
             if plan.path is not None:
+                if step.action.opening_m is not None:
+                    self._arm.start_opening_to(step.action.opening_m)
                 self._arm.start(plan.path, plan.segment_of(number), step.action.speed)
         elif step.action.to == "closed":
             if part is not None and step.phase is Phase.GRASP:
-                self._senses.watch_grip(part)
+                self._senses.watch_grip(part, plan.grasp)
             self._arm.start_closing()
         else:
             self._senses.let_go()
-            self._arm.start_opening()
+            self._arm.start_opening(step.action.opening_m)
 
     def _grip_is_open_question(self, arrived_s: float) -> bool:
         """Whether the pictures have yet to show what the gripper holds.
@@ -333,7 +334,7 @@ class Execution:
             reach=self._arm.body.reach,
             table_z=self._senses.catalogue.table.height,
             sighting=self._seen.sighting,
-            path_found=self._seen.path_found,
+            refusal=self._seen.refusal,
             obstruction=self._seen.obstruction,
             grip=grip,
             placed=None if outcome is None else outcome.sighting,

@@ -47,9 +47,9 @@ class MonitorView:
 
     `step` counts from 1 and is 0 before the first; `phase` is what it is for. `part` is the
     behavior's object, `was_done` what is known of one whose leaf was done before. `sighting`
-    is where the head camera saw it, `path_found` whether the arm can go there, and `obstruction`
-    what it saw in the way; all three are from before the first step. `grip` is what the newest
-    forearm picture says, from when the gripper has closed on the object until it opens.
+    is where the head camera saw it, `refusal` why the arm cannot grasp and place it, and
+    `obstruction` what it saw in the way; all three are from before the first step. `grip` is what
+    the newest forearm picture says, from when the gripper has closed on the object until it opens.
     `placed` and `presence` say where the object was seen in `CONFIRM`, after the last step.
     `contact_forces_n` are the readings of every control cycle since the last check.
     """
@@ -63,7 +63,7 @@ class MonitorView:
     table_z: float
     was_done: WasDone | None = None
     sighting: HeadSighting | None = None
-    path_found: bool = True
+    refusal: str | None = None
     obstruction: Obstruction | None = None
     grip: GripReading | None = None
     placed: HeadSighting | None = None

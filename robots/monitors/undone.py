@@ -54,7 +54,7 @@ class Undone(Monitor[UndoneParameters]):
 
     def _before_the_first_step(self, name: str, view: MonitorView) -> Detection | None:
         if view.sighting is not None and (
-            not view.path_found or why_beyond_reach(name, view.sighting, view) is not None
+            view.refusal is not None or why_beyond_reach(name, view.sighting, view) is not None
         ):
             # Where it is now is what people have to hear of: `unreachable` tells them.
             return None

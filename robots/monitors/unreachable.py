@@ -46,9 +46,7 @@ class Unreachable(Monitor[UnreachableParameters]):
             reason = why_beyond_reach(name, view.sighting, view, self.settings.margin_m)
             if reason is not None:
                 return reason
-        if not view.path_found:
-            return f"the arm finds no path for {name}"
-        return None
+        return view.refusal
 
 
 def why_beyond_reach(
