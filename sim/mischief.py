@@ -22,7 +22,8 @@ def random_interventions(
     """Steal, move and block at random moments, at most once per two leaves.
 
     Mostly it befalls the object that is handled at that moment, else any that a leaf handles: one
-    that stands finished, or that is still to come. `objects` are those that the tree's leaves handle, `steps` how many steps their behavior has.
+    that stands finished, or that is still to come. `objects` are those that the tree's leaves
+    handle, `steps` how many steps their behavior has.
     """
     handled = list(dict.fromkeys(objects))
     count = int(rng.integers(0, (len(handled) + 1) // 2 + 1))
