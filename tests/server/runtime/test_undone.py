@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from pretend_robots import PretendRobot
 from pretend_service import pretend_service
 from task_documents import definition_of
 
@@ -138,10 +139,25 @@ async def test_what_is_hidden_is_believed_to_be_where_it_was_put() -> None:
 
 
 async def test_what_another_robot_builds_on_it_is_cut_short() -> None:
-    tree = {"then": [LEAVES[0], {"and": LEAVES[1:3]}]}
-    view, events = await run_with(tree, {"part_2": ["part_1"]}, answers=["yes"])
+    tree = {"then": [LEAVES[0], {"and": LEAVES[1:4]}]}
+    async with pretend_service(definition_of(tree), scene=SCENE) as service:
+        gone: set[str] = set()
+        make = {
+            "fast": PretendRobot("fast", gone=gone, thefts={"part_3": ["part_1"]}, in_reach=True),
+            "slow": PretendRobot("slow", gone=gone, slow=True, in_reach=True),
+        }
+        service.robots.make = lambda name: make[name]
+        service.robots.robots.update(make)
+        # The slow one takes a part as soon as it may; the fast one then sees the first one gone.
+        view, events = await asyncio.wait_for(
+            service.run_to_end(world="live", robots=["fast", "slow"]), timeout=10
+        )
+    assert audit(events, {node.node: node.kind for node in view.nodes}) == []
     assert view.status is RunStatus.FINISHED
-    assert story(events)[:6] == [*in_turn(1, 2), "undone 2", "undone 1"]
+    cut = [each for each in events if isinstance(each, ev.NodeReset)]
+    assert [(each.robot, each.reason, each.failed_attempt) for each in cut] == [
+        ("slow", "what it comes after is no longer done", False)
+    ]
 
 
 # --- Everything at once -----------------------------------------------------------------------
