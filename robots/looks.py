@@ -60,11 +60,13 @@ class Looker:
     def answer_and_judge(self, command: str, fulfilled: bool | None) -> Routine[Looked]:
         """All that the head camera sees, and what became of the finished results.
 
-        What seems gone has to be gone in a second picture as well: a hand may pass by.
+        What seems gone has to be gone in a second picture as well: a hand may pass by. With the
+        arm in view it judges none.
         """
         image = self.senses.look()
-        verdicts = self._judge(image, self.finished)
-        doubted = [each for each in self.finished if verdicts[each.message] is Presence.GONE]
+        results = self.finished if self.arm.at_neutral else ()
+        verdicts = self._judge(image, results)
+        doubted = [each for each in results if verdicts[each.message] is Presence.GONE]
         if doubted:
             yield from self.arm.wait(LOOK_AGAIN_S)
             image = self.senses.look()
