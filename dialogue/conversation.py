@@ -88,6 +88,9 @@ class Conversation:
     def open(self) -> list[Turn]:
         """Begin."""
         self._require("open")
+        on_the_way = self._script.on_the_way
+        if on_the_way is not None and not self._issue.interrupts:
+            return self._enter(on_the_way)
         return self._enter(self._script.opening)
 
     def answer(self, answer: Literal["yes", "no"]) -> list[Turn]:

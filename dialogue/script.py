@@ -138,13 +138,15 @@ class Script:
 
     `put_right` says what the robot may see happen before anyone answers, the most telling first,
     and how the issue is then resolved. `reasks` is how often promised help that is not seen is
-    asked about again.
+    asked about again. `on_the_way` is the state that it begins with instead where the robot goes on
+    by itself, so that there is nothing to ask.
     """
 
     opening: str
     states: Mapping[str, State]
     put_right: Mapping[Expectation, Resolution] = field(default_factory=dict)
     reasks: int = 2
+    on_the_way: str | None = None
 
 
 Parameters = TypeVar("Parameters", bound=BaseModel)

@@ -46,9 +46,14 @@ def _following(state: State) -> tuple[str, ...]:
             return ()
 
 
+def _openings(script: Script) -> tuple[str, ...]:
+    return (script.opening, *([script.on_the_way] if script.on_the_way else []))
+
+
 def _dangling(script: Script) -> Iterator[str]:
-    if script.opening not in script.states:
-        yield f"its opening state '{script.opening}' is not in the table"
+    for opening in _openings(script):
+        if opening not in script.states:
+            yield f"its opening state '{opening}' is not in the table"
     for name, state in script.states.items():
         for following in _following(state):
             if following not in script.states:
@@ -56,8 +61,8 @@ def _dangling(script: Script) -> Iterator[str]:
 
 
 def _unreachable(script: Script) -> Iterator[str]:
-    reached = {script.opening}
-    waiting = [script.opening]
+    reached = set(_openings(script))
+    waiting = [*reached]
     while waiting:
         new = set(_following(script.states[waiting.pop()])) - reached
         reached |= new

@@ -8,7 +8,7 @@ import numpy as np
 from robots.body import Body, CameraImage, ToolPose
 from robots.catalogue import Catalogue, Part
 from robots.clip import Clip
-from robots.grasp import grasp_of
+from robots.grasp import Grasp, grasp_of
 from robots.link.messages import Location, Position, Sighting
 from robots.vision.color_model import ColorModel, Segmentation
 from robots.vision.forearm import GripReading, GripState, GripTolerances, GripWatch
@@ -122,13 +122,14 @@ class Senses:
         x, y, z = (float(each) for each in self._body.tool_pose()[:3, 3])
         return Position(x=x, y=y, z=z)
 
-    def new_watch(self, part: Part) -> GripWatch:
-        """A grip watch that knows nothing yet."""
-        return GripWatch(part, grasp_of(part), self._model, self._tolerances, self.forearm_period_s)
+    def new_watch(self, part: Part, grasp: Grasp | None = None) -> GripWatch:
+        """A grip watch that knows nothing yet; without `grasp`, for the best one."""
+        grasp = grasp or grasp_of(part, self._body.gripper)
+        return GripWatch(part, grasp, self._model, self._tolerances, self.forearm_period_s)
 
-    def watch_grip(self, part: Part) -> None:
+    def watch_grip(self, part: Part, grasp: Grasp | None = None) -> None:
         """The fingers have closed on a part: follow it from now on."""
-        self.grip = self.new_watch(part)
+        self.grip = self.new_watch(part, grasp)
 
     def let_go(self) -> None:
         """The fingers open: there is nothing to follow any more."""

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from robots.catalogue import Part
 from robots.grasp import grasp_of
+from sim.workcell.gripper import PR2_GRIPPER
 from tasks.footprint import TOUCH_M, Footprint
 
 _GAP_M = 0.010
@@ -61,7 +62,7 @@ class Standing:
 
 def standing(part: Part, x: float, y: float, bottom_z: float, yaw: float) -> Standing:
     """A part that stands with its bottom centre at (x, y, bottom_z), base frame."""
-    grasp = grasp_of(part)
+    grasp = grasp_of(part, PR2_GRIPPER)
     tool_z = bottom_z + grasp.height_m
     across = yaw + grasp.yaw
     top = bottom_z + part.size[2] + (part.knob[2] if part.knob else 0.0)

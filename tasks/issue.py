@@ -10,7 +10,7 @@ class Issue:
     `kind` is the name under which a monitor and a dialogue script are registered
     (`missed`, `dropped`, `unreachable`, `positioning`, `missing`, `blocked`, ...).
     `node` is the leaf's path (`/0/2`); `step` is the behavior's step in which it was seen,
-    0 before the first.
+    0 before the first. `interrupts`: the robot does not go on by itself.
     """
 
     kind: str
@@ -20,3 +20,4 @@ class Issue:
     object: str | None
     place: str | None
     step: int
+    interrupts: bool = True

@@ -8,23 +8,30 @@ from typing import ClassVar, Literal
 from robots.behaviors.phase import Phase
 from robots.body import ToolPose
 from robots.catalogue import Part
+from robots.grasp import Grasp
+from robots.gripper import GripperModel
 from robots.link.messages import Location
 from tasks.scene import StrictModel
 
 
 @dataclass(frozen=True, slots=True)
 class Move:
-    """Move the tool point to a pose (base frame); `speed` in (0, 1] of the arm's best."""
+    """Move the tool point to a pose (base frame); `speed` in (0, 1] of the arm's best.
+
+    `opening_m`: an empty gripper has its fingers so far apart before it comes there.
+    """
 
     to: ToolPose
     speed: float
+    opening_m: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class SetGripper:
-    """Open or close the gripper."""
+    """Open or close the gripper; `opening_m` is how far it opens, None as far as it goes."""
 
     to: Literal["open", "closed"]
+    opening_m: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,13 +53,19 @@ class Situation:
     """What a behavior may know when it lays out its steps (lengths in metres, base frame).
 
     `found` is where the object's bottom centre is and `target` where it is to be; None where the
-    behavior has no object or no place. `table_z` is the height of the table.
+    behavior has no object or no place. `table_z` is the height of the table. `grasp` is how the
+    object is to be grasped, or is held; None where there is none. What the gripper moves sideways
+    has to stay above `clear_z`, and the tool point is best raised by `lift_m` before that.
     """
 
     part: Part | None
     found: Location | None
     target: Location | None
     table_z: float
+    gripper: GripperModel
+    grasp: Grasp | None
+    clear_z: float
+    lift_m: float
 
 
 class Behavior(ABC):

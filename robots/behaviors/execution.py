@@ -5,6 +5,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from robots.arm import Arm, Routine
+from robots.behaviors.assignment import Assignment, Findings
 from robots.behaviors.behavior import Move, SetGripper, Step
 from robots.behaviors.confirmation import Outcome, look_at_outcome
 from robots.behaviors.execution_state import (
@@ -15,8 +16,6 @@ from robots.behaviors.execution_state import (
 )
 from robots.behaviors.phase import Phase
 from robots.behaviors.preparation import (
-    Assignment,
-    Findings,
     Plan,
     check_carrying,
     find,
@@ -41,7 +40,7 @@ from robots.monitors.monitor import BEFORE_FIRST_STEP, Meanwhile, Monitor, Monit
 from robots.senses import FOREARM, HEAD, Senses
 from robots.vision.drawing import draw_detection, encode_jpeg
 from robots.vision.forearm import GripReading
-from robots.vision.presence import is_at
+from robots.vision.presence import Presence, is_at
 
 _CAREFUL = 0.5
 """While a person's hands are near, motion is scaled by this."""
@@ -80,6 +79,7 @@ class Execution:
         self._picked_at: ToolPose | None = None
         self._seen = Findings()
         self._outcome: Outcome | None = None
+        self._was_done = assignment.was_done
         self._raised: set[str] = set()
         self._forces_n: list[float] = []
         self._next_check_s = -math.inf
@@ -164,16 +164,19 @@ class Execution:
 
     def _attempt(self, resumed: bool) -> Routine[None]:
         try:
-            plan = yield from self._prepare()
-            if plan is None:
-                self._finish(found_in_place=True)
-                return
-            self._move_to(ExecutionState.RUNNING)
-            if resumed:
-                self._report(Resumed(execution=self.id, step=plan.first))
-            for number in range(plan.first, len(plan.steps) + 1):
-                yield from self._walk(plan, number)
-            yield from self._confirm()
+            there = False
+            while not there:
+                plan = yield from self._prepare()
+                if plan is None:
+                    self._finish(found_in_place=True)
+                    return
+                self._move_to(ExecutionState.RUNNING)
+                if resumed:
+                    self._report(Resumed(execution=self.id, step=plan.first))
+                    resumed = False
+                for number in range(plan.first, len(plan.steps) + 1):
+                    yield from self._walk(plan, number)
+                there = yield from self._confirm()
             self._finish(found_in_place=False)
         except Interruption as interruption:
             yield from self._react(interruption.monitor.meanwhile)
@@ -184,7 +187,7 @@ class Execution:
         self._outcome = None
         part, arm, senses = self._assignment.part, self._arm, self._senses
         carrying = yield from check_carrying(part, arm, senses)
-        self._seen.carrying = carrying and goes_on_carrying(self._assignment, senses)
+        self._seen.carrying = carrying and goes_on_carrying(self._assignment, arm, senses)
         if not self._seen.carrying:
             yield from put_down(arm, senses, self._picked_at)
             yield from arm.go_to_neutral()
@@ -203,16 +206,21 @@ class Execution:
 
     def _in_place(self) -> bool:
         sighting, target = self._seen.sighting, self._assignment.target
-        if sighting is None or target is None:
+        part, image, senses = self._assignment.part, self._seen.image, self._senses
+        if part is None or target is None or image is None:
             return False
-        return is_at(sighting, target, self._senses.catalogue.height_of(target))
+        if sighting is not None and is_at(sighting, target, senses.catalogue.height_of(target)):
+            return True
+        # What is out of sight at its place since it was seen there needs nobody to fetch it.
+        hidden = senses.presence(image, part, target) is Presence.HIDDEN
+        return self._was_done == "there" and hidden
 
     # --- The steps ----------------------------------------------------------------------------
 
     def _walk(self, plan: Plan, number: int) -> Routine[None]:
         """One step, checked at the camera's period. Raises `Interruption`."""
         step = plan.steps[number - 1]
-        self._step = number
+        self._step, self._was_done = number, None
         self._report(StepStarted(execution=self.id, step=number, name=step.name))
         self._begin(plan, number, step)
         arrived_s: float | None = None
@@ -242,14 +250,16 @@ class Execution:
         part = self._assignment.part
         if isinstance(step.action, Move):
             if plan.path is not None:
+                if step.action.opening_m is not None:
+                    self._arm.start_opening_to(step.action.opening_m)
                 self._arm.start(plan.path, plan.segment_of(number), step.action.speed)
         elif step.action.to == "closed":
             if part is not None and step.phase is Phase.GRASP:
-                self._senses.watch_grip(part)
+                self._senses.watch_grip(part, plan.grasp)
             self._arm.start_closing()
         else:
             self._senses.let_go()
-            self._arm.start_opening()
+            self._arm.start_opening(step.action.opening_m)
 
     def _grip_is_open_question(self, arrived_s: float) -> bool:
         """Whether the pictures have yet to show what the gripper holds.
@@ -320,10 +330,11 @@ class Execution:
             phase=self._phase,
             part=self._assignment.part,
             needs_help=self._assignment.needs_help,
+            was_done=self._was_done,
             reach=self._arm.body.reach,
             table_z=self._senses.catalogue.table.height,
             sighting=self._seen.sighting,
-            path_found=self._seen.path_found,
+            refusal=self._seen.refusal,
             obstruction=self._seen.obstruction,
             grip=grip,
             placed=None if outcome is None else outcome.sighting,
@@ -352,15 +363,23 @@ class Execution:
 
     # --- After the steps ----------------------------------------------------------------------
 
-    def _confirm(self) -> Routine[None]:
-        """Look whether the object is at its place. Raises `Interruption`."""
+    def _confirm(self) -> Routine[bool]:
+        """Whether the object is at its place, as far as is seen; if not, it is to be placed again.
+
+        Raises `Interruption`.
+        """
         part, target = self._assignment.part, self._assignment.target
         if part is None or target is None:
-            return
+            return True
         self._move_to(ExecutionState.CONFIRMING)
         self._arm.be_careful(1.0)
         self._outcome = yield from look_at_outcome(part, target, self._arm, self._senses)
         self._check(None)
+        if self._outcome.presence is not Presence.GONE:
+            return True
+        self._raised.clear()
+        self._move_to(ExecutionState.PREPARING)
+        return False
 
     def _react(self, meanwhile: Meanwhile) -> Routine[None]:
         if meanwhile is Meanwhile.GO_TO_NEUTRAL:

@@ -43,7 +43,12 @@ _NEXT: dict[ExecutionState, frozenset[ExecutionState]] = {
         }
     ),
     ExecutionState.CONFIRMING: frozenset(
-        {ExecutionState.RETREATING, ExecutionState.HOLDING, ExecutionState.FINISHED}
+        {
+            ExecutionState.PREPARING,
+            ExecutionState.RETREATING,
+            ExecutionState.HOLDING,
+            ExecutionState.FINISHED,
+        }
     ),
     ExecutionState.RETREATING: frozenset({ExecutionState.HOLDING, ExecutionState.ENDED}),
     ExecutionState.HOLDING: frozenset(

@@ -1,33 +1,21 @@
-"""Before the first step: whether the object is held, where it is, and the path to walk."""
+"""Before the first step: whether the object is held, where it is, how to grasp it, the path."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 from robots.arm import Arm, Routine
-from robots.behaviors.behavior import Behavior, Move, Situation, Step
-from robots.body import ArmPath, CameraImage, ToolPose
+from robots.behaviors.assignment import Assignment, Findings
+from robots.behaviors.behavior import Move, Step
+from robots.behaviors.grasp_choice import crowded, others, ways_to_grasp
+from robots.body import ArmPath, ToolPose
 from robots.catalogue import Part
-from robots.link.messages import Location
+from robots.grasp import Grasp, UngraspableError
 from robots.senses import Senses
-from robots.vision.head import HeadSighting
 from robots.vision.obstruction import Obstruction
-from tasks.scene import StrictModel
 
 LOOKS = 3
 """So often a part that is not wholly seen is looked for before that is believed."""
 LOOK_AGAIN_S = 0.1
-
-
-@dataclass(frozen=True, slots=True)
-class Assignment:
-    """What is to be executed, under which id."""
-
-    execution: str
-    behavior: Behavior
-    parameters: StrictModel
-    part: Part | None
-    target: Location | None
-    needs_help: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,6 +25,7 @@ class Plan:
     steps: Sequence[Step]
     first: int
     path: ArmPath | None
+    grasp: Grasp | None
 
     def segment_of(self, number: int) -> int:
         """Which segment of the path a moving step follows."""
@@ -52,17 +41,6 @@ class Plan:
             elif step.action.to == "closed":
                 return pose
         return None
-
-
-@dataclass(slots=True)
-class Findings:
-    """What was seen before the first step; `carrying`: the object is in the gripper already."""
-
-    carrying: bool = False
-    image: CameraImage | None = None
-    sighting: HeadSighting | None = None
-    path_found: bool = True
-    obstruction: Obstruction | None = None
 
 
 def check_carrying(part: Part | None, arm: Arm, senses: Senses) -> Routine[bool]:
@@ -91,37 +69,49 @@ def find(part: Part | None, arm: Arm, senses: Senses, findings: Findings) -> Rou
 def make_plan(assignment: Assignment, arm: Arm, senses: Senses, findings: Findings) -> Plan | None:
     """Lay out the steps and plan their path; None if there is none, or the object is not seen.
 
-    What it finds out about the way goes to `findings`.
+    The first way of grasping the object is taken for which there is room and a path. What it
+    finds out about the way goes to `findings`.
     """
-    sighting, part = findings.sighting, assignment.part
-    if part is not None and sighting is None and not findings.carrying:
+    part = assignment.part
+    if part is not None and findings.sighting is None and not findings.carrying:
         return None
-    steps = _lay_out(assignment, sighting, senses)
-    first = assignment.behavior.first_carrying(steps) if findings.carrying else None
-    first = 1 if first is None else first
-    waypoints = waypoints_of(steps[first - 1 :])
-    path = arm.body.plan_path(waypoints) if waypoints else None
-    if waypoints and path is None:
-        findings.path_found = False
+    boxes = others(part, senses.seen_boxes(findings.image or senses.look()))
+    try:
+        ways = list(ways_to_grasp(assignment, arm, senses, findings, boxes))
+    except UngraspableError as error:
+        findings.refusal = str(error)
         return None
-    findings.obstruction = _obstruction(assignment, waypoints, arm, senses, findings)
-    return Plan(steps, first, path)
+    refusals: list[str] = []
+    for situation in ways:
+        steps = assignment.behavior.steps(assignment.parameters, situation)
+        first = assignment.behavior.first_carrying(steps) if findings.carrying else None
+        first = 1 if first is None else first
+        if findings.obstruction is None and not refusals:
+            waypoints = waypoints_of(steps[first - 1 :])
+            findings.obstruction = _obstruction(assignment, waypoints, arm, senses, findings)
+        tight = crowded(steps[first - 1 :], arm.body.gripper, boxes)
+        if tight is not None:
+            refusals.append(tight)
+            continue
+        waypoints = waypoints_of(steps[first - 1 :])
+        path = arm.body.plan_path(waypoints) if waypoints else None
+        if waypoints and path is None:
+            refusals.append(f"the arm finds no path for {_name(part)}")
+            continue
+        return Plan(steps, first, path, situation.grasp)
+    findings.refusal = refusals[0]
+    return None
 
 
-def goes_on_carrying(assignment: Assignment, senses: Senses) -> bool:
+def goes_on_carrying(assignment: Assignment, arm: Arm, senses: Senses) -> bool:
     """Whether the behavior has a step at which to go on with its object in the gripper."""
-    steps = _lay_out(assignment, None, senses)
+    (situation, *_) = ways_to_grasp(assignment, arm, senses, Findings(carrying=True), ())
+    steps = assignment.behavior.steps(assignment.parameters, situation)
     return assignment.behavior.first_carrying(steps) is not None
 
 
-def _lay_out(
-    assignment: Assignment, sighting: HeadSighting | None, senses: Senses
-) -> Sequence[Step]:
-    found = None
-    if sighting is not None:
-        found = Location(x=sighting.x, y=sighting.y, z=sighting.z, yaw=sighting.yaw)
-    situation = Situation(assignment.part, found, assignment.target, senses.catalogue.table.height)
-    return assignment.behavior.steps(assignment.parameters, situation)
+def _name(part: Part | None) -> str:
+    return "the place" if part is None else part.name
 
 
 def _obstruction(

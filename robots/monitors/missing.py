@@ -27,6 +27,9 @@ class Missing(Monitor[NoParameters]):
     def check(self, view: MonitorView) -> Detection | None:
         if view.part is None or view.sighting is not None or view.grip is not None:
             return None
+        if view.was_done is not None:
+            # `undone` knows that it was there, and says so.
+            return None
         return Detection(
             camera="head", explanation=f"{view.part.name} is nowhere in the head picture"
         )

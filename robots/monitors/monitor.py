@@ -9,7 +9,7 @@ from typing import Any, ClassVar, Generic, TypeVar
 from robots.behaviors.phase import Phase
 from robots.body import CameraImage, Reach
 from robots.catalogue import Part
-from robots.link.messages import Detection
+from robots.link.messages import Detection, WasDone
 from robots.vision.forearm import GripReading
 from robots.vision.head import HeadSighting
 from robots.vision.obstruction import Obstruction
@@ -46,10 +46,10 @@ class MonitorView:
     """What the robot senses at one moment; nothing in it comes from a simulator.
 
     `step` counts from 1 and is 0 before the first; `phase` is what it is for. `part` is the
-    behavior's object. `sighting`
-    is where the head camera saw it, `path_found` whether the arm can go there, and `obstruction`
-    what it saw in the way; all three are from before the first step. `grip` is what the newest
-    forearm picture says, from when the gripper has closed on the object until it opens.
+    behavior's object, `was_done` what is known of one whose leaf was done before. `sighting`
+    is where the head camera saw it, `refusal` why the arm cannot grasp and place it, and
+    `obstruction` what it saw in the way; all three are from before the first step. `grip` is what
+    the newest forearm picture says, from when the gripper has closed on the object until it opens.
     `placed` and `presence` say where the object was seen in `CONFIRM`, after the last step.
     `contact_forces_n` are the readings of every control cycle since the last check.
     """
@@ -61,8 +61,9 @@ class MonitorView:
     needs_help: bool
     reach: Reach
     table_z: float
+    was_done: WasDone | None = None
     sighting: HeadSighting | None = None
-    path_found: bool = True
+    refusal: str | None = None
     obstruction: Obstruction | None = None
     grip: GripReading | None = None
     placed: HeadSighting | None = None

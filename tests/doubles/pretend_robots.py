@@ -12,6 +12,7 @@ from robots.link.messages import (
     ClipTaken,
     CommandBody,
     Finished,
+    FinishedResult,
     Held,
     Hello,
     Hold,
@@ -48,7 +49,8 @@ class PretendRobot:
 
     A stubborn one runs into them also when it goes on after a hold.
     `patient`: it lets no time pass while a question is open, as live helpers take their time.
-    `films`: two pictures follow every issue.
+    `films`: two pictures follow every issue. `thefts`: whenever one object has been placed, another
+    one (or itself) that was placed is gone, so often. `hidden_at_place`: what no look can judge.
     """
 
     name: str
@@ -57,7 +59,14 @@ class PretendRobot:
     boot: int = 1
     time: float = 0.0
     seq: int = 0
-    interrupting: tuple[str, ...] = ("missed", "dropped", "unreachable", "missing", "blocked")
+    interrupting: tuple[str, ...] = (
+        "missed",
+        "dropped",
+        "unreachable",
+        "missing",
+        "blocked",
+        "undone",
+    )
     commands: list[CommandBody] = field(default_factory=list)
     right: set[str] = field(default_factory=set)
     hidden: set[str] = field(default_factory=set)
@@ -65,6 +74,9 @@ class PretendRobot:
     stubborn: bool = False
     patient: bool = False
     films: bool = False
+    thefts: dict[str, list[str]] = field(default_factory=dict)
+    gone: set[str] = field(default_factory=set)
+    hidden_at_place: set[str] = field(default_factory=set)
 
     def hello(self) -> Hello:
         return Hello(
@@ -167,6 +179,15 @@ class PretendRobots:
     async def _work(self, robot: PretendRobot, start: Start, *, resumed: bool = False) -> None:
         part = str(start.parameters.get("object"))
         faults = robot.faults.get(part, [])
+        if start.was_done is not None and not resumed and part not in robot.gone:
+            await self.report(robot, Finished(execution=start.execution, found_in_place=True))
+            return
+        if part in robot.gone and part not in robot.right:
+            await self._issue(robot, start, "undone" if start.was_done else "missing", 0)
+            holding = {"execution": start.execution, "at": "neutral"}
+            await self.report(robot, Holding.model_validate(holding))
+            return
+        robot.gone.discard(part)
         for step in range(5 if resumed else 1, 9):
             due = [each for each in faults if each[1] == step and (robot.stubborn or not resumed)]
             if due and due[0][0] in robot.interrupting:
@@ -184,6 +205,11 @@ class PretendRobots:
             if due:
                 faults.remove(due[0])
                 await self._issue(robot, start, due[0][0], step)
+        thefts = robot.thefts.get(part, [])
+        if thefts:
+            stolen = thefts.pop(0)
+            robot.gone.add(stolen)
+            robot.right.discard(stolen)
         await self.report(robot, Finished(execution=start.execution))
 
     async def _issue(self, robot: PretendRobot, start: Start, kind: str, step: int) -> None:
@@ -203,6 +229,12 @@ class PretendRobots:
             ]
             clip = ClipTaken(execution=start.execution, issue=kind, pictures=pictures)
             await self.report(robot, clip)
+
+    def _verdict(self, robot: PretendRobot, result: FinishedResult) -> str:
+        if result.object in robot.hidden_at_place:
+            return "hidden"
+        away = result.object in robot.gone and result.object not in robot.right
+        return "gone" if away else "there"
 
     async def _look(self, robot: PretendRobot, command: str, look: Look) -> None:
         fulfilled = None
@@ -225,5 +257,7 @@ class PretendRobots:
                 objects=seen,
                 gripper=Position(x=0.4, y=0.0, z=1.0),
                 fulfilled=fulfilled,
+                there=[each for each in look.finished if self._verdict(robot, each) == "there"],
+                gone=[each for each in look.finished if self._verdict(robot, each) == "gone"],
             ),
         )

@@ -98,19 +98,17 @@ def test_missing_speaks_of_what_is_nowhere_but_not_of_what_is_in_the_gripper() -
 
 
 @pytest.mark.parametrize(
-    ("x", "z", "path_found", "says"),
+    ("x", "z", "refusal", "says"),
     [
-        (0.95, TABLE_Z, True, "0.97 m away; the arm grasps 0.30 to 0.80 m"),
-        (0.1, TABLE_Z, True, "0.22 m away"),
-        (0.5, TABLE_Z, False, "finds no path"),
-        (0.5, TABLE_Z - 0.05, True, "toppled over"),
+        (0.95, TABLE_Z, None, "0.97 m away; the arm grasps 0.30 to 0.80 m"),
+        (0.1, TABLE_Z, None, "0.22 m away"),
+        (0.5, TABLE_Z, "the arm finds no path for it", "finds no path"),
+        (0.5, TABLE_Z - 0.05, None, "toppled over"),
     ],
 )
-def test_unreachable_says_why(x, z, path_found, says) -> None:
+def test_unreachable_says_why(x, z, refusal, says) -> None:
     sighting = replace(SEEN, x=x, z=z)
-    detection = Unreachable.create({}).check(
-        replace(VIEW, sighting=sighting, path_found=path_found)
-    )
+    detection = Unreachable.create({}).check(replace(VIEW, sighting=sighting, refusal=refusal))
     assert detection is not None
     assert says in detection.explanation
     assert detection.center == BLOB.center
