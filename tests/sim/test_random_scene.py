@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from robots.catalogue import Part
-from server.library import behavior_parameters
+from server.behaviors import behavior_parameters
 from sim.random_parts import DrawnSizes
 from sim.random_scene import MOST_PARTS, random_scene, scene_document
 from sim.standing_room import standing
