@@ -4,13 +4,12 @@ from collections.abc import Callable, Mapping, Sequence
 
 from server.errors import InvalidError
 from sim.world import SceneChecker, WorldAdapter, WorldUnavailableError
-from tasks.definition import BehaviorNode, TaskTreeDefinition
+from tasks.definition import BehaviorNode, GoalNode, TaskTreeDefinition
 from tasks.plugins import load_plugins
 from tasks.scene import Scene
 from tasks.scene_problem import SceneProblem
-from tasks.ways import leaves_of, ways_of
 
-WorldCheck = Callable[[Scene, Sequence[BehaviorNode]], list[SceneProblem]]
+WorldCheck = Callable[[Scene, Sequence[GoalNode | BehaviorNode]], list[SceneProblem]]
 
 
 class WorldChecks:
@@ -41,7 +40,7 @@ class WorldChecks:
 
     def try_tree(self, scene: Scene, tree: TaskTreeDefinition) -> dict[str, list[SceneProblem]]:
         """What keeps each world's robot from doing a tree in a scene."""
-        return {name: tree_problems(check, scene, tree) for name, check in self._checks()}
+        return {name: check(scene, tree.nodes) for name, check in self._checks()}
 
     def _checks(self) -> list[tuple[str, WorldCheck]]:
         found = []
@@ -55,19 +54,6 @@ class WorldChecks:
 def load_world_checks() -> WorldChecks:
     """The worlds that are installed."""
     return WorldChecks(load_plugins("mend.worlds"))
-
-
-def tree_problems(check: WorldCheck, scene: Scene, tree: TaskTreeDefinition) -> list[SceneProblem]:
-    """What keeps a robot from doing a tree, whichever alternatives it takes.
-
-    Alternatives never meet: two parts that are for one spot are no problem if either alone is put
-    there.
-    """
-    problems = check(scene, leaves_of(tree))
-    if not problems or all(node.kind != "or" for node in tree.nodes):
-        return problems
-    found = (problem for way in ways_of(tree) for problem in check(scene, way))
-    return list(dict.fromkeys(found))
 
 
 def _can_run(adapter: WorldAdapter) -> bool:

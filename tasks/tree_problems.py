@@ -6,6 +6,7 @@ from typing import Literal
 
 from tasks.definition import BehaviorNode, GoalNode
 from tasks.footprint import Footprint
+from tasks.leaf_order import LeafOrder
 from tasks.scene import Pose, Scene, SceneObject
 
 Nodes = Sequence[GoalNode | BehaviorNode]
@@ -103,9 +104,10 @@ class _Standing:
 
 def _wrongly_stacked(nodes: Nodes, scene: Scene) -> Iterator[TreeProblem]:
     starts, places = _starts(nodes, scene), _places(nodes, scene)
+    order = LeafOrder(nodes)
     for lower, upper in _stacked(places):
-        if _apart(nodes, lower.leaf, upper.leaf) != "or" and not _is_before(
-            nodes, lower.leaf, upper.leaf
+        if not order.exclusive(lower.leaf, upper.leaf) and not order.is_before(
+            lower.leaf, upper.leaf, surely=False
         ):
             yield TreeProblem(
                 upper.leaf,
@@ -114,8 +116,8 @@ def _wrongly_stacked(nodes: Nodes, scene: Scene) -> Iterator[TreeProblem]:
                 f"before it: put '{lower.part}' before '{upper.part}' in a THEN",
             )
     for lower, upper in _stacked(starts):
-        if _apart(nodes, lower.leaf, upper.leaf) != "or" and not _is_before(
-            nodes, upper.leaf, lower.leaf
+        if not order.exclusive(lower.leaf, upper.leaf) and not order.is_before(
+            upper.leaf, lower.leaf
         ):
             yield TreeProblem(
                 lower.leaf,
@@ -126,7 +128,7 @@ def _wrongly_stacked(nodes: Nodes, scene: Scene) -> Iterator[TreeProblem]:
     for place in places:
         for start in starts:
             if start.part != place.part and start.fills(place):
-                if _is_before(nodes, start.leaf, place.leaf, surely=True):
+                if order.is_before(start.leaf, place.leaf):
                     continue
                 yield TreeProblem(
                     place.leaf,
@@ -181,44 +183,3 @@ def _standing(leaf: int, name: str, part: SceneObject, at: Pose | None, scene: S
     bottom_m = scene.table.height if pose.z is None else pose.z
     ground = Footprint(pose.x, pose.y, pose.yaw, part.size[0], part.size[1])
     return _Standing(leaf, name, ground, bottom_m, bottom_m + part.size[2])
-
-
-# --- Order in a tree ------------------------------------------------------------------------------
-
-
-def _way_up(nodes: Nodes, node: int) -> list[int]:
-    """A node and all that it is under, upwards."""
-    way = [node]
-    while (parent := nodes[way[-1]].parent) is not None:
-        way.append(parent)
-    return way
-
-
-def _apart(nodes: Nodes, first: int, second: int) -> str:
-    """The kind of the lowest goal node over both leaves."""
-    return nodes[_fork(nodes, first, second)[0]].kind
-
-
-def _fork(nodes: Nodes, first: int, second: int) -> tuple[int, list[int], list[int]]:
-    """The lowest node over both leaves, and the ways up to it from each, without it."""
-    one, two = _way_up(nodes, first), _way_up(nodes, second)
-    common = set(one) & set(two)
-    one = [each for each in one if each not in common]
-    two = [each for each in two if each not in common]
-    parent = nodes[one[-1]].parent if one else None
-    assert parent is not None, "two leaves have a node over both"
-    return parent, one, two
-
-
-def _is_before(nodes: Nodes, first: int, second: int, *, surely: bool = False) -> bool:
-    """Whether a THEN has the first leaf done before the second one starts.
-
-    `surely`: also if no OR may leave the first one undone.
-    """
-    if first == second:
-        return False
-    fork, one, two = _fork(nodes, first, second)
-    if nodes[fork].kind != "then" or one[-1] > two[-1]:
-        return False
-    alternatives = (nodes[parent].kind == "or" for parent in one[1:])
-    return not (surely and any(alternatives))

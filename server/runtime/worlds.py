@@ -12,7 +12,7 @@ from server.runtime.ports import LIVE, LoadedTree
 from server.runtime.run import Run
 from server.runtime.run_state import RunState
 from server.runtime.views import WorldView
-from server.scene_checks import WorldChecks, tree_problems
+from server.scene_checks import WorldChecks
 from sim.mischief import random_interventions
 from sim.world import WorldAdapter, WorldSetup, WorldUnavailableError
 from tasks.definition import BehaviorNode
@@ -82,7 +82,7 @@ class SimulatedWorlds:
     def refuse_impossible(self, world: str, scene: Scene, tree: LoadedTree) -> None:
         """Raise `InvalidError` where the world's robot cannot do the tree in the scene."""
         check = WorldChecks(self._adapters).check_of(world)
-        problems = tree_problems(check, scene, tree.definition) if check is not None else []
+        problems = check(scene, tree.definition.nodes) if check is not None else []
         if problems:
             raise InvalidError(
                 f"the robot of the world '{world}' cannot do the tree '{tree.name}' in the scene "
