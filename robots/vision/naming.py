@@ -84,6 +84,7 @@ class Namer:
         self._heights = np.array([way.height_m for way in self._ways])
         self._base = np.array([way.cost for way in self._ways])
         self._knobbed = np.array([way.with_knob for way in self._ways])
+        self._knob_extents = np.array([(way.part.knob or way.part.size)[:2] for way in self._ways])
         owners = {part.name: index for index, part in enumerate(self._parts)}
         self._owner = np.array([owners[way.part.name] for way in self._ways])
 
@@ -175,12 +176,17 @@ class Namer:
     ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
         sigma_m = _EXTENT_SIGMA_PX * drop_m * 0.6 + 0.0003
         seen, whole = np.array(top.fitted.rectangle.extents), np.array(top.fitted.whole)
+        knobs = self._knob_extents if top.knob is not None else None
         costs = []
         for order in ([0, 1], [1, 0]):
             off = (seen[None] - self._extents[:, order]) / sigma_m
             # Where an end is hidden the part may be longer than what is seen of it.
             off = np.where(whole[None] | (off > 0), off, 0.0)
-            costs.append(0.5 * (off**2).sum(axis=1))
+            cost = 0.5 * (off**2).sum(axis=1)
+            if knobs is not None:
+                off = (_knob_along(top) - knobs[:, order]) / (2 * sigma_m)
+                cost += np.where(self._knobbed, 0.5 * (off**2).sum(axis=1), 0.0)
+            costs.append(cost)
         straight, crossed = costs
         bottoms = top.surface.top_z - self._heights
         gap = np.abs(bottoms[:, None] - supports[None]).min(axis=1) / _HEIGHT_SIGMA_M
@@ -206,6 +212,15 @@ class Namer:
         seen = surface.color / np.maximum(reference, 1.0)
         off = ((seen - tint) / tint_sigma(seen))[usable]
         return cost + min(0.5 * float((off**2).sum()), _MOST_COLOR_COST)
+
+
+def _knob_along(top: Top) -> NDArray[np.float64]:
+    """The extents of a plate's knob along the plate's axes."""
+    if top.knob is None:
+        raise ValueError("expected a top with a knob")
+    knob, plate = top.knob.fitted.rectangle, top.fitted.rectangle
+    crossed = abs(math.sin(knob.yaw - plate.yaw)) > math.sqrt(0.5)
+    return np.array(knob.extents[::-1] if crossed else knob.extents)
 
 
 def _ways_of(part: Part) -> list[_Way]:

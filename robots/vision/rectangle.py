@@ -22,6 +22,8 @@ _AROUND_PX = 5
 _COARSE_TO_FINE = (3.0, 1.5, 1.0)
 """Widths of the rim in pixels: a wide one first draws the rectangle near."""
 _ITERATIONS = 8
+_SPLINTER = 0.3
+"""What is as high as a surface and smaller than this share of it may be a splinter of its rim."""
 _SEEN_SIDE = 0.5
 """A side is seen if just outside more than this share of it nothing hides the view."""
 
@@ -100,7 +102,14 @@ def gather(
         inside = chosen
     with np.errstate(invalid="ignore"):
         low = height < surface.top_z - surfaces.tolerance_m
-    other = (labels > 0) & ~inside
+    splinters = [
+        each.label
+        for each in surfaces.all
+        if each is not surface
+        and abs(each.top_z - surface.top_z) <= surfaces.tolerance_m
+        and each.core_px < _SPLINTER * surface.core_px
+    ]
+    other = (labels > 0) & ~inside & ~np.isin(labels, splinters)
     unlike = np.isnan(height) & (
         np.abs(image.bgr[patch].astype(np.float64) - surface.color).max(axis=2) > 40.0
     )
