@@ -157,8 +157,8 @@ def _nothing_between(
     canvas[vs - top, us - left] = 0
     between = seen.height_m[top : top + canvas.shape[0], left : left + canvas.shape[1]][canvas > 0]
     with np.errstate(invalid="ignore"):
-        higher = np.count_nonzero(between > top_z + tolerance_m)
-        lower = np.count_nonzero(between < top_z - tolerance_m)
+        higher = int(np.count_nonzero(between > top_z + tolerance_m))
+        lower = int(np.count_nonzero(between < top_z - tolerance_m))
     return higher > 0 and lower <= _LOWER_SHARE * higher
 
 
