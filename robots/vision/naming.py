@@ -18,6 +18,8 @@ from robots.vision.color_model import ColorModel, Segmentation, tint_sigma
 from robots.vision.level_surfaces import Surface, Surfaces
 from robots.vision.rectangle import Fitted, Rectangle
 
+Costs = NDArray[np.float64]
+
 UNKNOWN_COST = 25.0
 _NEVER = 1e6
 _HEIGHT_SIGMA_M = 0.0012
@@ -80,6 +82,8 @@ class Namer:
         self._model = model
         self._ways = [way for part in self._parts for way in _ways_of(part)]
         self._knobs = {(part.knob, part.size[2]) for part in self._parts if part.knob is not None}
+        without = (math.nan,) * 3
+        self._tints = np.array([model.tints.get(part.name, without) for part in self._parts])
         self._extents = np.array([way.extents for way in self._ways])
         self._heights = np.array([way.height_m for way in self._ways])
         self._base = np.array([way.cost for way in self._ways])
@@ -113,11 +117,11 @@ class Namer:
             for index in range(len(self._parts)):
                 ways = np.flatnonzero(self._owner == index)
                 chosen[index] = ways[by_way[ways].argmin()]
-            geometry = by_way[chosen]
-            costs[row, : len(self._parts)] = geometry
-            for index in np.flatnonzero(geometry < UNKNOWN_COST).tolist():
+            costs[row, : len(self._parts)] = by_way[chosen]
+            costs[row, : len(self._parts)] += self._tint_costs(top.surface, surfaces.table_color)
+            for index in np.flatnonzero(costs[row, : len(self._parts)] < UNKNOWN_COST).tolist():
                 name = self._parts[index].name
-                costs[row, index] += self._color_cost(name, top.surface, surfaces, segmentation)
+                costs[row, index] += self._hue_cost(name, top.surface, segmentation)
                 costs[row, index] += _tracking_cost(top, last_seen.get(name))
             costs[row, len(self._parts) + row] = UNKNOWN_COST
             choices.append((chosen, swapped))
@@ -197,21 +201,22 @@ class Namer:
         total = np.minimum(straight, crossed) + height + knob + self._base
         return total, crossed < straight
 
-    def _color_cost(
-        self, name: str, surface: Surface, surfaces: Surfaces, segmentation: Segmentation
-    ) -> float:
-        cost = 0.0
-        if self._model.has_hue(name):
-            share = segmentation.share(name, surface.us, surface.vs)
-            cost += min(-math.log(share + 0.02), _MOST_SHARE_COST)
-        tint = self._model.tints.get(name)
-        reference = surfaces.table_color
-        if tint is None or not np.isfinite(reference).all():
-            return cost
+    def _tint_costs(self, surface: Surface, reference: NDArray[np.float64]) -> Costs:
+        """How unlike a surface's colour is each part's, as seen over the table's."""
         usable = (surface.color < _OVEREXPOSED) & (reference < _OVEREXPOSED)
+        if not np.isfinite(reference).all() or not usable.any():
+            return np.zeros(len(self._parts))
         seen = surface.color / np.maximum(reference, 1.0)
-        off = ((seen - tint) / tint_sigma(seen))[usable]
-        return cost + min(0.5 * float((off**2).sum()), _MOST_COLOR_COST)
+        off = ((seen - self._tints) / tint_sigma(seen))[:, usable]
+        # A part that was learned without a table to compare with has no tint.
+        costs = np.minimum(0.5 * (off**2).sum(axis=1), _MOST_COLOR_COST)
+        return np.asarray(np.nan_to_num(costs, nan=0.0))
+
+    def _hue_cost(self, name: str, surface: Surface, segmentation: Segmentation) -> float:
+        if not self._model.has_hue(name):
+            return 0.0
+        share = segmentation.share(name, surface.us, surface.vs)
+        return min(-math.log(share + 0.02), _MOST_SHARE_COST)
 
 
 def _knob_along(top: Top) -> NDArray[np.float64]:
