@@ -25,7 +25,7 @@ _SMALLEST_STEP_M = 0.002
 _FEWEST_PX = 5
 _GROWTH_PX = 3
 _LONGEST_PX = 200
-_LOWER_SHARE = 0.2
+_LOWER_SHARE = 0.3
 """Between pieces of one surface at most this share of what is higher may be lower."""
 _LIKE = 14.0
 """Colours differ that are farther apart than this many grey levels and the noise's share."""
@@ -51,12 +51,14 @@ class Surface:
 class Surfaces:
     """All level surfaces of a picture; `labels` (h, w) has each one's number, 0 elsewhere.
 
-    `tolerance_m`: what is nearer to a surface's height than this belongs to it.
+    `tolerance_m`: what is nearer to a surface's height than this belongs to it. `alike`: colours
+    (grey levels) that are nearer to each other are the same.
     """
 
     all: Sequence[Surface]
     labels: Labels
     tolerance_m: float
+    alike: float
     heights: HeightMap
     table_color: NDArray[np.float64]
 
@@ -88,7 +90,8 @@ def find_surfaces(seen: HeightMap) -> Surfaces:
         )
     pixels = _pixels_by_label(labels, len(cores.tops))
     labels, groups = _join_pieces(labels, pixels, cores, seen, step_m, tolerance_m, alike)
-    return Surfaces(_surfaces(groups, pixels, cores), labels, tolerance_m, seen, table_color)
+    surfaces = _surfaces(groups, pixels, cores)
+    return Surfaces(surfaces, labels, tolerance_m, alike, seen, table_color)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
-from robots.catalogue import Part
+from robots.catalogue import Part, Size
 from robots.vision.color_model import ColorModel, Segmentation, tint_sigma
 from robots.vision.level_surfaces import Surface, Surfaces
 from robots.vision.rectangle import Fitted, Rectangle
@@ -81,7 +81,6 @@ class Namer:
         self._parts = list(parts.values())
         self._model = model
         self._ways = [way for part in self._parts for way in _ways_of(part)]
-        self._knobs = {(part.knob, part.size[2]) for part in self._parts if part.knob is not None}
         without = (math.nan,) * 3
         self._tints = np.array([model.tints.get(part.name, without) for part in self._parts])
         self._extents = np.array([way.extents for way in self._ways])
@@ -161,19 +160,21 @@ class Namer:
         ]
 
     def _is_knob(self, knob: Top, plate: Top, surfaces: Surfaces) -> bool:
-        rise = knob.surface.top_z - plate.surface.top_z
+        """Whether one surface stands on another as some part's knob stands on its plate."""
         on, under = knob.fitted.rectangle, plate.fitted.rectangle
-        for size, _ in self._knobs:
-            if abs(rise - size[2]) > surfaces.tolerance_m:
-                continue
-            off = np.abs(np.sort(on.extents) - np.sort(size[:2]))
-            if off.max() > _KNOB_WITHIN_M:
-                continue
-            whole = all(plate.fitted.whole)
-            near_m = _KNOB_WITHIN_M if whole else max(under.extents)
-            if math.hypot(on.x - under.x, on.y - under.y) <= near_m:
-                return True
-        return False
+        near_m = _KNOB_WITHIN_M if all(plate.fitted.whole) else max(under.extents)
+        if math.hypot(on.x - under.x, on.y - under.y) > near_m:
+            return False
+        if np.abs(knob.surface.color - plate.surface.color).max() > surfaces.alike:
+            return False
+        rise_m = knob.surface.top_z - plate.surface.top_z
+        return any(
+            abs(rise_m - part.knob[2]) <= surfaces.tolerance_m
+            and _can_measure(knob, part.knob)
+            and _can_measure(plate, part.size)
+            for part in self._parts
+            if part.knob is not None
+        )
 
     def _geometry_costs(
         self, top: Top, supports: NDArray[np.float64], drop_m: float
@@ -217,6 +218,19 @@ class Namer:
             return 0.0
         share = segmentation.share(name, surface.us, surface.vs)
         return min(-math.log(share + 0.02), _MOST_SHARE_COST)
+
+
+def _can_measure(top: Top, size: Size) -> bool:
+    """Whether a surface can be the top of a box of some size, as far as its ends are seen."""
+    for straight in (True, False):
+        extents = size[:2] if straight else size[1::-1]
+        pairs = zip(top.fitted.rectangle.extents, extents, top.fitted.whole, strict=True)
+        if all(
+            seen <= side + _KNOB_WITHIN_M and (not whole or seen >= side - _KNOB_WITHIN_M)
+            for seen, side, whole in pairs
+        ):
+            return True
+    return False
 
 
 def _knob_along(top: Top) -> NDArray[np.float64]:
