@@ -110,12 +110,13 @@ def gather(
         and each.core_px < _SPLINTER * surface.core_px
     ]
     other = (labels > 0) & ~inside & ~np.isin(labels, splinters)
-    unlike = np.isnan(height) & (
-        np.abs(image.bgr[patch].astype(np.float64) - surface.color).max(axis=2) > 40.0
-    )
+    # Without depth only the table's own colour says that nothing is in front.
+    off = np.abs(image.bgr[patch].astype(np.float64) - surfaces.table_color).max(axis=2)
+    distinct = np.abs(surface.color - surfaces.table_color).max() > 2 * surfaces.alike
+    table = np.isnan(height) & (off < surfaces.alike) & distinct & ~inside
     with np.errstate(invalid="ignore"):
         in_front = height > surface.top_z + surfaces.tolerance_m
-    weight = (inside | low | other | unlike) & ~in_front
+    weight = (inside | low | other | table) & ~in_front
     vs, us = np.mgrid[
         patch[0].start : patch[0].start + height.shape[0],
         patch[1].start : patch[1].start + height.shape[1],
