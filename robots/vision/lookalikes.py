@@ -6,7 +6,7 @@ from itertools import combinations
 import numpy as np
 
 from robots.vision.color_model import ColorModel
-from tasks.definition import BehaviorNode
+from tasks.definition import BehaviorNode, GoalNode
 from tasks.scene import Scene, SceneObject
 from tasks.scene_problem import SceneProblem
 
@@ -20,13 +20,14 @@ NARROWEST_M = 0.010
 
 
 def find_lookalikes(
-    scene: Scene, leaves: Sequence[BehaviorNode], model: ColorModel
+    scene: Scene, nodes: Sequence[GoalNode | BehaviorNode], model: ColorModel
 ) -> list[SceneProblem]:
     """What in a scene cannot be recognized though it has to be; empty where all can.
 
-    Exactly equal objects are no problem: any of them will do. Without leaves every object counts
-    as needed. `model` knows the colours of the scene's objects.
+    Exactly equal objects are no problem: any of them will do. Without leaves among the
+    `nodes` every object counts as needed. `model` knows the colours of the scene's objects.
     """
+    leaves = [node for node in nodes if isinstance(node, BehaviorNode)]
     needed = {leaf.object for leaf in leaves} if leaves else set(scene.objects)
     problems = [
         SceneProblem(("objects", name), message)
