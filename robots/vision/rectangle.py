@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from maps.compiled import compiled
 from robots.body import CameraImage
 from robots.vision.level_surfaces import Surface, Surfaces
+from robots.vision.projection import pixel_area_m2
 
 Array = NDArray[np.float64]
 
@@ -24,6 +25,8 @@ _COARSE_TO_FINE = (3.0, 1.5, 1.0)
 _ITERATIONS = 8
 _SPLINTER = 0.3
 """What is as high as a surface and smaller than this share of it may be a splinter of its rim."""
+_SAME_HUE = 0.25
+"""A surface in another shade has all channels changed by the same factor, so far."""
 _SEEN_SIDE = 0.5
 """A side is seen if just outside more than this share of it nothing hides the view."""
 
@@ -102,13 +105,7 @@ def gather(
         inside = chosen
     with np.errstate(invalid="ignore"):
         low = height < surface.top_z - surfaces.tolerance_m
-    splinters = [
-        each.label
-        for each in surfaces.all
-        if each is not surface
-        and abs(each.top_z - surface.top_z) <= surfaces.tolerance_m
-        and each.core_px < _SPLINTER * surface.core_px
-    ]
+    splinters = [each.label for each in surfaces.all if _is_splinter(each, surface, surfaces)]
     other = (labels > 0) & ~inside & ~np.isin(labels, splinters)
     # Without depth only the table's own colour says that nothing is in front.
     off = np.abs(image.bgr[patch].astype(np.float64) - surfaces.table_color).max(axis=2)
@@ -132,8 +129,20 @@ def gather(
         weight.ravel().astype(np.float64),
         to_eye[:2] * (tolerance / to_eye[2]),
         pixel_m,
-        pixel_m**2 * float(np.linalg.norm(to_eye) / to_eye[2]),
+        pixel_area_m2(image, (float(middle[0]), float(middle[1]), surface.top_z)),
     )
+
+
+def _is_splinter(other: Surface, surface: Surface, surfaces: Surfaces) -> bool:
+    """Whether what is as high as a surface may be a piece of its rim, or of its side just below.
+
+    Such a piece is small, or smaller and of the same hue in another shade.
+    """
+    if other is surface or abs(other.top_z - surface.top_z) > surfaces.tolerance_m:
+        return False
+    shades = (other.color + 1.0) / (surface.color + 1.0)
+    same_hue = np.ptp(shades) < _SAME_HUE * shades.mean()
+    return bool(other.core_px < (1.0 if same_hue else _SPLINTER) * surface.core_px)
 
 
 def _on_plane(

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
@@ -69,7 +69,7 @@ def view_table(
     boxes: list[SeenBox] = []
     for match in matches:
         fitted = _fit_match(match, surfaces)
-        sighting = _sighting(match, fitted, image)
+        sighting = _sighting(match, _centred_by_knob(match, fitted), image)
         sightings[match.part.name] = sighting
         boxes += _boxes(match, sighting)
     strange = [
@@ -94,6 +94,15 @@ def _fit_match(match: Match, surfaces: Surfaces) -> Fitted:
     x, y = at.x + cos * shifts[0] - sin * shifts[1], at.y + sin * shifts[0] + cos * shifts[1]
     start = Rectangle(x, y, at.yaw, match.extents)
     return fit_sized(gather(match.top.surface, surfaces), start)
+
+
+def _centred_by_knob(match: Match, fitted: Fitted) -> Fitted:
+    """A plate of which an end is hidden is where its knob is."""
+    knob = match.top.knob
+    if knob is None or all(fitted.whole) or not all(knob.fitted.whole):
+        return fitted
+    at = replace(fitted.rectangle, x=knob.fitted.rectangle.x, y=knob.fitted.rectangle.y)
+    return replace(fitted, rectangle=at)
 
 
 def _sighting(match: Match, fitted: Fitted, image: CameraImage) -> HeadSighting:
