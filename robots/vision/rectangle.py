@@ -20,6 +20,7 @@ from robots.vision.projection import pixel_area_m2
 Array = NDArray[np.float64]
 
 _AROUND_PX = 5
+_DEEP = np.ones((25, 25), np.uint8)
 _COARSE_TO_FINE = (3.0, 1.5, 1.0)
 """Widths of the rim in pixels: a wide one first draws the rectangle near."""
 _ITERATIONS = 8
@@ -114,6 +115,8 @@ def gather(
     with np.errstate(invalid="ignore"):
         in_front = height > surface.top_z + surfaces.tolerance_m
     weight = (inside | low | other | table) & ~in_front
+    # Deep inside nothing changes, however the rectangle is moved to fit.
+    weight &= np.asarray(cv2.erode(inside.astype(np.uint8), _DEEP)) == 0
     vs, us = np.mgrid[
         patch[0].start : patch[0].start + height.shape[0],
         patch[1].start : patch[1].start + height.shape[1],
@@ -178,10 +181,11 @@ def fit_sized(evidence: Evidence, start: Rectangle) -> Fitted:
 
 def _fit(evidence: Evidence, start: Rectangle, *, sized: bool) -> Fitted:
     given = np.array([start.x, start.y, start.yaw, *start.extents])
+    telling = evidence.weight > 0
     found, misfit = _descend(
-        evidence.points,
-        evidence.inside,
-        evidence.weight,
+        evidence.points[telling],
+        evidence.inside[telling],
+        evidence.weight[telling],
         evidence.rim,
         given,
         3 if sized else 5,
