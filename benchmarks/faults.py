@@ -143,7 +143,7 @@ class Bench:
     """A workcell with a robot, driven cycle by cycle so that faults come at exact moments."""
 
     def __init__(self, scene: Scene, seed: int, noise: float, light: float) -> None:
-        options = WorkcellOptions(renderer="fast", camera_noise=noise, light=light)
+        options = WorkcellOptions(renderer="fast", camera_noise=noise, light=light, depth_noise=1.0)
         self.scene, self.seed = scene, seed
         self.world = WorkcellWorld(scene, seed, options)
         model = learn_colors(scene, noise)

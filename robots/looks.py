@@ -149,13 +149,13 @@ class WayClear:
         if here is not None and not arm.at_neutral:
             way = [here, *way]
         image = senses.look()
-        if senses.obstruction(image, way, arm.at_neutral) is not None:
+        if senses.obstruction(image, way) is not None:
             return False
         if self._looker.destination is None:
             return True
         part, target = self._looker.destination
         sighting = None if senses.holds(part.name) else senses.sight(part, image)
-        return senses.occupant(image, part, sighting, target, arm.at_neutral) is None
+        return senses.occupant(image, part, sighting, target) is None
 
 
 def look_as_told(

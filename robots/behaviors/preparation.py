@@ -88,7 +88,7 @@ def make_plan(assignment: Assignment, arm: Arm, senses: Senses, findings: Findin
         first = 1 if first is None else first
         if findings.obstruction is None and not refusals:
             waypoints = waypoints_of(steps[first - 1 :])
-            findings.obstruction = _obstruction(assignment, waypoints, arm, senses, findings)
+            findings.obstruction = _obstruction(assignment, waypoints, senses, findings)
         tight = crowded(steps[first - 1 :], arm.body.gripper, boxes)
         if tight is not None:
             refusals.append(tight)
@@ -117,21 +117,18 @@ def _name(part: Part | None) -> str:
 def _obstruction(
     assignment: Assignment,
     waypoints: Sequence[ToolPose],
-    arm: Arm,
     senses: Senses,
     findings: Findings,
 ) -> Obstruction | None:
     """What is seen on the way, on the object, or at the place where that is to go."""
     if findings.image is not None:
-        on_the_way = senses.obstruction(findings.image, waypoints, arm.at_neutral)
+        on_the_way = senses.obstruction(findings.image, waypoints)
         if on_the_way is not None:
             return on_the_way
     if assignment.part is None:
         return None
     image = findings.image or senses.look()
-    return senses.occupant(
-        image, assignment.part, findings.sighting, assignment.target, arm.at_neutral
-    )
+    return senses.occupant(image, assignment.part, findings.sighting, assignment.target)
 
 
 def waypoints_of(steps: Sequence[Step]) -> list[ToolPose]:

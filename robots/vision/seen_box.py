@@ -36,4 +36,17 @@ class SeenBox:
         signs = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
         local = signs * (self.size[0] / 2, self.size[1] / 2)
         turned: NDArray[np.float64] = local @ np.array([[cos, sin], [-sin, cos]])
-        return np.asarray(turned + np.array([self.x, self.y]))
+        at: NDArray[np.float64] = turned + np.array([self.x, self.y])
+        return at
+
+    def holds(self, points: NDArray[np.float64], margin_m: float = 0.006) -> NDArray[np.bool_]:
+        """Which of some points (n, 3) are in it, or no farther outside than `margin_m`."""
+        cos, sin = math.cos(self.yaw), math.sin(self.yaw)
+        dx, dy = points[:, 0] - self.x, points[:, 1] - self.y
+        held: NDArray[np.bool_] = (
+            (np.abs(cos * dx + sin * dy) <= self.size[0] / 2 + margin_m)
+            & (np.abs(cos * dy - sin * dx) <= self.size[1] / 2 + margin_m)
+            & (points[:, 2] >= self.bottom_z - margin_m)
+            & (points[:, 2] <= self.top_z + margin_m)
+        )
+        return held

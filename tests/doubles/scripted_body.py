@@ -1,18 +1,20 @@
 """A small body without physics: straight motions, drawn pictures, and faults on demand."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 from drawn_scene import HEAD_POSE, PARTS, TABLE_Z, DrawnScene, Resting
 
 from robots.body import CameraImage, Reach, ToolPose
-from robots.catalogue import Catalogue
+from robots.catalogue import Catalogue, Part
 from robots.grasp import grasp_of
 from robots.gripper import GripperModel, Slab
 from robots.link.messages import Location
 from robots.vision.color_model import ColorModel, Sample
+from robots.vision.table_view import TableView, view_table
 from tasks.scene import Table
 
 NEUTRAL = ToolPose(0.30, -0.85, 1.05, 0.0)
@@ -273,6 +275,7 @@ def _position(pose: ToolPose) -> tuple[float, float, float]:
     return pose.x, pose.y, pose.z
 
 
+@cache
 def trained_model() -> ColorModel:
     """Colours learned from one drawn picture of each part."""
     samples = {}
@@ -298,3 +301,10 @@ PLACES = {
 
 def catalogue() -> Catalogue:
     return Catalogue(PARTS, PLACES, Table())
+
+
+def view_of(image: CameraImage, parts: Mapping[str, Part] = PARTS) -> TableView:
+    """What a drawn head picture shows, with colours that were learned from drawn pictures."""
+    view = view_table(image, Table(), parts, trained_model(), {})
+    assert view is not None
+    return view
