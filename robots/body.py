@@ -177,6 +177,13 @@ class Body(Protocol):
         """What of the gripper may hide a held part: convex pieces (n, 3), now, tool frame."""
         ...
 
+    def contact_force(self) -> NDArray[np.float64]:
+        """The external force (3, N, base frame) at the tool point, as the joints' efforts tell it.
+
+        The weight of what is held is part of it.
+        """
+        ...
+
     def contact_force_n(self) -> float:
-        """The external force at the tool point, weight of what is held included, by efforts."""
+        """How strong that force is."""
         ...

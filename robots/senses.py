@@ -37,8 +37,7 @@ FOREARM = "forearm"
 _ARM_LENGTH_M = 0.7
 """How far the arm reaches back from the tool point, for telling it from an obstacle."""
 _ARM_RADIUS_M = 0.16
-_HAND_LENGTH_M = 0.45
-"""How far the hand reaches back from the tool point against its approach direction."""
+_GRIPPER_RADIUS_M = 0.09
 _BELOW_TOOL_M = 0.03
 """So far the fingers, or what they hold, may reach below the tool point."""
 
@@ -238,13 +237,18 @@ class Senses:
         return seen.views[stranger]
 
     def _is_own_arm(self, points: Points) -> NDArray[np.bool_]:
-        """Which points are the arm: near the hand, or the line back through its camera."""
-        tool = self._body.tool_pose()[:3, 3]
+        """Which points are the arm: near the lines from the tool point back.
+
+        One leads through its camera, one the way that the gripper came down.
+        """
+        pose = self._body.tool_pose()
+        tool = pose[:3, 3]
         along = self._body.cameras[FOREARM].pose()[:3, 3] - tool
         back = tool + along / max(float(np.linalg.norm(along)), 1e-6) * _ARM_LENGTH_M
-        hand = tool - self._body.tool_pose()[:3, 0] * _HAND_LENGTH_M
+        above = tool - pose[:3, 0] * _ARM_LENGTH_M
         low_z = tool[2] - (_BELOW_TOOL_M if self.grip is None else self.grip.part.height)
-        own: NDArray[np.bool_] = near(points, [(tool, hand), (tool, back)], _ARM_RADIUS_M)
+        own: NDArray[np.bool_] = near(points, [(tool, back)], _ARM_RADIUS_M)
+        own |= near(points, [(tool, above)], _GRIPPER_RADIUS_M)
         own &= points[:, 2] > low_z
         return own
 

@@ -11,7 +11,7 @@ from robots.body import ArmPath, Camera, Matrix4, Reach, ToolPose
 from robots.gripper import GripperModel
 from sim.tabletop.arm import GRIPPER, StraightPath
 from sim.tabletop.gripper_shape import finger_hulls
-from sim.tabletop.state import CONTROL_PERIOD_S, PUSH_N, TabletopState
+from sim.tabletop.state import CONTROL_PERIOD_S, TabletopState
 from tasks.scene import Table
 
 _HIGHEST_M = 1.2
@@ -108,8 +108,11 @@ class TabletopBody:
     def finger_hulls(self) -> Sequence[NDArray[np.float64]]:
         return finger_hulls(self._state.gripper.opening_m)
 
+    def contact_force(self) -> NDArray[np.float64]:
+        return self._state.contact_force()
+
     def contact_force_n(self) -> float:
-        return PUSH_N if self._state.touching else 0.0
+        return float(np.linalg.norm(self.contact_force()))
 
 
 def can_reach(reach: Reach, table: Table, pose: ToolPose) -> bool:

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from robots.body import ArmPath, Camera, Matrix4, Reach, ToolPose
 from robots.gripper import GripperModel
@@ -16,7 +17,7 @@ from sim.workcell.finger_hulls import Hull
 from sim.workcell.finger_motion import FingerMotion
 from sim.workcell.gripper import PR2_GRIPPER, finger_angle_rad
 from sim.workcell.physics import CONTROL_HZ
-from sim.workcell.pr2 import Pr2
+from sim.workcell.pr2 import JOINT_DAMPING_NM_S, Pr2
 from sim.workcell.robot_model import (
     ARM_JOINTS,
     FINGER_JOINTS,
@@ -24,6 +25,7 @@ from sim.workcell.robot_model import (
     NEUTRAL_RAD,
     PREFERRED_RAD,
 )
+from sim.workcell.touch import Touch
 
 PERIOD_S = 1.0 / CONTROL_HZ
 
@@ -69,6 +71,7 @@ class WorkcellBody:
         """`step` lets the rest of the world make one physics step."""
         self._pr2 = pr2
         self._sensor_rng = sensor_rng
+        self._touch = Touch(pr2.dynamics(), JOINT_DAMPING_NM_S, PERIOD_S, sensor_rng)
         self._rng = rng
         self._step = step
         self._planner = PathPlanner(pr2.tool, np.array(PREFERRED_RAD))
@@ -110,6 +113,7 @@ class WorkcellBody:
         self._pr2.drive(self._target, velocities, self._gripper.target_rad, self._braking)
         self._braking = False
         self._step()
+        self._touch.feel(*self._pr2.arm_motion())
         self.cycle += 1
 
     def go_neutral_at_once(self) -> None:
@@ -118,6 +122,7 @@ class WorkcellBody:
         self._target = np.array(NEUTRAL_RAD)
         self._gripper = FingerMotion()
         self._pr2.place_arm(self._target)
+        self._touch.reset()
 
     def plan_path(self, waypoints: Sequence[ToolPose]) -> ArmPath | None:
         """Plan through all waypoints; each at its yaw, or each at its yaw + pi."""
@@ -190,8 +195,11 @@ class WorkcellBody:
     def finger_hulls(self) -> Sequence[Hull]:
         return self._pr2.finger_hulls()
 
+    def contact_force(self) -> NDArray[np.float64]:
+        return self._touch.force
+
     def contact_force_n(self) -> float:
-        return self._pr2.contact_force_n()
+        return float(np.linalg.norm(self.contact_force()))
 
     @property
     def gripper_closing(self) -> bool:

@@ -238,6 +238,12 @@ class ScriptedBody:
         """It has no fingers to be seen."""
         return []
 
+    def contact_force(self) -> np.ndarray:
+        """What it feels pushes against its motion."""
+        way = np.array(_position(self._to)) - _position(self._from)
+        length = np.linalg.norm(way)
+        return -self.force_n * (way / length if length > 0 else np.array([0.0, 0.0, 1.0]))
+
     def contact_force_n(self) -> float:
         return self.force_n
 
