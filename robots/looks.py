@@ -2,13 +2,15 @@
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 from robots.arm import Arm, Routine
+from robots.behaviors.grasp_choice import LIFTS_M
 from robots.behaviors.preparation import LOOK_AGAIN_S
 from robots.body import CameraImage, ToolPose
 from robots.catalogue import Part
+from robots.grasp import UngraspableError, grasps_of
 from robots.link.messages import FinishedResult, Holding, Location, Look, Looked, ReportBody
 from robots.result import Result
 from robots.senses import Senses
@@ -115,7 +117,7 @@ class AtPlace:
 
 
 class InReach:
-    """An object rests, standing, where the arm can grasp it."""
+    """An object rests, standing, where the arm can grasp it and lift it."""
 
     def __init__(self, looker: Looker, part: Part) -> None:
         self._looker, self._part = looker, part
@@ -127,10 +129,25 @@ class InReach:
         now = self._before
         if before is None or now is None or not now.upright(senses.catalogue.table.height):
             return False
-        reach = self._looker.arm.body.reach
-        distance_m = math.hypot(now.x - reach.origin[0], now.y - reach.origin[1])
         moved_m = math.dist((now.x, now.y, now.z), (before.x, before.y, before.z))
-        return moved_m <= _RESTS_WITHIN_M and reach.min_m <= distance_m <= reach.max_m
+        return moved_m <= _RESTS_WITHIN_M and self._can_grasp(now)
+
+    def _can_grasp(self, at: HeadSighting) -> bool:
+        body = self._looker.arm.body
+        reach = body.reach
+        distance_m = math.hypot(at.x - reach.origin[0], at.y - reach.origin[1])
+        if not reach.min_m <= distance_m <= reach.max_m:
+            return False
+        try:
+            grasps = grasps_of(self._part, body.gripper)
+        except UngraspableError:
+            return False
+        picks = [each.tool_pose(at.x, at.y, at.z, at.yaw) for each in grasps]
+        return any(
+            body.plan_path([replace(pick, z=pick.z + lift_m), pick]) is not None
+            for pick in dict.fromkeys(picks)
+            for lift_m in LIFTS_M
+        )
 
 
 class WayClear:

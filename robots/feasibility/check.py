@@ -144,6 +144,7 @@ class _SceneCheck:
             for each in rivals
             if each.place is not None
             and each.place.where != job.place.where
+            and not job.place.meets(each.place)
             and not self._order.exclusive(each.leaf, job.leaf)
             and not self._order.is_before(job.leaf, each.leaf)
         ]
