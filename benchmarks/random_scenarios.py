@@ -155,7 +155,7 @@ async def run_once(
     settings = Settings(port=0, journal=Path(IN_MEMORY), log_level="error")
     began = time.perf_counter()
     async with open_service(settings) as service:
-        await service.trees.save("random", text)
+        await service.library.trees.save("random", text)
         run = (await service.runtime.start_run(request(world, seed, answers))).id
         view = await _ended_or_hung(service, run, QUIET_S[world])
         wall_s = time.perf_counter() - began

@@ -21,11 +21,16 @@ class LeafOrder:
         """Whether an OR has at most one of two leaves done."""
         return self._fork(first, second)[0] == "or"
 
-    def is_before(self, first: int, second: int) -> bool:
-        """Whether the first leaf is surely done before the second one starts."""
+    def is_before(self, first: int, second: int, *, surely: bool = True) -> bool:
+        """Whether the first leaf is done before the second one starts.
+
+        `surely`: also if no OR may leave the first one undone.
+        """
         kind, one, two = self._fork(first, second)
         if kind != "then" or one[-1] > two[-1]:
             return False
+        if not surely:
+            return True
         parents = (self._nodes[each].parent for each in one[:-1])
         return not any(
             parent is not None and self._nodes[parent].kind == "or" for parent in parents
