@@ -10,7 +10,7 @@ from robots.behaviors.grasp_choice import LIFTS_M
 from robots.behaviors.preparation import LOOK_AGAIN_S
 from robots.body import CameraImage, ToolPose
 from robots.catalogue import Part
-from robots.grasp import UngraspableError, grasps_of
+from robots.grasp import can_grasp, grasps_of
 from robots.grip import GripState
 from robots.link.messages import FinishedResult, Holding, Location, Look, Looked, ReportBody
 from robots.result import Result
@@ -142,10 +142,9 @@ class InReach:
         distance_m = math.hypot(at.x - reach.origin[0], at.y - reach.origin[1])
         if not reach.min_m <= distance_m <= reach.max_m:
             return False
-        try:
-            grasps = grasps_of(self._part, body.gripper)
-        except UngraspableError:
+        if not can_grasp(self._part, body.gripper):
             return False
+        grasps = grasps_of(self._part, body.gripper)
         picks = [each.tool_pose(at.x, at.y, at.z, at.yaw) for each in grasps]
         return any(
             body.plan_path([replace(pick, z=pick.z + lift_m), pick]) is not None
@@ -220,6 +219,8 @@ def take_from_person(looker: Looker, command: str, part: Part, within_s: float) 
     """Go to the hand-over pose and close the gripper on what is held between its fingers."""
     arm, senses = looker.arm, looker.senses
     end_s = arm.body.time_s() + within_s
+    if not can_grasp(part, arm.body.gripper):
+        return looker.answer(command, fulfilled=False)
     if not senses.holds(part.name):
         senses.let_go()
         yield from arm.go_to_hand_over()

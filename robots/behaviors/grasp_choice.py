@@ -31,7 +31,7 @@ _OVER_M = 0.015
 _BESIDE_M = 0.12
 """What stands so near to the straight way is on it: half a gripper, and half of what it carries."""
 
-_MARGIN_M = 0.001
+MARGIN_M = 0.001
 """Kept between the gripper and what stands beside an object, as it is seen."""
 
 
@@ -92,7 +92,7 @@ def crowded(steps: Sequence[Step], gripper: GripperModel, boxes: Sequence[SeenBo
             opening_m = step.action.opening_m or gripper.max_opening_m
         if pose is None or opening_m == 0.0:
             continue
-        near = in_the_way(gripper, pose, opening_m, boxes, _MARGIN_M)
+        near = in_the_way(gripper, pose, opening_m, boxes, MARGIN_M)
         if near is not None:
             where = "to grasp it" if closing else "at its place"
             return f"{near.name or 'something unknown'} leaves no room for the fingers {where}"
