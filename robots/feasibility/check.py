@@ -132,7 +132,12 @@ class _SceneCheck:
         others = [each for each in self._starts.values() if each.name != job.name]
         above = _resting_on(job.start, others)
         gone = {each.name for each in self._jobs if self._order.is_before(each.leaf, job.leaf)}
-        return [each for each in others if each not in above and each.name not in gone]
+        # What stands in the same spot was told of already.
+        return [
+            each
+            for each in others
+            if each not in above and each.name not in gone and not job.start.meets(each)
+        ]
 
     def _around_place(self, job: Job) -> list[Standing]:
         """What may stand around a place when it is filled: not what is put onto it later."""
