@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from robots.body import Matrix4
+from robots.motion.collision import CollisionModel
 from robots.motion.kinematics import Joints, KinematicChain
 from sim.workcell.arm_dynamics import LinkInertia, Pr2ArmDynamics
 from sim.workcell.finger_hulls import FingerHulls, Hull
@@ -68,6 +69,7 @@ class Pr2:
             {self._fingers[1], self._fingers[3]},
         )
         self.tool = KinematicChain(urdf, TOOL_FRAME, ARM_JOINTS)
+        self.collisions = CollisionModel(urdf, ARM_JOINTS, TOOL_FRAME)
         self._forearm_camera = KinematicChain(urdf, FOREARM_CAMERA_FRAME, _FOREARM_JOINTS)
         self.head_camera_pose = KinematicChain(urdf, HEAD_CAMERA_FRAME, ()).pose(np.zeros(0))
         shoulder = KinematicChain(urdf, SHOULDER_FRAME, ARM_JOINTS[:1]).pose(np.zeros(1))

@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 from drawn_scene import HEAD_POSE, PARTS, TABLE_Z, DrawnScene, Resting
 
-from robots.body import CameraImage, Reach, ToolPose
+from robots.body import CameraImage, NoWay, Reach, ToolPose
 from robots.catalogue import Catalogue, Part
 from robots.grasp import grasp_of
 from robots.gripper import GripperModel, Slab
@@ -171,6 +171,10 @@ class ScriptedBody:
 
     def plan_path(self, waypoints) -> ScriptedPath | None:
         return None if self.unplannable else ScriptedPath(list(waypoints))
+
+    def plan_among(self, legs, _boxes) -> ScriptedPath | NoWay:
+        path = self.plan_path([leg.to for leg in legs])
+        return NoWay("finds no path") if path is None else path
 
     def plan_neutral(self) -> ScriptedPath:
         return ScriptedPath([NEUTRAL])
