@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from functools import singledispatchmethod
 
+from dialogue.evidence import Change
 from dialogue.script import CloseReason, Help
 from server.journal import events as ev
 from tasks.intervention import Act, Intervention
@@ -80,12 +81,26 @@ RESOLUTIONS: dict[Resolution, str] = {
 }
 
 CLOSINGS: dict[CloseReason, str] = {
-    CloseReason.WITHDRAWN: "the question is withdrawn: it was put right",
-    CloseReason.GAVE_UP: "the question is given up: nobody helped",
+    CloseReason.WITHDRAWN: "the question is withdrawn: by what the robot sees it is put right",
+    CloseReason.GAVE_UP: "the question is given up: no help was seen",
     CloseReason.ABORTED: "the question lapses: it no longer matters",
 }
 
-DOERS = {"robot": " by the robot", "human": " by the human", "both": " by robot and human together"}
+DOERS = {
+    "robot": " by the robot",
+    "human": " by the human",
+    "both": " by robot and human together",
+    "found": ": the robot found it in place",
+}
+
+CHANGES: dict[Change, str] = {
+    Change.UNKNOWN: "",
+    Change.NONE: ", as it was before",
+    Change.APPEARED: ": it has come back",
+    Change.MOVED: ": it has been moved",
+    Change.HANDED_OVER: "",
+    Change.CLEARED: "",
+}
 
 
 def grouped(lines: Iterable[Line]) -> Iterator[list[Line]]:
@@ -140,10 +155,7 @@ class Transcript:
 
     @lines.register
     def _(self, event: ev.RunFinished) -> list[Line]:
-        lines = [
-            _line(event, "", f"the last look misses {each.object} at {each.place}", Tone.SETBACK)
-            for each in event.missing
-        ]
+        lines = [_line(event, "", _missing(each), Tone.SETBACK) for each in event.missing]
         return [*lines, _line(event, "", "the run has finished: the task is done", Tone.FINISHED)]
 
     @lines.register
@@ -184,6 +196,10 @@ class Transcript:
         text = f"the alternative {event.name} is abandoned: {event.reason}"
         return [_line(event, "", text, Tone.SETBACK)]
 
+    @lines.register
+    def _(self, event: ev.NodeLeftOut) -> list[Line]:
+        return [_line(event, "", f"{event.name} is left out, as {event.helper} said", Tone.SETBACK)]
+
     # --- Issues and dialogues -----------------------------------------------------------------
 
     @lines.register
@@ -194,6 +210,20 @@ class Transcript:
         because = f" ({explanation})" if explanation else ""
         text = f"issue: {event.issue} {subject} {where}{because}"
         return [_line(event, "", text, Tone.FAULT)]
+
+    @lines.register
+    def _(self, event: ev.SuspectedFalseAlarm) -> list[Line]:
+        subject = event.object or event.name
+        told = f"; a mail goes to {', '.join(event.told)}" if event.told else ""
+        text = (
+            f"the robot may be wrong: {event.issue} {subject} {event.times} times on end, and "
+            f"nothing was seen to change{told}"
+        )
+        return [_line(event, "", text, Tone.SETBACK)]
+
+    @lines.register
+    def _(self, _event: ev.FirstLook) -> list[Line]:
+        return []
 
     @lines.register
     def _(self, _event: ev.ClipRecorded) -> list[Line]:
@@ -240,7 +270,8 @@ class Transcript:
 
     @lines.register
     def _(self, event: ev.HelpVerified) -> list[Line]:
-        return [_line(event, self._robot(event.robot), f"sees {_promised(event)}", Tone.WATCHED)]
+        text = f"sees {_promised(event)}{CHANGES[event.change]}"
+        return [_line(event, self._robot(event.robot), text, Tone.WATCHED)]
 
     @lines.register
     def _(self, event: ev.HelpNotSeen) -> list[Line]:
@@ -303,6 +334,12 @@ def deed_text(intervention: Intervention) -> str:
 
 def _line(event: ev.Event, speaker: str, text: str, tone: Tone) -> Line:
     return Line(event.time, speaker, text, tone)
+
+
+def _missing(part: ev.MissingPart) -> str:
+    if part.left_out_by is not None:
+        return f"{part.object} was left out, as {part.left_out_by} said"
+    return f"the last look misses {part.object} at {part.place}"
 
 
 def _comparison(event: ev.NodeStarted) -> str:

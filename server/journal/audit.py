@@ -53,7 +53,7 @@ class _Audit:
         match event:
             case ev.NodeStarted():
                 self._started(event)
-            case ev.NodeDone():
+            case ev.NodeDone() | ev.NodeLeftOut():
                 if event.node not in self._active:
                     self._breach(event, f"finishes {event.node}, which is not active")
                 self._active.pop(event.node, None)

@@ -100,9 +100,25 @@ def _with_hidden(
         yield each, hidden
 
 
+def left_out_parts(state: RunState) -> list[MissingPart]:
+    """The parts that a helper had left out."""
+    tree = state.tree
+    return [
+        MissingPart(
+            node=tree.path_of(leaf),
+            name=tree.name_of(leaf),
+            object=tree.leaf_definition(leaf).object or tree.name_of(leaf),
+            place=tree.leaf_definition(leaf).place or "",
+            left_out_by=helper,
+        )
+        for leaf, helper in sorted(state.left_out.items())
+    ]
+
+
 def _all_finished(state: RunState) -> list[_Finished]:
     tree = state.tree
-    found = (_finished(state, leaf) for leaf in tree.leaves if tree.done(leaf))
+    leaves = (leaf for leaf in tree.leaves if tree.done(leaf) and leaf not in state.left_out)
+    found = (_finished(state, leaf) for leaf in leaves)
     return [each for each in found if each is not None]
 
 

@@ -36,7 +36,7 @@ from server.runtime.giving_up import GivingUp
 from server.runtime.hardware import Hardware
 from server.runtime.inbox import Inbox, Item, Task
 from server.runtime.interventions import Interventions
-from server.runtime.placed_parts import PlacedParts
+from server.runtime.placed_parts import PlacedParts, left_out_parts
 from server.runtime.pose_sink import PoseSink
 from server.runtime.presence import Presence
 from server.runtime.report_events import ReportEvents
@@ -340,7 +340,8 @@ class Run:
     # --- The end ------------------------------------------------------------------------------
 
     async def _finish(self, side: RobotSide) -> None:
-        missing = self._placed.missing(self._context.state, side.seen)
+        state = self._context.state
+        missing = [*left_out_parts(state), *self._placed.missing(state, side.seen)]
         await self._context.commit([ev.RunFinished(**self._context.stamp(), missing=missing)])
 
     # --- What people ask for ------------------------------------------------------------------

@@ -11,6 +11,7 @@ from robots.link.messages import (
     ClipPicture,
     ClipTaken,
     CommandBody,
+    Detection,
     Finished,
     Held,
     Hello,
@@ -33,6 +34,7 @@ from robots.link.messages import (
     StepStarted,
 )
 from server.journal.journal import Receipt
+from server.runtime.dialogue_looks import FIRST_LOOK_S
 from tasks.intervention import Act
 
 
@@ -48,7 +50,9 @@ class PretendRobot:
 
     A stubborn one runs into them also when it goes on after a hold.
     `patient`: it lets no time pass while a question is open, as live helpers take their time.
-    `films`: two pictures follow every issue.
+    `films`: two pictures follow every issue. What it misses, drops or looks for in vain is gone
+    until somebody brings it, and something is in its way from when it is blocked until somebody
+    clears it. `felt`: its issues were felt; no camera sees anything in its way then.
     """
 
     name: str
@@ -61,6 +65,10 @@ class PretendRobot:
     commands: list[CommandBody] = field(default_factory=list)
     right: set[str] = field(default_factory=set)
     hidden: set[str] = field(default_factory=set)
+    gone: set[str] = field(default_factory=set)
+    placed: set[str] = field(default_factory=set)
+    obstructed: bool = False
+    felt: bool = False
     deaf: bool = False
     stubborn: bool = False
     patient: bool = False
@@ -162,6 +170,11 @@ class PretendRobots:
             case Intervene(intervention=deed, by=by):
                 if deed.act in (Act.PLACE, Act.PUT_BACK, Act.HAND_OVER):
                     robot.right.add(deed.object or "")
+                    robot.gone.discard(deed.object or "")
+                if deed.act is Act.PLACE:
+                    robot.placed.add(deed.object or "")
+                if deed.act is Act.RELEASE:
+                    robot.obstructed = False
                 await self.report(robot, Intervened(intervention=deed, by=by, command=command))
 
     async def _work(self, robot: PretendRobot, start: Start, *, resumed: bool = False) -> None:
@@ -172,6 +185,9 @@ class PretendRobots:
             if due and due[0][0] in robot.interrupting:
                 faults.remove(due[0])
                 robot.right.discard(part)
+                if due[0][0] in ("missed", "dropped", "missing"):
+                    robot.gone.add(part)
+                robot.obstructed = due[0][0] == "blocked" and not robot.felt
                 await self._issue(robot, start, due[0][0], step)
                 at = "in_place" if due[0][0] in ("unreachable", "missing", "blocked") else "neutral"
                 holding = {"execution": start.execution, "at": at}
@@ -194,6 +210,7 @@ class PretendRobots:
                 issue=kind,
                 step=step,
                 interrupts=kind in robot.interrupting,
+                detection=Detection(camera="head", felt=robot.felt) if robot.felt else None,
             ),
         )
         if robot.films:
@@ -207,16 +224,19 @@ class PretendRobots:
     async def _look(self, robot: PretendRobot, command: str, look: Look) -> None:
         fulfilled = None
         if look.expect is not None:
-            fulfilled = (look.object or "") in robot.right or look.expect == "way_clear"
-            if not fulfilled and robot.patient and look.within_s > 0.0:
+            clear = look.expect == "way_clear" and not robot.obstructed
+            fulfilled = (look.object or "") in robot.right or clear
+            if not fulfilled and robot.patient and look.within_s > FIRST_LOOK_S:
                 return
             if not fulfilled:
                 # What is queued may be the deed that is being watched for.
                 robot.time += look.within_s
         seen = {
-            f"part_{i}": Sighting(x=0.4, y=0.01 * i, z=0.7, yaw=0, time=robot.time)
-            for i in range(100)
-            if f"part_{i}" not in robot.hidden
+            name: Sighting(
+                x=0.5 if name in robot.placed else 0.4, y=y, z=0.7, yaw=0, time=robot.time
+            )
+            for name, y in ((f"part_{i}", 0.01 * i) for i in range(100))
+            if name not in robot.hidden | robot.gone
         }
         await self.report(
             robot,
