@@ -1,5 +1,6 @@
 """How a script's sentences are filled in, so that a busy person can take them in by ear."""
 
+import re
 from string import Formatter
 
 from dialogue.outlook import Outlook
@@ -21,7 +22,7 @@ def word(text: str, issue: Issue, outlook: Outlook) -> str:
         place=spoken(issue.place or issue.name),
         name=spoken(issue.name),
         robot=spoken(issue.robot),
-        why=_why(issue.reason),
+        why=_why(issue),
         attempt=f"attempt {outlook.attempt} of {outlook.attempts}",
         times=outlook.times_spoken,
         again=outlook.after_help(),
@@ -44,5 +45,9 @@ def unknown_fields(text: str) -> list[str]:
     return [field for field in fields if field not in FIELDS]
 
 
-def _why(reason: str) -> str:
+def _why(issue: Issue) -> str:
+    reason = issue.reason
+    if issue.object:
+        named = rf"(?<!the )(?<!a )\b{re.escape(issue.object)}\b"
+        reason = re.sub(named, f"the {issue.object}", reason)
     return f" {sentence(spoken(reason))}" if reason else ""
