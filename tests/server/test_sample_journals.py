@@ -18,7 +18,15 @@ from server.journal.upgrades import (
 SAMPLES = sorted((Path(__file__).parent / "journals").glob("v*.sql"))
 
 ADDED_SINCE = {
-    "v1": {"clip_recorded", "deadline_extended", "node_left_out", "node_returned", "node_undone"}
+    "v1": {
+        "clip_recorded",
+        "deadline_extended",
+        "first_look",
+        "node_left_out",
+        "node_returned",
+        "node_undone",
+        "suspected_false_alarm",
+    }
 }
 """The types of events that came after a sample was written."""
 

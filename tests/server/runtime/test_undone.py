@@ -141,10 +141,11 @@ async def test_what_is_hidden_is_believed_to_be_where_it_was_put() -> None:
 async def test_what_another_robot_builds_on_it_is_cut_short() -> None:
     tree = {"then": [LEAVES[0], {"and": LEAVES[1:4]}]}
     async with pretend_service(definition_of(tree), scene=SCENE) as service:
-        gone: set[str] = set()
+        stolen: set[str] = set()
+        shared: dict[str, Any] = {"stolen": stolen, "in_reach": True}
         make = {
-            "fast": PretendRobot("fast", gone=gone, thefts={"part_3": ["part_1"]}, in_reach=True),
-            "slow": PretendRobot("slow", gone=gone, slow=True, in_reach=True),
+            "fast": PretendRobot("fast", thefts={"part_3": ["part_1"]}, **shared),
+            "slow": PretendRobot("slow", slow=True, **shared),
         }
         service.robots.make = lambda name: make[name]
         service.robots.robots.update(make)
@@ -228,7 +229,7 @@ def test_every_run_ends_and_finishes_only_with_everything_there(
                 service.run_to_end(answers=said, seed=seed), timeout=60
             )
             [robot] = service.robots.robots.values()
-            return view, events, robot.gone - robot.right
+            return view, events, set(robot.stolen)
 
     view, events, gone = asyncio.run(run())
     assert audit(events, {node.node: node.kind for node in view.nodes}) == []
