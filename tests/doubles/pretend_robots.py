@@ -86,6 +86,7 @@ class PretendRobot:
     films: bool = False
     thefts: dict[str, list[str]] = field(default_factory=dict)
     stolen: set[str] = field(default_factory=set)
+    finished: set[str] = field(default_factory=set)
     hidden_at_place: set[str] = field(default_factory=set)
     in_reach: bool = False
     slow: bool = False
@@ -211,7 +212,8 @@ class PretendRobots:
             due = [each for each in faults if each[1] == step and (robot.stubborn or not resumed)]
             if due and due[0][0] in robot.interrupting:
                 faults.remove(due[0])
-                robot.right.discard(part)
+                for known in (robot.right, robot.placed, robot.finished):
+                    known.discard(part)
                 if due[0][0] in ("missed", "dropped", "missing"):
                     robot.gone.add(part)
                 robot.obstructed = due[0][0] == "blocked" and not robot.felt
@@ -228,6 +230,7 @@ class PretendRobots:
                 faults.remove(due[0])
                 await self._issue(robot, start, due[0][0], step)
         robot.stolen.discard(part)
+        robot.finished.add(part)
         thefts = robot.thefts.get(part, [])
         if thefts:
             self._steal(robot, thefts.pop(0))
@@ -255,7 +258,10 @@ class PretendRobots:
     def _verdict(self, robot: PretendRobot, result: FinishedResult) -> str:
         if result.object in robot.hidden_at_place:
             return "hidden"
-        return "gone" if result.object in robot.stolen else "there"
+        # A patient one would wait for ever for help that was given before it first looked.
+        helped = set() if robot.patient else robot.placed
+        there = result.object in robot.finished | helped
+        return "there" if there and result.object not in robot.stolen else "gone"
 
     def _steal(self, robot: PretendRobot, part: str) -> None:
         robot.stolen.add(part)

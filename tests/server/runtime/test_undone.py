@@ -142,7 +142,7 @@ async def test_what_another_robot_builds_on_it_is_cut_short() -> None:
     tree = {"then": [LEAVES[0], {"and": LEAVES[1:4]}]}
     async with pretend_service(definition_of(tree), scene=SCENE) as service:
         stolen: set[str] = set()
-        shared: dict[str, Any] = {"stolen": stolen, "in_reach": True}
+        shared: dict[str, Any] = {"stolen": stolen, "finished": set(), "in_reach": True}
         make = {
             "fast": PretendRobot("fast", thefts={"part_3": ["part_1"]}, **shared),
             "slow": PretendRobot("slow", slow=True, **shared),
