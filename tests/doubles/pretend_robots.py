@@ -56,7 +56,8 @@ class PretendRobot:
     clears it. `felt`: its issues were felt; no camera sees anything in its way then.
     `thefts`: whenever one object has been placed, another one (or itself) that was placed is
     stolen, so often; with `in_reach` it is only elsewhere on the table then. `hidden_at_place`:
-    what no look can judge. `slow`: it is still at its first start until it is interrupted.
+    what no look can judge. `returns`: once such an object is placed, all that was stolen is back at
+    its place. `slow`: it is still at its first start until it is interrupted.
     """
 
     name: str
@@ -88,6 +89,7 @@ class PretendRobot:
     stolen: set[str] = field(default_factory=set)
     finished: set[str] = field(default_factory=set)
     hidden_at_place: set[str] = field(default_factory=set)
+    returns: set[str] = field(default_factory=set)
     in_reach: bool = False
     slow: bool = False
 
@@ -231,6 +233,9 @@ class PretendRobots:
                 await self._issue(robot, start, due[0][0], step)
         robot.stolen.discard(part)
         robot.finished.add(part)
+        if part in robot.returns:
+            robot.gone -= robot.stolen
+            robot.stolen.clear()
         thefts = robot.thefts.get(part, [])
         if thefts:
             self._steal(robot, thefts.pop(0))
