@@ -129,10 +129,10 @@ async def test_questions_queue_and_another_one_can_be_chosen(stage: Stage) -> No
     await stage.runs.open(stage.run, "dropped", "yellow_bar")
     await stage.runs.open(stage.run, "missed", "blue_leg")
     await expect(page).to_have_title("(2) Mend")
-    await expect(page.get_by_role("heading", name="I dropped the yellow bar")).to_be_visible()
+    await expect(page.get_by_role("heading", name="I lost hold of the yellow bar")).to_be_visible()
     await page.get_by_role("button", name="the blue leg is not in it").click()
     await expect(page.get_by_role("heading", name="I missed the blue leg")).to_be_visible()
-    await expect(page.get_by_role("heading", name="I dropped the yellow bar")).to_be_hidden()
+    await expect(page.get_by_role("heading", name="I lost hold of the yellow bar")).to_be_hidden()
 
 
 async def test_other_views_lead_to_the_question(stage: Stage) -> None:
@@ -140,7 +140,7 @@ async def test_other_views_lead_to_the_question(stage: Stage) -> None:
     await stage.runs.open(stage.run, "dropped")
     await expect(page.get_by_role("alert").filter(has_text="Shall I try again?")).to_be_attached()
     await page.get_by_role("link", name="Answer").click()
-    await expect(page.get_by_role("heading", name="I dropped the yellow bar")).to_be_visible()
+    await expect(page.get_by_role("heading", name="I lost hold of the yellow bar")).to_be_visible()
 
 
 async def test_keys_can_be_changed_and_switched_off(stage: Stage) -> None:
