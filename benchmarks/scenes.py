@@ -14,6 +14,7 @@ places; parts that look alike may stand at one another's places.
 # ruff: noqa: T201
 
 import argparse
+import json
 import math
 import os
 import time
@@ -37,9 +38,10 @@ from robots.link.messages import (
     ReportBody,
     Start,
 )
-from tasks.definition import TaskTreeDefinition
+from tasks.definition import BehaviorNode, TaskTreeDefinition
 from tasks.potential import leaf_potential
 from tasks.scene import Scene
+from tasks.scene_problem import SceneProblem
 from tasks.task_tree import TaskTree
 
 if TYPE_CHECKING:
@@ -268,22 +270,31 @@ def _object_and_place(tree: TaskTree, leaf: int) -> tuple[str, str]:
 
 def run(seed: int, task: str | None, most_parts: int, *, show: bool = False) -> Outcome:
     """One scene in a process of its own."""
+    from server.library import behavior_parameters
+    from tasks.task_file import check_task_text
+
     if task is not None:
-        from server.library import behavior_parameters
         from tasks.library import TREES
         from tasks.scene_file import built_in_scene
-        from tasks.task_file import check_task_text
 
         definition = check_task_text(
             TREES.read(task), behavior_parameters(), built_in_scene
         ).definition
         assert definition.scene is not None
         return play(built_in_scene(definition.scene), definition, seed, show=show)
-    from sim.random_scene import draw_scene, draw_tree
+    from sim.random_scene import random_scene
 
-    rng = np.random.default_rng(seed)
-    scene = draw_scene(rng, parts=int(rng.integers(1, most_parts + 1)))
-    return play(scene, draw_tree(scene, rng), seed, show=show)
+    drawn = random_scene(seed, int(np.random.default_rng(seed).integers(1, most_parts + 1)), _check)
+    text = json.dumps(drawn.tree)
+    definition = check_task_text(text, behavior_parameters(), lambda _: drawn.scene).definition
+    return play(drawn.scene, definition, seed, show=show)
+
+
+def _check(scene: Scene, leaves: Sequence[BehaviorNode]) -> list[SceneProblem]:
+    from sim.workcell.adapter import adapter
+    from sim.world import SceneChecker
+
+    return adapter.check_scene(scene, leaves) if isinstance(adapter, SceneChecker) else []
 
 
 def run_all(

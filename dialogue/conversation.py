@@ -116,6 +116,9 @@ class Conversation:
     def open(self) -> list[Turn]:
         """Begin."""
         self._require("open")
+        on_the_way = self._script.on_the_way
+        if on_the_way is not None and not self._issue.interrupts:
+            return self._enter(on_the_way, heard=False)
         failed = self._script.failed_opening if self._outlook.own_failure else None
         return self._enter(failed or self._script.opening, heard=False)
 

@@ -28,7 +28,8 @@ class Arm:
         self._slow_down = 1.0
         self._caution = 1.0
         self._speed = 1.0
-        self._open = False
+        self._opened_m = 0.0
+        """How wide the gripper was last told to open; 0 since it was told to close."""
 
     def slow_down(self, factor: float) -> None:
         """Scale all motion from now on, as the service commanded."""
@@ -67,18 +68,24 @@ class Arm:
             self.start(path, segment, speed)
             yield from self.settle()
 
-    def start_opening(self) -> None:
-        self._open = True
-        self.body.open_gripper()
+    def start_opening(self, opening_m: float | None = None) -> None:
+        """Move the fingers to be `opening_m` apart, without one as far as they go."""
+        self._opened_m = self._opening(opening_m)
+        self.body.open_gripper(opening_m)
+
+    def start_opening_to(self, opening_m: float) -> None:
+        """As `start_opening`, unless the fingers were told so already."""
+        if self._opened_m != opening_m:
+            self.start_opening(opening_m)
 
     def start_closing(self) -> None:
-        self._open = False
+        self._opened_m = 0.0
         self.body.close_gripper()
 
-    def open_gripper(self) -> Routine[None]:
-        """Open the gripper unless it is open."""
-        if not self._open:
-            self.start_opening()
+    def open_gripper(self, opening_m: float | None = None) -> Routine[None]:
+        """Open the gripper as `start_opening`, unless it is open so far."""
+        if self._opened_m != self._opening(opening_m):
+            self.start_opening(opening_m)
         yield from self.settle()
 
     def close_gripper(self) -> Routine[None]:
@@ -115,6 +122,9 @@ class Arm:
         path = self.body.plan_path([up])
         if path is not None:
             yield from self.follow(path, _RETREAT_SPEED)
+
+    def _opening(self, opening_m: float | None) -> float:
+        return self.body.gripper.max_opening_m if opening_m is None else opening_m
 
     def _scaled(self, speed: float) -> float:
         return speed * self._slow_down * self._caution

@@ -13,6 +13,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from robots.gripper import GripperModel
+
 Matrix4 = NDArray[np.float64]
 """A homogeneous transform, shape (4, 4)."""
 
@@ -135,7 +137,14 @@ class Body(Protocol):
         """Stop the arm within one control cycle and hold it where it is."""
         ...
 
-    def open_gripper(self) -> None: ...
+    @property
+    def gripper(self) -> GripperModel:
+        """What its gripper can take hold of, and the room that it needs."""
+        ...
+
+    def open_gripper(self, opening_m: float | None = None) -> None:
+        """Move the fingers to be `opening_m` apart; None opens them as far as they go."""
+        ...
 
     def close_gripper(self) -> None: ...
 

@@ -1,10 +1,11 @@
 """What a robot is told about its work: the parts it may handle, the places, the table.
 
-Nothing here says where a part is; that is for the cameras to find.
+Where a part really is is for the cameras to find; `starts` only says which of several equal
+parts goes by which name.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from robots.link.messages import Location
 from tasks.scene import Scene, Table
@@ -22,6 +23,15 @@ class Part:
     knob: Size | None = None
     needs_help: bool = False
 
+    @property
+    def height(self) -> float:
+        """From its bottom to its highest point, in metres."""
+        return self.size[2] + (self.knob[2] if self.knob is not None else 0.0)
+
+    def equals(self, other: "Part") -> bool:
+        """Whether another part has exactly its measures."""
+        return (self.size, self.knob) == (other.size, other.knob)
+
 
 @dataclass(frozen=True, slots=True)
 class Catalogue:
@@ -30,10 +40,11 @@ class Catalogue:
     parts: Mapping[str, Part]
     places: Mapping[str, Location]
     table: Table
+    starts: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
     @classmethod
     def from_scene(cls, scene: Scene) -> "Catalogue":
-        """Take everything from a scene but where its objects are."""
+        """Take a scene's parts and places."""
         parts = {
             name: Part(name, each.size, each.knob, each.needs_help)
             for name, each in scene.objects.items()
@@ -42,7 +53,8 @@ class Catalogue:
             name: Location(x=each.pose.x, y=each.pose.y, z=each.pose.z, yaw=each.pose.yaw)
             for name, each in scene.places.items()
         }
-        return cls(parts, places, scene.table)
+        starts = {name: (each.pose.x, each.pose.y) for name, each in scene.objects.items()}
+        return cls(parts, places, scene.table, starts)
 
     def height_of(self, location: Location) -> float:
         """The height in metres at which something at `location` rests."""

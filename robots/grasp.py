@@ -8,12 +8,24 @@ from numpy.typing import NDArray
 
 from robots.body import Matrix4, ToolPose
 from robots.catalogue import Part
-
-_DEEPEST_M = 0.025
-"""How far below the top of a box the tool point goes at most."""
+from robots.gripper import GripperModel
 
 RELEASE_CLEARANCE_M = 0.002
 """A part is let go this far above where it is to rest, so that it is never pressed down."""
+
+TIP_CLEARANCE_M = 0.003
+"""The closing tips stay this far above what the part stands on, and above a knob's plate."""
+
+OPEN_BESIDE_M = 0.012
+"""Fingers open so much wider than the part on each side where there is room."""
+OPEN_LEAST_M = 0.006
+"""The least on each side: the camera's error and the turn that it may be off by."""
+
+_MM = 1e3
+
+
+class UngraspableError(Exception):
+    """A gripper cannot take hold of a part at all; the message says why, and what it can."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,28 +33,78 @@ class Grasp:
     """Relative to the part: the tool point's height above its bottom, the opening direction.
 
     `yaw` turns the part's x axis into the direction in which the fingers open; `width_m` is what
-    is then between them.
+    is then between them. They are `opening_m` apart before they close and after they let go.
     """
 
     height_m: float
     yaw: float
     width_m: float
+    opening_m: float
 
     def tool_pose(self, x: float, y: float, bottom_z: float, part_yaw: float) -> ToolPose:
         """The tool pose for a part whose bottom centre is at (x, y, bottom_z)."""
         return ToolPose(x, y, bottom_z + self.height_m, half_turn(part_yaw + self.yaw))
 
 
-def grasp_of(part: Part) -> Grasp:
-    """Grasp a part by its knob if it has one, across the thinner horizontal extent."""
-    if part.knob is not None:
-        return Grasp(part.size[2] + part.knob[2] / 2, *_across(part.knob[0], part.knob[1]))
-    height_m = max(part.size[2] - _DEEPEST_M, part.size[2] / 2)
-    return Grasp(height_m, *_across(part.size[0], part.size[1]))
+def grasp_of(part: Part, gripper: GripperModel) -> Grasp:
+    """The grasp of a part that stands alone. Raises `UngraspableError`."""
+    return grasps_of(part, gripper)[0]
 
 
-def _across(x_m: float, y_m: float) -> tuple[float, float]:
-    return (0.0, x_m) if x_m <= y_m else (math.pi / 2, y_m)
+def grasps_of(part: Part, gripper: GripperModel) -> list[Grasp]:
+    """All grasps of a part, by its knob if it has one: across the thinner side first, wide first.
+
+    Raises `UngraspableError` where there is none.
+    """
+    low_m, held = (0.0, part.size) if part.knob is None else (part.size[2], part.knob)
+    widths = sorted([(held[0], 0.0), (held[1], math.pi / 2)])
+    fitting = [each for each in widths if gripper.min_width_m <= each[0] <= gripper.max_width_m]
+    if not fitting:
+        raise UngraspableError(_misfit(part, widths[0][0], gripper))
+    grasps = [
+        Grasp(height_m, yaw, width_m, min(width_m + 2 * beside_m, gripper.max_opening_m))
+        for width_m, yaw in fitting
+        if (height_m := _height(low_m, held[2], width_m, gripper)) is not None
+        for beside_m in (OPEN_BESIDE_M, OPEN_LEAST_M)
+    ]
+    if not grasps:
+        raise UngraspableError(
+            f"{_held(part)} is {held[2] * _MM:.0f} mm high; for fingers of this gripper to hold it "
+            f"without touching what is below, it has to be at least "
+            f"{least_height_m(gripper) * _MM:.0f} mm high"
+        )
+    return grasps
+
+
+def least_height_m(gripper: GripperModel) -> float:
+    """How high a part, or a knob, has to be at least."""
+    return gripper.overlap_m + gripper.pad_above_tip_m + TIP_CLEARANCE_M
+
+
+def _height(low_m: float, high_m: float, width_m: float, gripper: GripperModel) -> float | None:
+    """The tool point above the part's bottom, as deep as the gripper goes but above the middle.
+
+    What is held reaches from `low_m` over the bottom `high_m` further up.
+    """
+    reach_m = gripper.reach_below_m(width_m)
+    least_m = low_m + reach_m + TIP_CLEARANCE_M
+    most_m = low_m + high_m + reach_m - gripper.pad_above_tip_m - gripper.overlap_m
+    if least_m > most_m + 1e-9:
+        return None
+    wanted_m = low_m + max(high_m - gripper.deepest_m, high_m / 2)
+    return min(max(wanted_m, least_m), most_m)
+
+
+def _misfit(part: Part, width_m: float, gripper: GripperModel) -> str:
+    extent = "is" if width_m > gripper.max_width_m else "is only"
+    return (
+        f"{_held(part)} {extent} {width_m * _MM:.0f} mm wide at its narrower side; this gripper "
+        f"takes {gripper.min_width_m * _MM:.0f} to {gripper.max_width_m * _MM:.0f} mm"
+    )
+
+
+def _held(part: Part) -> str:
+    return part.name if part.knob is None else f"the knob of {part.name}"
 
 
 def half_turn(yaw: float) -> float:

@@ -1,19 +1,21 @@
 """Looks: one look at everything, or looking until what is expected has come to be."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
 from robots.arm import Arm, Routine
-from robots.behaviors.preparation import is_at
-from robots.body import ToolPose
+from robots.behaviors.preparation import LOOK_AGAIN_S
+from robots.body import CameraImage, ToolPose
 from robots.catalogue import Part
-from robots.link.messages import Holding, Location, Look, Looked, ReportBody
+from robots.link.messages import FinishedResult, Holding, Location, Look, Looked, ReportBody
+from robots.result import Result
 from robots.senses import Senses
 from robots.understanding import Understanding
 from robots.vision.forearm import GripReading, GripState, steady
 from robots.vision.head import HeadSighting
+from robots.vision.presence import Presence, is_at
 
 LOOK_PERIOD_S = 0.5
 
@@ -31,7 +33,8 @@ class Looker:
 
     `way` are the poses that the held execution has still to go through; `execution` its id,
     `destination` its object and where that goes.
-    `may_move`: the arm may go to neutral to free the head camera's view.
+    `may_move`: the arm may go to neutral to free the head camera's view. `finished`: the results
+    that it is to judge.
     """
 
     arm: Arm
@@ -41,6 +44,7 @@ class Looker:
     way: list[ToolPose]
     may_move: bool
     destination: tuple[Part, Location | None] | None = None
+    finished: Sequence[Result] = ()
 
     def free_view(self) -> Routine[None]:
         """Move the arm out of the head camera's view if that is allowed."""
@@ -48,12 +52,44 @@ class Looker:
             yield from self.arm.go_to_neutral()
 
     def answer(self, command: str, fulfilled: bool | None) -> Looked:
-        """All that the head camera sees now."""
+        """All that the head camera sees now; it judges no results."""
+        return self._looked(command, fulfilled, self.senses.look(), {})
+
+    def answer_and_judge(self, command: str, fulfilled: bool | None) -> Routine[Looked]:
+        """All that the head camera sees, and what became of the finished results.
+
+        What seems gone has to be gone in a second picture as well: a hand may pass by.
+        """
+        image = self.senses.look()
+        verdicts = self._judge(image, self.finished)
+        doubted = [each for each in self.finished if verdicts[each.message] is Presence.GONE]
+        if doubted:
+            yield from self.arm.wait(LOOK_AGAIN_S)
+            image = self.senses.look()
+            for message, again in self._judge(image, doubted).items():
+                verdicts[message] = again
+        return self._looked(command, fulfilled, image, verdicts)
+
+    def _judge(
+        self, image: CameraImage, results: Sequence[Result]
+    ) -> dict[FinishedResult, Presence]:
+        presence = self.senses.presence
+        return {each.message: presence(image, each.part, each.target) for each in results}
+
+    def _looked(
+        self,
+        command: str,
+        fulfilled: bool | None,
+        image: CameraImage,
+        verdicts: Mapping[FinishedResult, Presence],
+    ) -> Looked:
         return Looked(
             command=command,
-            objects=self.senses.sight_all(self.senses.look()),
+            objects=self.senses.sight_all(image),
             gripper=self.senses.gripper(),
             fulfilled=fulfilled,
+            there=[each for each, so in verdicts.items() if so is Presence.THERE],
+            gone=[each for each, so in verdicts.items() if so is Presence.GONE],
         )
 
 
@@ -111,13 +147,13 @@ class WayClear:
         if here is not None and not arm.at_neutral:
             way = [here, *way]
         image = senses.look()
-        if senses.obstruction(image, way, arm.at_neutral) is not None:
+        if senses.obstruction(image, way) is not None:
             return False
         if self._looker.destination is None:
             return True
         part, target = self._looker.destination
         sighting = None if senses.holds(part.name) else senses.sight(part, image)
-        return senses.occupant(image, part, sighting, target, arm.at_neutral) is None
+        return senses.occupant(image, part, sighting, target) is None
 
 
 def look_as_told(
@@ -142,7 +178,7 @@ def look_as_told(
 def look_once(looker: Looker, command: str) -> Routine[Looked]:
     """One look at everything."""
     yield from looker.free_view()
-    return looker.answer(command, None)
+    return (yield from looker.answer_and_judge(command, None))
 
 
 def look_until(
@@ -155,7 +191,7 @@ def look_until(
         fulfilled = expectation.is_fulfilled()
         left_s = end_s - looker.arm.body.time_s()
         if fulfilled or left_s <= 1e-9:
-            return looker.answer(command, fulfilled)
+            return (yield from looker.answer_and_judge(command, fulfilled))
         yield from looker.arm.wait(min(LOOK_PERIOD_S, left_s))
 
 

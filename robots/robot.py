@@ -38,6 +38,7 @@ from robots.link.messages import (
 )
 from robots.looks import Looker, look_as_told
 from robots.monitors.monitor import BEFORE_FIRST_STEP, Monitor
+from robots.result import Result
 from robots.senses import FOREARM, Senses
 from robots.showing import PoseDisplay
 from robots.understanding import CommandError, Understanding
@@ -47,7 +48,7 @@ from robots.vision.drawing import encode_jpeg
 _SEEN_AT_ONCE = (IssueDetected, Finished, Looked, Rejected)
 """Reports that the service must see before more time passes."""
 
-_EXPLAINING = frozenset({"missing", "unreachable"})
+_EXPLAINING = frozenset({"missing", "undone", "unreachable"})
 """Without these monitors an object that is not there would leave the service without a word."""
 
 
@@ -164,7 +165,8 @@ class Robot:
         if execution is None or execution.over:
             return None
         name = None if execution.part is None else execution.part.name
-        fraction = 1.0 if not self._body.moving else self._body.progress
+        between = not self._body.moving or execution.state is ExecutionState.CONFIRMING
+        fraction = 1.0 if between else self._body.progress
         return TaskProgress(name, execution.step, fraction, self._attempts.get(name or "", 1))
 
     def pose_layout(self) -> PoseLayout:
@@ -310,7 +312,8 @@ class Robot:
                 raise CommandError(f"cannot look for '{look.expect}' while a behavior is under way")
             self._report(self._looker().answer(command_id, None))
             return
-        routine = look_as_told(self._looker(), command_id, look, self._understanding)
+        results = self._understanding.results_of(look)
+        routine = look_as_told(self._looker(results), command_id, look, self._understanding)
         self._drop_look()
         self._activity, self._looking = self._report_look(routine), True
 
@@ -353,7 +356,7 @@ class Robot:
             self._arm.stop()
             self._activity, self._looking = None, False
 
-    def _looker(self) -> Looker:
+    def _looker(self, finished: Sequence[Result] = ()) -> Looker:
         held = None if self._execution is None or self._execution.over else self._execution
         # What is held in the middle of a step stays there: only a resume or a retreat moves it.
         may_move = not self._executing and (held is None or held.step == 0)
@@ -365,6 +368,7 @@ class Robot:
             way=[] if held is None else held.way,
             destination=None if held is None else held.destination,
             may_move=may_move and not self._senses.holds(),
+            finished=finished,
         )
 
     def _where(self) -> Any:

@@ -4,38 +4,46 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import NDArray
 
 from robots.body import Body, CameraImage, ToolPose
 from robots.catalogue import Catalogue, Part
 from robots.clip import Clip
-from robots.grasp import grasp_of
+from robots.grasp import Grasp, grasp_of
 from robots.link.messages import Location, Position, Sighting
-from robots.vision.color_model import ColorModel, Segmentation
+from robots.vision.color_model import ColorModel
 from robots.vision.forearm import GripReading, GripState, GripTolerances, GripWatch
-from robots.vision.head import HeadSighting, locate
+from robots.vision.head import HeadSighting
 from robots.vision.obstruction import (
     Clearance,
     Obstruction,
-    Segment,
     corridor,
     find_obstruction,
+    near,
 )
 from robots.vision.occupancy import Fit, find_occupant, room_above, room_at_place
+from robots.vision.presence import Presence, judge_presence
+from robots.vision.projection import Points
+from robots.vision.seen_box import SeenBox
+from robots.vision.table_view import TableView, view_table
+from robots.vision.tracking import LastSeen
 
 HEAD = "head"
 FOREARM = "forearm"
 
 _ARM_LENGTH_M = 0.7
 """How far the arm reaches back from the tool point, for telling it from an obstacle."""
+_ARM_RADIUS_M = 0.16
+_BELOW_TOOL_M = 0.03
+"""So far the fingers, or what they hold, may reach below the tool point."""
 
 
 @dataclass(slots=True)
 class _Seen:
-    """The last head picture, and what was found in it so far."""
+    """The last head picture, and what was understood of it, by what else was looked for."""
 
     image: CameraImage
-    segmentation: Segmentation
-    sightings: dict[Part, HeadSighting | None] = field(default_factory=dict)
+    views: dict[Part | None, TableView | None] = field(default_factory=dict)
 
 
 class Senses:
@@ -59,6 +67,7 @@ class Senses:
         self._clearance = clearance or Clearance()
         self._fit = fit or Fit()
         self._seen: _Seen | None = None
+        self._last_seen = LastSeen(catalogue.starts)
         self.catalogue = catalogue
         self.grip: GripWatch | None = None
         self.clip = Clip()
@@ -77,36 +86,52 @@ class Senses:
         return self._body.cameras[HEAD].capture()
 
     def sight(self, part: Part, image: CameraImage) -> HeadSighting | None:
-        """Where a part is in a head picture."""
-        seen = self._understand(image)
-        if part not in seen.sightings:
-            seen.sightings[part] = locate(image, seen.segmentation, part)
-        return seen.sightings[part]
+        """Where a part is in a head picture; nowhere while it is held."""
+        known = self.catalogue.parts.get(part.name) == part
+        view = self._understand(image, None if known else part)
+        return None if view is None else view.sightings.get(part.name)
 
     def sight_all(self, image: CameraImage) -> dict[str, Sighting]:
         """Where every part of the catalogue is that a head picture shows."""
-        seen = {}
-        for name, part in self.catalogue.parts.items():
-            sighting = self.sight(part, image) if name in self._model.names else None
-            if sighting is not None:
-                seen[name] = sighting.to_message(part)
-        return seen
+        view = self._understand(image)
+        if view is None:
+            return {}
+        parts = self.catalogue.parts
+        return {name: each.to_message(parts[name]) for name, each in view.sightings.items()}
+
+    def seen_boxes(self, image: CameraImage) -> Sequence[SeenBox]:
+        """Everything that a head picture shows on the table, known or not."""
+        view = self._understand(image)
+        return () if view is None else view.boxes
+
+    def presence(self, image: CameraImage, part: Part, target: Location) -> Presence:
+        """Whether a part, or one that looks the same, stands at a place."""
+        view = self._understand(image)
+        if view is None:
+            return Presence.HIDDEN
+        return judge_presence(
+            view, part, self._equals_of(part), target, self.catalogue.height_of(target)
+        )
 
     def gripper(self) -> Position:
         """Where the tool point is."""
         x, y, z = (float(each) for each in self._body.tool_pose()[:3, 3])
         return Position(x=x, y=y, z=z)
 
-    def new_watch(self, part: Part) -> GripWatch:
-        """A grip watch that knows nothing yet."""
-        return GripWatch(part, grasp_of(part), self._model, self._tolerances, self.forearm_period_s)
+    def new_watch(self, part: Part, grasp: Grasp | None = None) -> GripWatch:
+        """A grip watch that knows nothing yet; without `grasp`, for the best one."""
+        grasp = grasp or grasp_of(part, self._body.gripper)
+        return GripWatch(part, grasp, self._model, self._tolerances, self.forearm_period_s)
 
-    def watch_grip(self, part: Part) -> None:
+    def watch_grip(self, part: Part, grasp: Grasp | None = None) -> None:
         """The fingers have closed on a part: follow it from now on."""
-        self.grip = self.new_watch(part)
+        self.grip = self.new_watch(part, grasp)
 
     def let_go(self) -> None:
         """The fingers open: there is nothing to follow any more."""
+        if self.grip is not None:
+            at = self.gripper()
+            self._last_seen.note(self.grip.part.name, at.x, at.y)
         self.grip = None
 
     def read_grip(self) -> GripReading | None:
@@ -139,18 +164,12 @@ class Senses:
             and name in (None, self.grip.part.name)
         )
 
-    def obstruction(
-        self, image: CameraImage, waypoints: Sequence[ToolPose], arm_is_away: bool
-    ) -> Obstruction | None:
+    def obstruction(self, image: CameraImage, waypoints: Sequence[ToolPose]) -> Obstruction | None:
         """What stands in the way through `waypoints` that is no known part."""
-        return find_obstruction(
-            image,
-            self._understand(image).segmentation,
-            corridor(waypoints),
-            () if arm_is_away else (self._own_arm(),),
-            self.catalogue.table.height,
-            self._clearance,
-        )
+        view = self._understand(image)
+        if view is None:
+            return None
+        return find_obstruction(view, corridor(waypoints), self._clearance)
 
     def occupant(
         self,
@@ -158,29 +177,59 @@ class Senses:
         part: Part,
         sighting: HeadSighting | None,
         target: Location | None,
-        arm_is_away: bool,
     ) -> Obstruction | None:
         """What lies on `part`, seen at `sighting`, or in the room that it needs at `target`."""
+        view = self._understand(image)
+        if view is None:
+            return None
         rooms = []
         if sighting is not None:
             rooms.append(room_above(part, sighting))
         if target is not None:
             rooms.append(room_at_place(part, target, self.catalogue.height_of(target)))
-        arm = () if arm_is_away else (self._own_arm(),)
-        segmentation = self._understand(image).segmentation
-        found = (
-            find_occupant(image, segmentation, room, arm, self._clearance, self._fit)
-            for room in rooms
-        )
+        found = (find_occupant(view, room, self._fit) for room in rooms)
         return next((each for each in found if each is not None), None)
 
-    def _own_arm(self) -> Segment:
-        """From the tool point back through the forearm camera, which is mounted on the arm."""
+    def _understand(self, image: CameraImage, stranger: Part | None = None) -> TableView | None:
+        """What a head picture shows; `stranger` is looked for besides the catalogue's parts."""
+        if self._seen is None or self._seen.image is not image:
+            self._seen = _Seen(image)
+        if stranger not in self._seen.views:
+            parts = {
+                name: part for name, part in self.catalogue.parts.items() if not self.holds(name)
+            }
+            if stranger is not None:
+                parts[stranger.name] = stranger
+            view = view_table(
+                image,
+                self.catalogue.table,
+                parts,
+                self._model,
+                self._last_seen.spots,
+                self._is_own_arm,
+            )
+            self._seen.views[stranger] = view
+            for name, each in view.sightings.items() if view is not None else ():
+                self._last_seen.note(name, each.x, each.y)
+        return self._seen.views[stranger]
+
+    def _is_own_arm(self, points: Points) -> NDArray[np.bool_]:
+        """Which points are the arm: near the line from the tool point back through its camera."""
         tool = self._body.tool_pose()[:3, 3]
         along = self._body.cameras[FOREARM].pose()[:3, 3] - tool
-        return tool, tool + along / max(float(np.linalg.norm(along)), 1e-6) * _ARM_LENGTH_M
+        back = tool + along / max(float(np.linalg.norm(along)), 1e-6) * _ARM_LENGTH_M
+        low_z = tool[2] - (_BELOW_TOOL_M if self.grip is None else self.grip.part.height)
+        own: NDArray[np.bool_] = near(points, [(tool, back)], _ARM_RADIUS_M)
+        own &= points[:, 2] > low_z
+        return own
 
-    def _understand(self, image: CameraImage) -> _Seen:
-        if self._seen is None or self._seen.image is not image:
-            self._seen = _Seen(image, self._model.segment(image.bgr))
-        return self._seen
+    def _equals_of(self, part: Part) -> set[str]:
+        """The names of all parts that look the same, its own among them."""
+        return {part.name} | {
+            name
+            for name, other in self.catalogue.parts.items()
+            if other.equals(part)
+            and name in self._model.names
+            and part.name in self._model.names
+            and self._model.look_alike(name, part.name)
+        }

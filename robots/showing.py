@@ -79,7 +79,7 @@ class PoseDisplay:
 
     def _shown(self, part: Part) -> ShownPose:
         if self._senses.holds(part.name):
-            held = self._body.tool_pose() @ part_in_tool(grasp_of(part))
+            held = self._body.tool_pose() @ part_in_tool(grasp_of(part, self._body.gripper))
             return ShownPose(pose=pose_values(held), held=True)
         located = self.located.get(part.name)
         if located is None:

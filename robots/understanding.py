@@ -4,10 +4,11 @@ from collections.abc import Collection, Mapping
 
 from pydantic import ValidationError
 
+from robots.behaviors.assignment import Assignment
 from robots.behaviors.behavior import Behavior
-from robots.behaviors.preparation import Assignment
 from robots.catalogue import Catalogue, Part
 from robots.link.messages import Location, Look, Start
+from robots.result import Result
 
 
 class CommandError(Exception):
@@ -49,6 +50,7 @@ class Understanding:
             part=part,
             target=target,
             needs_help=needs_help or (part is not None and part.needs_help),
+            was_done=start.was_done,
         )
 
     def part(self, name: str | None, size: tuple[float, float, float] | None) -> Part | None:
@@ -79,6 +81,15 @@ class Understanding:
         if part is None:
             raise CommandError(f"a look for '{look.expect}' needs an object")
         return part
+
+    def results_of(self, look: Look) -> list[Result]:
+        """The finished results that a look is to judge, as far as this robot knows them."""
+        parts, places = self._catalogue.parts, self._catalogue.places
+        return [
+            Result(each, parts[each.object], places[each.place])
+            for each in look.finished
+            if each.object in self._known_colors and each.object in parts and each.place in places
+        ]
 
     def place_of(self, look: Look) -> Location:
         """Where a look expects its object. Raises `CommandError`."""

@@ -1,6 +1,6 @@
 """The transcript of a run: each event as the lines that a person reads."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import singledispatchmethod
@@ -155,8 +155,9 @@ class Transcript:
 
     @lines.register
     def _(self, event: ev.RunFinished) -> list[Line]:
-        lines = [_line(event, "", _missing(each), Tone.SETBACK) for each in event.missing]
-        return [*lines, _line(event, "", "the run has finished: the task is done", Tone.FINISHED)]
+        lines = [_line(event, "", told_missing(each), Tone.SETBACK) for each in event.missing]
+        text = f"the run has finished: {finished_text(event.missing)}"
+        return [*lines, _line(event, "", text, Tone.FINISHED)]
 
     @lines.register
     def _(self, event: ev.RunFailed) -> list[Line]:
@@ -192,13 +193,23 @@ class Transcript:
         return [_line(event, "", text, Tone.SETBACK)]
 
     @lines.register
-    def _(self, event: ev.NodeAbandoned) -> list[Line]:
-        text = f"the alternative {event.name} is abandoned: {event.reason}"
-        return [_line(event, "", text, Tone.SETBACK)]
+    def _(self, event: ev.NodeUndone) -> list[Line]:
+        return [_line(event, "", f"{event.name} is done no longer: {event.reason}", Tone.SETBACK)]
 
     @lines.register
     def _(self, event: ev.NodeLeftOut) -> list[Line]:
-        return [_line(event, "", f"{event.name} is left out, as {event.helper} said", Tone.SETBACK)]
+        text = f"{event.name} is left out, as {event.helper} said"
+        return [_line(event, "", text, Tone.SETBACK)]
+
+    @lines.register
+    def _(self, event: ev.NodeReturned) -> list[Line]:
+        text = f"sees {event.name}, which was left out, at its place"
+        return [_line(event, self._robot(event.robot), text, Tone.DONE)]
+
+    @lines.register
+    def _(self, event: ev.NodeAbandoned) -> list[Line]:
+        text = f"the alternative {event.name} is abandoned: {event.reason}"
+        return [_line(event, "", text, Tone.SETBACK)]
 
     # --- Issues and dialogues -----------------------------------------------------------------
 
@@ -332,14 +343,33 @@ def deed_text(intervention: Intervention) -> str:
     return text
 
 
+def finished_text(missing: Sequence[ev.MissingPart]) -> str:
+    """What a finished run came to: the task is done, perhaps without what was left out."""
+    if not missing:
+        return "the task is done"
+    said: dict[str | None, list[str]] = {}
+    for each in missing:
+        said.setdefault(each.left_out_by, []).append(each.object)
+    parts = (f"without {joined(objects)}{_as_said(by)}" for by, objects in said.items())
+    return f"the task is done {joined(list(parts))}"
+
+
+def told_missing(part: ev.MissingPart) -> str:
+    """That a part is not at its place at the end, and who said to go on without it."""
+    return f"{part.object} is not at {part.place}{_as_said(part.left_out_by)}"
+
+
+def _as_said(by: str | None) -> str:
+    return "" if by is None else f", as {by} said"
+
+
+def joined(words: Sequence[str]) -> str:
+    """The words as an enumeration: `a, b and c`."""
+    return " and ".join(filter(None, (", ".join(words[:-1]), *words[-1:])))
+
+
 def _line(event: ev.Event, speaker: str, text: str, tone: Tone) -> Line:
     return Line(event.time, speaker, text, tone)
-
-
-def _missing(part: ev.MissingPart) -> str:
-    if part.left_out_by is not None:
-        return f"{part.object} was left out, as {part.left_out_by} said"
-    return f"the last look misses {part.object} at {part.place}"
 
 
 def _comparison(event: ev.NodeStarted) -> str:

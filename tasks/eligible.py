@@ -36,8 +36,9 @@ class EligibleLeaves:
     """The eligible leaves of a running tree, in tree order.
 
     A change only notes the node under which it happened. Every node noted had a level above 0 (or
-    was abandoned), and whatever takes that level away later is noted later; so deriving the noted
-    nodes in turn from the state as it is when read gives the same as deriving the whole tree.
+    was abandoned), and whatever takes that level away later, be it by taking something back, is
+    noted later at a node above it; so deriving the noted nodes in turn from the state as it is
+    when read gives the same as deriving the whole tree.
     """
 
     def __init__(self, shape: TreeShape, state: TreeState) -> None:

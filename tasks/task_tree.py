@@ -12,6 +12,7 @@ from tasks.definition import BehaviorNode, NodeKind, TaskTreeDefinition
 from tasks.eligible import EligibleLeaves
 from tasks.giving_up import GiveUp, find_active_leaves, find_give_up
 from tasks.resolution import Resolution
+from tasks.taking_back import TakeBack, find_begun_after, find_take_back
 from tasks.tree_shape import NO_NODE, TreeShape
 from tasks.tree_state import LeafStatus, TreeState
 
@@ -165,6 +166,14 @@ class TaskTree:
             raise self._illegal(leaf, "give up", "not done and not abandoned")
         return find_give_up(self._shape, self._state, leaf)
 
+    def what_to_take_back(self, leaf: int) -> TakeBack:
+        """What is done no longer, and what to put back first, if a done leaf is taken back.
+
+        Changes nothing. Raises `IllegalTransitionError` if the leaf is not done.
+        """
+        self._require_done(leaf, "take back")
+        return find_take_back(self._shape, self._state, leaf)
+
     # Transitions
 
     def start(self, leaf: int, owner: str) -> None:
@@ -205,6 +214,19 @@ class TaskTree:
         elif resolution is Resolution.ROBOT_RETRY:
             self.put_back(leaf, failed=not helped)
 
+    def take_back(self, leaf: int) -> None:
+        """Make a done leaf idle again, as its result is gone; its failed attempts stay.
+
+        Raises `IllegalTransitionError` unless it is done and nothing that a THEN puts after it is
+        active or done; `what_to_take_back` says what has to go first.
+        """
+        self._require_done(leaf, "take back")
+        if after := find_begun_after(self._shape, self._state, leaf):
+            expected = "followed by nothing active or done"
+            came = f"followed by {', '.join(self._describe(each) for each in after)}"
+            raise IllegalTransitionError(self._describe(leaf), "take back", expected, came)
+        self._eligible.note_change(self._state.take_back(leaf))
+
     def abandon(self, alternative: int) -> None:
         """Give an alternative of an OR up for good.
 
@@ -241,6 +263,10 @@ class TaskTree:
     def _require_active(self, leaf: int, transition: str) -> None:
         if self._leaf_status(leaf) is not LeafStatus.ACTIVE:
             raise self._illegal(leaf, transition, "active")
+
+    def _require_done(self, leaf: int, transition: str) -> None:
+        if self._leaf_status(leaf) is not LeafStatus.DONE:
+            raise self._illegal(leaf, transition, "done")
 
     def _illegal(self, node: int, transition: str, expected: str) -> IllegalTransitionError:
         return IllegalTransitionError(

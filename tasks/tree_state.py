@@ -42,7 +42,8 @@ class TreeState:
 
     def next_child(self, then: int) -> int:
         """A THEN's first child that is not done, NO_NODE if all are."""
-        # Children of a THEN can only become done in order, so their number is the position.
+        # Children of a THEN become done in order and are taken back in reverse, so their number
+        # is the position.
         children = self._shape.children[then]
         position = self.done_children[then]
         return children[position] if position < len(children) else NO_NODE
@@ -113,6 +114,33 @@ class TreeState:
                     opened = self.next_child(node)
             node = parents[node]
         return opened
+
+    def take_back(self, leaf: int) -> int:
+        """Make a done leaf idle; returns the topmost node whose eligible leaves changed."""
+        parents, kinds = self._shape.parents, self._shape.kinds
+        self.leaf_status[leaf] = LeafStatus.IDLE
+        self.done_leaves[leaf] = 0
+        self.done[leaf] = False
+        changed = leaf
+        child_taken_back = True
+        node = parents[leaf]
+        while node != NO_NODE:
+            self.done_leaves[node] -= 1
+            if child_taken_back:
+                self.done_children[node] -= 1
+                if kinds[node] is _THEN:
+                    changed = node
+                # A goal node with a child that is done no longer is not done either: even an OR
+                # has but one that ever begins.
+                child_taken_back = bool(self.done[node])
+                if child_taken_back:
+                    self.done[node] = False
+                    changed = node
+            if kinds[node] is _OR and not self.touched(node):
+                self.committed[node] = NO_NODE
+                changed = node
+            node = parents[node]
+        return changed
 
     def abandon(self, alternative: int) -> None:
         """Mark an alternative and everything under it abandoned."""

@@ -89,6 +89,8 @@ class Robot:
             now, expect = {"yaw": 0.0, "time": time.monotonic()}, body.get("expect")
             seen = {"objects": {name: {**pose, **now} for name, pose in self.poses.items()}}
             seen["gripper"] = {"x": 0.4, "y": 0.0, "z": 1.0}
+            finished = body.get("finished", [])
+            seen["there"] = [each for each in finished if each["object"] in self.placed]
             so = expect and (expect != "at_place" or body["object"] in self.placed)
             await self.report(type="looked", command=command, fulfilled=so, **seen)
         elif kind != "slow_down":

@@ -5,20 +5,21 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from robots.arm import Arm, Routine
+from robots.behaviors.assignment import Assignment, Findings
 from robots.behaviors.behavior import Move, SetGripper, Step
+from robots.behaviors.confirmation import Outcome, look_at_outcome
 from robots.behaviors.execution_state import (
     ExecutionState,
     ExecutionTransitionError,
     follow,
     is_over,
 )
+from robots.behaviors.phase import Phase
 from robots.behaviors.preparation import (
-    Assignment,
-    Findings,
     Plan,
     check_carrying,
     find,
-    is_at,
+    goes_on_carrying,
     make_plan,
     waypoints_of,
 )
@@ -39,6 +40,7 @@ from robots.monitors.monitor import BEFORE_FIRST_STEP, Meanwhile, Monitor, Monit
 from robots.senses import FOREARM, HEAD, Senses
 from robots.vision.drawing import draw_detection, encode_jpeg
 from robots.vision.forearm import GripReading
+from robots.vision.presence import Presence, is_at
 
 _CAREFUL = 0.5
 """While a person's hands are near, motion is scaled by this."""
@@ -76,6 +78,8 @@ class Execution:
         self._plan: Plan | None = None
         self._picked_at: ToolPose | None = None
         self._seen = Findings()
+        self._outcome: Outcome | None = None
+        self._was_done = assignment.was_done
         self._raised: set[str] = set()
         self._forces_n: list[float] = []
         self._next_check_s = -math.inf
@@ -106,7 +110,7 @@ class Execution:
     @property
     def way(self) -> list[ToolPose]:
         """The poses that the steps still to come lead through."""
-        if self._plan is None:
+        if self._plan is None or self._outcome is not None:
             return []
         return waypoints_of(self._plan.steps[max(self._step, self._plan.first) - 1 :])
 
@@ -160,15 +164,19 @@ class Execution:
 
     def _attempt(self, resumed: bool) -> Routine[None]:
         try:
-            plan = yield from self._prepare()
-            if plan is None:
-                self._finish(found_in_place=True)
-                return
-            self._move_to(ExecutionState.RUNNING)
-            if resumed:
-                self._report(Resumed(execution=self.id, step=plan.first))
-            for number in range(plan.first, len(plan.steps) + 1):
-                yield from self._walk(plan, number)
+            there = False
+            while not there:
+                plan = yield from self._prepare()
+                if plan is None:
+                    self._finish(found_in_place=True)
+                    return
+                self._move_to(ExecutionState.RUNNING)
+                if resumed:
+                    self._report(Resumed(execution=self.id, step=plan.first))
+                    resumed = False
+                for number in range(plan.first, len(plan.steps) + 1):
+                    yield from self._walk(plan, number)
+                there = yield from self._confirm()
             self._finish(found_in_place=False)
         except Interruption as interruption:
             yield from self._react(interruption.monitor.meanwhile)
@@ -176,8 +184,10 @@ class Execution:
     def _prepare(self) -> Routine[Plan | None]:
         """The plan to walk; None if there is nothing left to do. Raises `Interruption`."""
         self._step, self._plan, self._seen = BEFORE_FIRST_STEP, None, Findings()
+        self._outcome = None
         part, arm, senses = self._assignment.part, self._arm, self._senses
-        self._seen.carrying = yield from check_carrying(part, arm, senses)
+        carrying = yield from check_carrying(part, arm, senses)
+        self._seen.carrying = carrying and goes_on_carrying(self._assignment, arm, senses)
         if not self._seen.carrying:
             yield from put_down(arm, senses, self._picked_at)
             yield from arm.go_to_neutral()
@@ -196,16 +206,21 @@ class Execution:
 
     def _in_place(self) -> bool:
         sighting, target = self._seen.sighting, self._assignment.target
-        if sighting is None or target is None:
+        part, image, senses = self._assignment.part, self._seen.image, self._senses
+        if part is None or target is None or image is None:
             return False
-        return is_at(sighting, target, self._senses.catalogue.height_of(target))
+        if sighting is not None and is_at(sighting, target, senses.catalogue.height_of(target)):
+            return True
+        # What is out of sight at its place since it was seen there needs nobody to fetch it.
+        hidden = senses.presence(image, part, target) is Presence.HIDDEN
+        return self._was_done == "there" and hidden
 
     # --- The steps ----------------------------------------------------------------------------
 
     def _walk(self, plan: Plan, number: int) -> Routine[None]:
         """One step, checked at the camera's period. Raises `Interruption`."""
         step = plan.steps[number - 1]
-        self._step = number
+        self._step, self._was_done = number, None
         self._report(StepStarted(execution=self.id, step=number, name=step.name))
         self._begin(plan, number, step)
         arrived_s: float | None = None
@@ -222,18 +237,29 @@ class Execution:
             yield
             self._forces_n.append(self._arm.body.contact_force_n())
 
+    @property
+    def _phase(self) -> Phase:
+        """What the step under way is for."""
+        if self._state is ExecutionState.CONFIRMING:
+            return Phase.CONFIRM
+        if self._plan is None or self._step == BEFORE_FIRST_STEP:
+            return Phase.PREPARE
+        return self._plan.steps[self._step - 1].phase
+
     def _begin(self, plan: Plan, number: int, step: Step) -> None:
         part = self._assignment.part
         if isinstance(step.action, Move):
             if plan.path is not None:
+                if step.action.opening_m is not None:
+                    self._arm.start_opening_to(step.action.opening_m)
                 self._arm.start(plan.path, plan.segment_of(number), step.action.speed)
         elif step.action.to == "closed":
-            if part is not None:
-                self._senses.watch_grip(part)
+            if part is not None and step.phase is Phase.GRASP:
+                self._senses.watch_grip(part, plan.grasp)
             self._arm.start_closing()
         else:
             self._senses.let_go()
-            self._arm.start_opening()
+            self._arm.start_opening(step.action.opening_m)
 
     def _grip_is_open_question(self, arrived_s: float) -> bool:
         """Whether the pictures have yet to show what the gripper holds.
@@ -241,14 +267,19 @@ class Execution:
         The last step in which they are looked at ends with one taken after the arm has arrived.
         """
         grip = self._senses.grip
-        if grip is None or not self._judges_grip(self._step):
+        if grip is None or self._plan is None or not self._judges_grip(self._phase):
             return False
-        if self._judges_grip(self._step + 1):
+        following = self._plan.steps[self._step : self._step + 1]
+        if following and self._judges_grip(following[0].phase):
             return grip.in_doubt
         return grip.in_doubt or self._read_s < arrived_s
 
-    def _judges_grip(self, step: int) -> bool:
-        return any(each.camera == FOREARM for each in self._monitors if each.watches(step))
+    def _judges_grip(self, phase: Phase) -> bool:
+        return any(each.camera == FOREARM for each in self._watching(phase))
+
+    def _watching(self, phase: Phase) -> list[Monitor[Any]]:
+        name = self._assignment.behavior.monitored_as
+        return [each for each in self._monitors if each.watches(name, phase)]
 
     def _check_if_due(self) -> None:
         """Check at the forearm camera's period. Raises `Interruption`."""
@@ -256,7 +287,7 @@ class Execution:
         if now < self._next_check_s - 1e-9:
             return
         self._next_check_s = now + self._senses.forearm_period_s
-        looking = self._judges_grip(self._step) and not self._closing()
+        looking = self._judges_grip(self._phase) and not self._closing()
         self._read_s = now if looking else self._read_s
         self._check(self._senses.read_grip() if looking else None)
 
@@ -271,8 +302,8 @@ class Execution:
         """Let the monitors of this step judge. Raises `Interruption` for the first that must."""
         view = self._view(grip)
         self._forces_n.clear()
-        for monitor in self._monitors:
-            if not monitor.watches(self._step) or monitor.issue in self._raised:
+        for monitor in self._watching(self._phase):
+            if monitor.issue in self._raised:
                 continue
             detection = monitor.check(view)
             if detection is None:
@@ -287,29 +318,35 @@ class Execution:
                 raise Interruption(monitor)
 
     def _view(self, grip: GripReading | None) -> MonitorView:
-        pictures = {}
-        if self._seen.image is not None:
-            pictures[HEAD] = self._seen.image
+        pictures, outcome = {}, self._outcome
+        seen = self._seen if outcome is None else outcome
+        if seen.image is not None:
+            pictures[HEAD] = seen.image
         if grip is not None:
             pictures[FOREARM] = grip.image
         return MonitorView(
             time_s=self._arm.body.time_s(),
             step=self._step,
+            phase=self._phase,
             part=self._assignment.part,
             needs_help=self._assignment.needs_help,
+            was_done=self._was_done,
             reach=self._arm.body.reach,
             table_z=self._senses.catalogue.table.height,
             sighting=self._seen.sighting,
-            path_found=self._seen.path_found,
+            refusal=self._seen.refusal,
             obstruction=self._seen.obstruction,
             grip=grip,
+            placed=None if outcome is None else outcome.sighting,
+            presence=None if outcome is None else outcome.presence,
             contact_forces_n=tuple(self._forces_n),
             pictures=pictures,
         )
 
     def _report_issue(self, monitor: Monitor[Any], detection: Detection, view: MonitorView) -> None:
         image = view.pictures.get(detection.camera)
-        if image is None or (self._step > BEFORE_FIRST_STEP and detection.camera == HEAD):
+        fresh = view.phase in (Phase.PREPARE, Phase.CONFIRM)
+        if image is None or (detection.camera == HEAD and not fresh):
             image = self._arm.body.cameras[detection.camera].capture()
         height, width = image.bgr.shape[:2]
         detection = detection.model_copy(update={"size_px": (width, height)})
@@ -325,6 +362,24 @@ class Execution:
         )
 
     # --- After the steps ----------------------------------------------------------------------
+
+    def _confirm(self) -> Routine[bool]:
+        """Whether the object is at its place, as far as is seen; if not, it is to be placed again.
+
+        Raises `Interruption`.
+        """
+        part, target = self._assignment.part, self._assignment.target
+        if part is None or target is None:
+            return True
+        self._move_to(ExecutionState.CONFIRMING)
+        self._arm.be_careful(1.0)
+        self._outcome = yield from look_at_outcome(part, target, self._arm, self._senses)
+        self._check(None)
+        if self._outcome.presence is not Presence.GONE:
+            return True
+        self._raised.clear()
+        self._move_to(ExecutionState.PREPARING)
+        return False
 
     def _react(self, meanwhile: Meanwhile) -> Routine[None]:
         if meanwhile is Meanwhile.GO_TO_NEUTRAL:

@@ -9,6 +9,8 @@ class ExecutionState(StrEnum):
     PREPARING = "preparing"
     """Before step 1: the arm gets out of the camera's way, the object is looked for."""
     RUNNING = "running"
+    CONFIRMING = "confirming"
+    """After the last step: the arm gets out of the camera's way, the object is looked for."""
     RETREATING = "retreating"
     """On the way to neutral."""
     HOLDING = "holding"
@@ -33,7 +35,20 @@ _NEXT: dict[ExecutionState, frozenset[ExecutionState]] = {
         }
     ),
     ExecutionState.RUNNING: frozenset(
-        {ExecutionState.RETREATING, ExecutionState.HOLDING, ExecutionState.FINISHED}
+        {
+            ExecutionState.CONFIRMING,
+            ExecutionState.RETREATING,
+            ExecutionState.HOLDING,
+            ExecutionState.FINISHED,
+        }
+    ),
+    ExecutionState.CONFIRMING: frozenset(
+        {
+            ExecutionState.PREPARING,
+            ExecutionState.RETREATING,
+            ExecutionState.HOLDING,
+            ExecutionState.FINISHED,
+        }
     ),
     ExecutionState.RETREATING: frozenset({ExecutionState.HOLDING, ExecutionState.ENDED}),
     ExecutionState.HOLDING: frozenset(

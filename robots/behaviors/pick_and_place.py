@@ -5,13 +5,11 @@ from dataclasses import replace
 from typing import ClassVar
 
 from robots.behaviors.behavior import Behavior, Move, SetGripper, Situation, Step
+from robots.behaviors.phase import Phase
 from robots.body import ToolPose
-from robots.grasp import RELEASE_CLEARANCE_M, Grasp, grasp_of, half_turn
+from robots.grasp import RELEASE_CLEARANCE_M, Grasp, half_turn
 from robots.link.messages import Location
 from tasks.scene import Name, StrictModel
-
-APPROACH_M = 0.14
-"""How far above pick and place the tool point passes."""
 
 
 class PickAndPlaceParameters(StrictModel):
@@ -27,29 +25,29 @@ class PickAndPlace(Behavior):
 
     name: ClassVar[str] = "pick_and_place"
     parameters: ClassVar[type[StrictModel]] = PickAndPlaceParameters
-    carry_from: ClassVar[int] = 5
 
     def steps(self, parameters: StrictModel, situation: Situation) -> Sequence[Step]:  # noqa: ARG002
-        """Raises `ValueError` where the part or the target is not known."""
-        part, target = situation.part, situation.target
-        if part is None or target is None:
+        """Raises `ValueError` where the part, its grasp or the target is not known."""
+        grasp, target = situation.grasp, situation.target
+        if situation.part is None or target is None or grasp is None:
             raise ValueError("pick_and_place expects a known object and a known place")
-        grasp = grasp_of(part)
         place = _tool_pose(grasp, target, situation.table_z, RELEASE_CLEARANCE_M)
         pick = place
         if situation.found is not None:
             pick = _tool_pose(grasp, situation.found, situation.table_z, 0.0)
             # Parts look the same after half a turn: never carry one round by more than a quarter.
             place = replace(place, yaw=pick.yaw + half_turn(place.yaw - pick.yaw))
+        above_pick, above_place = _above(pick, grasp, situation), _above(place, grasp, situation)
+        apart_m = grasp.opening_m
         return (
-            Step("above pick", Move(_above(pick), speed=1.0)),
-            Step("pick", Move(pick, speed=0.5)),
-            Step("close gripper", SetGripper("closed")),
-            Step("above pick", Move(_above(pick), speed=0.5)),
-            Step("above place", Move(_above(place), speed=0.75)),
-            Step("place", Move(place, speed=0.3), settle_s=0.1),
-            Step("open gripper", SetGripper("open")),
-            Step("above place", Move(_above(place), speed=0.5)),
+            Step("above pick", Move(above_pick, 1.0, apart_m), Phase.APPROACH),
+            Step("pick", Move(pick, 0.5, apart_m), Phase.APPROACH),
+            Step("close gripper", SetGripper("closed"), Phase.GRASP),
+            Step("above pick", Move(above_pick, 0.5), Phase.LIFT),
+            Step("above place", Move(above_place, 0.75), Phase.CARRY),
+            Step("place", Move(place, 0.3), Phase.PLACE, settle_s=0.1),
+            Step("open gripper", SetGripper("open", apart_m), Phase.RELEASE),
+            Step("above place", Move(above_place, 0.5, apart_m), Phase.RETREAT),
         )
 
 
@@ -58,5 +56,7 @@ def _tool_pose(grasp: Grasp, at: Location, table_z: float, clearance_m: float) -
     return grasp.tool_pose(at.x, at.y, bottom_z + clearance_m, at.yaw)
 
 
-def _above(pose: ToolPose) -> ToolPose:
-    return ToolPose(pose.x, pose.y, pose.z + APPROACH_M, pose.yaw)
+def _above(pose: ToolPose, grasp: Grasp, situation: Situation) -> ToolPose:
+    """High enough for what hangs from the tool point to clear everything on the way."""
+    hangs_m = max(grasp.height_m, situation.gripper.tip_reach_m)
+    return replace(pose, z=max(pose.z + situation.lift_m, situation.clear_z + hangs_m))

@@ -1,38 +1,21 @@
-"""Before the first step: whether the object is held, where it is, and the path to walk."""
+"""Before the first step: whether the object is held, where it is, how to grasp it, the path."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 from robots.arm import Arm, Routine
-from robots.behaviors.behavior import Behavior, Move, Situation, Step
-from robots.body import ArmPath, CameraImage, ToolPose
+from robots.behaviors.assignment import Assignment, Findings
+from robots.behaviors.behavior import Move, Step
+from robots.behaviors.grasp_choice import crowded, others, ways_to_grasp
+from robots.body import ArmPath, ToolPose
 from robots.catalogue import Part
-from robots.link.messages import Location
+from robots.grasp import Grasp, UngraspableError
 from robots.senses import Senses
-from robots.vision.head import HeadSighting
 from robots.vision.obstruction import Obstruction
-from tasks.scene import StrictModel
 
-AT_PLACE_M = 0.02
-"""A part is at its place if it is this near to it."""
-AT_PLACE_HEIGHT_M = 0.015
-
-_LOOKS = 3
+LOOKS = 3
 """So often a part that is not wholly seen is looked for before that is believed."""
-_LOOK_AGAIN_S = 0.1
-
-
-@dataclass(frozen=True, slots=True)
-class Assignment:
-    """What is to be executed, under which id."""
-
-    execution: str
-    behavior: Behavior
-    parameters: StrictModel
-    part: Part | None
-    target: Location | None
-    needs_help: bool
+LOOK_AGAIN_S = 0.1
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,6 +25,7 @@ class Plan:
     steps: Sequence[Step]
     first: int
     path: ArmPath | None
+    grasp: Grasp | None
 
     def segment_of(self, number: int) -> int:
         """Which segment of the path a moving step follows."""
@@ -59,22 +43,11 @@ class Plan:
         return None
 
 
-@dataclass(slots=True)
-class Findings:
-    """What was seen before the first step; `carrying`: the object is in the gripper already."""
-
-    carrying: bool = False
-    image: CameraImage | None = None
-    sighting: HeadSighting | None = None
-    path_found: bool = True
-    obstruction: Obstruction | None = None
-
-
 def check_carrying(part: Part | None, arm: Arm, senses: Senses) -> Routine[bool]:
     """Whether the object is in the gripper now, by fresh forearm pictures."""
     if part is None or not senses.holds(part.name):
         return False
-    for _ in range(_LOOKS):
+    for _ in range(LOOKS):
         senses.read_grip()
         yield from arm.wait(senses.forearm_period_s)
     return senses.holds(part.name)
@@ -82,9 +55,9 @@ def check_carrying(part: Part | None, arm: Arm, senses: Senses) -> Routine[bool]
 
 def find(part: Part | None, arm: Arm, senses: Senses, findings: Findings) -> Routine[None]:
     """Look for the object, again if it is not wholly seen."""
-    for attempt in range(_LOOKS):
+    for attempt in range(LOOKS):
         if attempt:
-            yield from arm.wait(_LOOK_AGAIN_S)
+            yield from arm.wait(LOOK_AGAIN_S)
         findings.image = senses.look()
         if part is None:
             return
@@ -96,52 +69,68 @@ def find(part: Part | None, arm: Arm, senses: Senses, findings: Findings) -> Rou
 def make_plan(assignment: Assignment, arm: Arm, senses: Senses, findings: Findings) -> Plan | None:
     """Lay out the steps and plan their path; None if there is none, or the object is not seen.
 
-    What it finds out about the way goes to `findings`.
+    The first way of grasping the object is taken for which there is room and a path. What it
+    finds out about the way goes to `findings`.
     """
-    sighting, part = findings.sighting, assignment.part
-    if part is not None and sighting is None and not findings.carrying:
+    part = assignment.part
+    if part is not None and findings.sighting is None and not findings.carrying:
         return None
-    found = None
-    if sighting is not None:
-        found = Location(x=sighting.x, y=sighting.y, z=sighting.z, yaw=sighting.yaw)
-    situation = Situation(part, found, assignment.target, senses.catalogue.table.height)
+    boxes = others(part, senses.seen_boxes(findings.image or senses.look()))
+    try:
+        ways = list(ways_to_grasp(assignment, arm, senses, findings, boxes))
+    except UngraspableError as error:
+        findings.refusal = str(error)
+        return None
+    refusals: list[str] = []
+    for situation in ways:
+        steps = assignment.behavior.steps(assignment.parameters, situation)
+        first = assignment.behavior.first_carrying(steps) if findings.carrying else None
+        first = 1 if first is None else first
+        if findings.obstruction is None and not refusals:
+            waypoints = waypoints_of(steps[first - 1 :])
+            findings.obstruction = _obstruction(assignment, waypoints, senses, findings)
+        tight = crowded(steps[first - 1 :], arm.body.gripper, boxes)
+        if tight is not None:
+            refusals.append(tight)
+            continue
+        waypoints = waypoints_of(steps[first - 1 :])
+        path = arm.body.plan_path(waypoints) if waypoints else None
+        if waypoints and path is None:
+            refusals.append(f"the arm finds no path for {_name(part)}")
+            continue
+        return Plan(steps, first, path, situation.grasp)
+    findings.refusal = refusals[0]
+    return None
+
+
+def goes_on_carrying(assignment: Assignment, arm: Arm, senses: Senses) -> bool:
+    """Whether the behavior has a step at which to go on with its object in the gripper."""
+    (situation, *_) = ways_to_grasp(assignment, arm, senses, Findings(carrying=True), ())
     steps = assignment.behavior.steps(assignment.parameters, situation)
-    first = assignment.behavior.carry_from if findings.carrying else 1
-    waypoints = waypoints_of(steps[first - 1 :])
-    path = arm.body.plan_path(waypoints) if waypoints else None
-    if waypoints and path is None:
-        findings.path_found = False
-        return None
-    findings.obstruction = _obstruction(assignment, waypoints, arm, senses, findings)
-    return Plan(steps, first, path)
+    return assignment.behavior.first_carrying(steps) is not None
+
+
+def _name(part: Part | None) -> str:
+    return "the place" if part is None else part.name
 
 
 def _obstruction(
     assignment: Assignment,
     waypoints: Sequence[ToolPose],
-    arm: Arm,
     senses: Senses,
     findings: Findings,
 ) -> Obstruction | None:
     """What is seen on the way, on the object, or at the place where that is to go."""
     if findings.image is not None:
-        on_the_way = senses.obstruction(findings.image, waypoints, arm.at_neutral)
+        on_the_way = senses.obstruction(findings.image, waypoints)
         if on_the_way is not None:
             return on_the_way
     if assignment.part is None:
         return None
     image = findings.image or senses.look()
-    return senses.occupant(
-        image, assignment.part, findings.sighting, assignment.target, arm.at_neutral
-    )
+    return senses.occupant(image, assignment.part, findings.sighting, assignment.target)
 
 
 def waypoints_of(steps: Sequence[Step]) -> list[ToolPose]:
     """The poses that steps move through."""
     return [each.action.to for each in steps if isinstance(each.action, Move)]
-
-
-def is_at(sighting: HeadSighting, target: Location, target_z: float) -> bool:
-    """Whether an object rests where it is to be."""
-    near = math.hypot(sighting.x - target.x, sighting.y - target.y) <= AT_PLACE_M
-    return near and abs(sighting.z - target_z) <= AT_PLACE_HEIGHT_M

@@ -3,7 +3,6 @@
 import math
 
 from robots.arm import Arm, Routine
-from robots.behaviors.pick_and_place import APPROACH_M
 from robots.body import ToolPose
 from robots.catalogue import Part
 from robots.grasp import RELEASE_CLEARANCE_M, grasp_of
@@ -12,6 +11,8 @@ from robots.senses import Senses
 _FREE_RADIUS_M = 0.15
 """Nothing else may be this near to where something is put down."""
 _SPEED = 0.4
+_LIFT_M = 0.14
+"""How far above where it is put down the tool point comes from."""
 
 
 def put_down(arm: Arm, senses: Senses, picked_at: ToolPose | None) -> Routine[None]:
@@ -35,10 +36,10 @@ def _ways_down(arm: Arm, senses: Senses, picked_at: ToolPose | None) -> list[lis
     ways = []
     if picked_at is not None:
         x, y, z, yaw = picked_at.x, picked_at.y, picked_at.z, picked_at.yaw
-        ways.append([ToolPose(x, y, z + APPROACH_M, yaw), picked_at])
+        ways.append([ToolPose(x, y, z + _LIFT_M, yaw), picked_at])
     pose, grip = arm.tool_pose(), senses.grip
     if pose is not None and grip is not None and _is_free_below(senses, pose, grip.part):
-        height_m = grasp_of(grip.part).height_m + RELEASE_CLEARANCE_M
+        height_m = grasp_of(grip.part, arm.body.gripper).height_m + RELEASE_CLEARANCE_M
         table_z = senses.catalogue.table.height
         ways.append([ToolPose(pose.x, pose.y, table_z + height_m, pose.yaw)])
     return ways

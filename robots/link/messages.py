@@ -196,11 +196,20 @@ class Finished(Message):
     found_in_place: bool = False
 
 
+class FinishedResult(Message):
+    """What a finished leaf left behind: `object` rests at `place`."""
+
+    object: str
+    place: str
+
+
 class Looked(Message):
     """What a look saw, in answer to a `look` command.
 
     `objects`: every object seen, by name. `gripper`: where the tool point is. `fulfilled`: whether
     what was expected came to be within the time given; None when nothing was expected.
+    `there` and `gone`: of the command's `finished` results those that are seen to be so, and those
+    whose place is seen without the object; what something hides is in neither.
     """
 
     type: Literal["looked"] = "looked"
@@ -208,6 +217,8 @@ class Looked(Message):
     objects: dict[str, Sighting]
     gripper: Position
     fulfilled: bool | None = None
+    there: list[FinishedResult] = []
+    gone: list[FinishedResult] = []
 
 
 class Held(Message):
@@ -266,11 +277,17 @@ class Location(Message):
     yaw: float = 0.0
 
 
+WasDone = Literal["gone", "there"]
+"""What is known of the object of a leaf that was done before."""
+
+
 class Start(Message):
     """Start a behavior with its parameters under a new execution id.
 
     `size` are the full extents of the object and `target` where its bottom centre is to rest, as
-    the task's scene has them; None where it has none.
+    the task's scene has them; None where it has none. `was_done`: the leaf was done before, and
+    its object was then seen `gone` from its place, or is still `there` as far as anybody knows;
+    None for a leaf that never was, or that a robot has set about since.
     """
 
     type: Literal["start"] = "start"
@@ -280,6 +297,7 @@ class Start(Message):
     parameters: JsonObject
     size: tuple[float, float, float] | None = None
     target: Location | None = None
+    was_done: WasDone | None = None
 
 
 class Interrupt(Message):
@@ -304,7 +322,7 @@ class Look(Message):
     graspable range; `in_gripper`: take `object` from a person (move to the hand-over pose, open,
     close once it is seen between the fingers); `way_clear`: nothing is in the arm's way.
     `rate`: simulated worlds let their clock run so fast while they look again and again; None is
-    the run's own speed.
+    the run's own speed. `finished`: the results to judge by what the last pictures show.
     """
 
     type: Literal["look"] = "look"
@@ -313,6 +331,7 @@ class Look(Message):
     expect: Literal["at_place", "in_reach", "in_gripper", "way_clear"] | None = None
     within_s: float = 0.0
     rate: float | None = None
+    finished: list[FinishedResult] = []
 
 
 class SlowDown(Message):

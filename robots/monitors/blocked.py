@@ -5,6 +5,8 @@ from typing import ClassVar
 
 from pydantic import Field
 
+from robots.behaviors.phase import Phase
+from robots.behaviors.pick_and_place import PickAndPlace
 from robots.link.messages import Detection
 from robots.monitors.monitor import BEFORE_FIRST_STEP, Meanwhile, Monitor, MonitorView
 from tasks.scene import StrictModel
@@ -18,11 +20,11 @@ class BlockedParameters(StrictModel):
 
 
 class Blocked(Monitor[BlockedParameters]):
-    """Raises `blocked` from before step 1 (by what is seen) to step 8 (by what is felt)."""
+    """Raises `blocked` before step 1 (by what is seen) and in every step (by what is felt)."""
 
     issue: ClassVar[str] = "blocked"
-    start_step: ClassVar[int] = BEFORE_FIRST_STEP
-    stop_step: ClassVar[int] = 8
+    behaviors: ClassVar[frozenset[str]] = frozenset({PickAndPlace.name})
+    phases: ClassVar[frozenset[Phase]] = frozenset(Phase) - {Phase.CONFIRM}
     meanwhile: ClassVar[Meanwhile] = Meanwhile.STOP_IN_PLACE
     camera: ClassVar[str | None] = "head"
     parameters: ClassVar[type[StrictModel]] = BlockedParameters

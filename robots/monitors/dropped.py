@@ -2,15 +2,17 @@
 
 from typing import ClassVar
 
+from robots.behaviors.phase import Phase
+from robots.behaviors.pick_and_place import PickAndPlace
 from robots.monitors.grip import GripMonitor
 from robots.vision.forearm import GripState
 
 
 class Dropped(GripMonitor):
-    """Raises `dropped` in steps 4 and 5, at any moment."""
+    """Raises `dropped` while lifting and carrying, at any moment."""
 
     issue: ClassVar[str] = "dropped"
-    start_step: ClassVar[int] = 4
-    stop_step: ClassVar[int] = 5
+    behaviors: ClassVar[frozenset[str]] = frozenset({PickAndPlace.name})
+    phases: ClassVar[frozenset[Phase]] = frozenset({Phase.LIFT, Phase.CARRY})
     state: ClassVar[GripState] = GripState.LOST
     how: ClassVar[str] = "is no longer"

@@ -2,15 +2,17 @@
 
 from typing import ClassVar
 
+from robots.behaviors.phase import Phase
+from robots.behaviors.pick_and_place import PickAndPlace
 from robots.monitors.grip import GripMonitor
 from robots.vision.forearm import GripState
 
 
 class Missed(GripMonitor):
-    """Raises `missed` in steps 1 to 4, once the gripper has closed."""
+    """Raises `missed` from approach to lift, once the gripper has closed."""
 
     issue: ClassVar[str] = "missed"
-    start_step: ClassVar[int] = 1
-    stop_step: ClassVar[int] = 4
+    behaviors: ClassVar[frozenset[str]] = frozenset({PickAndPlace.name})
+    phases: ClassVar[frozenset[Phase]] = frozenset({Phase.APPROACH, Phase.GRASP, Phase.LIFT})
     state: ClassVar[GripState] = GripState.ABSENT
     how: ClassVar[str] = "never was"

@@ -2,9 +2,10 @@
 
 from typing import ClassVar
 
+from robots.behaviors.phase import Phase
 from robots.link.messages import Detection
 from robots.monitors.monitor import (
-    BEFORE_FIRST_STEP,
+    ANY_BEHAVIOR,
     Meanwhile,
     Monitor,
     MonitorView,
@@ -14,17 +15,20 @@ from tasks.scene import StrictModel
 
 
 class Missing(Monitor[NoParameters]):
-    """Raises `missing` before step 1."""
+    """Raises `missing` before step 1 of any behavior."""
 
     issue: ClassVar[str] = "missing"
-    start_step: ClassVar[int] = BEFORE_FIRST_STEP
-    stop_step: ClassVar[int] = BEFORE_FIRST_STEP
+    behaviors: ClassVar[frozenset[str]] = ANY_BEHAVIOR
+    phases: ClassVar[frozenset[Phase]] = frozenset({Phase.PREPARE})
     meanwhile: ClassVar[Meanwhile] = Meanwhile.DO_NOT_START
     camera: ClassVar[str | None] = "head"
     parameters: ClassVar[type[StrictModel]] = NoParameters
 
     def check(self, view: MonitorView) -> Detection | None:
         if view.part is None or view.sighting is not None or view.grip is not None:
+            return None
+        if view.was_done is not None:
+            # `undone` knows that it was there, and says so.
             return None
         return Detection(
             camera="head", explanation=f"{view.part.name} is nowhere in the head picture"

@@ -6,15 +6,20 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Any, ClassVar, Generic, TypeVar
 
+from robots.behaviors.phase import Phase
 from robots.body import CameraImage, Reach
 from robots.catalogue import Part
-from robots.link.messages import Detection
+from robots.link.messages import Detection, WasDone
 from robots.vision.forearm import GripReading
 from robots.vision.head import HeadSighting
 from robots.vision.obstruction import Obstruction
+from robots.vision.presence import Presence
 from tasks.scene import StrictModel
 
 BEFORE_FIRST_STEP = 0
+
+ANY_BEHAVIOR: frozenset[str] = frozenset({"*"})
+"""Names every behavior: for what no behavior can go on without."""
 
 P = TypeVar("P", bound=StrictModel)
 
@@ -40,23 +45,29 @@ class Meanwhile(StrEnum):
 class MonitorView:
     """What the robot senses at one moment; nothing in it comes from a simulator.
 
-    `step` counts from 1 and is 0 before the first. `part` is the behavior's object. `sighting`
-    is where the head camera saw it, `path_found` whether the arm can go there, and `obstruction`
-    what it saw in the way; all three are from before the first step. `grip` is what the newest
-    forearm picture says, from when the gripper has closed on the object until it opens.
+    `step` counts from 1 and is 0 before the first; `phase` is what it is for. `part` is the
+    behavior's object, `was_done` what is known of one whose leaf was done before. `sighting`
+    is where the head camera saw it, `refusal` why the arm cannot grasp and place it, and
+    `obstruction` what it saw in the way; all three are from before the first step. `grip` is what
+    the newest forearm picture says, from when the gripper has closed on the object until it opens.
+    `placed` and `presence` say where the object was seen in `CONFIRM`, after the last step.
     `contact_forces_n` are the readings of every control cycle since the last check.
     """
 
     time_s: float
     step: int
+    phase: Phase
     part: Part | None
     needs_help: bool
     reach: Reach
     table_z: float
+    was_done: WasDone | None = None
     sighting: HeadSighting | None = None
-    path_found: bool = True
+    refusal: str | None = None
     obstruction: Obstruction | None = None
     grip: GripReading | None = None
+    placed: HeadSighting | None = None
+    presence: Presence | None = None
     contact_forces_n: Sequence[float] = ()
     pictures: Mapping[str, CameraImage] = field(default_factory=dict)
 
@@ -64,16 +75,16 @@ class MonitorView:
 class Monitor(ABC, Generic[P]):
     """Watches one execution for one kind of issue; a package adds its own by an entry point.
 
-    `issue` is the kind, under which dialogue scripts are registered too. It checks from
-    `start_step` to `stop_step` (0 is before the first), at the forearm camera's period. `camera`
-    is the one whose pictures it judges, None if it judges by something else. `parameters` is the
-    pydantic model of its settings. A monitor is made anew for each execution, so it may remember
-    what it saw.
+    `issue` is the kind, under which dialogue scripts are registered too. It checks in the
+    `phases` of the `behaviors` that it names (a behavior says in `monitored_as` by which name it
+    is watched), at the forearm camera's period, and never in any other. `camera` is the one whose
+    pictures it judges, None if it judges by something else. `parameters` is the pydantic model of
+    its settings. A monitor is made anew for each execution, so it may remember what it saw.
     """
 
     issue: ClassVar[str]
-    start_step: ClassVar[int]
-    stop_step: ClassVar[int]
+    behaviors: ClassVar[frozenset[str]]
+    phases: ClassVar[frozenset[Phase]]
     meanwhile: ClassVar[Meanwhile]
     camera: ClassVar[str | None] = None
     parameters: ClassVar[type[StrictModel]]
@@ -91,9 +102,10 @@ class Monitor(ABC, Generic[P]):
         """Whether the behavior does not simply go on."""
         return self.meanwhile is not Meanwhile.SLOW_DOWN
 
-    def watches(self, step: int) -> bool:
-        """Whether it checks in this step."""
-        return self.start_step <= step <= self.stop_step
+    def watches(self, behavior: str, phase: Phase) -> bool:
+        """Whether it checks in this phase of what is monitored as this behavior."""
+        named = behavior in self.behaviors or self.behaviors == ANY_BEHAVIOR
+        return named and phase in self.phases
 
     @abstractmethod
     def check(self, view: MonitorView) -> Detection | None:

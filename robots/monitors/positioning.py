@@ -2,17 +2,19 @@
 
 from typing import ClassVar
 
+from robots.behaviors.phase import Phase
+from robots.behaviors.pick_and_place import PickAndPlace
 from robots.link.messages import Detection
 from robots.monitors.monitor import Meanwhile, Monitor, MonitorView, NoParameters
 from tasks.scene import StrictModel
 
 
 class Positioning(Monitor[NoParameters]):
-    """Raises `positioning` at step 5; the robot goes on slowly."""
+    """Raises `positioning` when the object is carried; the robot goes on slowly."""
 
     issue: ClassVar[str] = "positioning"
-    start_step: ClassVar[int] = 5
-    stop_step: ClassVar[int] = 5
+    behaviors: ClassVar[frozenset[str]] = frozenset({PickAndPlace.name})
+    phases: ClassVar[frozenset[Phase]] = frozenset({Phase.CARRY})
     meanwhile: ClassVar[Meanwhile] = Meanwhile.SLOW_DOWN
     parameters: ClassVar[type[StrictModel]] = NoParameters
 

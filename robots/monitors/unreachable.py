@@ -5,8 +5,10 @@ from typing import ClassVar
 
 from pydantic import Field
 
+from robots.behaviors.phase import Phase
 from robots.link.messages import Detection
-from robots.monitors.monitor import BEFORE_FIRST_STEP, Meanwhile, Monitor, MonitorView
+from robots.monitors.monitor import ANY_BEHAVIOR, Meanwhile, Monitor, MonitorView
+from robots.vision.head import HeadSighting
 from tasks.scene import StrictModel
 
 
@@ -17,11 +19,11 @@ class UnreachableParameters(StrictModel):
 
 
 class Unreachable(Monitor[UnreachableParameters]):
-    """Raises `unreachable` before step 1."""
+    """Raises `unreachable` before step 1 of any behavior."""
 
     issue: ClassVar[str] = "unreachable"
-    start_step: ClassVar[int] = BEFORE_FIRST_STEP
-    stop_step: ClassVar[int] = BEFORE_FIRST_STEP
+    behaviors: ClassVar[frozenset[str]] = ANY_BEHAVIOR
+    phases: ClassVar[frozenset[Phase]] = frozenset({Phase.PREPARE})
     meanwhile: ClassVar[Meanwhile] = Meanwhile.DO_NOT_START
     camera: ClassVar[str | None] = "head"
     parameters: ClassVar[type[StrictModel]] = UnreachableParameters
@@ -41,13 +43,21 @@ class Unreachable(Monitor[UnreachableParameters]):
     def _reason(self, view: MonitorView) -> str | None:
         name = "the place" if view.part is None else view.part.name
         if view.sighting is not None:
-            origin, margin = view.reach.origin, self.settings.margin_m
-            distance = math.hypot(view.sighting.x - origin[0], view.sighting.y - origin[1])
-            low, high = view.reach.min_m + margin, view.reach.max_m - margin
-            if not low <= distance <= high:
-                return f"{name} is {distance:.2f} m away; the arm grasps {low:.2f} to {high:.2f} m"
-            if not view.sighting.upright(view.table_z):
-                return f"{name} has toppled over; the arm grasps it standing only"
-        if not view.path_found:
-            return f"the arm finds no path for {name}"
-        return None
+            reason = why_beyond_reach(name, view.sighting, view, self.settings.margin_m)
+            if reason is not None:
+                return reason
+        return view.refusal
+
+
+def why_beyond_reach(
+    name: str, sighting: HeadSighting, view: MonitorView, margin_m: float = 0.0
+) -> str | None:
+    """Why the arm cannot grasp what is seen there, as far as distance and posture tell."""
+    origin = view.reach.origin
+    distance = math.hypot(sighting.x - origin[0], sighting.y - origin[1])
+    low, high = view.reach.min_m + margin_m, view.reach.max_m - margin_m
+    if not low <= distance <= high:
+        return f"{name} is {distance:.2f} m away; the arm grasps {low:.2f} to {high:.2f} m"
+    if not sighting.upright(view.table_z):
+        return f"{name} has toppled over; the arm grasps it standing only"
+    return None

@@ -1,4 +1,9 @@
-"""The colour model: which object each hue and saturation belongs to, learned from pictures."""
+"""The colour model: what each object's colour looks like, learned from pictures.
+
+Two cues: histograms of hue and saturation that are projected back into any camera's picture, and
+the tint of a level top, its colour over the table's in the same light, which the head camera
+measures whatever the light is.
+"""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -13,11 +18,15 @@ from robots.vision.blob import Mask
 
 Histogram = NDArray[np.float32]
 
-FILE_VERSION = 1
-MAX_OBJECTS = 255
+FILE_VERSION = 2
+Tint = tuple[float, float, float]
+"""The colour (BGR) of something level over that of the table in the same light."""
+
 _RANGES = [0, 180, 0, 256]
 _KERNEL = np.ones((3, 3), np.uint8)
 _NOISE_SEED = 1
+_TOLD_APART = 2.0
+"""Colours are told apart that are this many times their joint inaccuracy apart."""
 
 
 class ColorModelError(Exception):
@@ -32,7 +41,8 @@ class ColorSettings:
     that a histogram is learned from pixels that surely have the object's colour. A bin belongs to
     an object only where its histogram has at least `min_share` of its peak. Samples are also
     learned from with other light (`gains`) and with noise of `noise` grey levels, because
-    pictures at work have both.
+    pictures at work have both. Objects whose histograms have at least the share `alike` in common
+    have the same hue and share their bins.
     """
 
     hue_bins: int = 30
@@ -44,6 +54,7 @@ class ColorSettings:
     min_share: float = 0.02
     gains: tuple[float, ...] = (0.65, 1.0, 1.35)
     noise: float = 8.0
+    alike: float = 0.5
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -55,51 +66,65 @@ class Sample:
 
 
 class Segmentation:
-    """A picture in which every pixel is labelled with the object that owns its colour."""
+    """A picture in which every pixel has the number of its bin of hue and saturation."""
 
-    def __init__(self, labels: Mask, names: Sequence[str]) -> None:
-        self._labels = labels
-        self._names = {name: index + 1 for index, name in enumerate(names)}
-        self._of_any: Mask | None = None
+    def __init__(self, bins: NDArray[np.uint16], owned: Mapping[str, NDArray[np.bool_]]) -> None:
+        """`owned` says of each bin, and of 0 for what has no colour, whether an object has it."""
+        self._bins = bins
+        self._owned = owned
 
     def mask(self, name: str) -> Mask:
         """Where the colours of one object are: 255 there, 0 elsewhere.
 
-        Raises `ColorModelError` for an object that the model was not trained for.
+        Objects whose colours the cameras cannot tell apart have each other's. Raises
+        `ColorModelError` for an object that the model was not trained for.
         """
-        label = self._names.get(name)
-        if label is None:
-            known = ", ".join(sorted(self._names))
+        return np.where(self._of(name)[self._bins], 255, 0).astype(np.uint8)
+
+    def share(self, name: str, us: NDArray[np.intp], vs: NDArray[np.intp]) -> float:
+        """The share of some pixels that have an object's colours. Raises as `mask` does."""
+        return float(self._of(name)[self._bins[vs, us]].mean()) if len(us) else 0.0
+
+    def _of(self, name: str) -> NDArray[np.bool_]:
+        owned = self._owned.get(name)
+        if owned is None:
+            known = ", ".join(sorted(self._owned))
             raise ColorModelError(f"the colour model does not know '{name}'; it knows {known}")
-        return np.asarray(cv2.inRange(self._labels, label, label), np.uint8)
-
-    def of_any(self) -> Mask:
-        """Where the colours of any object are; not to be written to."""
-        if self._of_any is None:
-            self._of_any = np.where(self._labels > 0, 255, 0).astype(np.uint8)
-        return self._of_any
-
-    def shown_at(self, us: NDArray[np.intp], vs: NDArray[np.intp]) -> str | None:
-        """The object that most of some pixels show; None if it is less than half of them."""
-        counts = np.bincount(self._labels[vs, us], minlength=len(self._names) + 1)
-        name, label = max(self._names.items(), key=lambda each: int(counts[each[1]]))
-        return name if counts[label] * 2 >= max(len(us), 1) else None
+        return owned
 
 
 class ColorModel:
-    """Hue-saturation histograms per object, each bin given to the object that has most of it."""
+    """Hue-saturation histograms and tints per object.
 
-    def __init__(self, histograms: Mapping[str, Histogram], settings: ColorSettings) -> None:
-        if not 0 < len(histograms) <= MAX_OBJECTS:
-            raise ColorModelError(
-                f"a colour model holds 1 to {MAX_OBJECTS} objects, not {len(histograms)}"
-            )
+    An object that is too grey or too dark to have a hue has an empty histogram; then only its
+    tint, if there is one, says what it looks like.
+    """
+
+    def __init__(
+        self,
+        histograms: Mapping[str, Histogram],
+        settings: ColorSettings,
+        tints: Mapping[str, Tint] | None = None,
+    ) -> None:
+        if not histograms:
+            raise ColorModelError("a colour model holds at least one object, not 0")
         self._histograms = dict(histograms)
         self._settings = settings
-        stack = np.stack(list(self._histograms.values()))
-        owned = stack.max(axis=0) >= settings.min_share
-        # Back-projecting the owners' numbers labels a picture for all objects in one pass.
-        self._owners = np.where(owned, stack.argmax(axis=0) + 1, 0).astype(np.float32)
+        self.tints: Mapping[str, Tint] = dict(tints or {})
+        self._owned = self._share_out()
+
+    def _share_out(self) -> dict[str, NDArray[np.bool_]]:
+        """Which bins each object has: those of which it, or one of the same hue, has the most."""
+        names = list(self._histograms)
+        stack = np.stack([self._histograms[name].ravel() for name in names])
+        most = np.where(stack.max(axis=0) >= self._settings.min_share, stack.argmax(axis=0), -1)
+        common = np.array([np.minimum(each, stack).sum(axis=1) for each in stack])
+        either = np.array([np.maximum(each, stack).sum(axis=1) for each in stack])
+        same_hue = common >= self._settings.alike * np.maximum(either, 1e-9)
+        return {
+            name: np.append(False, (most >= 0) & same_hue[index][most] & (stack[index] > 0))
+            for index, name in enumerate(names)
+        }
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -110,25 +135,43 @@ class ColorModel:
     def settings(self) -> ColorSettings:
         return self._settings
 
+    def has_hue(self, name: str) -> bool:
+        """Whether an object is coloured enough to be found by hue and saturation."""
+        return bool(self._owned[name].any())
+
+    def look_alike(self, one: str, other: str) -> bool:
+        """Whether the cameras cannot tell two objects' colours apart."""
+        first, second = self.tints.get(one), self.tints.get(other)
+        if first is None or second is None:
+            common = np.minimum(self._histograms[one], self._histograms[other]).sum()
+            either = np.maximum(self._histograms[one], self._histograms[other]).sum()
+            return bool(common >= self._settings.alike * either)
+        apart = np.abs(np.array(first) - second) / (tint_sigma(first) + tint_sigma(second))
+        return bool(apart.max() < _TOLD_APART)
+
     @classmethod
     def train(
-        cls, samples: Mapping[str, Sequence[Sample]], settings: ColorSettings | None = None
+        cls,
+        samples: Mapping[str, Sequence[Sample]],
+        settings: ColorSettings | None = None,
+        tints: Mapping[str, Tint] | None = None,
     ) -> "ColorModel":
-        """Learn each object's colours from its samples.
-
-        Raises `ColorModelError` for an object of which no pixel is coloured enough.
-        """
+        """Learn each object's colours from its samples."""
         chosen = settings or ColorSettings()
-        return cls({name: learn(name, each, chosen) for name, each in samples.items()}, chosen)
+        return cls(
+            {name: learn(name, each, chosen) for name, each in samples.items()}, chosen, tints
+        )
 
     def segment(self, bgr: NDArray[np.uint8]) -> Segmentation:
-        """Label every pixel of a picture with the object that owns its colour."""
+        """Give every pixel of a picture the number of its bin."""
         hsv = _hue_saturation_value(bgr)
-        labels = cv2.calcBackProject([hsv], [0, 1], self._owners, _RANGES, 1)
-        coloured = cv2.inRange(
-            hsv, (0, self._settings.min_saturation, self._settings.min_value), (180, 255, 255)
-        )
-        return Segmentation(np.where(coloured > 0, labels, 0).astype(np.uint8), self.names)
+        hue = (np.arange(256) * self._settings.hue_bins // 180).astype(np.uint16)
+        saturation = (np.arange(256) * self._settings.saturation_bins // 256).astype(np.uint16)
+        bins = hue[hsv[:, :, 0]] * np.uint16(self._settings.saturation_bins)
+        bins += saturation[hsv[:, :, 1]] + np.uint16(1)
+        bins[hsv[:, :, 1] < self._settings.min_saturation] = 0
+        bins[hsv[:, :, 2] < self._settings.min_value] = 0
+        return Segmentation(bins, self._owned)
 
     def save(self, path: Path) -> None:
         """Write the model to one .npz file."""
@@ -148,6 +191,8 @@ class ColorModel:
                     ]
                 ),
                 min_share=np.array(settings.min_share),
+                tinted=np.array(list(self.tints)),
+                tints=np.array(list(self.tints.values())),
             )
 
     @classmethod
@@ -190,11 +235,26 @@ class ColorModel:
             min_training_value=limits[3],
             min_share=float(arrays["min_share"]),
         )
-        return cls(dict(zip(names, histograms, strict=True)), settings)
+        tints = {
+            name: (float(blue), float(green), float(red))
+            for name, (blue, green, red) in zip(
+                arrays["tinted"].tolist(), arrays["tints"], strict=True
+            )
+        }
+        return cls(dict(zip(names, histograms, strict=True)), settings, tints)
+
+
+def tint_sigma(tint: Tint | NDArray[np.float64]) -> NDArray[np.float64]:
+    """How exactly each channel of a tint is measured: rounding, and light that is uneven."""
+    sigma: NDArray[np.float64] = 0.008 + 0.02 * np.asarray(tint, np.float64)
+    return sigma
 
 
 def learn(name: str, samples: Sequence[Sample], settings: ColorSettings) -> Histogram:
-    """One object's histogram. Raises `ColorModelError` where no pixel is coloured enough."""
+    """One object's histogram, empty for one that is too grey or dark to have a hue.
+
+    Raises `ColorModelError` for a mask that does not fit its picture.
+    """
     bins = [settings.hue_bins, settings.saturation_bins]
     lowest = (0, settings.min_training_saturation, settings.min_training_value)
     total = np.zeros(bins, np.float32)
@@ -217,9 +277,7 @@ def learn(name: str, samples: Sequence[Sample], settings: ColorSettings) -> Hist
             usable = cv2.bitwise_and(cv2.inRange(hsv, lowest, (180, 255, 255)), inside)
             total += cv2.calcHist([hsv], [0, 1], usable, bins, _RANGES)
     if total.max() <= 0:
-        raise ColorModelError(
-            f"no pixel of '{name}' is coloured enough to learn from; give brighter samples of it"
-        )
+        return total
     smooth = _blur(total)
     return np.asarray(smooth / smooth.max(), np.float32)
 

@@ -109,7 +109,7 @@ class GripWatch:
         period_s: float = 1 / 30,
     ) -> None:
         self.part = part
-        self._grasp = grasp
+        self.grasp = grasp
         self._model = model
         self._tolerances = tolerances or GripTolerances()
         self._corners = corners_in_tool(part, grasp)
@@ -209,7 +209,7 @@ class GripWatch:
         return least <= share <= self._tolerances.most_share
 
     def _fingers_fit(self, opening_m: float) -> bool:
-        if opening_m < self._tolerances.open_share * self._grasp.width_m:
+        if opening_m < self._tolerances.open_share * self.grasp.width_m:
             return False
         return self._opening_m is None or opening_m <= self._opening_m + self._tolerances.spread_m
 

@@ -1,4 +1,4 @@
-"""What stands in the way: things in the head's depth picture where the arm is about to go."""
+"""What stands in the way: unknown things in the head's depth picture where the arm is to go."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -8,9 +8,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from robots.body import CameraImage, ToolPose
-from robots.vision.color_model import Segmentation
-from robots.vision.projection import Points, heights, unproject
+from robots.body import ToolPose
+from robots.vision.projection import Points
+from robots.vision.table_view import TableView
 
 Segment = tuple[NDArray[np.float64], NDArray[np.float64]]
 """Two ends in the base frame."""
@@ -21,14 +21,12 @@ class Clearance:
     """How much room the arm needs. Lengths in metres.
 
     `radius_m` around the way of the tool point; what is lower than `above_table_m` over the table
-    is the table; `arm_radius_m` around the arm itself is the arm; fewer than `fewest_px` pixels
-    are noise.
+    is the table; fewer than `fewest_px` pixels are noise.
     """
 
     radius_m: float = 0.07
     above_table_m: float = 0.02
-    arm_radius_m: float = 0.16
-    fewest_px: int = 40
+    fewest_px: int = 100
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,31 +49,34 @@ def corridor(waypoints: Sequence[ToolPose]) -> list[Segment]:
 
 
 def find_obstruction(
-    image: CameraImage,
-    segmentation: Segmentation,
-    way: Sequence[Segment],
-    arm: Sequence[Segment],
-    table_z: float,
-    clearance: Clearance,
+    view: TableView, way: Sequence[Segment], clearance: Clearance
 ) -> Obstruction | None:
-    """The first thing in `way` that is neither table nor known part nor the `arm` itself."""
-    if image.depth_m is None or not way:
+    """What is in `way` that is neither table nor known part."""
+    if not way:
         return None
-    # A rim of a part mixes its colour with what is behind; widening the parts covers the rims.
-    known = cv2.dilate(segmentation.of_any(), np.ones((5, 5), np.uint8))
-    # Most of a picture is table and floor: only what stands out is compared with the way.
-    high = heights(image) > table_z + clearance.above_table_m
-    vs, us = np.nonzero(high & (np.asarray(known) == 0))
-    points = unproject(image, us, vs)
+    us, vs, points = view.standing_out(view.heights.table_z + clearance.above_table_m)
     inside = near(points, way, clearance.radius_m)
-    if arm:
-        inside &= ~near(points, arm, clearance.arm_radius_m)
-    canvas = np.zeros(image.bgr.shape[:2], np.uint8)
-    canvas[vs[inside], us[inside]] = 255
-    clean = cv2.morphologyEx(canvas, cv2.MORPH_OPEN, np.ones((3, 3), np.uint8))
-    kept = np.asarray(clean)[vs, us] > 0
+    us, vs, points = us[inside], vs[inside], points[inside]
+    for box in view.boxes:
+        if box.name is not None:
+            unknown = ~box.holds(points)
+            us, vs, points = us[unknown], vs[unknown], points[unknown]
+    canvas = np.zeros(view.heights.height_m.shape, np.uint8)
+    canvas[vs, us] = 255
+    clean = np.asarray(cv2.morphologyEx(canvas, cv2.MORPH_OPEN, np.ones((3, 3), np.uint8)))
+    return obstruction_of(us, vs, points, clean[vs, us] > 0, clearance.fewest_px)
+
+
+def obstruction_of(
+    us: NDArray[np.intp],
+    vs: NDArray[np.intp],
+    points: Points,
+    kept: NDArray[np.bool_],
+    fewest_px: float,
+) -> Obstruction | None:
+    """The thing that the `kept` of some pixels show; None if they are too few."""
     area_px = int(np.count_nonzero(kept))
-    if area_px < clearance.fewest_px:
+    if area_px < max(fewest_px, 1):
         return None
     middle = np.median(points[kept], axis=0)
     return Obstruction(

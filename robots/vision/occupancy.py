@@ -1,23 +1,17 @@
-"""Whether a place is free: what the head's depth picture shows in the room for a part."""
+"""Whether a place is free: what the head's picture shows in the room that a part needs."""
 
-import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-import cv2
 import numpy as np
-from numpy.typing import NDArray
 
-from robots.body import CameraImage
 from robots.catalogue import Part
 from robots.link.messages import Location
-from robots.vision.color_model import Segmentation
 from robots.vision.head import HeadSighting
-from robots.vision.obstruction import Clearance, Obstruction, Segment, near
-from robots.vision.projection import Points, heights, pixels_covered, unproject
-
-_RIM = np.ones((5, 5), np.uint8)
-"""Colours mix at a part's rim; so much wider it hides none of what is beside it."""
+from robots.vision.obstruction import Obstruction, obstruction_of
+from robots.vision.projection import Points, pixels_covered
+from robots.vision.seen_box import SeenBox
+from robots.vision.table_view import TableView
 
 _COVERED_SHARE = 0.7
 """Something covers a part of whose top less than this is seen."""
@@ -63,59 +57,37 @@ class Fit:
     tolerance_m: float = 0.010
     approach_m: float = 0.06
     share: float = 0.08
-    fewest_px: int = 6
+    fewest_px: int = 12
 
 
-def find_occupant(
-    image: CameraImage,
-    segmentation: Segmentation,
-    room: Room,
-    arm: Sequence[Segment],
-    clearance: Clearance,
-    fit: Fit,
-) -> Obstruction | None:
-    """What is in `room` that is neither its part nor the `arm` itself."""
-    if image.depth_m is None:
-        return None
-    own = np.asarray(cv2.dilate(segmentation.mask(room.part.name), _RIM))
-    vs, us = np.nonzero((heights(image) > room.bottom_z + fit.tolerance_m) & (own == 0))
-    points = unproject(image, us, vs)
-    inside = _inside(points, room, fit)
-    if arm:
-        inside &= ~near(points, arm, clearance.arm_radius_m)
-    area_px = int(np.count_nonzero(inside))
-    if area_px < max(fit.fewest_px, fit.share * _floor_px(image, room)):
-        return None
-    middle = np.median(points[inside], axis=0)
-    shown = segmentation.shown_at(us[inside], vs[inside])
-    return Obstruction(
-        position=(float(middle[0]), float(middle[1]), float(middle[2])),
-        center=(float(np.median(us[inside])), float(np.median(vs[inside]))),
-        area_px=area_px,
-        what=f"{shown or 'something unknown'} {room.meaning}",
-    )
-
-
-def _inside(points: Points, room: Room, fit: Fit) -> NDArray[np.bool_]:
-    dx, dy = points[:, 0] - room.at.x, points[:, 1] - room.at.y
-    cos, sin = math.cos(room.at.yaw), math.sin(room.at.yaw)
-    half_x, half_y = (
-        max(extent / 2 - fit.margin_m, 0.0) + room.around_m for extent in room.part.size[:2]
-    )
-    top_z = room.bottom_z + _height_m(room.part) + fit.approach_m
-    inside: NDArray[np.bool_] = (
-        (np.abs(dx * cos + dy * sin) <= half_x)
-        & (np.abs(dy * cos - dx * sin) <= half_y)
-        & (points[:, 2] <= top_z)
-    )
-    return inside
-
-
-def _height_m(part: Part) -> float:
-    return part.size[2] + (0.0 if part.knob is None else part.knob[2])
-
-
-def _floor_px(image: CameraImage, room: Room) -> float:
-    """How many pixels the floor of a room would cover in the picture."""
+def find_occupant(view: TableView, room: Room, fit: Fit) -> Obstruction | None:
+    """What is in `room` that is not its part."""
+    us, vs, points = view.standing_out(room.bottom_z + fit.tolerance_m)
+    inside = _volume(room, fit).holds(points, margin_m=0.0)
+    for box in view.boxes:
+        if box.name == room.part.name:
+            inside &= ~box.holds(points)
     at = (room.at.x, room.at.y, room.bottom_z)
-    return pixels_covered(image, at, room.part.size[:2])
+    floor_px = pixels_covered(view.heights.image, at, room.part.size[:2])
+    found = obstruction_of(us, vs, points, inside, max(fit.fewest_px, fit.share * floor_px))
+    if found is None:
+        return None
+    what = _most_of(points[inside], view.boxes) or "something unknown"
+    return replace(found, what=f"{what} {room.meaning}")
+
+
+def _volume(room: Room, fit: Fit) -> SeenBox:
+    length, width = (
+        2 * (max(extent / 2 - fit.margin_m, 0.0) + room.around_m) for extent in room.part.size[:2]
+    )
+    height_m = room.part.height + fit.approach_m
+    size = (length, width, height_m)
+    return SeenBox(room.at.x, room.at.y, room.at.yaw, size, room.bottom_z, None, complete=True)
+
+
+def _most_of(points: Points, boxes: Sequence[SeenBox]) -> str | None:
+    """The known part that at least half of some points belong to."""
+    for box in boxes:
+        if box.name is not None and np.count_nonzero(box.holds(points)) * 2 >= len(points):
+            return box.name
+    return None

@@ -1,6 +1,26 @@
 """Whether a part is still where it was put, as far as a picture can tell."""
 
+import math
+from collections.abc import Collection
 from enum import StrEnum
+
+import numpy as np
+
+from robots.catalogue import Part
+from robots.link.messages import Location
+from robots.vision.head import HeadSighting
+from robots.vision.projection import project
+from robots.vision.seen_box import SeenBox
+from robots.vision.table_view import TableView
+
+AT_PLACE_M = 0.02
+"""A part is at its place if it is this near to it."""
+AT_PLACE_HEIGHT_M = 0.015
+_SAMPLES = 9
+_SEEN_THROUGH = 0.6
+"""A part is gone if more than this share of where its top would be lets the camera see behind."""
+_INNER = 0.8
+"""The share of its top that is asked about: at the rim depth says little."""
 
 
 class Presence(StrEnum):
@@ -12,3 +32,64 @@ class Presence(StrEnum):
     """Its place is seen, and it is not there."""
     HIDDEN = "hidden"
     """Something in front of its place keeps the camera from telling."""
+
+
+def is_at(sighting: HeadSighting, target: Location, target_z: float) -> bool:
+    """Whether an object rests where it is to be."""
+    near = math.hypot(sighting.x - target.x, sighting.y - target.y) <= AT_PLACE_M
+    return near and abs(sighting.z - target_z) <= AT_PLACE_HEIGHT_M
+
+
+def judge_presence(
+    view: TableView, part: Part, equals: Collection[str], target: Location, bottom_z: float
+) -> Presence:
+    """Whether `part`, or one of its `equals` by name, stands with its bottom at `bottom_z`."""
+    room = SeenBox(
+        target.x, target.y, target.yaw, (*part.size[:2], part.height), bottom_z, None, complete=True
+    )
+    for box in view.boxes:
+        if box.name in equals and _stands_at(box, room):
+            return Presence.THERE
+    if any(_keeps_out(box, room, equals) for box in view.boxes):
+        return Presence.GONE
+    through = _share_seen_through(view, room)
+    return Presence.GONE if through >= _SEEN_THROUGH else Presence.HIDDEN
+
+
+def _stands_at(box: SeenBox, room: SeenBox) -> bool:
+    near = math.hypot(box.x - room.x, box.y - room.y) <= AT_PLACE_M
+    return near and abs(box.bottom_z - room.bottom_z) <= AT_PLACE_HEIGHT_M
+
+
+def _keeps_out(box: SeenBox, room: SeenBox, equals: Collection[str]) -> bool:
+    """Whether something else fills the middle of the room, so that the part cannot be in it.
+
+    Something unknown of the part's own height may be the part, badly seen.
+    """
+    if box.name in equals or not box.complete:
+        return False
+    overlap_m = min(box.top_z, room.top_z) - max(box.bottom_z, room.bottom_z)
+    middle = np.array([[room.x, room.y, (box.bottom_z + box.top_z) / 2]])
+    if overlap_m < AT_PLACE_HEIGHT_M / 2 or not box.holds(middle, margin_m=0.0)[0]:
+        return False
+    return box.name is not None or abs(box.top_z - room.top_z) > AT_PLACE_HEIGHT_M
+
+
+def _share_seen_through(view: TableView, room: SeenBox) -> float:
+    """The share of where the part's top would be behind which the camera sees something."""
+    spread = np.linspace(-_INNER / 2, _INNER / 2, _SAMPLES)
+    x, y = (each.ravel() for each in np.meshgrid(spread * room.size[0], spread * room.size[1]))
+    cos, sin = math.cos(room.yaw), math.sin(room.yaw)
+    top_z = room.bottom_z + room.size[2]
+    tops = np.stack(
+        [room.x + cos * x - sin * y, room.y + sin * x + cos * y, np.full(len(x), top_z)], axis=1
+    )
+    us, vs = np.rint(project(view.heights.image, tops)).astype(np.intp).T
+    rows, columns = view.heights.height_m.shape
+    pictured = (us >= 0) & (us < columns) & (vs >= 0) & (vs < rows)
+    heights = np.full(len(us), np.nan)
+    heights[pictured] = view.heights.height_m[vs[pictured], us[pictured]]
+    # A ray that is still under the top's height has passed through where the top would be.
+    slack_m = min(max(0.006, 5 * view.heights.noise_m), room.size[2] / 2)
+    with np.errstate(invalid="ignore"):
+        return float((heights < top_z - slack_m).mean())

@@ -15,6 +15,7 @@ from server.cli.map import maps_app
 from server.cli.replay import replay
 from server.cli.run import run
 from server.cli.scenarios import scenarios
+from server.cli.scene import scene_app
 from server.cli.schedule import schedule
 from server.cli.schema import schema
 from server.cli.serve import serve
@@ -68,6 +69,7 @@ COMMANDS: dict[str, tuple[Callable[..., None], str]] = {
 for name, (command, summary) in COMMANDS.items():
     app.command(name, short_help=summary)(command)
 app.add_typer(maps_app)
+app.add_typer(scene_app)
 
 
 def main() -> None:

@@ -28,6 +28,8 @@ class _Audit:
         self._done: set[str] = set()
         self._active: dict[str, str | None] = {}
         self._abandoned: set[str] = set()
+        self._left_out: dict[str, str] = {}
+        self._said_last: dict[str, str] = {}
         self._open: dict[UUID, str] = {}
         self._answered: Counter[UUID] = Counter()
         self._broken: list[str] = []
@@ -53,11 +55,15 @@ class _Audit:
         match event:
             case ev.NodeStarted():
                 self._started(event)
-            case ev.NodeDone() | ev.NodeLeftOut():
-                if event.node not in self._active:
-                    self._breach(event, f"finishes {event.node}, which is not active")
-                self._active.pop(event.node, None)
-                self._done.add(event.node)
+            case ev.NodeDone():
+                self._finish(event)
+            case ev.NodeLeftOut():
+                self._leave_out(event)
+            case ev.NodeReturned():
+                if self._left_out.pop(event.node, None) is None:
+                    self._breach(event, f"finds {event.node} again, which was not left out")
+            case ev.NodeUndone():
+                self._undo(event)
             case ev.NodeReset():
                 if event.node not in self._active:
                     self._breach(event, f"puts back {event.node}, which is not active")
@@ -70,17 +76,64 @@ class _Audit:
                 if self._open.pop(event.dialogue, None) is None:
                     self._breach(event, "closes a dialogue that is not open")
             case ev.Answered():
+                self._said_last[event.node] = event.helper
                 self._answered[event.prompt] += 1
                 if self._answered[event.prompt] > 1:
                     self._breach(event, f"answers prompt {event.prompt} a second time")
             case ev.RunFinished():
-                if not self._is_done("/"):
-                    self._breach(event, "finishes a task that is not done")
-                self._end(event, "run_finished")
+                self._finish_run(event)
             case ev.RunFailed():
                 self._end(event, "run_failed")
             case ev.RunAborted():
                 self._end(event, "run_aborted")
+
+    def _finish(self, event: ev.NodeDone | ev.NodeLeftOut) -> None:
+        if event.node not in self._active:
+            self._breach(event, f"finishes {event.node}, which is not active")
+        self._active.pop(event.node, None)
+        self._done.add(event.node)
+
+    def _leave_out(self, event: ev.NodeLeftOut) -> None:
+        self._finish(event)
+        self._left_out[event.node] = event.helper
+        if self._said_last.get(event.node) != event.helper:
+            self._breach(event, f"leaves {event.node} out, which {event.helper} did not say")
+
+    def _undo(self, event: ev.NodeUndone) -> None:
+        if event.node not in self._done:
+            self._breach(event, f"takes back {event.node}, which is not done")
+        for later in self._after(event.node):
+            if self._is_touched(later):
+                self._breach(event, f"takes back {event.node} before {later}, which comes after it")
+        if event.because_of is not None and not any(
+            event.node == later or event.node.startswith(later + "/")
+            for later in self._after(event.because_of)
+        ):
+            self._breach(event, f"takes back {event.node}, which needs no {event.because_of}")
+        self._done.discard(event.node)
+        self._left_out.pop(event.node, None)
+
+    def _after(self, node: str) -> list[str]:
+        """The nodes that a THEN puts after one, as children of THENs above it."""
+        found, child = [], node
+        while child != "/":
+            parent = _parent(child)
+            if self._kinds[parent] == "then":
+                siblings = self._children[parent]
+                found += siblings[siblings.index(child) + 1 :]
+            child = parent
+        return found
+
+    def _finish_run(self, event: ev.RunFinished) -> None:
+        if not self._is_done("/"):
+            self._breach(event, "finishes a task that is not done")
+        for part in event.missing:
+            if part.left_out_by is None or self._left_out.get(part.node) != part.left_out_by:
+                self._breach(event, f"finishes without {part.node}, which nobody left out")
+        told = {part.node for part in event.missing}
+        for node in self._left_out.keys() - told:
+            self._breach(event, f"does not tell that {node} was left out")
+        self._end(event, "run_finished")
 
     def _end(self, event: ev.Event, kind: str) -> None:
         self._ended = kind

@@ -323,20 +323,40 @@ class NodeReset(NodeEvent):
     failed_attempt: bool
 
 
-class NodeAbandoned(NodeEvent):
-    """An alternative of an OR is given up for good, because `leaf` could not be done."""
-
-    type: Literal["node_abandoned"] = "node_abandoned"
-    leaf: str
-    reason: str
-
-
 class NodeLeftOut(NodeEvent):
     """A helper told the robot to leave a leaf out; for the order of the tree it is done."""
 
     type: Literal["node_left_out"] = "node_left_out"
     robot: str
     helper: str
+
+
+class NodeReturned(NodeEvent):
+    """The object of a leaf that was left out is seen at its place: the leaf is simply done."""
+
+    type: Literal["node_returned"] = "node_returned"
+    robot: str
+
+
+class NodeUndone(NodeEvent):
+    """A done leaf was taken back: not done, its failed attempts kept.
+
+    `robot` saw that the leaf's object is gone from its place, or, with `because_of`, that another
+    one's is, after which a THEN puts this leaf. Those that come after others are told first.
+    """
+
+    type: Literal["node_undone"] = "node_undone"
+    robot: str
+    reason: str
+    because_of: str | None = None
+
+
+class NodeAbandoned(NodeEvent):
+    """An alternative of an OR is given up for good, because `leaf` could not be done."""
+
+    type: Literal["node_abandoned"] = "node_abandoned"
+    leaf: str
+    reason: str
 
 
 class SuspectedFalseAlarm(NodeEvent):
@@ -364,9 +384,9 @@ class RunResumed(Event):
 
 
 class MissingPart(EventModel):
-    """A finished leaf whose object the last look did not find at its place.
+    """A leaf whose object is not at its place at the end, as it was left out.
 
-    `left_out_by`: the helper who told the robot to leave it out, None if nobody did.
+    `left_out_by`: the helper who said so; None in the journal of an older Mend, which did not ask.
     """
 
     node: str
@@ -377,7 +397,7 @@ class MissingPart(EventModel):
 
 
 class RunFinished(Event):
-    """The task is done. `missing`: what a last look did not find at its place."""
+    """The task is done. `missing`: what was left out, as a helper said."""
 
     type: Literal["run_finished"] = "run_finished"
     missing: list[MissingPart]
@@ -452,8 +472,10 @@ AnyEvent = Annotated[
     | InterventionDone
     | NodeDone
     | NodeReset
-    | NodeAbandoned
     | NodeLeftOut
+    | NodeReturned
+    | NodeUndone
+    | NodeAbandoned
     | SuspectedFalseAlarm
     | RunPaused
     | RunResumed

@@ -39,8 +39,7 @@ def find_untruths(events: Sequence[ev.Event], resting: Mapping[str, Rest | None]
 
     `resting` has where every part really rests at the end, None if it is gone.
     """
-    started, end = events[0], events[-1]
-    assert isinstance(started, ev.RunStarted), "a run begins with run_started"
+    started, end = _start_of(events), events[-1]
     match end:
         case ev.RunFinished():
             return _untrue_missing(started, events, end, resting)
@@ -61,9 +60,10 @@ def _untrue_missing(
     told = {each.node for each in end.missing}
     blocked = _somebody_stands_there(events)
     wrong = []
-    for done in (each for each in events if isinstance(each, ev.NodeDone)):
+    started_last = _started_last(events)
+    for done in _done_at_the_end(events):
         leaf = leaves[done.node]
-        if leaf.object is None or leaf.place is None:
+        if leaf.object is None or leaf.place is None or done.node not in started_last:
             continue
         rest = resting[leaf.object]
         aside_m, above_m = _offset(rest, scene, scene.places[leaf.place])
@@ -78,9 +78,40 @@ def _untrue_missing(
         others = [other for name, other in resting.items() if name != leaf.object]
         taken = any(_offset(each, scene, scene.places[leaf.place])[0] <= AWAY_M for each in others)
         # A part put where another one lies is no untruth: nobody looks before the last look.
-        if away and not taken and not _disturbed_since(events, done.node, leaf.object):
+        left_out = isinstance(done, ev.NodeLeftOut)
+        if (
+            away
+            and not taken
+            and not left_out
+            and not _disturbed_since(events, done.node, leaf.object)
+        ):
             wrong.append(f"'{done.node}' is done, but '{leaf.object}' never was at its place")
     return wrong
+
+
+def _done_at_the_end(events: Sequence[ev.Event]) -> list[ev.NodeDone | ev.NodeLeftOut]:
+    """How each leaf that counts as done at the end came to that."""
+    done: dict[str, ev.NodeDone | ev.NodeLeftOut] = {}
+    for event in events:
+        match event:
+            case ev.NodeDone() | ev.NodeLeftOut():
+                done[event.node] = event
+            case ev.NodeUndone():
+                del done[event.node]
+    return list(done.values())
+
+
+def _started_last(events: Sequence[ev.Event]) -> set[str]:
+    """Of the leaves that handle one object in turn, those that were started last."""
+    leaves = _leaves(_start_of(events))
+    started = [each.node for each in events if isinstance(each, ev.NodeStarted)]
+    return set({leaves[node].object or node: node for node in started}.values())
+
+
+def _start_of(events: Sequence[ev.Event]) -> ev.RunStarted:
+    started = events[0]
+    assert isinstance(started, ev.RunStarted), "a run begins with run_started"
+    return started
 
 
 def _offset(rest: Rest | None, scene: Scene, place: Place) -> tuple[float, float]:
@@ -151,7 +182,7 @@ def _untrue_reason(
         for each in events
     )
     given_up = f"it failed {most} times" in end.reason and failed >= most
-    if not given_up and not _was_helped_in_vain(events, end):
+    if not given_up and not _was_helped_in_vain(events, end) and not _was_gone(events, end):
         wrong.append(f"it says '{end.reason}', but {failed} attempts at '{end.node}' failed")
     if way_out := _way_out(started, events, end.node):
         wrong.append(f"it failed because of '{end.node}', but could have abandoned '{way_out}'")
@@ -171,12 +202,22 @@ def _was_helped_in_vain(events: Sequence[ev.Event], end: ev.RunFailed) -> bool:
     return said is not None and helped > int(said[1])
 
 
+def _was_gone(events: Sequence[ev.Event], end: ev.RunFailed) -> bool:
+    """Whether it says that a leaf's result was gone so often, and that is so."""
+    said = re.search(r"it was gone again after it had been done (\d+) times", end.reason)
+    gone = sum(
+        isinstance(each, ev.NodeUndone) and each.node == end.node and each.because_of is None
+        for each in events
+    )
+    return said is not None and gone == int(said[1])
+
+
 def _way_out(started: ev.RunStarted, events: Sequence[ev.Event], node: str) -> str | None:
     """An alternative above (or at) a leaf that could still have been given up."""
     definition = TaskTreeDefinition.model_validate(started.tree)
     paths = _paths(definition)
     kinds = {path: each.kind for path, each in zip(paths, definition.nodes, strict=True)}
-    done = [each.node for each in events if isinstance(each, ev.NodeDone)]
+    done = [each.node for each in _done_at_the_end(events)]
     abandoned = {each.node for each in events if isinstance(each, ev.NodeAbandoned)}
     child = node
     while child != "/":

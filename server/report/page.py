@@ -15,7 +15,7 @@ from server.report.record import Fault, RunRecord
 from server.report.timeline import lay_out_timeline
 from server.report.tree_drawing import draw_tree
 from server.report.tree_state import node_states
-from server.transcript import SPOKEN, Line, Transcript, grouped
+from server.transcript import SPOKEN, Line, Transcript, grouped, joined, told_missing
 
 MAX_CANDIDATES = 8
 """Of each choice, so many candidates are shown."""
@@ -71,12 +71,12 @@ def render_report(events: Sequence[ev.Event], pictures: Mapping[UUID, bytes]) ->
 def _verdict(record: RunRecord) -> str:
     match record.end:
         case ev.RunFinished(missing=[]):
-            return "The task is done, and the last look found every part at its place."
+            return "The task is done, and the last look found no part gone from its place."
         case ev.RunFinished(missing=missing):
-            parts = [f"{each.object} at {each.place}" for each in missing[:MAX_MISSING]]
+            parts = [told_missing(each) for each in missing[:MAX_MISSING]]
             if (more := len(missing) - len(parts)) > 0:
-                parts.append(f"and {more} more")
-            return f"The task is done, but the last look did not find {', '.join(parts)}."
+                parts.append(f"{more} more are not at their places")
+            return f"The task is done, but {joined(parts)}."
         case ev.RunFailed(reason=reason):
             return f"The run failed: {reason}."
         case ev.RunAborted(reason=reason):

@@ -12,6 +12,8 @@ from tasks.resolution import Resolution
 
 RunEnd = ev.RunFinished | ev.RunFailed | ev.RunAborted
 
+Ending = Literal["done", "put back", "left out", "cut off"]
+
 
 @dataclass(slots=True)
 class Step:
@@ -29,7 +31,7 @@ class Execution:
 
     started: ev.NodeStarted
     end_s: float | None = None
-    ending: Literal["done", "put back", "cut off"] = "cut off"
+    ending: Ending = "cut off"
     steps: list[Step] = field(default_factory=list)
 
     def end_step(self, time_s: float) -> None:
@@ -72,6 +74,8 @@ class RunRecord:
         self.faults: list[Fault] = []
         self.interventions: list[ev.InterventionDone] = []
         self.done: dict[str, ev.NodeDone] = {}
+        self.left_out: dict[str, ev.NodeLeftOut] = {}
+        self.undone: list[ev.NodeUndone] = []
         self._current: dict[str, Execution] = {}
         self._dialogues: dict[UUID, Fault] = {}
         for event in events:
@@ -112,10 +116,25 @@ class RunRecord:
         self._end_execution(event, "done")
 
     @_take.register
+    def _(self, event: ev.NodeLeftOut) -> None:
+        self.left_out[event.node] = event
+        self._end_execution(event, "left out")
+
+    @_take.register
+    def _(self, event: ev.NodeReturned) -> None:
+        self.left_out.pop(event.node, None)
+
+    @_take.register
+    def _(self, event: ev.NodeUndone) -> None:
+        self.undone.append(event)
+        self.done.pop(event.node, None)
+        self.left_out.pop(event.node, None)
+
+    @_take.register
     def _(self, event: ev.NodeReset) -> None:
         self._end_execution(event, "put back")
 
-    def _end_execution(self, event: ev.NodeEvent, ending: Literal["done", "put back"]) -> None:
+    def _end_execution(self, event: ev.NodeEvent, ending: Ending) -> None:
         execution = self._current.pop(event.node, None)
         if execution is not None:
             execution.end_step(event.time)

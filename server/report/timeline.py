@@ -38,7 +38,7 @@ class Bar:
 
 @dataclass(frozen=True, slots=True)
 class Mark:
-    """A moment in a row. `kind`: fault, deed, done, put back, cut off."""
+    """A moment in a row. `kind`: fault, deed, done, put back, left out, undone, cut off."""
 
     x: float
     kind: str
@@ -145,6 +145,10 @@ def _leaves(record: RunRecord, scale: _Scale) -> list[Row]:
     for fault in record.faults:
         if fault.raised.node in rows:
             _add_fault(rows[fault.raised.node], fault, scale, record.end_s)
+    for undone in record.undone:
+        if undone.node in rows:
+            tip = f"{undone.time:.1f} s: done no longer, {undone.reason}"
+            rows[undone.node].marks.append(Mark(scale.x(undone.time), "undone", tip))
     return list(rows.values())
 
 

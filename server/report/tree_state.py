@@ -25,8 +25,10 @@ def _folded(record: RunRecord) -> TaskTree:
         match event:
             case ev.NodeStarted():
                 tree.start(tree.index_of(event.node), event.robot)
-            case ev.NodeDone():
+            case ev.NodeDone() | ev.NodeLeftOut():
                 tree.finish(tree.index_of(event.node))
+            case ev.NodeUndone():
+                tree.take_back(tree.index_of(event.node))
             case ev.NodeReset():
                 tree.put_back(tree.index_of(event.node), failed=event.failed_attempt)
             case ev.NodeAbandoned():
@@ -58,9 +60,13 @@ def _fate(tree: TaskTree, node: int, starts: int) -> NodeFate:
 
 def _detail(tree: TaskTree, leaf: int, record: RunRecord, starts: int) -> str:
     parts = []
-    done = record.done.get(tree.path_of(leaf))
-    if done is not None:
+    path = tree.path_of(leaf)
+    if (done := record.done.get(path)) is not None:
         parts.append(DOERS[done.by])
+    if (left_out := record.left_out.get(path)) is not None:
+        parts.append(f"left out, as {left_out.helper} said")
+    if undone := sum(each.node == path for each in record.undone):
+        parts.append("undone once" if undone == 1 else f"undone {undone} times")
     if starts > 1:
         parts.append(f"{starts} starts")
     if failed := tree.attempts(leaf):

@@ -4,10 +4,10 @@ from collections.abc import Mapping
 
 from server.journal import events as ev
 from server.runtime.context import RunContext
-from server.runtime.dialogue_driver import DialogueDriver
+from server.runtime.cutting_short import CuttingShort
 from server.runtime.failure import fail_run
 from server.runtime.report_events import ReportEvents
-from server.runtime.robot_side import Doing, RobotSide
+from server.runtime.robot_side import RobotSide
 
 
 class GivingUp:
@@ -17,17 +17,17 @@ class GivingUp:
         self,
         context: RunContext,
         sides: Mapping[str, RobotSide],
-        dialogues: DialogueDriver,
         reports: ReportEvents,
+        cutting_short: CuttingShort,
     ) -> None:
         self._context = context
         self._sides = sides
-        self._dialogues = dialogues
         self._reports = reports
+        self._cutting_short = cutting_short
 
     async def give_up_what_cannot_be_done(self) -> bool:
         """Give up one leaf that cannot be done; True if there was one."""
-        for leaf, reason in self._failed_too_often():
+        for leaf, reason in (*self._failed_too_often(), *self._gone_too_often()):
             await self._give_up(leaf, reason)
             return True
         for leaf in self._for_nobody():
@@ -39,6 +39,16 @@ class GivingUp:
         state = self._context.state
         reason = f"it failed {state.request.max_attempts} times"
         return [(leaf, reason) for leaf in sorted(state.exhausted) if state.tree.eligible(leaf)]
+
+    def _gone_too_often(self) -> list[tuple[int, str]]:
+        """What somebody takes away each time is not placed for ever."""
+        state, most = self._context.state, self._context.settings.max_times_gone
+        reason = f"it was gone again after it had been done {most + 1} times"
+        return [
+            (leaf, reason)
+            for leaf, times in sorted(state.times_gone.items())
+            if times > most and state.tree.eligible(leaf)
+        ]
 
     def _for_nobody(self) -> list[int]:
         """The first leaf that none of the robots can do, once all of them are known."""
@@ -60,25 +70,12 @@ class GivingUp:
             reason = f"'{name}' could not be done: {reason}"
             await fail_run(self._context, reason, state.tree.path_of(leaf))
             return
-        events: list[ev.Event] = []
-        cut_short: list[RobotSide] = []
-        for active in given_up.put_back:
-            owner = state.tree.owner(active) or ""
-            if dialogue := state.dialogue_of(active):
-                events.append(self._dialogues.abort(dialogue))
-            events.append(
-                self._reports.reset(active, owner, "its alternative was abandoned", failed=False)
-            )
-            cut_short.append(self._sides[owner])
-        events.append(
-            ev.NodeAbandoned(
-                **self._context.stamp(),
-                **self._reports.node(given_up.alternative),
-                leaf=state.tree.path_of(leaf),
-                reason=reason,
-            )
+        abandoned = ev.NodeAbandoned(
+            **self._context.stamp(),
+            **self._reports.node(given_up.alternative),
+            leaf=state.tree.path_of(leaf),
+            reason=reason,
         )
-        await self._context.commit(events)
-        for side in cut_short:
-            if side.doing is not Doing.ABSENT:
-                side.retreat()
+        await self._cutting_short.commit(
+            given_up.put_back, "its alternative was abandoned", [abandoned]
+        )

@@ -18,6 +18,7 @@ from robots.link.messages import (
     Resume,
     Sighting,
     Start,
+    WasDone,
 )
 from server.runtime.run_state import Execution
 from tasks.intervention import Intervention
@@ -45,6 +46,10 @@ class Purpose(StrEnum):
     LAST = "last"
 
 
+JUDGING = (Purpose.CHOOSE, Purpose.LAST)
+"""Looks for which what leaves have finished is judged as well."""
+
+
 class CommandSender(Protocol):
     """The service's end of the robot link."""
 
@@ -67,6 +72,7 @@ class RobotSide:
     seen: dict[str, Sighting] = field(default_factory=dict)
     gripper: Point = (0.0, 0.0, 0.0)
     looked_at: float | None = None
+    """When it last looked for a choice and judged what is finished; None if out of date."""
 
     @property
     def free(self) -> bool:
@@ -129,6 +135,7 @@ class RobotSide:
         parameters: dict[str, Any],
         size: tuple[float, float, float] | None,
         target: Location | None,
+        was_done: WasDone | None,
     ) -> None:
         self.looked_at = None
         self.holds_execution = False
@@ -142,6 +149,7 @@ class RobotSide:
                 parameters=parameters,
                 size=size,
                 target=target,
+                was_done=was_done,
             ),
         )
 
@@ -166,8 +174,9 @@ class RobotSide:
         """Note what a look saw; returns its purpose if it is the look that was last asked for."""
         self.seen = dict(looked.objects)
         self.gripper = (looked.gripper.x, looked.gripper.y, looked.gripper.z)
-        self.looked_at = time
         if looked.command != self.command or self.doing is not Doing.LOOKING:
             return None
         self.doing = Doing.IDLE
+        if self.purpose in JUDGING:
+            self.looked_at = time
         return self.purpose

@@ -23,6 +23,7 @@ from robots.link.messages import (
     Report,
     Resumed,
     StepStarted,
+    WasDone,
 )
 from server.errors import ConflictError, ServiceError
 from server.journal import events as ev
@@ -30,17 +31,18 @@ from server.journal.journal import DuplicateReceiptError, Receipt
 from server.runtime.choosing import choose
 from server.runtime.claims import Claims
 from server.runtime.context import RunContext
+from server.runtime.cutting_short import CuttingShort
 from server.runtime.dialogue_driver import DialogueDriver
 from server.runtime.failure import fail_run, why_it_stopped
 from server.runtime.giving_up import GivingUp
 from server.runtime.hardware import Hardware
 from server.runtime.inbox import Inbox, Item, Task
 from server.runtime.interventions import Interventions
-from server.runtime.placed_parts import PlacedParts, left_out_parts
 from server.runtime.pose_sink import PoseSink
 from server.runtime.presence import Presence
 from server.runtime.report_events import ReportEvents
-from server.runtime.robot_side import Doing, Purpose, RobotSide
+from server.runtime.results import Results, missing_parts, results_of
+from server.runtime.robot_side import JUDGING, Doing, Purpose, RobotSide
 from server.runtime.run_state import DialogueState, Execution
 from server.runtime.views import RunStatus
 from tasks.intervention import Intervention
@@ -69,7 +71,6 @@ class Run:
         self._poses = poses
         self._reports = ReportEvents(context, dialogues)
         self._claims = Claims(context)
-        self._placed = PlacedParts()
         self._interventions = Interventions(context)
         self._inbox = Inbox()
         self._presence = Presence(
@@ -83,7 +84,9 @@ class Run:
             tell=self._inbox.tell,
             start=self._start,
         )
-        self._giving_up = GivingUp(context, sides, dialogues, self._reports)
+        cutting_short = CuttingShort(context, sides, dialogues, self._reports)
+        self._results = Results(context, self._reports, cutting_short)
+        self._giving_up = GivingUp(context, sides, self._reports, cutting_short)
         self.ended = asyncio.Event()
 
     @property
@@ -238,8 +241,8 @@ class Run:
                 side.doing = Doing.IDLE
             case Looked():
                 purpose = side.take_look(body, self._context.clock.now())
-                if purpose in (Purpose.CHOOSE, Purpose.LAST):
-                    self._placed.note(self._context.state, side.seen)
+                if purpose in JUDGING:
+                    await self._results.judged(side, body)
                 if purpose is not None:
                     await self._looked(side, purpose, bool(body.fulfilled))
             case Intervened():
@@ -247,7 +250,7 @@ class Run:
 
     async def _looked(self, side: RobotSide, purpose: Purpose, fulfilled: bool) -> None:
         if purpose is Purpose.LAST:
-            await self._finish(side)
+            await self._finish()
             return
         dialogue = self._dialogue_of(side)
         if dialogue is not None:
@@ -292,7 +295,7 @@ class Run:
             return False
         if state.tree.done(0):
             if not state.executions:
-                side.look(Purpose.LAST)
+                self._look_at_everything(side, Purpose.LAST)
             return False
         return await self._start_something(side)
 
@@ -303,7 +306,7 @@ class Run:
             return False
         fresh = side.looked_at is not None and self._context.clock.now() - side.looked_at <= 1.0
         if not fresh:
-            side.look(Purpose.CHOOSE)
+            self._look_at_everything(side, Purpose.CHOOSE)
             return False
         assert side.hello is not None, "a free robot has said hello"
         execution = Execution(uuid4(), choice.leaf, side.robot, side.hello.boot)
@@ -323,8 +326,16 @@ class Run:
         self._start(side, execution)
         return True
 
+    def _look_at_everything(self, side: RobotSide, purpose: Purpose) -> None:
+        """Look where everything is, and whether what is finished is still there."""
+        side.look(purpose, finished=list(results_of(self._context.state)))
+
     def _start(self, side: RobotSide, execution: Execution) -> None:
         state = self._context.state
+        taken_back = state.taken_back.get(execution.leaf)
+        was_done: WasDone | None = None
+        if taken_back is not None:
+            was_done = "gone" if taken_back.because_of is None else "there"
         tree, scene = state.tree, state.scene
         part = scene.objects.get(tree.leaf_definition(execution.leaf).object or "")
         place = scene.places.get(tree.leaf_definition(execution.leaf).place or "")
@@ -335,14 +346,17 @@ class Run:
             parameters=dict(tree.leaf_definition(execution.leaf).parameters),
             size=part.size if part else None,
             target=Location(**place.pose.model_dump()) if place else None,
+            was_done=was_done,
         )
 
     # --- The end ------------------------------------------------------------------------------
 
-    async def _finish(self, side: RobotSide) -> None:
+    async def _finish(self) -> None:
+        """End the run, unless the last look has taken something back."""
         state = self._context.state
-        missing = [*left_out_parts(state), *self._placed.missing(state, side.seen)]
-        await self._context.commit([ev.RunFinished(**self._context.stamp(), missing=missing)])
+        if state.tree.done(0):
+            missing = missing_parts(state)
+            await self._context.commit([ev.RunFinished(**self._context.stamp(), missing=missing)])
 
     # --- What people ask for ------------------------------------------------------------------
 

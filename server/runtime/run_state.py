@@ -15,6 +15,7 @@ from dialogue.script import CloseReason, Expectation, Help, Script, Turn
 from server.journal import events as ev
 from server.runtime.requests import RunRequest
 from server.runtime.views import RunResult, RunStatus
+from server.transcript import finished_text
 from tasks.definition import TaskTreeDefinition
 from tasks.issue import Issue
 from tasks.resolution import Resolution
@@ -149,6 +150,7 @@ def issue_of(raised: ev.IssueRaised) -> Issue:
         step=raised.step,
         reason="" if raised.detection is None else raised.detection.explanation,
         felt=raised.detection is not None and raised.detection.felt,
+        interrupts=raised.interrupts,
     )
 
 
@@ -173,13 +175,19 @@ class RunState:
         self.accepted: dict[str, ev.InterventionAccepted] = {}
         self.intervened: set[str] = set()
         self.exhausted: set[int] = set()
+        self.taken_back: dict[int, ev.NodeUndone] = {}
+        """Leaves that were done, until a robot sets about them anew or they are done again."""
+        self.times_gone: Counter[int] = Counter()
+        """How often a leaf was done and its object then gone."""
+        self.left_out: dict[int, ev.NodeLeftOut] = {}
+        """Leaves that count as done though their object is missing, as a helper said."""
+        self.last_handled: dict[str, int] = {}
+        """Which leaf was started last for an object: the one that says where it is to be."""
         self.helped_retries: Counter[int] = Counter()
         self.issues: dict[int, list[ev.IssueRaised]] = {}
         """What was raised about each leaf, in order."""
         self.suspected: set[int] = set()
         """Leaves about which a false alarm is suspected."""
-        self.left_out: dict[int, str] = {}
-        """Leaves that a helper had left out, and who."""
         self.asks = 0
         self.helps = 0
         self.seq = started.seq
@@ -218,6 +226,8 @@ class RunState:
     def _(self, event: ev.NodeStarted) -> None:
         leaf = self.tree.index_of(event.node)
         self.tree.start(leaf, event.robot)
+        if (handled := self.tree.leaf_definition(leaf).object) is not None:
+            self.last_handled[handled] = leaf
         self.executions[event.robot] = Execution(event.execution, leaf, event.robot, event.boot)
 
     @_apply.register
@@ -225,6 +235,7 @@ class RunState:
         execution = self.executions.get(event.robot)
         if execution is not None and execution.id == event.execution:
             execution.step = event.step
+            self.taken_back.pop(execution.leaf, None)
 
     @_apply.register
     def _(self, event: ev.RobotHolding) -> None:
@@ -342,16 +353,30 @@ class RunState:
 
     @_apply.register
     def _(self, event: ev.NodeDone) -> None:
-        leaf = self.tree.index_of(event.node)
-        self.tree.finish(leaf)
-        self._end_execution(leaf)
+        self._finish(self.tree.index_of(event.node))
 
     @_apply.register
     def _(self, event: ev.NodeLeftOut) -> None:
         leaf = self.tree.index_of(event.node)
+        self._finish(leaf)
+        self.left_out[leaf] = event
+
+    def _finish(self, leaf: int) -> None:
         self.tree.finish(leaf)
-        self.left_out[leaf] = event.helper
+        self.taken_back.pop(leaf, None)
         self._end_execution(leaf)
+
+    @_apply.register
+    def _(self, event: ev.NodeReturned) -> None:
+        self.left_out.pop(self.tree.index_of(event.node), None)
+
+    @_apply.register
+    def _(self, event: ev.NodeUndone) -> None:
+        leaf = self.tree.index_of(event.node)
+        self.tree.take_back(leaf)
+        self.left_out.pop(leaf, None)
+        self.taken_back[leaf] = event
+        self.times_gone[leaf] += event.because_of is None
 
     @_apply.register
     def _(self, event: ev.NodeReset) -> None:
@@ -382,7 +407,10 @@ class RunState:
 
     @_apply.register
     def _(self, event: ev.RunFinished) -> None:
-        self._end(RunStatus.FINISHED, RunResult(reason="the task is done", missing=event.missing))
+        self._end(
+            RunStatus.FINISHED,
+            RunResult(reason=finished_text(event.missing), missing=event.missing),
+        )
 
     @_apply.register
     def _(self, event: ev.RunFailed) -> None:

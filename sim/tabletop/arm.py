@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from robots.body import ToolPose
+from robots.gripper import GripperModel, Slab
 
 SEGMENT_S = 0.5
 """How long a segment of a path takes at full speed, however long it is."""
@@ -15,7 +16,21 @@ GIVE_UP_S = 2.0
 GRIPPER_S = 0.5
 """How long the fingers take from fully open to closed."""
 
-MAX_OPENING_M = 0.09
+GRIPPER = GripperModel(
+    min_width_m=0.010,
+    max_width_m=0.078,
+    max_opening_m=0.090,
+    max_mass_kg=0.5,
+    tip_reach_m=0.010,
+    pad_above_tip_m=0.0,
+    overlap_m=0.007,
+    deepest_m=0.025,
+    link_m=0.0,
+    link_offset_m=0.0,
+    fingers=(Slab(0.0, 0.010, 0.020),),
+    palm=(Slab(0.070, 0.110, 0.050),),
+)
+"""Two thin fingers that slide; it takes what the workcell's takes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,12 +127,17 @@ class Gripper:
     @property
     def opening(self) -> bool:
         """Whether the fingers are on their way apart."""
-        return self._target_m == MAX_OPENING_M
+        return self._target_m is not None and self._target_m > self._start_m
 
     @property
     def closing(self) -> bool:
         """Whether the fingers are on their way together."""
         return self._target_m == 0.0
+
+    @property
+    def started_at_m(self) -> float:
+        """How far apart the fingers were when they began to move."""
+        return self._start_m
 
     @property
     def progress(self) -> float:
@@ -126,8 +146,9 @@ class Gripper:
         way = self._target_m - self._start_m
         return (self.opening_m - self._start_m) / way if way else 1.0
 
-    def open(self) -> None:
-        self._move_to(MAX_OPENING_M)
+    def open(self, opening_m: float) -> None:
+        """Move the fingers to be so far apart, as far as they go."""
+        self._move_to(min(opening_m, GRIPPER.max_opening_m))
 
     def close(self) -> None:
         self._move_to(0.0)
@@ -145,7 +166,7 @@ class Gripper:
     def advance(self, duration_s: float) -> None:
         if self._target_m is None:
             return
-        reach = MAX_OPENING_M * duration_s / GRIPPER_S
+        reach = GRIPPER.max_opening_m * duration_s / GRIPPER_S
         left = self._target_m - self.opening_m
         if abs(left) <= reach + 1e-9:
             self.opening_m = self._target_m

@@ -7,7 +7,8 @@ from types import MappingProxyType
 import numpy as np
 
 from robots.body import ArmPath, Camera, Matrix4, Reach, ToolPose
-from sim.tabletop.arm import StraightPath
+from robots.gripper import GripperModel
+from sim.tabletop.arm import GRIPPER, StraightPath
 from sim.tabletop.state import CONTROL_PERIOD_S, PUSH_N, TabletopState
 
 _HIGHEST_M = 1.2
@@ -64,8 +65,12 @@ class TabletopBody:
     def stop(self) -> None:
         self._state.arm.stop()
 
-    def open_gripper(self) -> None:
-        self._state.gripper.open()
+    @property
+    def gripper(self) -> GripperModel:
+        return GRIPPER
+
+    def open_gripper(self, opening_m: float | None = None) -> None:
+        self._state.gripper.open(GRIPPER.max_opening_m if opening_m is None else opening_m)
 
     def close_gripper(self) -> None:
         self._state.gripper.close()

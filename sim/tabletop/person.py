@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 from sim.acts import PULL_M_PER_S, Acts
 from sim.footprint import Footprint
-from sim.tabletop.arm import MAX_OPENING_M
+from sim.tabletop.arm import GRIPPER
 from sim.tabletop.part import PartPose, TablePart, Whereabouts
 from sim.tabletop.state import CONTROL_PERIOD_S, TabletopState
 from tasks.scene import Pose
@@ -166,7 +166,7 @@ class Person(Acts[TablePart, PartPose]):
         held_out = (
             not state.arm.moving
             and state.held is None
-            and width <= state.gripper.opening_m <= MAX_OPENING_M
+            and width <= state.gripper.opening_m <= GRIPPER.max_opening_m
         )
         part.give_to(Whereabouts.WITH_PERSON, shown=held_out)
         if held_out:

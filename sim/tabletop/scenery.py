@@ -7,12 +7,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robots.body import CameraImage, Matrix4, ToolPose
+from sim.depth_noise import DepthNoise, Pinhole
+from sim.lighting import Lighting
 from sim.raster import Light, Mesh, Rasterizer, RenderedImage, box_triangles
 from sim.tabletop.part import PartPose, TablePart
 from sim.tabletop.state import CONTROL_PERIOD_S, TabletopState
 
-HEAD_SIZE = (320, 240)
-HEAD_FOCAL_PX = 263.0
+HEAD_SIZE = (640, 480)
+HEAD_FOCAL_PX = 526.0
 HEAD_TILT_RAD = math.radians(30.0)
 FOREARM_SIZE = (160, 120)
 FOREARM_FOCAL_PX = 104.0
@@ -22,7 +24,7 @@ _FOREARM_ABOVE_M = 0.18
 _TABLE_THICKNESS_M = 0.04
 _FLOOR_BGR = (96, 96, 96)
 _GREY = (0.45, 0.45, 0.45)
-_TABLE_COLOR = (0.72, 0.70, 0.68)
+TABLE_COLOR = (0.72, 0.70, 0.68)
 BLOCKER_COLOR = (0.30, 0.30, 0.32)
 BLOCKER_SIZE_M = (0.10, 0.10, 0.30)
 
@@ -53,7 +55,7 @@ class Scenery:
                 Mesh(_FINGER, _GREY),
                 Mesh(_PALM, _GREY),
                 Mesh(box_triangles(BLOCKER_SIZE_M), BLOCKER_COLOR),
-                Mesh(top, _TABLE_COLOR),
+                Mesh(top, TABLE_COLOR),
             ]
         )
         count = len(self._parts) + 5
@@ -112,13 +114,16 @@ class TabletopCamera:
     has_depth: bool
 
     def __init__(
-        self, state: TabletopState, scenery: Scenery, noise: float, rng: np.random.Generator
+        self,
+        state: TabletopState,
+        scenery: Scenery,
+        lighting: Lighting,
+        depth_noise: DepthNoise,
     ) -> None:
-        """`noise` is the standard deviation of each channel in grey levels."""
         self._state = state
         self._scenery = scenery
-        self._noise = noise
-        self._rng = rng
+        self._lighting = lighting
+        self._depth_noise = depth_noise
 
     @property
     def period_s(self) -> float:
@@ -132,25 +137,25 @@ class TabletopCamera:
         image, _ = self.capture_with_ids()
         return image
 
-    def capture_with_ids(self, light: Light | None = None) -> tuple[CameraImage, NDArray[np.int32]]:
+    def capture_with_ids(self) -> tuple[CameraImage, NDArray[np.int32]]:
         """A picture, and which of the scene's objects each pixel shows (for training only)."""
-        pose = self.pose()
-        rendered = self._scenery.render(pose, self.size, self.focal_px, light or Light())
+        pose, time_s = self.pose(), self._state.time_s
+        light = self._lighting.light_at(time_s)
+        rendered = self._scenery.render(pose, self.size, self.focal_px, light)
+        center_px = ((self.size[0] - 1) / 2, (self.size[1] - 1) / 2)
+        depth_m = None
+        if self.has_depth:
+            lens = Pinhole(self.focal_px, center_px)
+            depth_m = self._depth_noise.measure(rendered.depth_m, rendered.bgr, lens)
         image = CameraImage(
-            bgr=self._with_noise(rendered.bgr),
-            depth_m=rendered.depth_m if self.has_depth else None,
+            bgr=self._lighting.expose(rendered.bgr, time_s),
+            depth_m=depth_m,
             pose=pose,
             focal_px=self.focal_px,
-            center_px=((self.size[0] - 1) / 2, (self.size[1] - 1) / 2),
-            time=self._state.time_s,
+            center_px=center_px,
+            time=time_s,
         )
         return image, rendered.ids
-
-    def _with_noise(self, bgr: NDArray[np.uint8]) -> NDArray[np.uint8]:
-        if self._noise <= 0.0:
-            return bgr
-        noisy = bgr + self._rng.normal(0.0, self._noise, bgr.shape)
-        return np.clip(np.rint(noisy), 0, 255).astype(np.uint8)
 
 
 class HeadCamera(TabletopCamera):
@@ -161,9 +166,13 @@ class HeadCamera(TabletopCamera):
     has_depth = True
 
     def __init__(
-        self, state: TabletopState, scenery: Scenery, noise: float, rng: np.random.Generator
+        self,
+        state: TabletopState,
+        scenery: Scenery,
+        lighting: Lighting,
+        depth_noise: DepthNoise,
     ) -> None:
-        super().__init__(state, scenery, noise, rng)
+        super().__init__(state, scenery, lighting, depth_noise)
         self._pose = _look_at_table(state)
 
     def pose(self) -> Matrix4:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from robots.body import ToolPose
-from sim.tabletop.arm import MAX_OPENING_M, Arm, Gripper
+from sim.tabletop.arm import GRIPPER, Arm, Gripper
 from sim.tabletop.part import PartPose, TablePart, Whereabouts
 from sim.tabletop.resting import on_top, settle
 from tasks.scene import Scene
@@ -70,7 +70,7 @@ class TabletopState:
         self.home = Home.beside(scene)
         self.arm = Arm(self.home.neutral)
         self.gripper = Gripper()
-        self.gripper.opening_m = MAX_OPENING_M
+        self.gripper.opening_m = GRIPPER.max_opening_m
         self.parts: Mapping[str, TablePart] = {
             name: TablePart(name, definition, _start_pose(scene, name, rng))
             for name, definition in scene.objects.items()
@@ -100,7 +100,7 @@ class TabletopState:
         self.touching = False
         self.held = None
         self.arm.jump(self.home.neutral)
-        self.gripper.grip(MAX_OPENING_M)
+        self.gripper.grip(GRIPPER.max_opening_m)
 
     def ahead_of_arm(self, distance_m: float) -> tuple[float, float]:
         """A point in the plane towards which the arm is on its way, or will be from neutral."""
@@ -194,7 +194,7 @@ class TabletopState:
         cos, sin = math.cos(tool.yaw), math.sin(tool.yaw)
         dx, dy = pose.x - tool.x, pose.y - tool.y
         at = HeldAt(dx * cos + dy * sin, dy * cos - dx * sin, up, pose.yaw - tool.yaw)
-        fits = abs(at.along) + box.half_width(-at.yaw) <= MAX_OPENING_M / 2
+        fits = abs(at.along) + box.half_width(-at.yaw) <= self.gripper.started_at_m / 2
         beside = abs(at.aside) <= box.half_width(math.pi / 2 - at.yaw) + _FINGER_M
         return at if fits and beside else None
 

@@ -10,6 +10,9 @@ from pydantic import Field
 
 from robots.body import Reach, ToolPose
 from robots.link.messages import ShownObject, ShownPose
+from sim.depth_noise import DepthNoise
+from sim.lighting import Lighting
+from sim.raster import Light
 from sim.tabletop.body import TabletopBody
 from sim.tabletop.part import PartPose, TablePart, Whereabouts
 from sim.tabletop.person import Person
@@ -28,11 +31,15 @@ REACH_MAX_M = 0.79
 class TabletopOptions(StrictModel):
     """What a run may choose about the world.
 
-    `camera_noise`: standard deviation of each colour channel, in grey levels of 255. `reach_m`:
-    how far from its base the robot can grasp; by default at least to every place of the scene.
+    `camera_noise`: standard deviation of each colour channel, in grey levels of 255. `light`: how
+    far light and exposure vary by the seed and with time, from 0 (not at all) to 1. `depth_noise`:
+    how noisy the head camera's depth is, from 0 (not at all) to 1 (as a Kinect's). `reach_m`: how
+    far from its base the robot can grasp; by default at least to every place of the scene.
     """
 
     camera_noise: Annotated[float, Field(ge=0.0, le=30.0, strict=False)] = 0.0
+    light: Annotated[float, Field(ge=0.0, le=1.0, strict=False)] = 0.0
+    depth_noise: Annotated[float, Field(ge=0.0, le=1.0, strict=False)] = 0.0
     reach_m: Annotated[float, Field(ge=REACH_MIN_M, le=10.0, strict=False)] | None = None
 
 
@@ -42,13 +49,15 @@ class TabletopWorld:
     def __init__(self, scene: Scene, seed: int, options: TabletopOptions | None = None) -> None:
         self.scene = scene
         chosen = options or TabletopOptions()
-        layout_rng, noise_rng = np.random.default_rng(seed).spawn(2)
+        layout_rng, light_rng, depth_rng = np.random.default_rng(seed).spawn(3)
         self._state = TabletopState(scene, layout_rng)
         self._person = Person(self._state)
         self._state.person_acts = self._person.act
         scenery = Scenery(self._state)
-        self.head = HeadCamera(self._state, scenery, chosen.camera_noise, noise_rng)
-        self.forearm = ForearmCamera(self._state, scenery, chosen.camera_noise, noise_rng)
+        lighting = Lighting(Light(), chosen.light, chosen.camera_noise, light_rng)
+        depth_noise = DepthNoise(chosen.depth_noise, depth_rng)
+        self.head = HeadCamera(self._state, scenery, lighting, depth_noise)
+        self.forearm = ForearmCamera(self._state, scenery, lighting, depth_noise)
         self._body = TabletopBody(
             self._state,
             {"head": self.head, "forearm": self.forearm},

@@ -12,7 +12,7 @@ from tasks.scene import Scene, Table
 _FLOOR_HALF_M = 4.0
 _SLAB_M = 0.04
 _FLOOR_COLOR = (0.60, 0.60, 0.58, 1.0)
-_TABLE_COLOR = (0.80, 0.78, 0.74, 1.0)
+TABLE_COLOR = (0.80, 0.78, 0.74, 1.0)
 _TABLE_FRICTION = 0.6
 
 _APART_M = 0.004
@@ -109,7 +109,7 @@ def _create_table(client: Client, table: Table) -> int:
         client.createVisualShape(
             client.GEOM_BOX,
             halfExtents=[half_x, half_y, _SLAB_M / 2],
-            rgbaColor=_TABLE_COLOR,
+            rgbaColor=TABLE_COLOR,
             visualFramePosition=[0.0, 0.0, half_z - _SLAB_M / 2],
         ),
         [*table.center, half_z],

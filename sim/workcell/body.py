@@ -5,18 +5,19 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from robots.body import ArmPath, Camera, Matrix4, Reach, ToolPose
+from robots.gripper import GripperModel
 from robots.motion.curve import JointCurve
 from robots.motion.kinematics import Joints
 from robots.motion.limits import MotionLimits
 from robots.motion.planner import JointPath, PathPlanner, PathSegment
 from robots.motion.timing import TimedMotion
 from sim.workcell.finger_motion import FingerMotion
+from sim.workcell.gripper import PR2_GRIPPER, finger_angle_rad
 from sim.workcell.physics import CONTROL_HZ
 from sim.workcell.pr2 import Pr2
 from sim.workcell.robot_model import (
     ARM_JOINTS,
     FINGER_JOINTS,
-    FINGERS_OPEN_RAD,
     MODEL,
     NEUTRAL_RAD,
     PREFERRED_RAD,
@@ -145,11 +146,16 @@ class WorkcellBody:
         self._target = self._pr2.arm_joints()
         self._gripper.stop()
 
-    def open_gripper(self) -> None:
-        self._gripper.move_to(FINGERS_OPEN_RAD)
+    @property
+    def gripper(self) -> GripperModel:
+        return PR2_GRIPPER
+
+    def open_gripper(self, opening_m: float | None = None) -> None:
+        wanted_m = PR2_GRIPPER.max_opening_m if opening_m is None else opening_m
+        self._gripper.open_to(finger_angle_rad(wanted_m))
 
     def close_gripper(self) -> None:
-        self._gripper.move_to(0.0)
+        self._gripper.close()
 
     @property
     def moving(self) -> bool:

@@ -5,11 +5,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from robots.body import CameraImage, Matrix4
-from sim.workcell.lighting import Lighting
+from sim.depth_noise import DepthNoise, Pinhole
+from sim.lighting import Lighting
 from sim.workcell.rendering import Renderer, Rendering, View
 from sim.workcell.robot_model import FOREARM_FOV_RAD, HEAD_FOV_RAD
 
-HEAD_SIZE = (320, 240)
+HEAD_SIZE = (640, 480)
 FOREARM_SIZE = (160, 120)
 
 
@@ -44,6 +45,7 @@ class WorkcellCamera:
         optics: Optics,
         renderer: Renderer,
         lighting: Lighting,
+        depth_noise: DepthNoise,
         pose: Callable[[], Matrix4],
         time_s: Callable[[], float],
         arrangement: Callable[[], bytes],
@@ -52,6 +54,7 @@ class WorkcellCamera:
         self._optics = optics
         self._renderer = renderer
         self._lighting = lighting
+        self._depth_noise = depth_noise
         self._pose = pose
         self._time_s = time_s
         self._arrangement = arrangement
@@ -76,13 +79,17 @@ class WorkcellCamera:
         """A picture and what it was rendered to, for training and for tests to judge by."""
         optics = self._optics
         view = View(self.pose(), optics.size, optics.focal_px, optics.near_m)
-        rendering = self._renderer.render(view, self._lighting.light)
+        time_s = self._time_s()
+        rendering = self._renderer.render(view, self._lighting.light_at(time_s))
+        lens = Pinhole(optics.focal_px, view.center_px)
         image = CameraImage(
-            bgr=self._lighting.expose(rendering.bgr),
-            depth_m=rendering.depth_m if optics.has_depth else None,
+            bgr=self._lighting.expose(rendering.bgr, time_s),
+            depth_m=self._depth_noise.measure(rendering.depth_m, rendering.bgr, lens)
+            if optics.has_depth
+            else None,
             pose=view.pose,
             focal_px=optics.focal_px,
             center_px=view.center_px,
-            time=self._time_s(),
+            time=time_s,
         )
         return image, rendering

@@ -1,6 +1,6 @@
 """Opening and closing: where the fingers are commanded to, cycle by cycle."""
 
-from sim.workcell.robot_model import FINGERS_OPEN_RAD
+from sim.workcell.gripper import FINGERS_OPEN_RAD
 
 _GRIPPER_CYCLES = 120
 _GRIPPER_RAMP_CYCLES = 60
@@ -14,6 +14,7 @@ class FingerMotion:
         self.target_rad = FINGERS_OPEN_RAD
         self._from_rad = FINGERS_OPEN_RAD
         self._to_rad = FINGERS_OPEN_RAD
+        self._closing = False
         self._cycle = _GRIPPER_CYCLES
 
     @property
@@ -26,11 +27,16 @@ class FingerMotion:
 
     @property
     def closing(self) -> bool:
-        return self._to_rad < FINGERS_OPEN_RAD
+        """Whether the fingers are closed, on something or not, or on their way together."""
+        return self._closing
 
-    def move_to(self, angle_rad: float) -> None:
-        self._from_rad, self._to_rad = self.target_rad, angle_rad
-        self._cycle = 0
+    def open_to(self, angle_rad: float) -> None:
+        self._move_to(angle_rad)
+        self._closing = False
+
+    def close(self) -> None:
+        self._move_to(0.0)
+        self._closing = True
 
     def stop(self) -> None:
         """Hold the fingers where they are commanded to now; a grasp keeps its force."""
@@ -42,3 +48,7 @@ class FingerMotion:
             self._cycle += 1
             done = min(1.0, self._cycle / _GRIPPER_RAMP_CYCLES)
             self.target_rad = self._from_rad + (self._to_rad - self._from_rad) * done
+
+    def _move_to(self, angle_rad: float) -> None:
+        self._from_rad, self._to_rad = self.target_rad, angle_rad
+        self._cycle = 0

@@ -130,6 +130,8 @@ def _create_body(client: Client, definition: SceneObject) -> int:
         lateralFriction=_FRICTION,
         spinningFriction=_SPIN_FRICTION,
         rollingFriction=0,
+        # Without an anchor, friction holds velocities only: what is grasped creeps sideways.
+        frictionAnchor=1,
     )
     return body_id
 

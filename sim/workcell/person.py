@@ -288,7 +288,9 @@ class Person(Acts[Part, PartPose]):
     def _pose_between_fingers(self, part: Part) -> PartPose:
         """Upright, with its thin sides to the fingers, grasped where the robot would."""
         definition = part.definition
-        grasp = grasp_of(CataloguePart(part.name, definition.size, definition.knob))
+        grasp = grasp_of(
+            CataloguePart(part.name, definition.size, definition.knob), self._body.gripper
+        )
         tool = self._pr2.tool.pose(self._pr2.arm_joints())
         x, y, z = (float(value) for value in tool[:3, 3])
         yaw = math.atan2(tool[1, 1], tool[0, 1]) - grasp.yaw

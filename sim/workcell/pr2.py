@@ -1,6 +1,5 @@
 """The PR2 in the physics engine: joints, motors, finger coupling and what its sensors feel."""
 
-import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -8,12 +7,12 @@ import numpy as np
 
 from robots.body import Matrix4
 from robots.motion.kinematics import Joints, KinematicChain
+from sim.workcell.gripper import FINGERS_OPEN_RAD, inner_side_m
 from sim.workcell.physics import Client, Point
 from sim.workcell.quiet import silenced
 from sim.workcell.robot_model import (
     ARM_JOINTS,
     FINGER_JOINTS,
-    FINGERS_OPEN_RAD,
     FOREARM_CAMERA_FRAME,
     HEAD_CAMERA_FRAME,
     NEUTRAL_RAD,
@@ -41,10 +40,6 @@ _TIP_TORQUE_NM = 100.0
 _FINGER_GAINS = (0.1, 0.1, 0.5, 0.5)
 _FINGER_FRICTION = 1.2
 _FINGER_SPIN_FRICTION = 0.02
-
-_FINGER_LENGTH_M = 0.09137
-_FINGER_OFFSET_M = 0.00495
-"""From a finger's joint to its tip's joint, along and across the closed finger."""
 
 _WRIST_TO_TOOL_M = 0.18
 
@@ -145,7 +140,7 @@ class Pr2:
 
     def gripper_opening_m(self) -> float:
         """The distance between the finger tips, which stay parallel."""
-        return sum(_inner_side_m(angle) for angle in self.finger_angles())
+        return sum(inner_side_m(angle) for angle in self.finger_angles())
 
     def touched_by(self, body_id: int) -> tuple[bool, bool]:
         """Whether the left and the right finger touch a body."""
@@ -159,7 +154,7 @@ class Pr2:
         if not contacts:
             return 0.0
         tool = self.tool.pose(self.arm_joints())
-        inner = [_inner_side_m(angle) for angle in self.finger_angles()]
+        inner = [inner_side_m(angle) for angle in self.finger_angles()]
         total = np.zeros(3)
         for contact in contacts:
             if contact[1] == contact[2] or self._is_between_fingers(contact, tool, inner):
@@ -209,8 +204,3 @@ class Pr2:
         for name, link in (("base", -1), *link_of.items()):
             color = _GRIPPER_COLOR if "gripper" in name else _ARM_COLOR
             self._client.changeVisualShape(self.body_id, link, rgbaColor=color)
-
-
-def _inner_side_m(angle_rad: float) -> float:
-    """How far the inner side of a finger's tip is from the middle of the gripper."""
-    return _FINGER_LENGTH_M * math.sin(angle_rad) + _FINGER_OFFSET_M * (math.cos(angle_rad) - 1.0)

@@ -36,9 +36,6 @@ SHOULDER_FRAME = "r_shoulder_pan_link"
 HEAD_CAMERA_FRAME = "wide_stereo_optical_frame"
 FOREARM_CAMERA_FRAME = "r_forearm_cam_optical_frame"
 
-FINGERS_OPEN_RAD = 0.45
-"""The angle of each finger of the open gripper."""
-
 NEUTRAL_RAD = (-1.9, -0.25, -1.0, -1.9, -1.0, -1.0, 0.0)
 """Arm joint angles at which the arm hides nothing of the table from the head camera."""
 

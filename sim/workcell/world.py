@@ -8,10 +8,12 @@ from typing import Any, Literal
 import numpy as np
 
 from robots.link.messages import ShownObject, ShownPose
+from sim.depth_noise import DepthNoise
+from sim.lighting import Lighting
+from sim.raster import Light
 from sim.workcell.bench import Bench
 from sim.workcell.body import PERIOD_S, WorkcellBody
 from sim.workcell.cameras import Optics, WorkcellCamera, forearm_optics, head_optics
-from sim.workcell.lighting import Lighting
 from sim.workcell.options import WorkcellOptions
 from sim.workcell.parts import Part
 from sim.workcell.person import Person
@@ -28,6 +30,7 @@ from tasks.intervention import Intervention
 from tasks.scene import Scene
 
 _GRAVITY_M_S2 = -9.81
+LIGHT = Light(direction=(0.6, -0.4, 2.0), ambient=0.60, diffuse=0.35)
 _GRASP_ITERATIONS = 100
 _REST_ITERATIONS = 20
 """Solver iterations per step: what is grasped sags with few, what lies does not."""
@@ -44,13 +47,15 @@ class WorkcellWorld:
         """Raises `WorldUnavailableError` where the physics engine or the robot is missing."""
         chosen = options or WorkcellOptions()
         self._scene = scene
-        layout_rng, light_rng, self._rng = np.random.default_rng(seed).spawn(3)
-        self._build(chosen, Lighting(chosen.light, chosen.camera_noise, light_rng))
+        layout_rng, light_rng, self._rng, depth_rng = np.random.default_rng(seed).spawn(4)
+        self._lighting = Lighting(LIGHT, chosen.light, chosen.camera_noise, light_rng)
+        self._depth_noise = DepthNoise(chosen.depth_noise, depth_rng)
+        self._build(chosen)
         self._bench.lay_out(layout_rng)
         self._settle()
         self._bench.remember_starts()
 
-    def _build(self, options: WorkcellOptions, lighting: Lighting) -> None:
+    def _build(self, options: WorkcellOptions) -> None:
         client = connect()
         client.setPhysicsEngineParameter(
             fixedTimeStep=PERIOD_S, numSolverIterations=_REST_ITERATIONS, enableFileCaching=0
@@ -62,7 +67,6 @@ class WorkcellWorld:
         self._pr2 = Pr2(client)
         self._body = WorkcellBody(self._pr2, self._rng, self._step)
         self._person = Person(client, self._bench, self._pr2, self._body)
-        self._lighting = lighting
         self._renderer: Renderer = (
             BulletRenderer(client) if options.renderer == "bullet" else FastRenderer(client)
         )
@@ -80,6 +84,7 @@ class WorkcellWorld:
             optics,
             self._renderer,
             self._lighting,
+            self._depth_noise,
             poses[name],
             self._body.time_s,
             partial(arrangement, self._client),

@@ -72,7 +72,7 @@ class DrawnScene:
     seed: int = 0
 
     def picture(
-        self, pose=HEAD_POSE, width=320, height=240, focal_px=263.0, time=0.0, with_depth=True
+        self, pose=HEAD_POSE, width=640, height=480, focal_px=526.0, time=0.0, with_depth=True
     ) -> CameraImage:
         canvas = _Canvas(pose, width, height, focal_px)
         (x0, y0), (x1, y1) = TABLE

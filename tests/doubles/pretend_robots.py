@@ -13,6 +13,7 @@ from robots.link.messages import (
     CommandBody,
     Detection,
     Finished,
+    FinishedResult,
     Held,
     Hello,
     Hold,
@@ -50,9 +51,11 @@ class PretendRobot:
 
     A stubborn one runs into them also when it goes on after a hold.
     `patient`: it lets no time pass while a question is open, as live helpers take their time.
-    `films`: two pictures follow every issue. What it misses, drops or looks for in vain is gone
-    until somebody brings it, and something is in its way from when it is blocked until somebody
-    clears it. `felt`: its issues were felt; no camera sees anything in its way then.
+    `films`: two pictures follow every issue. `thefts`: whenever one object has been placed, another
+    one (or itself) that was placed is gone, so often. `hidden_at_place`: what no look can judge.
+    What it misses, drops or looks for in vain is lost to sight until somebody brings it, and
+    something is in its way from when it is blocked until somebody clears it. `felt`: its issues
+    were felt; no camera sees anything in its way then.
     """
 
     name: str
@@ -61,11 +64,18 @@ class PretendRobot:
     boot: int = 1
     time: float = 0.0
     seq: int = 0
-    interrupting: tuple[str, ...] = ("missed", "dropped", "unreachable", "missing", "blocked")
+    interrupting: tuple[str, ...] = (
+        "missed",
+        "dropped",
+        "unreachable",
+        "missing",
+        "blocked",
+        "undone",
+    )
     commands: list[CommandBody] = field(default_factory=list)
     right: set[str] = field(default_factory=set)
     hidden: set[str] = field(default_factory=set)
-    gone: set[str] = field(default_factory=set)
+    lost: set[str] = field(default_factory=set)
     placed: set[str] = field(default_factory=set)
     obstructed: bool = False
     felt: bool = False
@@ -73,6 +83,9 @@ class PretendRobot:
     stubborn: bool = False
     patient: bool = False
     films: bool = False
+    thefts: dict[str, list[str]] = field(default_factory=dict)
+    gone: set[str] = field(default_factory=set)
+    hidden_at_place: set[str] = field(default_factory=set)
 
     def hello(self) -> Hello:
         return Hello(
@@ -170,7 +183,7 @@ class PretendRobots:
             case Intervene(intervention=deed, by=by):
                 if deed.act in (Act.PLACE, Act.PUT_BACK, Act.HAND_OVER):
                     robot.right.add(deed.object or "")
-                    robot.gone.discard(deed.object or "")
+                    robot.lost.discard(deed.object or "")
                 if deed.act is Act.PLACE:
                     robot.placed.add(deed.object or "")
                 if deed.act is Act.RELEASE:
@@ -180,13 +193,22 @@ class PretendRobots:
     async def _work(self, robot: PretendRobot, start: Start, *, resumed: bool = False) -> None:
         part = str(start.parameters.get("object"))
         faults = robot.faults.get(part, [])
+        if start.was_done is not None and not resumed and part not in robot.gone:
+            await self.report(robot, Finished(execution=start.execution, found_in_place=True))
+            return
+        if part in robot.gone and part not in robot.right:
+            await self._issue(robot, start, "undone" if start.was_done else "missing", 0)
+            holding = {"execution": start.execution, "at": "neutral"}
+            await self.report(robot, Holding.model_validate(holding))
+            return
+        robot.gone.discard(part)
         for step in range(5 if resumed else 1, 9):
             due = [each for each in faults if each[1] == step and (robot.stubborn or not resumed)]
             if due and due[0][0] in robot.interrupting:
                 faults.remove(due[0])
                 robot.right.discard(part)
                 if due[0][0] in ("missed", "dropped", "missing"):
-                    robot.gone.add(part)
+                    robot.lost.add(part)
                 robot.obstructed = due[0][0] == "blocked" and not robot.felt
                 await self._issue(robot, start, due[0][0], step)
                 at = "in_place" if due[0][0] in ("unreachable", "missing", "blocked") else "neutral"
@@ -200,6 +222,11 @@ class PretendRobots:
             if due:
                 faults.remove(due[0])
                 await self._issue(robot, start, due[0][0], step)
+        thefts = robot.thefts.get(part, [])
+        if thefts:
+            stolen = thefts.pop(0)
+            robot.gone.add(stolen)
+            robot.right.discard(stolen)
         await self.report(robot, Finished(execution=start.execution))
 
     async def _issue(self, robot: PretendRobot, start: Start, kind: str, step: int) -> None:
@@ -221,6 +248,12 @@ class PretendRobots:
             clip = ClipTaken(execution=start.execution, issue=kind, pictures=pictures)
             await self.report(robot, clip)
 
+    def _verdict(self, robot: PretendRobot, result: FinishedResult) -> str:
+        if result.object in robot.hidden_at_place:
+            return "hidden"
+        away = result.object in robot.gone and result.object not in robot.right
+        return "gone" if away else "there"
+
     async def _look(self, robot: PretendRobot, command: str, look: Look) -> None:
         fulfilled = None
         if look.expect is not None:
@@ -236,7 +269,7 @@ class PretendRobots:
                 x=0.5 if name in robot.placed else 0.4, y=y, z=0.7, yaw=0, time=robot.time
             )
             for name, y in ((f"part_{i}", 0.01 * i) for i in range(100))
-            if name not in robot.hidden | robot.gone
+            if name not in robot.hidden | robot.lost | (robot.gone - robot.right)
         }
         await self.report(
             robot,
@@ -245,5 +278,7 @@ class PretendRobots:
                 objects=seen,
                 gripper=Position(x=0.4, y=0.0, z=1.0),
                 fulfilled=fulfilled,
+                there=[each for each in look.finished if self._verdict(robot, each) == "there"],
+                gone=[each for each in look.finished if self._verdict(robot, each) == "gone"],
             ),
         )

@@ -1,24 +1,40 @@
 """A small body without physics: straight motions, drawn pictures, and faults on demand."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 from drawn_scene import HEAD_POSE, PARTS, TABLE_Z, DrawnScene, Resting
 
 from robots.body import CameraImage, Reach, ToolPose
-from robots.catalogue import Catalogue
+from robots.catalogue import Catalogue, Part
 from robots.grasp import grasp_of
+from robots.gripper import GripperModel, Slab
 from robots.link.messages import Location
 from robots.vision.color_model import ColorModel, Sample
+from robots.vision.table_view import TableView, view_table
 from tasks.scene import Table
 
 NEUTRAL = ToolPose(0.30, -0.85, 1.05, 0.0)
 HAND_OVER = ToolPose(0.45, -0.20, 1.00, 0.0)
 CYCLE_S = 1 / 60
 GRIPPER_CYCLES = 12
-OPEN_M = 0.085
+GRIPPER = GripperModel(
+    min_width_m=0.010,
+    max_width_m=0.075,
+    max_opening_m=0.085,
+    max_mass_kg=0.5,
+    tip_reach_m=0.010,
+    pad_above_tip_m=0.0,
+    overlap_m=0.007,
+    deepest_m=0.025,
+    link_m=0.0,
+    link_offset_m=0.0,
+    fingers=(Slab(0.0, 0.010, 0.020),),
+    palm=(Slab(0.090, 0.100, 0.050),),
+)
 
 
 @dataclass
@@ -100,6 +116,7 @@ class ScriptedBody:
         self._arm_moving = False
         self._gripper_left = 0
         self._gripper_closed = False
+        self._opened_m = GRIPPER.max_opening_m
         self._cameras = {
             "head": ScriptedCamera(self, "head", 0.1),
             "forearm": ScriptedCamera(self, "forearm", period_s),
@@ -174,7 +191,12 @@ class ScriptedBody:
         self.stops += 1
         self._arm_moving = False
 
-    def open_gripper(self) -> None:
+    @property
+    def gripper(self) -> GripperModel:
+        return GRIPPER
+
+    def open_gripper(self, opening_m: float | None = None) -> None:
+        self._opened_m = GRIPPER.max_opening_m if opening_m is None else opening_m
         self._gripper_left, self._gripper_closed = GRIPPER_CYCLES, False
         if self.in_hand is not None:
             name, relative = self.in_hand
@@ -205,8 +227,8 @@ class ScriptedBody:
 
     def gripper_opening_m(self) -> float:
         if not self._gripper_closed:
-            return OPEN_M
-        return 0.0 if self.in_hand is None else grasp_of(PARTS[self.in_hand[0]]).width_m
+            return self._opened_m
+        return 0.0 if self.in_hand is None else grasp_of(PARTS[self.in_hand[0]], GRIPPER).width_m
 
     def contact_force_n(self) -> float:
         return self.force_n
@@ -236,7 +258,7 @@ class ScriptedBody:
 
 
 def part_in_tool(name: str) -> np.ndarray:
-    grasp = grasp_of(PARTS[name])
+    grasp = grasp_of(PARTS[name], GRIPPER)
     pose = grasp.tool_pose(0.0, 0.0, 0.0, 0.0)
     return np.linalg.inv(tool_matrix(pose))
 
@@ -245,6 +267,7 @@ def _position(pose: ToolPose) -> tuple[float, float, float]:
     return pose.x, pose.y, pose.z
 
 
+@cache
 def trained_model() -> ColorModel:
     """Colours learned from one drawn picture of each part."""
     samples = {}
@@ -270,3 +293,10 @@ PLACES = {
 
 def catalogue() -> Catalogue:
     return Catalogue(PARTS, PLACES, Table())
+
+
+def view_of(image: CameraImage, parts: Mapping[str, Part] = PARTS) -> TableView:
+    """What a drawn head picture shows, with colours that were learned from drawn pictures."""
+    view = view_table(image, Table(), parts, trained_model(), {})
+    assert view is not None
+    return view

@@ -6,7 +6,7 @@ from tasks.definition import TaskTreeDefinition
 
 
 def definition_of(tree: dict[str, Any]) -> TaskTreeDefinition:
-    """The definition of a nested tree; leaves are named after their objects."""
+    """The definition of a nested tree; leaves are named after their objects if not otherwise."""
     nodes: list[dict[str, Any]] = []
 
     def add(node: dict[str, Any], parent: int | None) -> None:
@@ -17,12 +17,12 @@ def definition_of(tree: dict[str, Any]) -> TaskTreeDefinition:
                 for child in node[kind]:
                     add(child, index)
                 return
-        parameters = {key: node[key] for key in node if key != "behavior"}
+        parameters = {key: node[key] for key in node if key not in ("behavior", "name")}
         nodes.append(
             {
                 "kind": "behavior",
                 "parent": parent,
-                "name": node["object"],
+                "name": node.get("name", node["object"]),
                 "behavior": node["behavior"],
                 "parameters": parameters,
             }

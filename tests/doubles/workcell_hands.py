@@ -81,7 +81,7 @@ class Hands:
 
     def _tool_pose(self, name: str, pose: PartPose, clearance_m: float) -> ToolPose:
         definition = self.world.parts[name].definition
-        grasp = grasp_of(Part(name, definition.size, definition.knob))
+        grasp = grasp_of(Part(name, definition.size, definition.knob), self.body.gripper)
         x, y, z = pose.position
         return grasp.tool_pose(x, y, z + clearance_m, pose.yaw)
 

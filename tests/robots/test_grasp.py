@@ -7,7 +7,7 @@ import pytest
 from drawn_scene import PARTS, Resting
 from hypothesis import given
 from hypothesis import strategies as st
-from scripted_body import part_in_tool, tool_matrix
+from scripted_body import GRIPPER, part_in_tool, tool_matrix
 
 from robots.grasp import corners_in_tool, grasp_of, half_turn
 from robots.grasp import part_in_tool as grasped_part_in_tool
@@ -22,7 +22,7 @@ from robots.grasp import part_in_tool as grasped_part_in_tool
     ],
 )
 def test_parts_are_grasped_across_their_thin_side(name, height_m, yaw, width_m) -> None:
-    grasp = grasp_of(PARTS[name])
+    grasp = grasp_of(PARTS[name], GRIPPER)
     assert grasp.height_m == pytest.approx(height_m)
     assert grasp.yaw == pytest.approx(yaw)
     assert grasp.width_m == pytest.approx(width_m)
@@ -43,7 +43,7 @@ def test_half_a_turn_changes_nothing(yaw: float) -> None:
 )
 def test_corners_in_the_tool_are_those_of_the_resting_part(name, x, y, yaw) -> None:
     part, resting = PARTS[name], Resting(x, y, 0.7, yaw)
-    grasp = grasp_of(part)
+    grasp = grasp_of(part, GRIPPER)
     tool = tool_matrix(grasp.tool_pose(x, y, 0.7, yaw))
     corners = corners_in_tool(part, grasp)[0] @ tool[:3, :3].T + tool[:3, 3]
     local = (corners - resting.matrix()[:3, 3]) @ resting.matrix()[:3, :3]
@@ -66,7 +66,7 @@ def test_a_part_in_the_tool_hangs_below_it() -> None:
 def test_where_a_grasped_part_is_follows_from_where_the_tool_is(
     name: str, x: float, y: float, z: float, yaw: float
 ) -> None:
-    grasp = grasp_of(PARTS[name])
+    grasp = grasp_of(PARTS[name], GRIPPER)
     pose = tool_matrix(grasp.tool_pose(x, y, z, yaw)) @ grasped_part_in_tool(grasp)
     assert pose[:3, 3] == pytest.approx([x, y, z], abs=1e-9)
     assert pose[:3, 2] == pytest.approx([0.0, 0.0, 1.0], abs=1e-9)

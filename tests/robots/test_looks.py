@@ -44,7 +44,7 @@ def test_a_plain_look_sees_all_and_says_where_the_gripper_is() -> None:
 
 def test_the_arm_clears_the_view_first() -> None:
     bench = RobotBench()
-    bench.start("pink_bar")
+    bench.look(expect="in_gripper", object="pink_bar", within_s=1.0)
     bench.run()
     assert bench.body.tool != NEUTRAL
     bench.look()

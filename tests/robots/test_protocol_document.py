@@ -22,6 +22,7 @@ PARTS: dict[str, type[BaseModel]] = {
     "reach": m.ReachLimits,
     "executing": m.ActiveExecution,
     "detection": m.Detection,
+    "finished_result": m.FinishedResult,
     "sighting": m.Sighting,
     "clip_picture": m.ClipPicture,
     "shows": m.PoseLayout,

@@ -151,9 +151,11 @@ def test_a_report_of_a_run_cut_off_anywhere_can_be_written() -> None:
 
 def test_missing_parts_are_named_in_the_verdict() -> None:
     events = recorded()
-    part = ev.MissingPart(node="/0", name="green_leg", object="green_leg", place="its_place")
+    part = ev.MissingPart(
+        node="/0", name="green_leg", object="green_leg", place="its_place", left_out_by="ann"
+    )
     events[-1] = events[-1].model_copy(update={"missing": [part]})
-    assert "did not find green_leg at its_place" in Page(render_report(events, {})).text
+    assert "green_leg is not at its_place, as ann said" in Page(render_report(events, {})).text
 
 
 def test_report_is_written_into_a_folder_that_is_made_for_it(tmp_path: Path) -> None:

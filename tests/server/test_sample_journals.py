@@ -23,6 +23,8 @@ ADDED_SINCE = {
         "deadline_extended",
         "first_look",
         "node_left_out",
+        "node_returned",
+        "node_undone",
         "suspected_false_alarm",
     }
 }

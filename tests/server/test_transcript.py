@@ -211,11 +211,38 @@ def test_a_failed_attempt_is_told_apart_from_a_free_one() -> None:
     assert told(failed) == ["pink_bar is put back, a failed attempt: nobody helped"]
 
 
-def test_what_the_last_look_misses_is_told_before_the_end() -> None:
+def test_what_was_left_out_is_told_with_who_said_so() -> None:
+    missing = [
+        ev.MissingPart(node=f"/{i}", name=name, object=name, place=f"{name}_place", left_out_by=by)
+        for i, (name, by) in enumerate([("top", "ann"), ("leg", "bob"), ("bar", "ann")])
+    ]
+    assert told(ev.RunFinished(**EVENT, missing=missing)) == [
+        "top is not at top_place, as ann said",
+        "leg is not at leg_place, as bob said",
+        "bar is not at bar_place, as ann said",
+        "the run has finished: the task is done without top and bar, as ann said "
+        "and without leg, as bob said",
+    ]
+
+
+def test_what_an_older_mend_missed_is_told_without_a_helper() -> None:
     part = ev.MissingPart(node="/0", name="top", object="top", place="top_place")
     assert told(ev.RunFinished(**EVENT, missing=[part])) == [
-        "the last look misses top at top_place",
-        "the run has finished: the task is done",
+        "top is not at top_place",
+        "the run has finished: the task is done without top",
+    ]
+
+
+def test_a_leaf_that_is_done_no_longer_says_why() -> None:
+    undone = ev.NodeUndone(**NODE, robot="pr2", reason="it is no longer at its place")
+    assert told(undone) == ["pink_bar is done no longer: it is no longer at its place"]
+
+
+def test_a_leaf_that_is_left_out_and_then_seen_is_told() -> None:
+    left_out = ev.NodeLeftOut(**NODE, robot="pr2", helper="ann")
+    assert told(left_out) == ["pink_bar is left out, as ann said"]
+    assert told(ev.NodeReturned(**NODE, robot="pr2")) == [
+        "robot sees pink_bar, which was left out, at its place"
     ]
 
 

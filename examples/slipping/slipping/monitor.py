@@ -4,6 +4,7 @@ from typing import ClassVar
 
 from pydantic import Field
 
+from robots.behaviors import Phase
 from robots.link.messages import Detection
 from robots.monitors import Meanwhile, Monitor, MonitorView
 from robots.vision.forearm import GripState
@@ -18,11 +19,11 @@ class SlippingParameters(StrictModel):
 
 
 class Slipping(Monitor[SlippingParameters]):
-    """Raises `slipping` in steps 5 and 6; the robot goes on slowly."""
+    """Raises `slipping` while it is carried and placed; the robot goes on slowly."""
 
     issue: ClassVar[str] = "slipping"
-    start_step: ClassVar[int] = 5
-    stop_step: ClassVar[int] = 6
+    behaviors: ClassVar[frozenset[str]] = frozenset({"pick_and_place"})
+    phases: ClassVar[frozenset[Phase]] = frozenset({Phase.CARRY, Phase.PLACE})
     meanwhile: ClassVar[Meanwhile] = Meanwhile.SLOW_DOWN
     camera: ClassVar[str | None] = "forearm"
     parameters: ClassVar[type[StrictModel]] = SlippingParameters

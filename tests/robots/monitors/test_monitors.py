@@ -7,6 +7,7 @@ import pytest
 from drawn_scene import PARTS, TABLE_Z, DrawnScene
 from pydantic import ValidationError
 
+from robots.behaviors.phase import Phase
 from robots.body import Reach
 from robots.monitors.blocked import Blocked
 from robots.monitors.dropped import Dropped
@@ -26,6 +27,7 @@ SEEN = HeadSighting(0.5, -0.2, TABLE_Z, 0.0, TABLE_Z + 0.04, True, 1.0, BLOB, 0.
 VIEW = MonitorView(
     time_s=1.0,
     step=0,
+    phase=Phase.PREPARE,
     part=PARTS["pink_bar"],
     needs_help=False,
     reach=Reach((0.0, 0.0), 0.3, 0.8),
@@ -42,22 +44,39 @@ def grip(state: GripState) -> GripReading:
 
 
 @pytest.mark.parametrize(
-    ("kind", "start", "stop", "meanwhile"),
+    ("kind", "phases", "meanwhile"),
     [
-        (Missing, 0, 0, Meanwhile.DO_NOT_START),
-        (Unreachable, 0, 0, Meanwhile.DO_NOT_START),
-        (Missed, 1, 4, Meanwhile.GO_TO_NEUTRAL),
-        (Dropped, 4, 5, Meanwhile.GO_TO_NEUTRAL),
-        (Positioning, 5, 5, Meanwhile.SLOW_DOWN),
-        (Blocked, 0, 8, Meanwhile.STOP_IN_PLACE),
+        (Missing, "prepare", Meanwhile.DO_NOT_START),
+        (Unreachable, "prepare", Meanwhile.DO_NOT_START),
+        (Missed, "approach grasp lift", Meanwhile.GO_TO_NEUTRAL),
+        (Dropped, "lift carry", Meanwhile.GO_TO_NEUTRAL),
+        (Positioning, "carry", Meanwhile.SLOW_DOWN),
+        (
+            Blocked,
+            "prepare approach grasp lift carry place release retreat",
+            Meanwhile.STOP_IN_PLACE,
+        ),
     ],
 )
-def test_each_is_registered_and_watches_its_steps(kind, start, stop, meanwhile) -> None:
+def test_each_is_registered_and_watches_its_phases(kind, phases, meanwhile) -> None:
     assert load_plugins("mend.monitors")[kind.issue] is kind
     monitor: Monitor = kind.create({})
-    assert [step for step in range(10) if monitor.watches(step)] == list(range(start, stop + 1))
+    watched = [phase for phase in Phase if monitor.watches("pick_and_place", phase)]
+    assert watched == phases.split()
     assert monitor.meanwhile is meanwhile
     assert monitor.interrupts is (kind is not Positioning)
+
+
+@pytest.mark.parametrize("kind", [Missed, Dropped, Positioning, Blocked])
+def test_what_pick_and_place_must_not_do_is_no_fault_of_another_behavior(kind) -> None:
+    monitor: Monitor = kind.create({})
+    assert not any(monitor.watches("push", phase) for phase in Phase)
+
+
+@pytest.mark.parametrize("kind", [Missing, Unreachable])
+def test_what_no_behavior_can_do_without_is_watched_before_any(kind) -> None:
+    monitor: Monitor = kind.create({})
+    assert [phase for phase in Phase if monitor.watches("push", phase)] == [Phase.PREPARE]
 
 
 @pytest.mark.parametrize("kind", [Missing, Unreachable, Missed, Dropped, Positioning, Blocked])
@@ -79,19 +98,17 @@ def test_missing_speaks_of_what_is_nowhere_but_not_of_what_is_in_the_gripper() -
 
 
 @pytest.mark.parametrize(
-    ("x", "z", "path_found", "says"),
+    ("x", "z", "refusal", "says"),
     [
-        (0.95, TABLE_Z, True, "0.97 m away; the arm grasps 0.30 to 0.80 m"),
-        (0.1, TABLE_Z, True, "0.22 m away"),
-        (0.5, TABLE_Z, False, "finds no path"),
-        (0.5, TABLE_Z - 0.05, True, "toppled over"),
+        (0.95, TABLE_Z, None, "0.97 m away; the arm grasps 0.30 to 0.80 m"),
+        (0.1, TABLE_Z, None, "0.22 m away"),
+        (0.5, TABLE_Z, "the arm finds no path for it", "finds no path"),
+        (0.5, TABLE_Z - 0.05, None, "toppled over"),
     ],
 )
-def test_unreachable_says_why(x, z, path_found, says) -> None:
+def test_unreachable_says_why(x, z, refusal, says) -> None:
     sighting = replace(SEEN, x=x, z=z)
-    detection = Unreachable.create({}).check(
-        replace(VIEW, sighting=sighting, path_found=path_found)
-    )
+    detection = Unreachable.create({}).check(replace(VIEW, sighting=sighting, refusal=refusal))
     assert detection is not None
     assert says in detection.explanation
     assert detection.center == BLOB.center

@@ -48,8 +48,10 @@ def test_every_part_is_found_among_all_others(light: float, noise: float) -> Non
 
 def test_table_and_grey_things_belong_to_no_object() -> None:
     scene = DrawnScene(grey_boxes=[((0.5, -0.2, 0.7), (0.2, 0.2, 0.2))], noise=4.0)
-    labels = trained_model().segment(scene.picture().bgr).of_any()
-    assert np.count_nonzero(labels) < 0.002 * labels.size
+    segmentation = trained_model().segment(scene.picture().bgr)
+    for name in PARTS:
+        mask = segmentation.mask(name)
+        assert np.count_nonzero(mask) < 0.002 * mask.size
 
 
 def test_sixty_four_colors_are_told_apart() -> None:
@@ -69,7 +71,11 @@ def test_red_is_found_on_both_ends_of_the_hue_circle() -> None:
 def test_a_saved_model_sees_the_same(tmp_path) -> None:
     settings = ColorSettings(hue_bins=45, saturation_bins=16, min_value=20)
     colors = {"a": (20, 200, 30), "b": (220, 30, 40)}
-    model = ColorModel.train({name: [sample(bgr)] for name, bgr in colors.items()}, settings)
+    model = ColorModel.train(
+        {name: [sample(bgr)] for name, bgr in colors.items()},
+        settings,
+        {"a": (0.1, 0.9, 0.2)},
+    )
     path = tmp_path / "colors.npz"
     model.save(path)
     loaded = ColorModel.load(path)
@@ -77,6 +83,7 @@ def test_a_saved_model_sees_the_same(tmp_path) -> None:
     assert loaded.settings.hue_bins == 45
     assert loaded.settings.min_value == 20
     bgr = DrawnScene({"green_leg": Resting(0.5, 0.0), "blue_leg": Resting(0.6, -0.2)}).picture().bgr
+    assert loaded.tints == model.tints == {"a": (0.1, 0.9, 0.2)}
     for name in colors:
         assert np.array_equal(model.segment(bgr).mask(name), loaded.segment(bgr).mask(name))
 
@@ -87,9 +94,40 @@ def test_an_object_it_was_not_trained_for_is_named() -> None:
         model.segment(patch((0, 0, 0))).mask("b")
 
 
-def test_a_grey_object_cannot_be_learned() -> None:
-    with pytest.raises(ColorModelError, match="no pixel of 'grey' is coloured enough"):
-        ColorModel.train({"grey": [sample((120, 120, 120))]})
+def test_a_grey_object_has_no_hue_and_a_coloured_one_has() -> None:
+    model = ColorModel.train({"grey": [sample((120, 120, 120))], "red": [sample((20, 20, 220))]})
+    assert not model.has_hue("grey")
+    assert model.has_hue("red")
+    assert not model.segment(patch((120, 120, 120))).mask("grey").any()
+
+
+def test_objects_of_one_hue_have_each_others_pixels() -> None:
+    model = ColorModel.train(
+        {
+            "one": [sample((30, 30, 200))],
+            "same": [sample((28, 31, 196))],
+            "b": [sample((200, 9, 9))],
+        }
+    )
+    segmentation = model.segment(patch((30, 30, 200)))
+    for name in ("one", "same"):
+        assert segmentation.mask(name).all()
+    assert not segmentation.mask("b").any()
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "alike"),
+    [
+        ((0.1, 0.5, 0.9), (0.1, 0.5, 0.9), True),
+        ((0.1, 0.5, 0.9), (0.11, 0.51, 0.9), True),
+        ((0.1, 0.5, 0.9), (0.1, 0.3, 0.9), False),
+        ((0.3, 0.3, 0.3), (0.6, 0.6, 0.6), False),
+    ],
+)
+def test_tints_tell_colors_apart_as_far_as_they_are_measured(one, other, alike: bool) -> None:
+    samples = {name: [sample((30, 30, 200))] for name in ("one", "other")}
+    model = ColorModel.train(samples, tints={"one": one, "other": other})
+    assert model.look_alike("one", "other") is alike
 
 
 def test_a_mask_of_another_size_is_refused() -> None:
@@ -110,7 +148,7 @@ def test_a_missing_file_and_another_version_are_told(tmp_path) -> None:
     with pytest.raises(ColorModelError, match="there is no colour model at"):
         ColorModel.load(path)
     np.savez(path, version=np.array(99))
-    with pytest.raises(ColorModelError, match="of version 99; this reads 1"):
+    with pytest.raises(ColorModelError, match="of version 99; this reads 2"):
         ColorModel.load(path)
     np.savez(path, names=np.array(["a"]))
     with pytest.raises(ColorModelError, match="is not a colour model"):

@@ -7,7 +7,7 @@ import pytest
 from drawn_scene import PARTS, DrawnScene
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scripted_body import forearm_pose, part_in_tool, tool_matrix, trained_model
+from scripted_body import GRIPPER, forearm_pose, part_in_tool, tool_matrix, trained_model
 
 from robots.body import ToolPose
 from robots.grasp import grasp_of
@@ -21,7 +21,7 @@ class Hand:
 
     def __init__(self, name: str, period_s: float = 1 / 30, noise: float = 0.0) -> None:
         self.part = PARTS[name]
-        self.watch = GripWatch(self.part, grasp_of(self.part), MODEL, period_s=period_s)
+        self.watch = GripWatch(self.part, grasp_of(self.part, GRIPPER), MODEL, period_s=period_s)
         self.tool = tool_matrix(ToolPose(0.5, -0.2, 0.95, 0.3))
         self.noise, self.light, self.seed = noise, 1.0, 0
 
@@ -36,7 +36,7 @@ class Hand:
             seed=self.seed,
         )
         image = scene.picture(forearm_pose(self.tool), 160, 120, 80.0, with_depth=False)
-        width = grasp_of(self.part).width_m
+        width = grasp_of(self.part, GRIPPER).width_m
         return self.watch.update(image, self.tool, width if opening_m is None else opening_m)
 
 

@@ -3,19 +3,17 @@
 import numpy as np
 import pytest
 from drawn_scene import TABLE_Z, DrawnScene, Resting
-from scripted_body import trained_model
+from scripted_body import view_of
 
 from robots.body import ToolPose
 from robots.vision.obstruction import Clearance, Obstruction, corridor, find_obstruction
 
-MODEL = trained_model()
 WAY = corridor([ToolPose(0.5, -0.4, TABLE_Z + 0.16, 0.0), ToolPose(0.5, 0.1, TABLE_Z + 0.16, 0.0)])
 BOX = ((0.5, -0.15, TABLE_Z), (0.1, 0.1, 0.2))
 
 
-def check(scene: DrawnScene, way=WAY, arm=()) -> Obstruction | None:
-    image = scene.picture()
-    return find_obstruction(image, MODEL.segment(image.bgr), way, arm, TABLE_Z, Clearance())
+def check(scene: DrawnScene, way=WAY) -> Obstruction | None:
+    return find_obstruction(view_of(scene.picture()), way, Clearance())
 
 
 def test_a_grey_box_in_the_way_is_seen_where_it_is() -> None:
@@ -37,11 +35,6 @@ def test_a_grey_box_in_the_way_is_seen_where_it_is() -> None:
 )
 def test_what_is_not_in_the_way_is_let_be(scene: DrawnScene) -> None:
     assert check(scene) is None
-
-
-def test_the_arm_does_not_block_itself() -> None:
-    above = (np.array([0.5, -0.15, TABLE_Z]), np.array([0.5, -0.15, TABLE_Z + 0.4]))
-    assert check(DrawnScene(grey_boxes=[BOX]), arm=(above,)) is None
 
 
 def test_no_way_is_never_blocked() -> None:

@@ -3,14 +3,12 @@
 import numpy as np
 import pytest
 from drawn_scene import PARTS, TABLE_Z, DrawnScene, Resting
-from scripted_body import trained_model
+from scripted_body import view_of
 
 from robots.link.messages import Location
-from robots.vision.head import locate
-from robots.vision.obstruction import Clearance, Obstruction
+from robots.vision.obstruction import Obstruction
 from robots.vision.occupancy import Fit, Room, find_occupant, room_above, room_at_place
 
-MODEL = trained_model()
 BAR_ROOM = room_at_place(PARTS["pink_bar"], Location(x=0.535, y=-0.12), TABLE_Z)
 TOP_ROOM = room_at_place(PARTS["purple_top"], Location(x=0.535, y=-0.05), TABLE_Z + 0.08)
 LEGS = {
@@ -19,9 +17,8 @@ LEGS = {
 }
 
 
-def check(scene: DrawnScene, room: Room = BAR_ROOM, arm=()) -> Obstruction | None:
-    image = scene.picture()
-    return find_occupant(image, MODEL.segment(image.bgr), room, arm, Clearance(), Fit())
+def check(scene: DrawnScene, room: Room = BAR_ROOM) -> Obstruction | None:
+    return find_occupant(view_of(scene.picture()), room, Fit())
 
 
 @pytest.mark.parametrize("noise", [0.0, 4.0])
@@ -58,23 +55,15 @@ def test_a_free_place_is_free(parts: dict[str, Resting], room: Room, noise: floa
     assert check(DrawnScene(parts, noise=noise), room) is None
 
 
-def test_the_arm_over_the_place_is_no_occupant() -> None:
-    box = ((0.535, -0.12, TABLE_Z + 0.03), (0.08, 0.08, 0.2))
-    above = (np.array([0.535, -0.12, TABLE_Z]), np.array([0.535, -0.12, TABLE_Z + 0.4]))
-    assert check(DrawnScene(grey_boxes=[box])) is not None
-    assert check(DrawnScene(grey_boxes=[box]), arm=(above,)) is None
-
-
 @pytest.mark.parametrize(("on_it", "free"), [(0.04, False), (None, True)])
 def test_what_lies_on_a_part_is_seen(on_it: float | None, free: bool) -> None:
     parts = {"pink_bar": Resting(0.5, -0.3, TABLE_Z), "green_leg": Resting(0.58, -0.3, TABLE_Z)}
     if on_it is not None:
         parts["yellow_bar"] = Resting(0.54, -0.3, TABLE_Z + on_it, 1.2)
-    image = DrawnScene(parts).picture()
-    segmentation = MODEL.segment(image.bgr)
-    sighting = locate(image, segmentation, PARTS["pink_bar"])
+    view = view_of(DrawnScene(parts).picture())
+    sighting = view.sightings.get("pink_bar")
     assert sighting is not None
     room = room_above(PARTS["pink_bar"], sighting)
-    found = find_occupant(image, segmentation, room, (), Clearance(), Fit())
+    found = find_occupant(view, room, Fit())
     assert (found is None) is free
     assert free or found.what == "yellow_bar lies on pink_bar"

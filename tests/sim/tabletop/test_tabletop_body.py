@@ -201,9 +201,9 @@ def test_neutral_hides_nothing_from_the_head_camera(world: TabletopWorld) -> Non
         rows, columns = np.nonzero(with_arm == index)
         assert len(rows) > 20
         assert rows.min() > 0
-        assert rows.max() < 239
+        assert rows.max() < 479
         assert columns.min() > 0
-        assert columns.max() < 319
+        assert columns.max() < 639
 
 
 @given(x=st.floats(0.45, 0.65), y=st.floats(-0.5, 0.1), yaw=st.floats(-1.5, 1.5))

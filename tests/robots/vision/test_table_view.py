@@ -7,17 +7,13 @@ import pytest
 from drawn_scene import PARTS, TABLE_Z, DrawnScene, Resting
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scripted_body import trained_model
+from scripted_body import view_of
 
-from robots.vision.color_model import ColorModelError
-from robots.vision.head import HeadSighting, locate
-
-MODEL = trained_model()
+from robots.vision.head import HeadSighting
 
 
 def see(name: str, scene: DrawnScene) -> HeadSighting | None:
-    image = scene.picture()
-    return locate(image, MODEL.segment(image.bgr), PARTS[name])
+    return view_of(scene.picture()).sightings.get(name)
 
 
 def turned_by(a: float, b: float) -> float:
@@ -89,8 +85,6 @@ def test_a_half_hidden_part_is_not_called_complete() -> None:
 @pytest.mark.parametrize("yaw", [0.0, 0.15, -0.2])
 def test_a_part_that_the_border_cuts_is_measured_from_its_other_end(yaw: float) -> None:
     leg = Resting(0.5, 0.33, yaw=yaw)
-    image = DrawnScene({"green_leg": leg}).picture()
-    assert MODEL.segment(image.bgr).mask("green_leg")[:, 0].any()
     seen = see("green_leg", DrawnScene({"green_leg": leg}))
     assert seen is not None
     assert math.hypot(seen.x - leg.x, seen.y - leg.y) < 0.004
@@ -113,10 +107,3 @@ def test_the_message_gives_the_yaw_of_the_long_axis() -> None:
     assert seen is not None
     assert turned_by(seen.yaw, 0.3) < 0.02
     assert turned_by(seen.to_message(PARTS["green_leg"]).yaw, 0.3 + math.pi / 2) < 0.02
-
-
-def test_a_part_without_known_colors_is_refused() -> None:
-    image = DrawnScene().picture()
-    stranger = type(PARTS["pink_bar"])("stranger", (0.1, 0.1, 0.1))
-    with pytest.raises(ColorModelError, match="does not know 'stranger'"):
-        locate(image, MODEL.segment(image.bgr), stranger)

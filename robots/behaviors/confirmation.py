@@ -1,0 +1,38 @@
+"""After the last step: whether the object is seen where the behavior was to bring it."""
+
+from dataclasses import dataclass
+
+from robots.arm import Arm, Routine
+from robots.behaviors.preparation import LOOK_AGAIN_S, LOOKS
+from robots.body import CameraImage
+from robots.catalogue import Part
+from robots.link.messages import Location
+from robots.senses import Senses
+from robots.vision.head import HeadSighting
+from robots.vision.presence import Presence
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What the head camera showed once the arm was out of its view."""
+
+    image: CameraImage
+    sighting: HeadSighting | None
+    presence: Presence
+
+
+def look_at_outcome(part: Part, target: Location, arm: Arm, senses: Senses) -> Routine[Outcome]:
+    """Leave the head camera's view and look, again while the part is not seen at its place."""
+    yield from arm.go_to_neutral()
+    outcome = _look(part, target, senses)
+    for _ in range(LOOKS - 1):
+        if outcome.presence is Presence.THERE:
+            break
+        yield from arm.wait(LOOK_AGAIN_S)
+        outcome = _look(part, target, senses)
+    return outcome
+
+
+def _look(part: Part, target: Location, senses: Senses) -> Outcome:
+    image = senses.look()
+    return Outcome(image, senses.sight(part, image), senses.presence(image, part, target))

@@ -1,0 +1,115 @@
+"""Which of its grasps an object can be taken and placed by, and over what it has to be lifted."""
+
+import math
+from collections.abc import Iterator, Sequence
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robots.arm import Arm
+from robots.behaviors.assignment import Assignment, Findings
+from robots.behaviors.behavior import Move, SetGripper, Situation, Step
+from robots.body import ToolPose
+from robots.catalogue import Part
+from robots.clearance import in_the_way
+from robots.grasp import Grasp, grasps_of
+from robots.gripper import GripperModel
+from robots.link.messages import Location
+from robots.senses import Senses
+from robots.vision.seen_box import SeenBox
+
+Vector = NDArray[np.float64]
+
+_LIFTS_M = (0.14, 0.10, 0.07)
+"""So high above pick and place the tool point passes, where nothing tall stands on the way; lower
+where the arm does not reach so high."""
+
+_OVER_M = 0.015
+"""What is carried passes so far above the tallest thing on the way."""
+_BESIDE_M = 0.12
+"""What stands so near to the straight way is on it: half a gripper, and half of what it carries."""
+
+_MARGIN_M = 0.002
+"""Kept between the gripper and what stands beside an object."""
+
+
+def ways_to_grasp(
+    assignment: Assignment,
+    arm: Arm,
+    senses: Senses,
+    findings: Findings,
+    boxes: Sequence[SeenBox],
+) -> Iterator[Situation]:
+    """The situations in which the behavior may lay out its steps, the best first.
+
+    Raises `UngraspableError` where the gripper cannot take the object at all.
+    """
+    part, sighting = assignment.part, findings.sighting
+    found = None
+    if sighting is not None:
+        found = Location(x=sighting.x, y=sighting.y, z=sighting.z, yaw=sighting.yaw)
+    table_z = senses.catalogue.table.height
+    clear_z = _clear_z(found, assignment.target, table_z, boxes)
+    for grasp, lift_m in product(_grasps(part, arm, senses, findings), _LIFTS_M):
+        yield Situation(
+            part, found, assignment.target, table_z, arm.body.gripper, grasp, clear_z, lift_m
+        )
+
+
+def others(part: Part | None, boxes: Sequence[SeenBox]) -> list[SeenBox]:
+    """What is seen but the part itself."""
+    return [each for each in boxes if part is None or each.name != part.name]
+
+
+def crowded(steps: Sequence[Step], gripper: GripperModel, boxes: Sequence[SeenBox]) -> str | None:
+    """What stands too close to where the fingers close or open, in words; None if nothing does."""
+    pose: ToolPose | None = None
+    opening_m = 0.0
+    for step in steps:
+        if isinstance(step.action, Move):
+            pose = step.action.to
+            opening_m = step.action.opening_m or opening_m
+            continue
+        closing = step.action == SetGripper("closed")
+        if not closing:
+            opening_m = step.action.opening_m or gripper.max_opening_m
+        if pose is None or opening_m == 0.0:
+            continue
+        near = in_the_way(gripper, pose, opening_m, boxes, _MARGIN_M)
+        if near is not None:
+            where = "to grasp it" if closing else "at its place"
+            return f"{near.name or 'something unknown'} leaves no room for the fingers {where}"
+    return None
+
+
+def _grasps(
+    part: Part | None, arm: Arm, senses: Senses, findings: Findings
+) -> Sequence[Grasp | None]:
+    if part is None:
+        return [None]
+    if findings.carrying and senses.grip is not None:
+        return [senses.grip.grasp]
+    return grasps_of(part, arm.body.gripper)
+
+
+def _clear_z(
+    found: Location | None, target: Location | None, table_z: float, boxes: Sequence[SeenBox]
+) -> float:
+    """Over what stands on the way."""
+    ends = [np.array([each.x, each.y]) for each in (found, target) if each is not None]
+    tops = [table_z]
+    if ends:
+        tops += [each.top_z for each in boxes if _distance_m(each, ends[0], ends[-1]) < _BESIDE_M]
+    return max(tops) + _OVER_M
+
+
+def _distance_m(box: SeenBox, start: Vector, end: Vector) -> float:
+    """From a box to the straight way, in the plane."""
+    along = end - start
+    length_2 = float(along @ along)
+    to_box = np.array([box.x, box.y]) - start
+    share = float(np.clip(to_box @ along / length_2, 0.0, 1.0)) if length_2 > 0.0 else 0.0
+    nearest = start + share * along
+    radius_m = math.hypot(box.size[0], box.size[1]) / 2
+    return math.hypot(box.x - nearest[0], box.y - nearest[1]) - radius_m

@@ -1,0 +1,81 @@
+"""`undone`: what was placed is not at its place, or no longer."""
+
+from typing import ClassVar
+
+from pydantic import Field
+
+from robots.behaviors.phase import Phase
+from robots.link.messages import Detection
+from robots.monitors.monitor import ANY_BEHAVIOR, Meanwhile, Monitor, MonitorView
+from robots.monitors.unreachable import why_beyond_reach
+from robots.vision.head import HeadSighting
+from robots.vision.presence import Presence
+from tasks.scene import StrictModel
+
+
+class UndoneParameters(StrictModel):
+    """So often (`again`) it places at once again what it has just placed in vain."""
+
+    again: int = Field(default=1, ge=0, le=10)
+
+
+class Undone(Monitor[UndoneParameters]):
+    """Raises `undone` before step 1 of what was done before, and after the last step.
+
+    Where it sees the object in reach the robot goes on by itself; else somebody has to help.
+    """
+
+    issue: ClassVar[str] = "undone"
+    behaviors: ClassVar[frozenset[str]] = ANY_BEHAVIOR
+    phases: ClassVar[frozenset[Phase]] = frozenset({Phase.PREPARE, Phase.CONFIRM})
+    meanwhile: ClassVar[Meanwhile] = Meanwhile.DO_NOT_START
+    camera: ClassVar[str | None] = "head"
+    parameters: ClassVar[type[StrictModel]] = UndoneParameters
+
+    def __init__(self, settings: UndoneParameters) -> None:
+        super().__init__(settings)
+        self._again = settings.again
+        self._goes_on = False
+
+    @property
+    def interrupts(self) -> bool:
+        """Whether the robot cannot place it again by itself."""
+        return not self._goes_on
+
+    def check(self, view: MonitorView) -> Detection | None:
+        if view.part is None:
+            return None
+        if view.phase is Phase.CONFIRM:
+            return self._after_the_last_step(view.part.name, view)
+        if view.was_done is None or view.grip is not None:
+            return None
+        return self._before_the_first_step(view.part.name, view)
+
+    def _before_the_first_step(self, name: str, view: MonitorView) -> Detection | None:
+        if view.sighting is not None and (
+            view.refusal is not None or why_beyond_reach(name, view.sighting, view) is not None
+        ):
+            # Where it is now is what people have to hear of: `unreachable` tells them.
+            return None
+        self._goes_on = view.sighting is not None
+        return _detection(f"{name} is no longer at its place", view.sighting)
+
+    def _after_the_last_step(self, name: str, view: MonitorView) -> Detection | None:
+        if view.presence is not Presence.GONE:
+            return None
+        graspable = view.placed is not None and why_beyond_reach(name, view.placed, view) is None
+        self._goes_on = graspable and self._again > 0
+        self._again -= 1
+        return _detection(f"{name} was placed, but is not at its place", view.placed)
+
+
+def _detection(what: str, sighting: HeadSighting | None) -> Detection:
+    if sighting is None:
+        return Detection(camera="head", explanation=f"{what} and nowhere in the head picture")
+    where = f"{what} but at ({sighting.x:.2f}, {sighting.y:.2f})"
+    return Detection(
+        camera="head",
+        center=sighting.blob.center,
+        area_px=sighting.blob.area_px,
+        explanation=where,
+    )

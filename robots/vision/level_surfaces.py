@@ -1,0 +1,294 @@
+"""Level surfaces: the tops of what stands on the table, told apart by height and by colour.
+
+Pixels whose neighbourhood is level (a plane fitted to it hardly rises) are joined where neither
+height nor colour steps from one to the next; then each surface grows over the rim that noise and
+missing depth have eaten away.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from maps.compiled import compiled
+from robots.vision.height_map import HeightMap, Heights
+
+Labels = NDArray[np.int32]
+Pixels = NDArray[np.intp]
+
+_LOWEST_M = 0.005
+"""What rises less over the table is the table."""
+_STEP_SIGMAS = 4.0
+_SMALLEST_STEP_M = 0.002
+_FEWEST_PX = 5
+_GROWTH_PX = 3
+_LIKE = 14.0
+"""Colours differ that are farther apart than this many grey levels and the noise's share."""
+_NOISE_SHARE = 3.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Surface:
+    """A level patch: its pixels with the rim, its height and what it looks like.
+
+    `color` is the mean BGR of the pixels of its core.
+    """
+
+    label: int
+    us: Pixels
+    vs: Pixels
+    top_z: float
+    core_px: int
+    color: NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Surfaces:
+    """All level surfaces of a picture; `labels` (h, w) has each one's number, 0 elsewhere.
+
+    `tolerance_m`: what is nearer to a surface's height than this belongs to it.
+    """
+
+    all: Sequence[Surface]
+    labels: Labels
+    tolerance_m: float
+    heights: HeightMap
+    table_color: NDArray[np.float64]
+
+
+def find_surfaces(seen: HeightMap) -> Surfaces:
+    """All level surfaces above the table."""
+    calm = np.asarray(cv2.medianBlur(seen.image.bgr, 3), np.uint8)
+    noise = _picture_noise(seen.image.bgr)
+    alike = _LIKE + _NOISE_SHARE * noise
+    drop_m = seen.drop_m
+    lowest = seen.table_z + max(_LOWEST_M, _STEP_SIGMAS * seen.noise_m)
+    smooth = _smooth_if_level(seen.height_m, drop_m, np.float32(lowest))
+    step_m = max(_SMALLEST_STEP_M, _STEP_SIGMAS * 0.5 * seen.noise_m)
+    labels, count = _join(smooth, calm, np.float32(step_m), np.float32(alike))
+    tolerance_m = max(0.004, _STEP_SIGMAS * seen.noise_m)
+    table = seen.image.bgr[seen.table_px]
+    table_color = np.median(table, axis=0) if len(table) else np.full(3, np.nan)
+    tops, colors, sizes = _describe(labels, count, smooth, calm)
+    kept = _kept(sizes, tops)
+    labels = kept[labels]
+    wanted = np.flatnonzero(kept[1:]) + 1
+    order = kept[wanted] - 1
+    tops_kept, colors_kept = np.empty(len(wanted)), np.empty((len(wanted), 3))
+    tops_kept[order], colors_kept[order] = tops[wanted], colors[wanted]
+    distinct = np.abs(colors_kept - table_color).max(axis=1) > alike
+    cores = np.bincount(labels.ravel(), minlength=len(wanted) + 1)
+    for _ in range(_GROWTH_PX):
+        labels = _grow(
+            labels,
+            seen.height_m,
+            calm,
+            tops_kept,
+            colors_kept,
+            distinct,
+            np.float32(tolerance_m),
+            np.float32(alike),
+        )
+    surfaces = [
+        Surface(number + 1, us, vs, float(tops_kept[number]), int(cores[number + 1]), color)
+        for number, ((us, vs), color) in enumerate(
+            zip(_pixels_by_label(labels, len(wanted)), colors_kept, strict=True)
+        )
+    ]
+    return Surfaces(surfaces, labels, tolerance_m, seen, table_color)
+
+
+def _picture_noise(bgr: NDArray[np.uint8]) -> float:
+    """The standard deviation of a picture's noise in grey levels.
+
+    Immerkaer, "Fast Noise Variance Estimation" (CVIU 1996), with the median in place of the mean
+    so that edges do not count.
+    """
+    kernel = np.array([[1, -2, 1], [-2, 4, -2], [1, -2, 1]], np.float32)
+    answer = np.abs(np.asarray(cv2.filter2D(bgr[::2, :, 1].astype(np.float32), -1, kernel)))
+    return float(np.median(answer)) * 1.4826 / 6.0
+
+
+def _kept(sizes: NDArray[np.int64], tops: NDArray[np.float64]) -> Labels:
+    """New numbers for the labels that are surfaces, 0 for those that are specks."""
+    is_kept = (sizes >= _FEWEST_PX) & np.isfinite(tops)
+    is_kept[0] = False
+    return np.where(is_kept, np.cumsum(is_kept), 0).astype(np.int32)
+
+
+def _pixels_by_label(labels: Labels, count: int) -> list[tuple[Pixels, Pixels]]:
+    vs, us = np.nonzero(labels)
+    numbers = labels[vs, us]
+    order = np.argsort(numbers, kind="stable")
+    ends = np.searchsorted(numbers[order], np.arange(1, count + 2))
+    return [
+        (us[order[ends[each] : ends[each + 1]]], vs[order[ends[each] : ends[each + 1]]])
+        for each in range(count)
+    ]
+
+
+@compiled
+def _smooth_if_level(height: Heights, drop: Heights, lowest: np.float32) -> Heights:
+    """The height of the plane through each pixel's neighbours where that is level, else NaN.
+
+    A plane that rises by more than half of what a vertical side would is not level. Neighbours
+    that are a step apart belong to something else.
+    """
+    rows, columns = height.shape
+    smooth = np.full((rows, columns), np.nan, np.float32)
+    for v in range(1, rows - 1):
+        for u in range(1, columns - 1):
+            center = height[v, u]
+            if not (center > lowest) or center > 5.0:
+                continue
+            most = 1.5 * drop[v, u]
+            n, su, sv, sh, suu, svv, suv, suh, svh = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+            for dv in range(-1, 2):
+                for du in range(-1, 2):
+                    h = height[v + dv, u + du] - center
+                    if not (abs(h) < most):
+                        continue
+                    n += 1
+                    su += du
+                    sv += dv
+                    sh += h
+                    suu += du * du
+                    svv += dv * dv
+                    suv += du * dv
+                    suh += du * h
+                    svh += dv * h
+            if n < 5:
+                continue
+            cuu, cvv, cuv = suu - su * su / n, svv - sv * sv / n, suv - su * sv / n
+            cuh, cvh = suh - su * sh / n, svh - sv * sh / n
+            det = cuu * cvv - cuv * cuv
+            if det < 1e-6:
+                continue
+            rise_u, rise_v = (cuh * cvv - cvh * cuv) / det, (cvh * cuu - cuh * cuv) / det
+            if rise_u * rise_u + rise_v * rise_v < 0.25 * drop[v, u] * drop[v, u]:
+                smooth[v, u] = center + (sh - rise_u * su - rise_v * sv) / n
+    return smooth
+
+
+@compiled
+def _join(
+    smooth: Heights, bgr: NDArray[np.uint8], step: np.float32, alike: np.float32
+) -> tuple[Labels, int]:
+    """Connected components of level pixels between which neither height nor colour steps."""
+    rows, columns = smooth.shape
+    labels = np.zeros((rows, columns), np.int32)
+    parent = np.zeros(rows * columns // 2 + 2, np.int32)
+    count = 0
+    for v in range(rows):
+        for u in range(columns):
+            here = smooth[v, u]
+            if np.isnan(here):
+                continue
+            found = 0
+            for way in range(2):
+                pv, pu = (v, u - 1) if way == 0 else (v - 1, u)
+                if pv < 0 or pu < 0 or labels[pv, pu] == 0:
+                    continue
+                if abs(smooth[pv, pu] - here) > step:
+                    continue
+                apart = 0.0
+                for c in range(3):
+                    apart = max(apart, abs(float(bgr[v, u, c]) - float(bgr[pv, pu, c])))
+                if apart > alike:
+                    continue
+                root = labels[pv, pu]
+                while parent[root] != root:
+                    root = parent[root]
+                if found == 0:
+                    found = root
+                elif root != found:
+                    parent[max(root, found)] = min(root, found)
+                    found = min(root, found)
+            if found == 0:
+                count += 1
+                parent[count] = count
+                found = count
+            labels[v, u] = found
+    numbers = np.zeros(count + 1, np.int32)
+    total = 0
+    for label in range(1, count + 1):
+        root = label
+        while parent[root] != root:
+            root = parent[root]
+        if root == label:
+            total += 1
+            numbers[label] = total
+        else:
+            numbers[label] = numbers[root]
+    for v in range(rows):
+        for u in range(columns):
+            labels[v, u] = numbers[labels[v, u]]
+    return labels, total
+
+
+@compiled
+def _describe(
+    labels: Labels, count: int, smooth: Heights, bgr: NDArray[np.uint8]
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int64]]:
+    """Mean height, mean colour and size in pixels of each label; the first is nobody's."""
+    tops, colors = np.zeros(count + 1), np.zeros((count + 1, 3))
+    sizes = np.zeros(count + 1, np.int64)
+    rows, columns = labels.shape
+    for v in range(rows):
+        for u in range(columns):
+            label = labels[v, u]
+            if label == 0:
+                continue
+            sizes[label] += 1
+            tops[label] += smooth[v, u]
+            for c in range(3):
+                colors[label, c] += bgr[v, u, c]
+    for label in range(1, count + 1):
+        tops[label] /= sizes[label]
+        for c in range(3):
+            colors[label, c] /= sizes[label]
+    return tops, colors, sizes
+
+
+@compiled
+def _grow(
+    labels: Labels,
+    height: Heights,
+    bgr: NDArray[np.uint8],
+    tops: NDArray[np.float64],
+    colors: NDArray[np.float64],
+    distinct: NDArray[np.bool_],
+    tolerance: np.float32,
+    alike: np.float32,
+) -> Labels:
+    """Each surface one pixel wider, where height allows it; without depth, where colour does.
+
+    A pixel between two goes to the one whose colour is nearer.
+    """
+    rows, columns = labels.shape
+    grown = labels.copy()
+    for v in range(1, rows - 1):
+        for u in range(1, columns - 1):
+            if labels[v, u] != 0:
+                continue
+            nearest = 1e9
+            for way in range(4):
+                pv = v + (way == 0) - (way == 1)
+                pu = u + (way == 2) - (way == 3)
+                label = labels[pv, pu]
+                if label == 0:
+                    continue
+                apart = 0.0
+                for c in range(3):
+                    apart = max(apart, abs(colors[label - 1, c] - float(bgr[v, u, c])))
+                has_depth = not np.isnan(height[v, u])
+                if has_depth and abs(height[v, u] - tops[label - 1]) > tolerance:
+                    continue
+                if not has_depth and (apart > alike or not distinct[label - 1]):
+                    continue
+                if apart < nearest:
+                    nearest = apart
+                    grown[v, u] = label
+    return grown

@@ -1,0 +1,241 @@
+"""Which part each level surface is the top of: one assignment for the whole picture.
+
+Every surface is compared with every part in each of the ways in which it can lie; the cheapest
+matching (Kuhn's Hungarian method) names them, and a surface may stay unknown. A cost is half a
+sum of squares of deviations in units of their standard deviations.
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import linear_sum_assignment
+
+from robots.catalogue import Part
+from robots.vision.color_model import ColorModel, Segmentation, tint_sigma
+from robots.vision.level_surfaces import Surface, Surfaces
+from robots.vision.rectangle import Fitted, Rectangle
+
+UNKNOWN_COST = 25.0
+_NEVER = 1e6
+_HEIGHT_SIGMA_M = 0.0012
+_EXTENT_SIGMA_PX = 0.45
+_FLOATING_COST = 10.0
+"""What is held up by nothing that is seen may be held by somebody, or lean."""
+_TOPPLED_COST = 4.0
+_KNOB_UNSEEN_COST = 8.0
+_MOST_COLOR_COST = 40.0
+_MOST_SHARE_COST = 4.0
+_OVEREXPOSED = 250.0
+_KNOB_WITHIN_M = 0.005
+_TRACKING_COST = 2.0
+_TRACKED_WITHIN_M = 0.05
+"""Among equals a name costs nothing where it was last, and this much from so far away on."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Top:
+    """A surface as it was measured, with the knob that stands on it if there is one."""
+
+    surface: Surface
+    fitted: Fitted
+    knob: "Top | None" = None
+
+
+@dataclass(frozen=True, slots=True)
+class Match:
+    """A surface taken for a part.
+
+    `height_m` from the part's bottom to this surface, `extents` of this surface along the part's
+    x and y axes, `swapped` if these are the surface's second and first.
+    """
+
+    top: Top
+    part: Part
+    height_m: float
+    extents: tuple[float, float]
+    swapped: bool
+    upright: bool
+
+
+@dataclass(frozen=True, slots=True)
+class _Way:
+    """One way in which a part can show a level top."""
+
+    part: Part
+    extents: tuple[float, float]
+    height_m: float
+    cost: float
+    upright: bool
+    with_knob: bool = False
+
+
+class Namer:
+    """Names surfaces after the parts of a catalogue."""
+
+    def __init__(self, parts: Mapping[str, Part], model: ColorModel) -> None:
+        self._parts = list(parts.values())
+        self._model = model
+        self._ways = [way for part in self._parts for way in _ways_of(part)]
+        self._knobs = {(part.knob, part.size[2]) for part in self._parts if part.knob is not None}
+        self._extents = np.array([way.extents for way in self._ways])
+        self._heights = np.array([way.height_m for way in self._ways])
+        self._base = np.array([way.cost for way in self._ways])
+        self._knobbed = np.array([way.with_knob for way in self._ways])
+        owners = {part.name: index for index, part in enumerate(self._parts)}
+        self._owner = np.array([owners[way.part.name] for way in self._ways])
+
+    def name(
+        self,
+        tops: Sequence[Top],
+        surfaces: Surfaces,
+        segmentation: Segmentation,
+        last_seen: Mapping[str, tuple[float, float]],
+    ) -> tuple[list[Match], list[Top]]:
+        """The parts that are seen, and what stays unknown.
+
+        `last_seen` is where each name was last; names of equal parts go by that.
+        """
+        tops = self._with_knobs(tops, surfaces)
+        if not tops or not self._ways:
+            return [], list(tops)
+        pixel_m = surfaces.heights.drop_m
+        costs = np.empty((len(tops), len(self._parts) + len(tops)))
+        costs[:, len(self._parts) :] = _NEVER
+        choices: list[tuple[NDArray[np.intp], NDArray[np.bool_]]] = []
+        for row, top in enumerate(tops):
+            at = pixel_m[top.surface.vs[0], top.surface.us[0]]
+            by_way, swapped = self._geometry_costs(top, _supports(top, tops, surfaces), float(at))
+            chosen = np.empty(len(self._parts), np.intp)
+            for index in range(len(self._parts)):
+                ways = np.flatnonzero(self._owner == index)
+                chosen[index] = ways[by_way[ways].argmin()]
+            geometry = by_way[chosen]
+            costs[row, : len(self._parts)] = geometry
+            for index in np.flatnonzero(geometry < UNKNOWN_COST).tolist():
+                name = self._parts[index].name
+                costs[row, index] += self._color_cost(name, top.surface, surfaces, segmentation)
+                costs[row, index] += _tracking_cost(top, last_seen.get(name))
+            costs[row, len(self._parts) + row] = UNKNOWN_COST
+            choices.append((chosen, swapped))
+        matches, unknown = [], []
+        for row, column in zip(*linear_sum_assignment(costs), strict=True):
+            if column >= len(self._parts) or costs[row, column] >= UNKNOWN_COST:
+                unknown.append(tops[row])
+                continue
+            chosen, swapped = choices[row]
+            way = self._ways[chosen[column]]
+            matches.append(
+                Match(
+                    tops[row],
+                    way.part,
+                    way.height_m,
+                    way.extents,
+                    bool(swapped[chosen[column]]),
+                    way.upright,
+                )
+            )
+        return matches, unknown
+
+    def _with_knobs(self, tops: Sequence[Top], surfaces: Surfaces) -> list[Top]:
+        """What has a knob's size and place on a plate is that plate's knob."""
+        knob_of: dict[int, Top] = {}
+        taken: set[int] = set()
+        for plate in tops:
+            for other in tops:
+                if other is plate or not self._is_knob(other, plate, surfaces):
+                    continue
+                knob_of[id(plate)] = other
+                taken.add(id(other))
+        return [
+            Top(each.surface, each.fitted, knob_of.get(id(each)))
+            for each in tops
+            if id(each) not in taken
+        ]
+
+    def _is_knob(self, knob: Top, plate: Top, surfaces: Surfaces) -> bool:
+        rise = knob.surface.top_z - plate.surface.top_z
+        on, under = knob.fitted.rectangle, plate.fitted.rectangle
+        for size, _ in self._knobs:
+            if abs(rise - size[2]) > surfaces.tolerance_m:
+                continue
+            off = np.abs(np.sort(on.extents) - np.sort(size[:2]))
+            if off.max() > _KNOB_WITHIN_M:
+                continue
+            whole = all(plate.fitted.whole)
+            near_m = _KNOB_WITHIN_M if whole else max(under.extents)
+            if math.hypot(on.x - under.x, on.y - under.y) <= near_m:
+                return True
+        return False
+
+    def _geometry_costs(
+        self, top: Top, supports: NDArray[np.float64], drop_m: float
+    ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+        sigma_m = _EXTENT_SIGMA_PX * drop_m * 0.6 + 0.0003
+        seen, whole = np.array(top.fitted.rectangle.extents), np.array(top.fitted.whole)
+        costs = []
+        for order in ([0, 1], [1, 0]):
+            off = (seen[None] - self._extents[:, order]) / sigma_m
+            # Where an end is hidden the part may be longer than what is seen of it.
+            off = np.where(whole[None] | (off > 0), off, 0.0)
+            costs.append(0.5 * (off**2).sum(axis=1))
+        straight, crossed = costs
+        bottoms = top.surface.top_z - self._heights
+        gap = np.abs(bottoms[:, None] - supports[None]).min(axis=1) / _HEIGHT_SIGMA_M
+        height = np.minimum(0.5 * gap**2, _FLOATING_COST)
+        # Nothing is under the table.
+        height[bottoms < supports.min() - 4 * _HEIGHT_SIGMA_M] = _NEVER
+        knob = np.where(self._knobbed != (top.knob is not None), _KNOB_UNSEEN_COST, 0.0)
+        total = np.minimum(straight, crossed) + height + knob + self._base
+        return total, crossed < straight
+
+    def _color_cost(
+        self, name: str, surface: Surface, surfaces: Surfaces, segmentation: Segmentation
+    ) -> float:
+        cost = 0.0
+        if self._model.has_hue(name):
+            share = segmentation.share(name, surface.us, surface.vs)
+            cost += min(-math.log(share + 0.02), _MOST_SHARE_COST)
+        tint = self._model.tints.get(name)
+        reference = surfaces.table_color
+        if tint is None or not np.isfinite(reference).all():
+            return cost
+        usable = (surface.color < _OVEREXPOSED) & (reference < _OVEREXPOSED)
+        seen = surface.color / np.maximum(reference, 1.0)
+        off = ((seen - tint) / tint_sigma(seen))[usable]
+        return cost + min(0.5 * float((off**2).sum()), _MOST_COLOR_COST)
+
+
+def _ways_of(part: Part) -> list[_Way]:
+    x, y, z = part.size
+    ways = [_Way(part, (x, y), z, 0.0, True, part.knob is not None)]
+    if part.knob is not None:
+        height_m = z + part.knob[2]
+        ways.append(_Way(part, part.knob[:2], height_m, _KNOB_UNSEEN_COST, True))
+    ways.append(_Way(part, (x, z), y, _TOPPLED_COST, False))
+    ways.append(_Way(part, (z, y), x, _TOPPLED_COST, False))
+    return ways
+
+
+def _supports(top: Top, tops: Sequence[Top], surfaces: Surfaces) -> NDArray[np.float64]:
+    """The heights on which something can stand there: the table's, and those of tops below."""
+    heights = [surfaces.heights.table_z]
+    at = top.fitted.rectangle
+    reach = max(at.extents) / 2
+    for other in tops:
+        below = other.fitted.rectangle
+        if other.surface.top_z >= top.surface.top_z - 0.005:
+            continue
+        if math.hypot(at.x - below.x, at.y - below.y) <= reach + max(below.extents) / 2:
+            heights.append(other.surface.top_z)
+    return np.array(heights)
+
+
+def _tracking_cost(top: Top, last: tuple[float, float] | None) -> float:
+    if last is None:
+        return _TRACKING_COST / 2
+    at: Rectangle = top.fitted.rectangle
+    moved = math.hypot(at.x - last[0], at.y - last[1])
+    return _TRACKING_COST * min(moved / _TRACKED_WITHIN_M, 1.0)

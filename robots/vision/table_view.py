@@ -1,0 +1,172 @@
+"""Everything that one head picture shows on the table: the parts by name, and unknown things."""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from robots.body import CameraImage
+from robots.catalogue import Part
+from robots.grasp import half_turn
+from robots.vision.blob import Blob
+from robots.vision.color_model import ColorModel
+from robots.vision.head import HeadSighting
+from robots.vision.height_map import IN_FRONT_M, HeightMap, measure_heights
+from robots.vision.level_surfaces import Pixels, Surface, Surfaces, find_surfaces
+from robots.vision.naming import Match, Namer, Top
+from robots.vision.projection import Points, unproject
+from robots.vision.rectangle import Fitted, Rectangle, fit_any, fit_sized, gather
+from robots.vision.seen_box import SeenBox
+from tasks.scene import Table
+
+_COMPLETE_SHARE = 0.8
+_OWN_M = 0.004
+"""What is within a part's outline, so much wider, and not above it is the part itself."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TableView:
+    """What a head picture shows; `sightings` by name, `boxes` of the known and the unknown."""
+
+    heights: HeightMap
+    sightings: Mapping[str, HeadSighting]
+    boxes: Sequence[SeenBox]
+
+    def standing_out(self, over_z: float) -> tuple[Pixels, Pixels, Points]:
+        """The pixels (us, vs) that show something higher than `over_z`, and their points."""
+        height_m = self.heights.height_m
+        with np.errstate(invalid="ignore"):
+            vs, us = np.nonzero((height_m > over_z) & (height_m < IN_FRONT_M))
+        points = unproject(self.heights.image, us, vs)
+        points[:, 2] = height_m[vs, us]
+        return us, vs, points
+
+
+def view_table(
+    image: CameraImage,
+    table: Table,
+    parts: Mapping[str, Part],
+    model: ColorModel,
+    last_seen: Mapping[str, tuple[float, float]],
+    own_arm: Callable[[NDArray[np.float64]], NDArray[np.bool_]] | None = None,
+) -> TableView | None:
+    """Understand a head picture; None for one without depth.
+
+    `parts` are those that can be on the table, by name; `own_arm` says of points (n, 3) which
+    belong to the robot.
+    """
+    heights = measure_heights(image, table, own_arm)
+    if heights is None:
+        return None
+    surfaces = find_surfaces(heights)
+    tops = [Top(each, fit_any(gather(each, surfaces))) for each in surfaces.all]
+    known = {name: part for name, part in parts.items() if name in model.names}
+    matches, unknown = Namer(known, model).name(tops, surfaces, model.segment(image.bgr), last_seen)
+    sightings, boxes = {}, []
+    for match in matches:
+        fitted = _fit_match(match, surfaces)
+        sighting = _sighting(match, fitted, image)
+        sightings[match.part.name] = sighting
+        boxes.append(_box(match, sighting))
+    for top in unknown:
+        if not any(_is_of(top, box, surfaces.tolerance_m) for box in boxes[: len(matches)]):
+            boxes.append(_unknown_box(top, table.height))
+    return TableView(heights, sightings, boxes)
+
+
+def _fit_match(match: Match, surfaces: Surfaces) -> Fitted:
+    """Where exactly the surface is, now that its size is known."""
+    rough = match.top.fitted.turned() if match.swapped else match.top.fitted
+    at = rough.rectangle
+    # What is hidden goes on from the end that is seen.
+    hidden = np.array(match.extents) - at.extents
+    shifts = [
+        hidden[axis] / 2 * (int(low) - int(high))
+        for axis, (low, high) in enumerate((rough.sides_seen[:2], rough.sides_seen[2:]))
+    ]
+    cos, sin = math.cos(at.yaw), math.sin(at.yaw)
+    x, y = at.x + cos * shifts[0] - sin * shifts[1], at.y + sin * shifts[0] + cos * shifts[1]
+    start = Rectangle(x, y, at.yaw, match.extents)
+    return fit_sized(gather(match.top.surface, surfaces), start)
+
+
+def _sighting(match: Match, fitted: Fitted, image: CameraImage) -> HeadSighting:
+    part, top = match.part, match.top.surface
+    found = fitted.rectangle
+    shown = min(fitted.shown / _visible_share(match, found, image), 1.0)
+    ends = fitted.sides_seen
+    placed = (ends[0] or ends[1]) and (ends[2] or ends[3])
+    bottom_z = top.top_z - (match.height_m if match.upright else part.size[2])
+    return HeadSighting(
+        x=found.x,
+        y=found.y,
+        z=bottom_z,
+        yaw=half_turn(found.yaw),
+        top_z=bottom_z + part.size[2],
+        complete=placed and shown >= _COMPLETE_SHARE,
+        shown=shown,
+        blob=_blob(top, image),
+        time=image.time,
+    )
+
+
+def _visible_share(match: Match, found: Rectangle, image: CameraImage) -> float:
+    """The share of a plate that its own knob does not hide."""
+    knob = match.part.knob
+    if knob is None or not match.upright or match.height_m > match.part.size[2] + 1e-6:
+        return 1.0
+    base_z = match.top.surface.top_z
+    eye = image.pose[:3, 3]
+    base = _corners(found, (knob[0], knob[1]))
+    stretch = (eye[2] - base_z) / (eye[2] - base_z - knob[2])
+    hidden = cv2.convexHull(
+        np.concatenate([base, eye[:2] + (base - eye[:2]) * stretch]).astype(np.float32)
+    )
+    plate = _corners(found, match.extents).astype(np.float32)
+    covered, _ = cv2.intersectConvexConvex(hidden, cv2.convexHull(plate))
+    return max(1.0 - covered / (match.extents[0] * match.extents[1]), 0.1)
+
+
+def _corners(at: Rectangle, extents: tuple[float, float]) -> NDArray[np.float64]:
+    return SeenBox(at.x, at.y, at.yaw, (*extents, 0.0), 0.0, None, complete=True).corners()
+
+
+def _box(match: Match, sighting: HeadSighting) -> SeenBox:
+    part = match.part
+    if match.upright:
+        size, bottom_z = (part.size[0], part.size[1], part.height), sighting.z
+    else:
+        size = (*match.extents, match.height_m)
+        bottom_z = match.top.surface.top_z - match.height_m
+    return SeenBox(
+        sighting.x, sighting.y, sighting.yaw, size, bottom_z, part.name, sighting.complete
+    )
+
+
+def _unknown_box(top: Top, table_z: float) -> SeenBox:
+    found = top.fitted.rectangle
+    size = (*found.extents, top.surface.top_z - table_z)
+    complete = all(top.fitted.whole)
+    return SeenBox(found.x, found.y, half_turn(found.yaw), size, table_z, None, complete)
+
+
+def _is_of(top: Top, box: SeenBox, tolerance_m: float) -> bool:
+    """Whether a surface is a piece of a box that is known already."""
+    if top.surface.top_z > box.top_z + tolerance_m:
+        return False
+    cos, sin = math.cos(box.yaw), math.sin(box.yaw)
+    dx, dy = top.fitted.rectangle.x - box.x, top.fitted.rectangle.y - box.y
+    across, along = abs(cos * dx + sin * dy), abs(cos * dy - sin * dx)
+    return across <= box.size[0] / 2 + _OWN_M and along <= box.size[1] / 2 + _OWN_M
+
+
+def _blob(surface: Surface, image: CameraImage) -> Blob:
+    us, vs = surface.us, surface.vs
+    mask = np.zeros(image.bgr.shape[:2], np.uint8)
+    mask[vs, us] = 255
+    left, top = int(us.min()), int(vs.min())
+    box = (left, top, int(us.max()) - left + 1, int(vs.max()) - top + 1)
+    return Blob((float(us.mean()), float(vs.mean())), len(us), box, mask)

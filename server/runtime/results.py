@@ -1,0 +1,102 @@
+"""The results of finished leaves: which are looked at, and what follows when one is gone."""
+
+from collections.abc import Iterable
+
+from robots.link.messages import FinishedResult, Looked
+from server.journal import events as ev
+from server.runtime.context import RunContext
+from server.runtime.cutting_short import CuttingShort
+from server.runtime.report_events import ReportEvents
+from server.runtime.robot_side import RobotSide
+from server.runtime.run_state import RunState
+
+
+def results_of(state: RunState) -> dict[FinishedResult, int]:
+    """What finished leaves left behind, and which leaf each is of.
+
+    Where several leaves handle one object, in turn, the one that was started last says where it is
+    to be.
+    """
+    results = {}
+    for handled, leaf in state.last_handled.items():
+        place = state.tree.leaf_definition(leaf).place
+        if state.tree.done(leaf) and place is not None:
+            results[FinishedResult(object=handled, place=place)] = leaf
+    return results
+
+
+def missing_parts(state: RunState) -> list[ev.MissingPart]:
+    """What is not at its place because a helper said to go on without it."""
+    tree = state.tree
+    return [
+        ev.MissingPart(
+            node=event.node,
+            name=event.name,
+            object=tree.leaf_definition(leaf).object or event.name,
+            place=tree.leaf_definition(leaf).place or event.name,
+            left_out_by=event.helper,
+        )
+        for leaf, event in sorted(state.left_out.items())
+    ]
+
+
+class Results:
+    """Takes back what a robot sees gone, and notes what was left out and is seen again."""
+
+    def __init__(
+        self, context: RunContext, reports: ReportEvents, cutting_short: CuttingShort
+    ) -> None:
+        self._context = context
+        self._reports = reports
+        self._cutting_short = cutting_short
+
+    async def judged(self, side: RobotSide, looked: Looked) -> None:
+        """Take what a look says of the results that it was to judge."""
+        state = self._context.state
+        results = results_of(state)
+        there = (results[each] for each in looked.there if each in results)
+        returned = [self._returned(leaf, side) for leaf in there if leaf in state.left_out]
+        gone = [results[each] for each in looked.gone if each in results]
+        gone = [leaf for leaf in gone if leaf not in state.left_out]
+        if gone:
+            await self._take_back(gone, side, returned)
+        elif returned:
+            await self._context.commit(returned)
+
+    def _returned(self, leaf: int, side: RobotSide) -> ev.NodeReturned:
+        return ev.NodeReturned(
+            **self._context.stamp(), **self._reports.node(leaf), robot=side.robot
+        )
+
+    async def _take_back(
+        self, gone: Iterable[int], side: RobotSide, before: Iterable[ev.Event]
+    ) -> None:
+        tree = self._context.state.tree
+        because: dict[int, int] = {leaf: leaf for leaf in gone}
+        active: dict[int, int] = {}
+        for leaf in sorted(because):
+            found = tree.what_to_take_back(leaf)
+            for each in found.taken_back:
+                because.setdefault(each, leaf)
+            active.update(dict.fromkeys(found.put_back, leaf))
+        # What a THEN puts after another leaf is after it in the tree as well.
+        undone = [self._undone(leaf, because[leaf], side) for leaf in sorted(because, reverse=True)]
+        await self._cutting_short.commit(
+            active, "what it comes after is no longer done", [*before, *undone]
+        )
+
+    def _undone(self, leaf: int, because_of: int, side: RobotSide) -> ev.NodeUndone:
+        tree = self._context.state.tree
+        definition = tree.leaf_definition(leaf)
+        follows = because_of != leaf
+        return ev.NodeUndone(
+            **self._context.stamp(),
+            **self._reports.node(leaf),
+            robot=side.robot,
+            reason=(
+                f"it comes after {tree.name_of(because_of)}, which is no longer done"
+                if follows
+                else f"{definition.object} is no longer at {definition.place}"
+            ),
+            because_of=tree.path_of(because_of) if follows else None,
+        )

@@ -1,0 +1,127 @@
+"""The look after the last step, and the monitors that judge what it shows."""
+
+from typing import Any, ClassVar
+
+import pytest
+from robot_bench import MODEL, RobotBench
+from scripted_body import STARTS, catalogue
+
+from robots.behaviors import Phase
+from robots.link.messages import Detection, Finished, Holding, IssueDetected, Resume
+from robots.monitors import Meanwhile, Monitor, MonitorView
+from robots.monitors.monitor import NoParameters
+from robots.robot import Robot
+from robots.vision.presence import Presence
+from tasks.plugins import load_plugins
+from tasks.scene import StrictModel
+
+
+class Onlooker(Monitor[NoParameters]):
+    """Raises nothing, but keeps what it is shown after the last step."""
+
+    issue: ClassVar[str] = "watched"
+    behaviors: ClassVar[frozenset[str]] = frozenset({"pick_and_place"})
+    phases: ClassVar[frozenset[Phase]] = frozenset({Phase.CONFIRM})
+    meanwhile: ClassVar[Meanwhile] = Meanwhile.STOP_IN_PLACE
+    camera: ClassVar[str | None] = "head"
+    parameters: ClassVar[type[StrictModel]] = NoParameters
+    views: ClassVar[list[MonitorView]] = []
+
+    def check(self, view: MonitorView) -> Detection | None:
+        self.views.append(view)
+        return None
+
+
+def bench_that_looks_on(**body: Any) -> RobotBench:
+    Onlooker.views.clear()
+    bench = RobotBench(**body)
+    bench.robot = Robot(
+        "r1",
+        bench.body,
+        MODEL,
+        catalogue(),
+        load_plugins("mend.behaviors"),
+        {Onlooker.issue: Onlooker, **load_plugins("mend.monitors")},
+    )
+    bench.robot.attach(
+        lambda body, time_s, _: bench.reports.append((time_s, body)), bench.pictures.append
+    )
+    return bench
+
+
+def test_the_arm_is_out_of_view_and_the_part_seen_at_its_place_before_it_is_finished() -> None:
+    bench = bench_that_looks_on()
+    bench.start("pink_bar")
+    bench.run()
+    assert bench.of(Finished) == [Finished(execution="e1")]
+    (view,) = Onlooker.views
+    assert (view.phase, view.step, view.presence) == (Phase.CONFIRM, 8, Presence.THERE)
+    assert view.placed is not None
+    assert (view.placed.x, view.placed.y) == pytest.approx((0.55, 0.05), abs=0.005)
+    assert bench.body.tool.y < -0.8
+
+
+@pytest.mark.parametrize(("step", "fraction"), [(6, 0.9), (7, 0.5), (8, 0.1), (8, 0.9)])
+def test_what_is_stolen_while_it_is_placed_is_not_finished(step: int, fraction: float) -> None:
+    bench = bench_that_looks_on()
+    bench.at(step, fraction, lambda: bench.body.vanish("pink_bar"))
+    bench.start("pink_bar")
+    bench.run()
+    assert bench.of(Finished) == []
+    (issue,) = bench.of(IssueDetected)
+    assert (issue.issue, issue.step) == ("undone", 8)
+    assert bench.of(Holding) == [Holding(execution="e1", at="neutral")]
+
+
+def test_what_was_stolen_and_put_to_its_place_meanwhile_is_found_there_on_resuming() -> None:
+    bench = bench_that_looks_on()
+    bench.at(8, 0.1, lambda: bench.body.vanish("pink_bar"))
+    bench.start("pink_bar")
+    bench.run()
+    bench.body.at_cycle = lambda: None
+    bench.body.parts["pink_bar"] = type(STARTS["pink_bar"])(0.55, 0.05)
+    bench.send(Resume(execution="e1"))
+    bench.run()
+    assert bench.of(Finished) == [Finished(execution="e1", found_in_place=True)]
+
+
+def test_nothing_is_looked_at_after_a_fault() -> None:
+    bench = bench_that_looks_on()
+    bench.at(5, 0.5, lambda: bench.body.vanish("pink_bar"))
+    bench.start("pink_bar")
+    bench.run()
+    assert [each.issue for each in bench.of(IssueDetected)] == ["dropped"]
+    assert Onlooker.views == []
+
+
+def test_what_was_pushed_aside_while_it_was_placed_is_placed_again_at_once() -> None:
+    bench = bench_that_looks_on()
+    moved: list[bool] = []
+
+    def push() -> None:
+        if not moved and bench.robot.task_progress and bench.robot.task_progress.step == 8:
+            moved.append(True)
+            bench.body.parts["pink_bar"] = type(STARTS["pink_bar"])(0.60, -0.10)
+
+    bench.body.at_cycle = push
+    bench.start("pink_bar")
+    bench.run()
+    (issue,) = bench.of(IssueDetected)
+    assert (issue.issue, issue.step, issue.interrupts) == ("undone", 8, False)
+    assert [view.presence for view in Onlooker.views] == [Presence.GONE, Presence.THERE]
+    assert bench.of(Finished) == [Finished(execution="e1")]
+
+
+def test_what_is_placed_in_vain_again_and_again_is_asked_about() -> None:
+    bench = bench_that_looks_on()
+
+    def push() -> None:
+        if bench.robot.task_progress and bench.robot.task_progress.step == 8:
+            bench.body.parts["pink_bar"] = type(STARTS["pink_bar"])(0.60, -0.10)
+
+    bench.body.at_cycle = push
+    bench.start("pink_bar")
+    bench.run()
+    assert [each.interrupts for each in bench.of(IssueDetected)] == [False, True]
+    assert bench.of(Finished) == []
+    assert bench.of(Holding) == [Holding(execution="e1", at="neutral")]
