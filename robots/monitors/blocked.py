@@ -36,7 +36,9 @@ class Blocked(Monitor[BlockedParameters]):
     def check(self, view: MonitorView) -> Detection | None:
         felt = self._feel(view.contact_forces_n)
         if felt is not None:
-            return Detection(camera="head", explanation=f"{felt:.0f} N push against the arm")
+            return Detection(
+                camera="head", felt=True, explanation=f"{felt:.0f} N push against the arm"
+            )
         if view.step == BEFORE_FIRST_STEP and view.obstruction is not None:
             x, y, z = view.obstruction.position
             return Detection(

@@ -116,7 +116,10 @@ function applied(state: RunState, event: Event): RunState {
       return withExecution(raised, event.robot, (execution) => ({ ...execution, held: true }));
     }
     case "node_done":
+    case "node_left_out":
       return endExecution(withLeaf(state, event.node, (leaf) => ({ ...leaf, status: "done", owner: null })), event.node);
+    case "node_undone":
+      return withLeaf(state, event.node, (leaf) => ({ ...leaf, status: "idle", owner: null }));
     case "node_reset": {
       const failed = event.failed_attempt ? 1 : 0;
       const put = (leaf: LeafState): LeafState => ({ status: "idle", owner: null, attempts: leaf.attempts + failed });
