@@ -124,9 +124,10 @@ class DialogueJudge:
     def deeds(self, index: int, event: ev.DialogueEvent) -> Iterator[ev.InterventionDone]:
         """What people really did for a dialogue's object, or about the way, since it opened."""
         for each in self._events[self._opened[event.dialogue] : index]:
-            if isinstance(each, ev.InterventionDone) and each.ok and each.act in GIVEN:
-                if each.object == event.object or each.act == "release":
-                    yield each
+            if not isinstance(each, ev.InterventionDone) or not each.ok or each.act not in GIVEN:
+                continue
+            if each.object == event.object or each.act == "release":
+                yield each
 
     def issues_so_far(self, index: int, event: ev.DialogueEvent) -> int:
         return sum(
@@ -204,7 +205,8 @@ def _somewhere(judge: DialogueJudge, index: int, event: ev.Prompt, _: re.Match[s
 def _nowhere(judge: DialogueJudge, index: int, event: ev.Prompt, _: re.Match[str]) -> str | None:
     moment = judge.at_issue(event.node)
     gone = moment.resting.get(event.object or "") is None
-    return None if gone or moment.blocked else "it lies on the table"
+    hidden = moment.blocked
+    return None if gone or hidden else "it lies on the table"
 
 
 def _not_held(judge: DialogueJudge, _: int, event: ev.Prompt, __: re.Match[str]) -> str | None:

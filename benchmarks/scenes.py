@@ -270,7 +270,7 @@ def _object_and_place(tree: TaskTree, leaf: int) -> tuple[str, str]:
 
 def run(seed: int, task: str | None, most_parts: int, *, show: bool = False) -> Outcome:
     """One scene in a process of its own."""
-    from server.library import behavior_parameters
+    from server.behaviors import behavior_parameters
     from tasks.task_file import check_task_text
 
     if task is not None:

@@ -21,6 +21,9 @@ OPEN_BESIDE_M = 0.012
 OPEN_LEAST_M = 0.006
 """The least on each side: the camera's error and the turn that it may be off by."""
 
+_SHALLOW_M = 0.012
+"""Amid other things a part is held by so much of its height only, with the fingers above them."""
+
 _MM = 1e3
 
 
@@ -52,9 +55,10 @@ def grasp_of(part: Part, gripper: GripperModel) -> Grasp:
 
 
 def grasps_of(part: Part, gripper: GripperModel) -> list[Grasp]:
-    """All grasps of a part, by its knob if it has one: across the thinner side first, wide first.
+    """All grasps of a part, by its knob if it has one, the best first.
 
-    Raises `UngraspableError` where there is none.
+    Across the thinner side before the other one; with much room before little; deep before
+    shallow. Raises `UngraspableError` where there is none.
     """
     low_m, held = (0.0, part.size) if part.knob is None else (part.size[2], part.knob)
     widths = sorted([(held[0], 0.0), (held[1], math.pi / 2)])
@@ -64,7 +68,7 @@ def grasps_of(part: Part, gripper: GripperModel) -> list[Grasp]:
     grasps = [
         Grasp(height_m, yaw, width_m, min(width_m + 2 * beside_m, gripper.max_opening_m))
         for width_m, yaw in fitting
-        if (height_m := _height(low_m, held[2], width_m, gripper)) is not None
+        for height_m in _heights(low_m, held[2], width_m, gripper)
         for beside_m in (OPEN_BESIDE_M, OPEN_LEAST_M)
     ]
     if not grasps:
@@ -81,18 +85,24 @@ def least_height_m(gripper: GripperModel) -> float:
     return gripper.overlap_m + gripper.pad_above_tip_m + TIP_CLEARANCE_M
 
 
-def _height(low_m: float, high_m: float, width_m: float, gripper: GripperModel) -> float | None:
-    """The tool point above the part's bottom, as deep as the gripper goes but above the middle.
+def _heights(
+    low_m: float, high_m: float, width_m: float, gripper: GripperModel
+) -> tuple[float, ...]:
+    """The tool point above the part's bottom: as deep as the gripper goes but above the middle.
 
-    What is held reaches from `low_m` over the bottom `high_m` further up.
+    And, if that is higher, with only a little of the part between the fingers. What is held
+    reaches from `low_m` over the bottom `high_m` further up.
     """
     reach_m = gripper.reach_below_m(width_m)
     least_m = low_m + reach_m + TIP_CLEARANCE_M
-    most_m = low_m + high_m + reach_m - gripper.pad_above_tip_m - gripper.overlap_m
+    top_m = low_m + high_m + reach_m - gripper.pad_above_tip_m
+    most_m = top_m - gripper.overlap_m
     if least_m > most_m + 1e-9:
-        return None
+        return ()
     wanted_m = low_m + max(high_m - gripper.deepest_m, high_m / 2)
-    return min(max(wanted_m, least_m), most_m)
+    deep_m = min(max(wanted_m, least_m), most_m)
+    shallow_m = top_m - _SHALLOW_M
+    return (deep_m, shallow_m) if shallow_m > deep_m else (deep_m,)
 
 
 def _misfit(part: Part, width_m: float, gripper: GripperModel) -> str:

@@ -13,6 +13,7 @@ from fastapi import FastAPI
 from server.api import (
     console,
     dialogues,
+    documents,
     health,
     helper_socket,
     live_socket,
@@ -24,7 +25,6 @@ from server.api import (
     session,
     speech,
     speech_socket,
-    trees,
 )
 from server.api import models as models_api
 from server.api import poses as poses_api
@@ -33,19 +33,19 @@ from server.api.access import Access
 from server.api.gate import Gate
 from server.api.parts import ObservedJournal, Parts, WorldList
 from server.api.problems import Problem, answer_errors_with_problems
+from server.documents import DocumentLibrary
 from server.models import RobotModels
 from server.poses.feed import PoseSource
 from server.runtime.service import RunService
 from server.settings import Settings
 from server.speech.abilities import NO_SPEECH, SpeechAbilities
-from server.trees import ScenarioLibrary, SceneShelf, TreeLibrary
 
 MAX_SOCKET_MESSAGE_BYTES = 4 * 1024 * 1024
 """Robots send pictures; helpers get an `error` message for anything above 64 KiB."""
 
 ROUTES = (
     session,
-    trees,
+    documents,
     worlds_api,
     runs,
     poses_api,
@@ -76,9 +76,9 @@ def create_app(
     journal: ObservedJournal,
     settings: Settings,
     *,
-    trees_library: TreeLibrary,
-    scenarios: ScenarioLibrary,
-    scenes: SceneShelf,
+    trees: DocumentLibrary,
+    scenes: DocumentLibrary,
+    scenarios: DocumentLibrary,
     worlds: WorldList,
     models: RobotModels,
     poses: PoseSource,
@@ -101,9 +101,9 @@ def create_app(
     app.state.parts = Parts(
         service,
         journal,
-        trees_library,
-        scenarios,
+        trees,
         scenes,
+        scenarios,
         worlds,
         models,
         poses,

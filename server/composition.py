@@ -14,15 +14,9 @@ from dialogue.registry import load_scripts
 from server.app import create_app, serve_config
 from server.dialogues.escalation import EscalationPolicy
 from server.dialogues.mail import Mailer
+from server.fixed_documents import GivenFiles, fixed_documents
 from server.journal.sqlite import IN_MEMORY, SqliteJournal
-from server.library import (
-    BuiltInScenarios,
-    SceneLibrary,
-    Scenes,
-    TaskLibrary,
-    built_in_trees,
-    check_uploaded_tree,
-)
+from server.library import Library, build_library
 from server.listening import listen, reachable_host
 from server.models import RobotModels
 from server.poses.feed import PoseFeed
@@ -35,12 +29,12 @@ from server.runtime.context import RunSettings
 from server.runtime.operator_mail import OperatorMail
 from server.runtime.runtime import Runtime
 from server.runtime.worlds import SimulatedWorlds
+from server.scene_checks import WorldChecks
 from server.settings import Settings
 from server.speech.abilities import SpeechAbilities
 from server.speech.ear import choose_ears
 from server.speech.rendering import SpokenTexts, render_prompts
 from server.speech.voice import NoVoice, choose_voice
-from server.trees import JournaledTrees
 from tasks.plugins import load_plugins
 
 
@@ -51,21 +45,24 @@ class Service:
     runtime: Runtime
     journal: SqliteJournal
     registry: RobotRegistry
-    trees: JournaledTrees
+    library: Library
     url: str
     settings: Settings
 
 
 @asynccontextmanager
-async def open_service(settings: Settings, *, recover: bool = True) -> AsyncIterator[Service]:
+async def open_service(
+    settings: Settings, *, recover: bool = True, given: GivenFiles | None = None
+) -> AsyncIterator[Service]:
     """Start a service, take up the runs that had not ended, and stop it at the end.
 
-    Raises `JournalLockedError` when another process has the journal, `OSError` when it cannot
-    listen. `recover` False leaves unfinished runs alone.
+    What is in `given` is known as if it came with Mend. Raises `JournalLockedError` when another
+    process has the journal, `OSError` when it cannot listen. `recover` False leaves unfinished runs
+    alone.
     """
     journal = SqliteJournal(settings.journal_path)
     try:
-        async with _open(settings, journal, recover) as service:
+        async with _open(settings, journal, recover, given or GivenFiles()) as service:
             yield service
     finally:
         journal.close()
@@ -73,7 +70,7 @@ async def open_service(settings: Settings, *, recover: bool = True) -> AsyncIter
 
 @asynccontextmanager
 async def _open(
-    settings: Settings, journal: SqliteJournal, recover: bool
+    settings: Settings, journal: SqliteJournal, recover: bool, given: GivenFiles
 ) -> AsyncIterator[Service]:
     token = settings.token.get_secret_value() if settings.token else None
     registry = RobotRegistry(
@@ -83,10 +80,8 @@ async def _open(
     )
     config_socket = listen(settings)
     url = f"http://{reachable_host(settings.host)}:{config_socket.getsockname()[1]}"
-    scenes = Scenes(settings.scenes)
-    trees = JournaledTrees(journal, built_in_trees(), partial(check_uploaded_tree, scenes=scenes))
-    scenarios = BuiltInScenarios()
     adapters = load_plugins("mend.worlds")
+    library = build_library(journal, fixed_documents(given, settings.scenes), WorldChecks(adapters))
     models = RobotModels(adapters.values())
     poses = PoseFeed(registry.show_poses, models.address, _pose_records(settings))
     worlds = SimulatedWorlds(
@@ -99,7 +94,6 @@ async def _open(
             token=token,
             hang_s=settings.robot_hang_timeout_s,
         ),
-        scenarios.load,
     )
     mail = OperatorMail(
         Mailer(settings.mail) if settings.mail else None, lambda: datetime.now(UTC), url
@@ -108,8 +102,8 @@ async def _open(
         journal=journal,
         robots=registry,
         worlds=worlds,
-        trees=TaskLibrary(trees, scenes),
-        scenarios=scenarios,
+        trees=library,
+        scenarios=library,
         scripts=load_scripts(),
         policy=_policy(settings),
         send_mail=mail.send_later,
@@ -128,9 +122,9 @@ async def _open(
         runtime,
         journal,
         settings,
-        trees_library=trees,
-        scenarios=scenarios,
-        scenes=SceneLibrary(scenes),
+        trees=library.trees,
+        scenes=library.scenes,
+        scenarios=library.scenarios,
         worlds=worlds,
         models=models,
         poses=poses,
@@ -146,7 +140,7 @@ async def _open(
             await runtime.recover()
         serving = asyncio.create_task(server.serve(sockets=[config_socket]), name="server")
         await server.wait_until_started(serving)
-        yield Service(runtime, journal, registry, trees, url, settings)
+        yield Service(runtime, journal, registry, library, url, settings)
     finally:
         # First: a report that no run takes any more must not be acknowledged.
         registry.close()

@@ -1,131 +1,130 @@
-"""Task trees and scenarios as the runtime takes them: checked, with their scenes."""
+"""Everything that runs name, by kind: for the API, and as the runtime takes it."""
 
-from collections.abc import Iterable, Sequence
-from pathlib import Path
+import asyncio
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
 
-from pydantic import BaseModel
-
+from server.document_checks import Finder, ScenarioChecker, SceneFileChecker, TreeChecker
+from server.documents import (
+    SPOKEN,
+    DocumentKind,
+    DocumentSummary,
+    FixedDocuments,
+    ScenarioSummary,
+    SceneSummary,
+)
 from server.errors import InvalidError, NotFoundError
+from server.journal.journal import Journal
+from server.journaled_documents import JournaledDocuments
 from server.runtime.ports import LoadedTree
-from server.trees import CheckedTree, TreeLibrary, TreeMistake, WrongTreeError
-from tasks.definition import TaskTreeDefinition
-from tasks.library import SCENARIOS, SCENES, TREES, NotInLibraryError
-from tasks.plugins import load_plugins
-from tasks.problem import Problem
+from server.scene_checks import WorldChecks
+from tasks.library import NotInLibraryError
+from tasks.problem import InvalidFileError
 from tasks.scenario import Scenario
-from tasks.scenario_file import built_in_scenario
-from tasks.scene import Scene
-from tasks.scene_file import SceneFileError, built_in_scene, check_scene_file
-from tasks.task_file import TaskFileError, check_task_text
 
 
-def built_in_trees() -> dict[str, str]:
-    """The text of every task file of the library, by name."""
-    return {name: TREES.read(name) for name in TREES.names()}
+@dataclass(frozen=True, slots=True)
+class Library:
+    """The documents of a service.
 
+    Implements `TreeSource` and `ScenarioSource` of `server.runtime.ports`.
+    """
 
-class Scenes:
-    """The scenes that trees may name: those of a folder, then those of the library."""
+    trees: JournaledDocuments
+    scenes: JournaledDocuments
+    scenarios: JournaledDocuments
+    fixed: Mapping[DocumentKind, FixedDocuments]
+    journal: Journal
 
-    def __init__(self, folder: Path | None) -> None:
-        self._folder = folder
+    async def load(self, name: str, scene: str | None = None) -> LoadedTree:
+        """A tree and its scene; `scene` names another one that the tree fits.
 
-    def names(self) -> list[str]:
-        """Every scene that there is, sorted."""
-        own = {path.stem for path in self._folder.glob("*.yaml")} if self._folder else set()
-        return sorted({*own, *SCENES.names()})
+        Raises `NotFoundError` or `InvalidError`.
+        """
+        finder = await self._finder(DocumentKind.TREE, name)
+        return await asyncio.to_thread(_load_tree, finder, name, scene)
 
-    def find(self, name: str) -> Scene:
-        """One scene. Raises `NotInLibraryError` or `SceneFileError`."""
-        # Only a listed name is opened, so that a name is never taken for a path.
-        for path in sorted(self._folder.glob("*.yaml")) if self._folder else ():
-            if path.stem == name:
-                return check_scene_file(path)
-        return built_in_scene(name)
-
-
-class SceneLibrary:
-    """Implements `server.trees.SceneShelf`."""
-
-    def __init__(self, scenes: Scenes) -> None:
-        self._scenes = scenes
-
-    def names(self) -> list[str]:
-        return self._scenes.names()
-
-    def scene(self, name: str) -> Scene:
-        """One scene. Raises `NotFoundError`, and `InvalidError` for a file with mistakes."""
+    async def load_scenario(self, name: str) -> Scenario:
+        """Raises `NotFoundError` or `InvalidError`."""
+        finder = await self._finder(DocumentKind.SCENARIO, name)
         try:
-            return self._scenes.find(name)
-        except NotInLibraryError as error:
-            raise NotFoundError(f"there is no scene '{name}'") from error
-        except SceneFileError as error:
-            raise InvalidError(f"the scene '{name}' cannot be used", [str(error)]) from error
+            return finder.scenario(name)
+        except InvalidFileError as error:
+            raise _unusable(DocumentKind.SCENARIO, name, error) from error
+
+    async def _finder(self, kind: DocumentKind, name: str) -> Finder:
+        uploaded = {each: await self.journal.documents(each) for each in DocumentKind}
+        if name not in self.fixed[kind].names() and name not in uploaded[kind]:
+            raise NotFoundError(f"there is no {SPOKEN[kind]} '{name}'")
+        return Finder(self.fixed, uploaded)
 
 
-class TaskLibrary:
-    """Implements `server.runtime.runtime.TreeSource`."""
-
-    def __init__(self, trees: TreeLibrary, scenes: Scenes) -> None:
-        self._trees = trees
-        self._scenes = scenes
-
-    async def load(self, name: str) -> LoadedTree:
-        """A tree and the scene that it names. Raises `NotFoundError` or `InvalidError`."""
-        view = await self._trees.tree(name)
-        definition = TaskTreeDefinition.model_validate(view.definition)
-        try:
-            scene = self._scenes.find(definition.scene) if definition.scene else None
-        except (NotInLibraryError, SceneFileError) as error:
-            raise InvalidError(f"the scene of tree '{name}' cannot be used: {error}") from error
-        return LoadedTree(name, definition, scene)
-
-
-class BuiltInScenarios:
-    """The scenarios that come with Mend."""
-
-    def scenarios(self) -> list[Scenario]:
-        return [built_in_scenario(name) for name in SCENARIOS.names()]
-
-    def load(self, name: str) -> Scenario:
-        """One scenario. Raises `NotFoundError`."""
-        try:
-            return built_in_scenario(name)
-        except NotInLibraryError as error:
-            raise NotFoundError(str(error)) from error
+def build_library(
+    journal: Journal, fixed: Mapping[DocumentKind, FixedDocuments], worlds: WorldChecks
+) -> Library:
+    """The documents that are fixed, and those that a journal keeps."""
+    tree, scene, scenario = DocumentKind.TREE, DocumentKind.SCENE, DocumentKind.SCENARIO
+    scenarios = JournaledDocuments(
+        scenario,
+        journal,
+        fixed[scenario],
+        ScenarioChecker(fixed, worlds),
+        needs=(tree, scene),
+        summarize=_about_scenario,
+    )
+    trees = JournaledDocuments(
+        tree, journal, fixed[tree], TreeChecker(fixed, worlds), needs=(scene,), users=[scenarios]
+    )
+    scenes = JournaledDocuments(
+        scene,
+        journal,
+        fixed[scene],
+        SceneFileChecker(fixed, worlds),
+        users=[trees, scenarios],
+        summarize=_about_scene,
+    )
+    return Library(trees, scenes, scenarios, fixed, journal)
 
 
-def behavior_parameters() -> dict[str, type[BaseModel]]:
-    """The parameter model of every behavior, by name."""
-    return {name: each.parameters for name, each in load_plugins("mend.behaviors").items()}
-
-
-def check_uploaded_tree(text: str, scenes: Scenes) -> CheckedTree:
-    """Read a task file. Raises `WrongTreeError` with every mistake."""
+def _load_tree(finder: Finder, name: str, scene: str | None) -> LoadedTree:
     try:
-        definition = check_task_text(text, behavior_parameters(), scenes.find).definition
-    except TaskFileError as error:
-        sentences = [each.describe("line") for each in error.problems]
-        raise WrongTreeError(_mistakes(error.problems, text), sentences) from error
-    return CheckedTree(name=definition.name, definition=definition.to_json())
+        chosen = finder.scene(scene) if scene else None
+    except NotInLibraryError as error:
+        raise NotFoundError(str(error)) from error
+    except InvalidFileError as error:
+        raise _unusable(DocumentKind.SCENE, scene or "", error) from error
+    try:
+        task = finder.task(name, chosen)
+    except InvalidFileError as error:
+        raise _unusable(DocumentKind.TREE, name, error) from error
+    definition = task.definition.model_copy(
+        update={"name": name, "scene": chosen.name if chosen else task.definition.scene}
+    )
+    return LoadedTree(name, definition, task.scene)
 
 
-def _mistakes(problems: Iterable[Problem], text: str) -> list[TreeMistake]:
-    lines = text.splitlines()
-    return [
-        TreeMistake(
-            line=each.line,
-            column=each.column or _content_column(lines, each.line),
-            node=each.node_path,
-            message=each.message,
-        )
-        for each in problems
-    ]
+def _unusable(kind: DocumentKind, name: str, error: InvalidFileError) -> InvalidError:
+    sentences = str(error).splitlines()
+    return InvalidError(f"the {SPOKEN[kind]} '{name}' cannot be used", sentences)
 
 
-def _content_column(lines: Sequence[str], number: int | None) -> int | None:
-    """Where the content of a line begins, after its indentation and the dashes of a list."""
-    if number is None or not 0 < number <= len(lines):
-        return None
-    line = lines[number - 1]
-    return len(line) - len(line.lstrip(" -\t")) + 1
+def _about_scene(
+    name: str, built_in: bool, definition: Mapping[str, Any] | None
+) -> DocumentSummary:
+    objects = None if definition is None else len(definition["objects"])
+    places = None if definition is None else len(definition["places"])
+    return SceneSummary(name=name, built_in=built_in, objects=objects, places=places)
+
+
+def _about_scenario(
+    name: str, built_in: bool, definition: Mapping[str, Any] | None
+) -> DocumentSummary:
+    fields = definition or {}
+    return ScenarioSummary(
+        name=name,
+        built_in=built_in,
+        tree=fields.get("tree"),
+        description=fields.get("description", ""),
+        answers=fields.get("answers", []),
+    )

@@ -1,25 +1,64 @@
 """Asking worlds, before anything moves, what in a scene their robots cannot do."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 from server.errors import InvalidError
-from sim.world import SceneChecker, WorldAdapter
-from tasks.definition import BehaviorNode
+from sim.world import SceneChecker, WorldAdapter, WorldUnavailableError
+from tasks.definition import BehaviorNode, GoalNode, TaskTreeDefinition
 from tasks.plugins import load_plugins
 from tasks.scene import Scene
 from tasks.scene_problem import SceneProblem
 
-WorldCheck = Callable[[Scene, Sequence[BehaviorNode]], list[SceneProblem]]
+WorldCheck = Callable[[Scene, Sequence[GoalNode | BehaviorNode]], list[SceneProblem]]
 
 
-def world_check(world: str) -> WorldCheck | None:
-    """How a world checks scenes; None where it does not.
+class WorldChecks:
+    """The worlds that check scenes and can run here."""
 
-    Raises `InvalidError` where there is no such world, and `WorldUnavailableError`.
-    """
-    adapters: dict[str, WorldAdapter] = dict(load_plugins("mend.worlds"))
-    if world not in adapters:
-        raise InvalidError(f"there is no world '{world}'; there are {', '.join(sorted(adapters))}")
-    adapter = adapters[world]
-    adapter.check_available()
-    return adapter.check_scene if isinstance(adapter, SceneChecker) else None
+    def __init__(self, adapters: Mapping[str, WorldAdapter]) -> None:
+        self._adapters = adapters
+
+    def only(self, world: str) -> "WorldChecks":
+        """One of the worlds alone.
+
+        Raises `InvalidError` where there is no such world, and `WorldUnavailableError`.
+        """
+        if world not in self._adapters:
+            known = ", ".join(sorted(self._adapters))
+            raise InvalidError(f"there is no world '{world}'; there are {known}")
+        self._adapters[world].check_available()
+        return WorldChecks({world: self._adapters[world]})
+
+    def check_of(self, world: str) -> WorldCheck | None:
+        """How a world checks scenes; None where it does not."""
+        adapter = self._adapters[world]
+        return adapter.check_scene if isinstance(adapter, SceneChecker) else None
+
+    def try_scene(self, scene: Scene) -> dict[str, list[SceneProblem]]:
+        """What each world's robot cannot do with the objects of a scene by themselves."""
+        return {name: check(scene, []) for name, check in self._checks()}
+
+    def try_tree(self, scene: Scene, tree: TaskTreeDefinition) -> dict[str, list[SceneProblem]]:
+        """What keeps each world's robot from doing a tree in a scene."""
+        return {name: check(scene, tree.nodes) for name, check in self._checks()}
+
+    def _checks(self) -> list[tuple[str, WorldCheck]]:
+        found = []
+        for name in sorted(self._adapters):
+            check = self.check_of(name) if _can_run(self._adapters[name]) else None
+            if check is not None:
+                found.append((name, check))
+        return found
+
+
+def load_world_checks() -> WorldChecks:
+    """The worlds that are installed."""
+    return WorldChecks(load_plugins("mend.worlds"))
+
+
+def _can_run(adapter: WorldAdapter) -> bool:
+    try:
+        adapter.check_available()
+    except WorldUnavailableError:
+        return False
+    return True

@@ -10,11 +10,11 @@ from robots.link import messages as link
 from server.api import helper_messages, speech_messages
 from server.api.problems import Problem
 from server.app import described_app
+from server.documents import DocumentCheck
 from server.journal.events import AnyEvent
 from server.poses.layout import Layout
 from server.runtime.requests import RunRequest
 from server.runtime.views import DialogueView, RobotView, RunView, WorldView
-from server.trees import TreeCheck
 from tasks.intervention import Intervention
 from tasks.scenario import Scenario
 from tasks.scene import Scene
@@ -35,7 +35,7 @@ SCHEMAS: dict[str, Any] = {
     "dialogue": DialogueView,
     "robot": RobotView,
     "layout": Layout,
-    "tree_check": TreeCheck,
+    "document_check": DocumentCheck,
     "world": WorldView,
     "problem": Problem,
     "intervention": Intervention,

@@ -7,8 +7,8 @@ from typing import Generic, Protocol, TypeVar
 
 import numpy as np
 
-from sim.footprint import Footprint
 from sim.free_pose import PLACE_RADIUS_M, radius_m
+from tasks.footprint import Footprint
 from tasks.intervention import Act, Intervention
 from tasks.scene import Place, Pose, Scene
 

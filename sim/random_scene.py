@@ -10,14 +10,14 @@ import numpy as np
 from robots.catalogue import Part
 from sim.random_parts import DrawnSizes, PartLook, draw_look
 from sim.standing_room import Standing, standing
-from tasks.definition import BehaviorNode
+from tasks.definition import BehaviorNode, GoalNode
 from tasks.random_task import random_ordered_nesting
 from tasks.scene import Place, Pose, Scene, Table
 from tasks.scene_problem import SceneProblem
 
 MOST_PARTS = 30
 
-SceneCheck = Callable[[Scene, Sequence[BehaviorNode]], list[SceneProblem]]
+SceneCheck = Callable[[Scene, Sequence[GoalNode | BehaviorNode]], list[SceneProblem]]
 """What a world's robot cannot do in a scene (`sim.world.SceneChecker`)."""
 
 _X_M = (0.40, 0.68)

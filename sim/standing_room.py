@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 from robots.catalogue import Part
 from robots.grasp import grasp_of
-from sim.footprint import TOUCH_M, Footprint
 from sim.workcell.gripper import PR2_GRIPPER
+from tasks.footprint import TOUCH_M, Footprint
 
 _GAP_M = 0.010
 """Kept between what one site needs and what stands on another."""

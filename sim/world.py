@@ -8,7 +8,7 @@ from robots.agent import AgentCore
 from robots.body import Body
 from robots.link.messages import ShownObject, ShownPose
 from robots.vision.color_model import ColorModel
-from tasks.definition import BehaviorNode
+from tasks.definition import BehaviorNode, GoalNode
 from tasks.intervention import Intervention
 from tasks.scenario import ScriptedIntervention
 from tasks.scene import Scene, StrictModel
@@ -143,10 +143,13 @@ class ColorTeacher(Protocol):
 class SceneChecker(Protocol):
     """A world adapter that tells, before anything moves, what in a scene its robot cannot do."""
 
-    def check_scene(self, scene: Scene, leaves: Sequence[BehaviorNode]) -> list[SceneProblem]:
-        """What keeps its robot from doing `leaves` in `scene`; empty where nothing does.
+    def check_scene(
+        self, scene: Scene, nodes: Sequence[GoalNode | BehaviorNode]
+    ) -> list[SceneProblem]:
+        """What keeps its robot from doing the leaves among `nodes`; empty where nothing does.
 
-        Without leaves, every object of the scene is checked by itself. Raises
+        `nodes` are a whole tree's, for its order and its alternatives, or leaves alone, which all
+        are done. Without any, every object of the scene is checked by itself. Raises
         `WorldUnavailableError`.
         """
         ...

@@ -7,6 +7,7 @@ from pydantic import BaseModel, TypeAdapter
 from tasks.flat_form import IGNORED_KEYS
 from tasks.leaf_check import Behaviors
 from tasks.nested_form import GOAL_KEYS
+from tasks.part_rows import Grid
 from tasks.scenario import Scenario
 from tasks.scene import Name, Scene
 
@@ -15,7 +16,21 @@ _DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
 def scene_schema() -> dict[str, Any]:
     """The JSON Schema of a scene file."""
-    return {"$schema": _DIALECT, **Scene.model_json_schema()}
+    schema = Scene.model_json_schema()
+    definitions = schema["$defs"]
+    grid = Grid.model_json_schema(ref_template="#/$defs/{model}")
+    definitions |= {**grid.pop("$defs", {}), "Grid": grid}
+    for kind in ("SceneObject", "Place"):
+        _take_several_poses(definitions[kind])
+    return {"$schema": _DIALECT, **schema}
+
+
+def _take_several_poses(entry: dict[str, Any]) -> None:
+    """An entry of a scene has one of `pose`, `poses` and `grid`."""
+    poses = {"type": "array", "minItems": 1, "items": {"$ref": "#/$defs/Pose"}}
+    entry["properties"] |= {"poses": poses, "grid": {"$ref": "#/$defs/Grid"}}
+    entry["required"] = [key for key in entry["required"] if key != "pose"]
+    entry["oneOf"] = [{"required": [key]} for key in ("pose", "poses", "grid")]
 
 
 def scenario_schema() -> dict[str, Any]:

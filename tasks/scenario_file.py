@@ -68,3 +68,21 @@ def scene_problems(scenario: Scenario, scene: Scene) -> list[str]:
         problems += unknown("object", each.do.object, scene.objects, f"{where}.do")
         problems += unknown("place", each.do.place, scene.places, f"{where}.do")
     return problems
+
+
+def moved_scene(scene: Scene, scenario: Scenario) -> Scene:
+    """The scene with its objects where the scenario wants them.
+
+    Raises `ValueError` for an object that the scene does not have.
+    """
+    unknown = sorted(set(scenario.scene) - set(scene.objects))
+    if unknown:
+        raise ValueError(
+            f"scenario '{scenario.name}' moves '{unknown[0]}', which scene '{scene.name}' "
+            "does not have"
+        )
+    objects = {
+        name: part.model_copy(update={"pose": scenario.scene.get(name, part.pose)})
+        for name, part in scene.objects.items()
+    }
+    return scene.model_copy(update={"objects": objects})

@@ -1,30 +1,55 @@
 """Scene files: reading and checking them."""
 
+from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
 from tasks.document import DocumentError, LinedMapping, read_document, read_text
 from tasks.library import SCENES
+from tasks.part_rows import expand_rows
 from tasks.problem import InvalidFileError, Problem
 from tasks.scene import Scene
-from tasks.validation import show_kind, validate_part
+from tasks.validation import find_line, show_kind, validate_part
 
 
 class SceneFileError(InvalidFileError):
     """A scene file has mistakes; raised by every function that reads one."""
 
 
+@dataclass(frozen=True, slots=True)
+class ReadScene:
+    """A scene, and the document that it was read from, several poses as several entries."""
+
+    scene: Scene
+    document: LinedMapping
+
+    def line_of(self, where: Sequence[str]) -> int:
+        """The line of what a `SceneProblem` is about."""
+        return find_line(self.document, where)
+
+
 def check_scene_file(path: Path) -> Scene:
     """Read and check a scene file (YAML or JSON). Raises `SceneFileError`."""
-    try:
-        text = read_text(path)
-    except DocumentError as error:
-        raise SceneFileError(str(path), [error.problem]) from error
-    return check_scene_text(text, source=str(path))
+    return read_scene_file(path).scene
 
 
 def check_scene_text(text: str, *, source: str = "scene") -> Scene:
     """Check the text of a scene file; `source` names it in errors. Raises `SceneFileError`."""
+    return read_scene_text(text, source=source).scene
+
+
+def read_scene_file(path: Path) -> ReadScene:
+    """Read and check a scene file, and keep the line of everything. Raises `SceneFileError`."""
+    try:
+        text = read_text(path)
+    except DocumentError as error:
+        raise SceneFileError(str(path), [error.problem]) from error
+    return read_scene_text(text, source=str(path))
+
+
+def read_scene_text(text: str, *, source: str = "scene") -> ReadScene:
+    """As `read_scene_file`, for the text of one. Raises `SceneFileError`."""
     try:
         document, problems = read_document(text)
     except DocumentError as error:
@@ -32,11 +57,12 @@ def check_scene_text(text: str, *, source: str = "scene") -> Scene:
     if not isinstance(document, LinedMapping):
         message = f"a scene file is a mapping, but this is {show_kind(document)}"
         raise SceneFileError(source, [*problems, Problem(1, None, message)])
+    problems += expand_rows(document)
     scene, mistakes = validate_part(Scene, document)
     problems += mistakes
     if scene is None or problems:
         raise SceneFileError(source, problems)
-    return scene
+    return ReadScene(scene, document)
 
 
 @cache

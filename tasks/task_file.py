@@ -1,6 +1,6 @@
 """Task files: reading and checking them, in the nested or the published flat form."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -15,6 +15,7 @@ from tasks.nested_form import draft_nested_tree
 from tasks.problem import InvalidFileError, Problem
 from tasks.scene import Scene
 from tasks.scene_file import SceneFileError, built_in_scene, check_scene_file
+from tasks.tree_problems import find_tree_problems
 from tasks.validation import find_extra_keys, show_kind
 
 FindScene = Callable[[str], Scene]
@@ -36,12 +37,15 @@ class CheckedTask:
 
 
 def check_task_file(
-    path: Path, behaviors: Behaviors, find_scene: FindScene | None = None
+    path: Path,
+    behaviors: Behaviors,
+    find_scene: FindScene | None = None,
+    scene: Scene | None = None,
 ) -> CheckedTask:
     """Read and check a task file (YAML or JSON). Raises `TaskFileError`.
 
     Its scene is looked for in `scenes/` beside the file, then in the library, unless `find_scene`
-    is given.
+    is given, or `scene`, which is taken instead of it.
     """
     try:
         text = read_text(path)
@@ -53,7 +57,12 @@ def check_task_file(
         return check_scene_file(beside) if beside.is_file() else built_in_scene(name)
 
     return check_task_text(
-        text, behaviors, find_scene or find_beside, source=str(path), default_name=path.stem
+        text,
+        behaviors,
+        find_scene or find_beside,
+        source=str(path),
+        default_name=path.stem,
+        scene=scene,
     )
 
 
@@ -69,10 +78,12 @@ def check_task_text(
     *,
     source: str = "task",
     default_name: str = "task",
+    scene: Scene | None = None,
 ) -> CheckedTask:
     """Check the text of a task file; `source` names it in errors. Raises `TaskFileError`.
 
-    `default_name` is the name of a flat file, which need not have one of its own.
+    `default_name` is the name of a flat file, which need not have one of its own. `scene` is taken
+    instead of the one that the file names.
     """
     try:
         document, problems = read_document(text)
@@ -85,7 +96,7 @@ def check_task_text(
     if is_flat and "name" not in document and find_name_mistake(default_name) is None:
         document["name"] = default_name
     head = _check_head(document, problems)
-    scene = _find_scene(document, find_scene, problems)
+    scene = scene or _find_scene(document, find_scene, problems)
     draft = _draft_tree(document, is_flat, problems)
     nodes = _check_nodes(draft, behaviors, scene)
     if draft.problems:
@@ -148,6 +159,17 @@ def _check_nodes(
     names = name_nodes(draft)
     if draft.problems:
         return []
+    nodes = _make_nodes(draft, names, parameters)
+    for problem in find_tree_problems(nodes, scene):
+        source = draft.nodes[problem.leaf].parameters or draft.nodes[problem.leaf].source
+        draft.report(problem.leaf, source.line_of(problem.parameter), problem.message)
+    return nodes
+
+
+def _make_nodes(
+    draft: Draft, names: list[str], parameters: Mapping[int, dict[str, Any]]
+) -> list[GoalNode | BehaviorNode]:
+    """The nodes of a draft without problems."""
     nodes: list[GoalNode | BehaviorNode] = []
     for index, node in enumerate(draft.nodes):
         if node.kind == "behavior":

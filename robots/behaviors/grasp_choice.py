@@ -21,7 +21,7 @@ from robots.vision.seen_box import SeenBox
 
 Vector = NDArray[np.float64]
 
-_LIFTS_M = (0.14, 0.10, 0.07)
+LIFTS_M = (0.14, 0.10, 0.07)
 """So high above pick and place the tool point passes, where nothing tall stands on the way; lower
 where the arm does not reach so high."""
 
@@ -50,10 +50,10 @@ def ways_to_grasp(
     if sighting is not None:
         found = Location(x=sighting.x, y=sighting.y, z=sighting.z, yaw=sighting.yaw)
     table_z = senses.catalogue.table.height
-    clear_z = _clear_z(found, assignment.target, table_z, boxes)
-    for grasp, lift_m in product(_grasps(part, arm, senses, findings), _LIFTS_M):
+    over_z = clear_z(found, assignment.target, table_z, boxes)
+    for grasp, lift_m in product(_grasps(part, arm, senses, findings), LIFTS_M):
         yield Situation(
-            part, found, assignment.target, table_z, arm.body.gripper, grasp, clear_z, lift_m
+            part, found, assignment.target, table_z, arm.body.gripper, grasp, over_z, lift_m
         )
 
 
@@ -93,7 +93,7 @@ def _grasps(
     return grasps_of(part, arm.body.gripper)
 
 
-def _clear_z(
+def clear_z(
     found: Location | None, target: Location | None, table_z: float, boxes: Sequence[SeenBox]
 ) -> float:
     """Over what stands on the way."""

@@ -9,6 +9,7 @@ from pydantic import Field
 from starlette.requests import HTTPConnection
 
 from server.api.access import Access
+from server.documents import DocumentLibrary
 from server.journal.journal import Journal
 from server.journal.subscriptions import Subscribers
 from server.journal.writer import CommitStatistics
@@ -18,7 +19,6 @@ from server.runtime.service import RunService
 from server.runtime.views import WorldView
 from server.settings import Settings
 from server.speech.abilities import NO_SPEECH, SpeechAbilities
-from server.trees import ScenarioLibrary, SceneShelf, TreeLibrary
 
 MAX_SEQ = 2**63 - 1
 
@@ -44,9 +44,9 @@ class Parts:
 
     runs: RunService
     journal: ObservedJournal
-    trees: TreeLibrary
-    scenarios: ScenarioLibrary
-    scenes: SceneShelf
+    trees: DocumentLibrary
+    scenes: DocumentLibrary
+    scenarios: DocumentLibrary
     worlds: WorldList
     models: RobotModels
     poses: PoseSource
@@ -64,8 +64,7 @@ WithParts = Annotated[Parts, Depends(parts_of)]
 
 RunId = Annotated[UUID, Path(description="The run's id.")]
 DialogueId = Annotated[UUID, Path(description="The dialogue's id.")]
-TreeName = Annotated[str, Path(pattern=r"^[A-Za-z][A-Za-z0-9_\-]{0,63}$", examples=["eket"])]
-SceneName = Annotated[str, Path(pattern=r"^[A-Za-z][A-Za-z0-9_\-]{0,63}$", examples=["eket"])]
+DocumentName = Annotated[str, Path(pattern=r"^[A-Za-z][A-Za-z0-9_\-]{0,63}$", examples=["eket"])]
 After = Annotated[int, Query(ge=0, le=MAX_SEQ, description="Only what comes after this `seq`.")]
 Limit = Annotated[int, Query(ge=1, le=1000, description="At most so many.")]
 Offset = Annotated[int, Query(ge=0, le=MAX_SEQ, description="Skip so many.")]

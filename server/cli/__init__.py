@@ -16,6 +16,7 @@ from server.cli.replay import replay
 from server.cli.run import run
 from server.cli.scenarios import scenarios
 from server.cli.scene import scene_app
+from server.cli.scenes import scenes
 from server.cli.schedule import schedule
 from server.cli.schema import schema
 from server.cli.serve import serve
@@ -58,6 +59,7 @@ COMMANDS: dict[str, tuple[Callable[..., None], str]] = {
     "talk": (talk, "Answer a robot by voice, from a terminal."),
     "check": (check, "Find the mistakes of a file."),
     "trees": (trees, "List the task trees that there are."),
+    "scenes": (scenes, "List the scenes that there are."),
     "scenarios": (scenarios, "List the scenarios that there are."),
     "schema": (schema, "Print a schema as JSON."),
     "schedule": (schedule, "Plan deliveries for several robots."),

@@ -9,15 +9,16 @@ from typing import Annotated
 import typer
 
 from server.cli.failures import NOT_FINISHED, CommandLineError, told_plainly
-from server.cli.task_files import (
+from server.cli.mistakes import (
     delivery_mistakes,
-    read_text,
     scenario_mistakes,
     scene_mistakes,
     task_mistakes,
 )
+from server.cli.task_files import read_text
+from server.scene_checks import WorldChecks, load_world_checks
 
-CHECKERS: Mapping[str, Callable[[Path], list[str]]] = {
+CHECKERS: Mapping[str, Callable[[Path, WorldChecks], list[str]]] = {
     "task": task_mistakes,
     "scene": scene_mistakes,
     "scenario": scenario_mistakes,
@@ -38,14 +39,23 @@ def check(
             metavar="FILE", help="A task, scene, scenario or delivery file, YAML or JSON."
         ),
     ],
+    world: Annotated[
+        str | None,
+        typer.Option(
+            help="The world whose robot has to be able to do it; without it, every world that can "
+            "run here."
+        ),
+    ] = None,
 ) -> None:
     """Check a task, scene, scenario or delivery file, and name every mistake with its line.
 
-    The exit code is 1 if there are any.
+    Also what the robot of a world cannot do: parts that it cannot grasp or tell apart, that it
+    cannot reach, that have no room. The exit code is 1 if there are any mistakes.
     """
     with told_plainly():
         kind = kind_of_file(read_text(file))
-        mistakes = CHECKERS[kind](file)
+        worlds = load_world_checks()
+        mistakes = CHECKERS[kind](file, worlds if world is None else worlds.only(world))
     if mistakes:
         raise CommandLineError("\n".join(mistakes), NOT_FINISHED)
     typer.echo(f"{file}: a {kind} file without mistakes")

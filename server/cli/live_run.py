@@ -12,7 +12,6 @@ from server.cli.failures import INTERRUPTED, NOT_FINISHED, CommandLineError
 from server.cli.output import EventOutput, JsonLines
 from server.cli.reports import write_run_report
 from server.cli.terminal_helper import TerminalHelper
-from server.cli.tree_argument import TreeArgument
 from server.errors import ConflictError
 from server.journal import events as ev
 from server.journal.reader import JournalReader
@@ -43,7 +42,6 @@ class LiveRun:
         self,
         open_service: OpenService,
         settings: Settings,
-        tree: TreeArgument,
         request: RunRequest,
         output: EventOutput,
         report: Path | None,
@@ -52,7 +50,6 @@ class LiveRun:
     ) -> None:
         self._open_service = open_service
         self._settings = settings
-        self._tree = tree
         self._request = request
         self._output = output
         self._report = report
@@ -66,7 +63,6 @@ class LiveRun:
         Raises `CommandLineError` and the errors of `server.errors`.
         """
         async with self._open_service(self._settings, recover=False) as service:
-            await self._keep_tree(service)
             before = service.journal.head
             run = (await service.runtime.start_run(self._request)).id
             status = await self._watch(service, run, before)
@@ -77,11 +73,6 @@ class LiveRun:
         if self._interrupted:
             return INTERRUPTED
         return 0 if status is RunStatus.FINISHED else NOT_FINISHED
-
-    async def _keep_tree(self, service: "Service") -> None:
-        """A tree from a file has to be in the journal before a run can name it."""
-        if self._tree.text is not None:
-            await service.trees.save(self._tree.name, self._tree.text)
 
     async def _watch(self, service: "Service", run: UUID, before: int) -> RunStatus:
         """Tell the run's events until its end; Ctrl-C aborts it."""

@@ -3,6 +3,7 @@
 import asyncio
 import secrets
 import sys
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -14,11 +15,10 @@ from server.cli.failures import CommandLineError, told_plainly
 from server.cli.journals import new_run_journal
 from server.cli.live_run import LiveRun
 from server.cli.output import JsonLines, LiveTranscript
-from server.cli.tree_argument import TreeArgument, read_tree_argument
+from server.cli.run_files import RunFiles, read_run_files
 from server.runtime.requests import RunRequest
 from server.settings import Settings, load_settings
-from tasks.scenario import Person
-from tasks.scenario_file import built_in_scenario
+from tasks.scenario import Person, Scenario
 
 
 def run(
@@ -28,8 +28,16 @@ def run(
     world: Annotated[str, typer.Option(help="Where: workcell, tabletop or a world of yours.")] = (
         "workcell"
     ),
+    scene: Annotated[
+        str | None,
+        typer.Option(
+            help="Do it in this scene: its name (`mend scenes`) or a file. Without it, in the one "
+            "that the tree is for."
+        ),
+    ] = None,
     scenario: Annotated[
-        str | None, typer.Option(help="What happens meanwhile (`mend scenarios`).")
+        str | None,
+        typer.Option(help="What happens meanwhile: its name (`mend scenarios`) or a file."),
     ] = None,
     speed: Annotated[
         str, typer.Option(help="Simulated seconds per second, or max for as fast as possible.")
@@ -74,13 +82,14 @@ def run(
     from server.composition import open_service
 
     with told_plainly():
-        argument = read_tree_argument(tree)
-        given = _answers(answers, scenario)
+        files = read_run_files(tree, scene, scenario)
+        given = _answers(answers, files.scenario)
         asks_at_terminal = given is None and sys.stdin.isatty() and not json
         request = _request(
-            tree=argument.name,
+            tree=files.tree,
             world=world,
-            scenario=scenario,
+            scene=files.scene,
+            scenario=files.scenario.name if files.scenario else None,
             speed=_read_speed(speed),
             seed=seed,
             answers="none" if given is None and not asks_at_terminal else given,
@@ -91,12 +100,11 @@ def run(
         if report is not None:
             # A report that cannot be written is told before the run, not after it.
             report.parent.mkdir(parents=True, exist_ok=True)
-        settings = _settings(journal, argument)
+        settings = _settings(journal, files)
         output = JsonLines() if json else LiveTranscript()
         live_run = LiveRun(
-            open_service,
+            partial(open_service, given=files.given),
             settings,
-            argument,
             request,
             output,
             report,
@@ -106,7 +114,7 @@ def run(
     raise typer.Exit(exit_code)
 
 
-def _settings(journal: Path | None, tree: TreeArgument) -> Settings:
+def _settings(journal: Path | None, files: RunFiles) -> Settings:
     """A service that only this process can use: loopback, a free port, a token of its own."""
     own = load_settings(
         host="127.0.0.1",
@@ -114,15 +122,15 @@ def _settings(journal: Path | None, tree: TreeArgument) -> Settings:
         token=SecretStr(secrets.token_urlsafe(32)),
         log_level="warning",
     )
-    chosen = journal or new_run_journal(own, tree.name)
-    return own.model_copy(update={"journal": chosen, "scenes": tree.scenes or own.scenes})
+    chosen = journal or new_run_journal(own, files.tree)
+    return own.model_copy(update={"journal": chosen, "scenes": files.scenes or own.scenes})
 
 
-def _answers(text: str | None, scenario: str | None) -> Answers | None:
+def _answers(text: str | None, scenario: Scenario | None) -> Answers | None:
     """The scripted answers of the command line, else of the scenario, else None."""
     if text is not None:
         return read_answers(text)
-    return list(built_in_scenario(scenario).answers) or None if scenario is not None else None
+    return list(scenario.answers) or None if scenario is not None else None
 
 
 def _read_speed(text: str) -> Any:

@@ -35,12 +35,13 @@ def random(
     Its parts have any size, colour and pose that the world's robot can do. Keep the scene as
     scenes/random_SEED.yaml beside the task file, or give it to `mend run` with --scene.
     """
-    from server.scene_checks import world_check
+    from server.scene_checks import load_world_checks
     from sim.random_scene import NoRoomError, random_scene, scene_document
 
     with told_plainly():
         try:
-            made = random_scene(seed, parts, world_check(world))
+            check = load_world_checks().only(world).check_of(world)
+            made = random_scene(seed, parts, check)
         except NoRoomError as error:
             raise CommandLineError(str(error)) from error
     document = made.tree if tree else scene_document(made.scene)

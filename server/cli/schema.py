@@ -7,8 +7,8 @@ from typing import Annotated, Any
 
 import typer
 
+from server.behaviors import behavior_parameters
 from server.cli.failures import told_plainly
-from server.library import behavior_parameters
 from tasks.json_schema import scenario_schema, scene_schema, task_schema
 
 

@@ -1,16 +1,22 @@
 """The files that commands take: read, or every mistake as `file:line: sentence`."""
 
+from dataclasses import dataclass
 from pathlib import Path
 
+from server.behaviors import behavior_parameters
 from server.cli.failures import CommandLineError
-from server.library import behavior_parameters
-from tasks.library import NotInLibraryError
-from tasks.problem import InvalidFileError
-from tasks.scenario import Scenario
-from tasks.scenario_file import check_scenario_file, scene_problems
+from tasks.library import SCENES, NotInLibraryError
 from tasks.scene import Scene
-from tasks.scene_file import check_scene_file
+from tasks.scene_file import ReadScene, check_scene_file, read_scene_file, read_scene_text
 from tasks.task_file import CheckedTask, check_built_in_task, check_task_file
+
+
+@dataclass(frozen=True, slots=True)
+class SceneSource:
+    """A scene with its lines, and what its file is called in sentences."""
+
+    read: ReadScene
+    source: str
 
 
 def read_text(path: Path) -> str:
@@ -21,9 +27,12 @@ def read_text(path: Path) -> str:
         raise CommandLineError(f"'{path}' is not a text file in UTF-8") from error
 
 
-def read_task(path: Path) -> CheckedTask:
-    """A task file. Raises `InvalidFileError` with every mistake."""
-    return check_task_file(path, behavior_parameters())
+def read_task(path: Path, scene: Scene | None = None) -> CheckedTask:
+    """A task file, with its own scene or another one.
+
+    Raises `InvalidFileError` with every mistake.
+    """
+    return check_task_file(path, behavior_parameters(), scene=scene)
 
 
 def read_scene(path: Path) -> Scene:
@@ -31,49 +40,27 @@ def read_scene(path: Path) -> Scene:
     return check_scene_file(path)
 
 
-def task_mistakes(path: Path) -> list[str]:
-    """Every mistake of a task file, also what its scene does not have."""
+def scene_of_task_file(path: Path, name: str) -> SceneSource:
+    """The scene that a task file names: beside it, else of the library.
+
+    Raises `NotInLibraryError` and `InvalidFileError`.
+    """
+    beside = path.parent / "scenes" / f"{name}.yaml"
+    if beside.is_file():
+        return SceneSource(read_scene_file(beside), str(beside))
+    source = f"scenes/{name}.yaml"
+    return SceneSource(read_scene_text(SCENES.read(name), source=source), source)
+
+
+def task_of_scenario_file(path: Path, tree: str) -> CheckedTask:
+    """The task tree that a scenario file is for: of the library, else beside it.
+
+    Raises `NotInLibraryError` and `InvalidFileError`.
+    """
     try:
-        read_task(path)
-    except InvalidFileError as error:
-        return str(error).splitlines()
-    return []
-
-
-def scene_mistakes(path: Path) -> list[str]:
-    """Every mistake of a scene file."""
-    try:
-        read_scene(path)
-    except InvalidFileError as error:
-        return str(error).splitlines()
-    return []
-
-
-def scenario_mistakes(path: Path) -> list[str]:
-    """Every mistake of a scenario file, also what the scene of its tree does not have."""
-    try:
-        scenario = check_scenario_file(path)
-    except InvalidFileError as error:
-        return str(error).splitlines()
-    return [f"{path}: {each}" for each in _tree_problems(scenario)]
-
-
-def delivery_mistakes(path: Path) -> list[str]:
-    """Every mistake of a delivery file, else what contradicts itself in it."""
-    # Imported only here: schedulers would make every other command wait.
-    from fleet.scheduling.problem_file import read_delivery_file
-
-    try:
-        delivery = read_delivery_file(path)
-    except InvalidFileError as error:
-        return str(error).splitlines()
-    return [each.describe(str(path)) for each in delivery.contradictions]
-
-
-def _tree_problems(scenario: Scenario) -> list[str]:
-    """What a scenario expects of its tree and the tree's scene, and does not get."""
-    try:
-        task = check_built_in_task(scenario.tree, behavior_parameters())
-    except NotInLibraryError as error:
-        return [f"tree: {error}"]
-    return scene_problems(scenario, task.scene) if task.scene else []
+        return check_built_in_task(tree, behavior_parameters())
+    except NotInLibraryError:
+        beside = path.parent / f"{tree}.yaml"
+        if not beside.is_file():
+            raise
+        return read_task(beside)

@@ -1,8 +1,8 @@
 """`mend trees`: the task trees that come with Mend."""
 
+from server.behaviors import behavior_parameters
 from server.cli.failures import told_plainly
 from server.cli.output import print_rows
-from server.library import behavior_parameters
 from tasks.definition import BehaviorNode, TaskTreeDefinition
 from tasks.library import TREES
 from tasks.task_file import check_built_in_task

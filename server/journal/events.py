@@ -65,7 +65,8 @@ class RunStarted(Event):
     """A run began; everything needed to fold it again is here.
 
     `tree` and `scene` are the checked definitions in their JSON form; `options` the request's
-    remaining fields.
+    remaining fields. `script` is the scenario's definition in its JSON form, None without one and
+    in the journals of an older Mend, whose scenarios are all built in.
     """
 
     type: Literal["run_started"] = "run_started"
@@ -77,6 +78,7 @@ class RunStarted(Event):
     seed: int
     speed: float | Literal["max"]
     scenario: str | None
+    script: dict[str, Any] | None = None
     options: dict[str, Any]
 
 

@@ -25,7 +25,18 @@ CREATE TABLE pictures (id TEXT PRIMARY KEY, jpeg BLOB NOT NULL) STRICT;
 CREATE TABLE trees (name TEXT PRIMARY KEY, text TEXT NOT NULL) STRICT;
 """
 
-MIGRATIONS = (VERSION_1,)
+VERSION_2 = """
+CREATE TABLE documents (
+    kind TEXT NOT NULL,
+    name TEXT NOT NULL,
+    text TEXT NOT NULL,
+    PRIMARY KEY (kind, name)
+) STRICT;
+INSERT INTO documents (kind, name, text) SELECT 'tree', name, text FROM trees;
+DROP TABLE trees;
+"""
+
+MIGRATIONS = (VERSION_1, VERSION_2)
 
 
 class JournalSchemaError(Exception):

@@ -106,19 +106,22 @@ class SqliteJournal:
         committed: _Committed = await self._writer.submit(work)
         return committed.events
 
-    async def save_tree(self, name: str, text: str) -> None:
+    async def save_document(self, kind: str, name: str, text: str) -> None:
         await self._writer.submit(
             lambda connection: (
                 connection.execute(
-                    "INSERT OR REPLACE INTO trees (name, text) VALUES (?, ?)", (name, text)
+                    "INSERT OR REPLACE INTO documents (kind, name, text) VALUES (?, ?, ?)",
+                    (kind, name, text),
                 ).rowcount
             )
         )
 
-    async def delete_tree(self, name: str) -> bool:
+    async def delete_document(self, kind: str, name: str) -> bool:
         deleted: int = await self._writer.submit(
             lambda connection: (
-                connection.execute("DELETE FROM trees WHERE name = ?", (name,)).rowcount
+                connection.execute(
+                    "DELETE FROM documents WHERE kind = ? AND name = ?", (kind, name)
+                ).rowcount
             )
         )
         return deleted > 0
@@ -215,8 +218,9 @@ class SqliteJournal:
         )
         return [UUID(run) for (run,) in rows]
 
-    async def trees(self) -> dict[str, str]:
-        return dict(await self._select("SELECT name, text FROM trees ORDER BY name", ()))
+    async def documents(self, kind: str) -> dict[str, str]:
+        statement = "SELECT name, text FROM documents WHERE kind = ? ORDER BY name"
+        return dict(await self._select(statement, (kind,)))
 
     async def _select(self, statement: str, parameters: Any) -> list[Any]:
         def query() -> list[Any]:

@@ -1,5 +1,6 @@
 """From a request to the event that begins a run."""
 
+import asyncio
 from collections.abc import Callable
 from datetime import datetime
 from uuid import uuid4
@@ -9,6 +10,7 @@ from server.journal import events as ev
 from server.runtime.ports import LIVE, ScenarioSource, TreeSource, Worlds
 from server.runtime.requests import RunRequest
 from tasks.scenario import Scenario
+from tasks.scenario_file import moved_scene, scene_problems
 from tasks.scene import Scene
 
 
@@ -29,13 +31,15 @@ class NewRuns:
 
     async def make(self, request: RunRequest) -> ev.RunStarted:
         """Raises `NotFoundError` or `InvalidError`."""
-        scenario = self._scenarios.load(request.scenario) if request.scenario else None
+        scenario = None
+        if request.scenario:
+            scenario = await self._scenarios.load_scenario(request.scenario)
         if scenario is not None and scenario.tree != request.tree:
             raise InvalidError(
                 f"scenario '{scenario.name}' is for the tree '{scenario.tree}', "
                 f"not '{request.tree}'"
             )
-        tree = await self._trees.load(request.tree)
+        tree = await self._trees.load(request.tree, request.scene)
         if request.world == LIVE:
             scene = tree.scene or Scene(name="live", objects={}, places={})
         else:
@@ -47,6 +51,9 @@ class NewRuns:
             scene = tree.scene or self._worlds.lay_out(request.world, tree, request.seed)
         if scenario is not None:
             scene = _moved(scene, scenario)
+        if request.world != LIVE:
+            refuse = self._worlds.refuse_impossible
+            await asyncio.to_thread(refuse, request.world, scene, tree)
         run = uuid4()
         return ev.RunStarted(
             time=0.0,
@@ -60,20 +67,14 @@ class NewRuns:
             seed=request.seed,
             speed=request.speed,
             scenario=request.scenario,
+            script=None if scenario is None else scenario.model_dump(mode="json"),
             options=request.model_dump(mode="json"),
         )
 
 
 def _moved(scene: Scene, scenario: Scenario) -> Scene:
-    """The scene with the objects where the scenario wants them. Raises `InvalidError`."""
-    unknown = sorted(set(scenario.scene) - set(scene.objects))
-    if unknown:
-        raise InvalidError(
-            f"scenario '{scenario.name}' moves '{unknown[0]}', which scene '{scene.name}' "
-            "does not have"
-        )
-    objects = {
-        name: part.model_copy(update={"pose": scenario.scene.get(name, part.pose)})
-        for name, part in scene.objects.items()
-    }
-    return scene.model_copy(update={"objects": objects})
+    """The scene as the scenario begins it. Raises `InvalidError` where the two do not fit."""
+    problems = scene_problems(scenario, scene)
+    if problems:
+        raise InvalidError(f"scenario '{scenario.name}' does not fit this run", problems)
+    return moved_scene(scene, scenario)

@@ -30,16 +30,19 @@ class LoadedTree:
 class TreeSource(Protocol):
     """Where task trees come from."""
 
-    async def load(self, name: str) -> LoadedTree:
-        """Raises `NotFoundError` or `InvalidError`."""
+    async def load(self, name: str, scene: str | None = None) -> LoadedTree:
+        """A tree with its own scene, or with another one that it fits.
+
+        Raises `NotFoundError` or `InvalidError`.
+        """
         ...
 
 
 class ScenarioSource(Protocol):
     """Where scenarios come from."""
 
-    def load(self, name: str) -> Scenario:
-        """Raises `NotFoundError`."""
+    async def load_scenario(self, name: str) -> Scenario:
+        """Raises `NotFoundError` or `InvalidError`."""
         ...
 
 
@@ -70,6 +73,10 @@ class Worlds(Protocol):
 
     def lay_out(self, world: str, tree: LoadedTree, seed: int) -> Scene:
         """A scene for a tree that has none. Raises `InvalidError` where the world cannot."""
+        ...
+
+    def refuse_impossible(self, world: str, scene: Scene, tree: LoadedTree) -> None:
+        """Raise `InvalidError` where the world's robot cannot do the tree in the scene."""
         ...
 
     def open(self, state: RunState, run: Callable[[], Run]) -> Hardware:

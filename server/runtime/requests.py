@@ -13,7 +13,8 @@ class RunRequest(BaseModel):
     `answers`: a scripted helper's answers, `random` (from the seed), `none` (nobody ever answers)
     or `live` (helpers do); None means the scenario's answers, and live helpers where it has none.
     `interventions`: `random` has a simulated person steal, move and block, by the seed. `robots`:
-    the ids of connected robots, for world `live`.
+    the ids of connected robots, for world `live`. `scene` names a scene to do the tree in instead
+    of the one that it is for; it has to have everything that the tree names.
     """
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
@@ -23,6 +24,7 @@ class RunRequest(BaseModel):
     speed: Annotated[float, Field(gt=0, le=1000, allow_inf_nan=False)] | Literal["max"] = 1.0
     seed: Annotated[int, Field(ge=0, le=2**31 - 1)] = 0
     scenario: Annotated[str, Field(min_length=1, max_length=64)] | None = None
+    scene: Annotated[str, Field(min_length=1, max_length=64)] | None = None
     answers: list[Literal["yes", "no", "silence"]] | Literal["random", "none", "live"] | None = None
     interventions: Literal["random"] | None = None
     person: Person | None = None

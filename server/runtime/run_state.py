@@ -19,6 +19,8 @@ from server.transcript import finished_text
 from tasks.definition import TaskTreeDefinition
 from tasks.issue import Issue
 from tasks.resolution import Resolution
+from tasks.scenario import Scenario
+from tasks.scenario_file import built_in_scenario
 from tasks.scene import Scene
 from tasks.task_tree import TaskTree
 
@@ -198,6 +200,13 @@ class RunState:
     @property
     def id(self) -> UUID:
         return self.started.run
+
+    @property
+    def scenario(self) -> Scenario | None:
+        """The run's scenario as it was when the run began."""
+        if self.started.script is not None:
+            return Scenario.model_validate(self.started.script, strict=False)
+        return built_in_scenario(self.started.scenario) if self.started.scenario else None
 
     @property
     def open_dialogues(self) -> list[DialogueState]:

@@ -59,7 +59,6 @@ class Runtime:
         self._journal = journal
         self._robots = robots
         self._worlds = worlds
-        self._scenarios = scenarios
         self._scripts = scripts
         self._policy = policy
         self._send_mail = send_mail
@@ -146,7 +145,7 @@ class Runtime:
     def _take_up(self, context: RunContext, *, live: bool) -> None:
         state = context.state
         sides = {robot: RobotSide(robot, cast(Any, self._robots)) for robot in state.started.robots}
-        scenario = self._scenario_of(state)
+        scenario = state.scenario
         dialogues = DialogueDriver(
             context,
             answer_source(state.request, scenario),
@@ -170,10 +169,6 @@ class Runtime:
         self._poses.close(state.id)
         if not task.cancelled() and (error := task.exception()) is not None:
             log.error("run %s stopped and could not say so", state.id, exc_info=error)
-
-    def _scenario_of(self, state: RunState) -> Scenario | None:
-        name = state.request.scenario
-        return self._scenarios.load(name) if name else None
 
     # --- What there is ------------------------------------------------------------------------
 

@@ -12,10 +12,11 @@ from server.runtime.ports import LIVE, LoadedTree
 from server.runtime.run import Run
 from server.runtime.run_state import RunState
 from server.runtime.views import WorldView
+from server.scene_checks import WorldChecks
 from sim.mischief import random_interventions
 from sim.world import WorldAdapter, WorldSetup, WorldUnavailableError
 from tasks.definition import BehaviorNode
-from tasks.scenario import Scenario, ScriptedIntervention
+from tasks.scenario import ScriptedIntervention
 from tasks.scene import Scene
 
 
@@ -37,12 +38,10 @@ class SimulatedWorlds:
         adapters: Mapping[str, WorldAdapter],
         journal: Journal,
         launch: Launch,
-        scenario: Callable[[str], Scenario],
     ) -> None:
         self._adapters = adapters
         self._journal = journal
         self._launch = launch
-        self._scenario = scenario
 
     def worlds(self) -> list[WorldView]:
         """Every world that a run may be in, and why one cannot run here."""
@@ -80,6 +79,17 @@ class SimulatedWorlds:
         except ValueError as error:
             raise InvalidError(f"tree '{tree.name}' cannot be laid out: {error}") from error
 
+    def refuse_impossible(self, world: str, scene: Scene, tree: LoadedTree) -> None:
+        """Raise `InvalidError` where the world's robot cannot do the tree in the scene."""
+        check = WorldChecks(self._adapters).check_of(world)
+        problems = check(scene, tree.definition.nodes) if check is not None else []
+        if problems:
+            raise InvalidError(
+                f"the robot of the world '{world}' cannot do the tree '{tree.name}' in the scene "
+                f"'{scene.name}'",
+                [each.message for each in problems],
+            )
+
     def open(self, state: RunState, run: Callable[[], Run]) -> "SimulatedHardware":
         """The hardware of a run, which starts it; `run` is asked for only then."""
         return SimulatedHardware(self._launch, self._journal, self._setup(state), state, run)
@@ -87,8 +97,8 @@ class SimulatedWorlds:
     def _setup(self, state: RunState) -> WorldSetup:
         started, request = state.started, state.request
         interventions: list[ScriptedIntervention] = []
-        if request.scenario:
-            interventions += self._scenario(request.scenario).interventions
+        if state.scenario is not None:
+            interventions += state.scenario.interventions
         if request.interventions == "random":
             tree = state.tree
             objects = [name for each in tree.leaves if (name := tree.leaf_definition(each).object)]

@@ -1,20 +1,26 @@
 """The tabletop as a kind of world that runs can name (entry point `mend.worlds`)."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 from pydantic import ValidationError
 
+from robots.body import ToolPose
 from robots.catalogue import Catalogue
+from robots.feasibility.check import check_scene
 from robots.robot import Robot
 from robots.vision.color_model import ColorModel
 from sim.simulated_agent import SimulatedAgent
+from sim.tabletop.arm import GRIPPER
+from sim.tabletop.body import can_reach
 from sim.tabletop.colors import learn_colors
 from sim.tabletop.layout import lay_out
-from sim.tabletop.world import TabletopOptions, TabletopWorld
+from sim.tabletop.world import TabletopOptions, TabletopWorld, reach_for
 from sim.world import WorldSetup
+from tasks.definition import BehaviorNode, GoalNode
 from tasks.plugins import load_plugins
 from tasks.scene import Scene
+from tasks.scene_problem import SceneProblem
 
 
 class TabletopAdapter:
@@ -32,6 +38,17 @@ class TabletopAdapter:
         Raises `LayoutError` for more than there is room and colours for.
         """
         return lay_out(names, seed)
+
+    def check_scene(
+        self, scene: Scene, nodes: Sequence[GoalNode | BehaviorNode]
+    ) -> list[SceneProblem]:
+        """What keeps the robot from doing the leaves among `nodes` in a scene."""
+        reach = reach_for(scene, None)
+
+        def reachable(way: Sequence[ToolPose]) -> bool:
+            return all(can_reach(reach, scene.table, each) for each in way)
+
+        return check_scene(scene, nodes, GRIPPER, reachable)
 
     def train_colors(self, scene: Scene) -> ColorModel:
         """Learn the colours of a scene's objects from rendered pictures of them.

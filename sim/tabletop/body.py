@@ -5,11 +5,14 @@ from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 
 import numpy as np
+from numpy.typing import NDArray
 
 from robots.body import ArmPath, Camera, Matrix4, Reach, ToolPose
 from robots.gripper import GripperModel
 from sim.tabletop.arm import GRIPPER, StraightPath
+from sim.tabletop.gripper_shape import finger_hulls
 from sim.tabletop.state import CONTROL_PERIOD_S, PUSH_N, TabletopState
+from tasks.scene import Table
 
 _HIGHEST_M = 1.2
 """How far above the table the tool can go."""
@@ -43,7 +46,7 @@ class TabletopBody:
 
     def plan_path(self, waypoints: Sequence[ToolPose]) -> StraightPath | None:
         """Straight lines through the waypoints; None if one is out of reach or in the table."""
-        if all(self._can_reach(each) for each in waypoints):
+        if all(can_reach(self._reach, self._state.scene.table, each) for each in waypoints):
             return StraightPath(tuple(waypoints))
         return None
 
@@ -99,10 +102,18 @@ class TabletopBody:
     def gripper_opening_m(self) -> float:
         return self._state.gripper.opening_m
 
+    def gripper_effort_n(self) -> float:
+        return GRIPPER.grip_force_n if self._state.held is not None else 0.0
+
+    def finger_hulls(self) -> Sequence[NDArray[np.float64]]:
+        return finger_hulls(self._state.gripper.opening_m)
+
     def contact_force_n(self) -> float:
         return PUSH_N if self._state.touching else 0.0
 
-    def _can_reach(self, pose: ToolPose) -> bool:
-        distance = math.dist(self._reach.origin, (pose.x, pose.y))
-        height = pose.z - self._state.scene.table.height
-        return self._reach.min_m <= distance <= self._reach.max_m and 0.0 <= height <= _HIGHEST_M
+
+def can_reach(reach: Reach, table: Table, pose: ToolPose) -> bool:
+    """Whether the tool gets there: within reach, and neither in the table nor too high over it."""
+    distance_m = math.dist(reach.origin, (pose.x, pose.y))
+    height_m = pose.z - table.height
+    return reach.min_m <= distance_m <= reach.max_m and 0.0 <= height_m <= _HIGHEST_M

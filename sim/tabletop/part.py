@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 from enum import StrEnum
 
-from sim.footprint import Footprint
+from tasks.footprint import Footprint
 from tasks.scene import SceneObject
 
 

@@ -4,10 +4,10 @@ import math
 from dataclasses import dataclass, replace
 
 from sim.acts import PULL_M_PER_S, Acts
-from sim.footprint import Footprint
 from sim.tabletop.arm import GRIPPER
 from sim.tabletop.part import PartPose, TablePart, Whereabouts
 from sim.tabletop.state import CONTROL_PERIOD_S, TabletopState
+from tasks.footprint import Footprint
 from tasks.scene import Pose
 
 _PULLED_OUT_M = 0.30

@@ -61,7 +61,7 @@ class TabletopWorld:
         self._body = TabletopBody(
             self._state,
             {"head": self.head, "forearm": self.forearm},
-            _reach(scene, chosen.reach_m),
+            reach_for(scene, chosen.reach_m),
         )
 
     @property
@@ -162,7 +162,8 @@ def _shown_pose(part: TablePart) -> ShownPose:
     )
 
 
-def _reach(scene: Scene, reach_m: float | None) -> Reach:
+def reach_for(scene: Scene, reach_m: float | None) -> Reach:
+    """How far the arm reaches; without `reach_m`, at least to every place of the scene."""
     farthest = max(
         (math.dist(REACH_ORIGIN, (each.pose.x, each.pose.y)) for each in scene.places.values()),
         default=0.0,

@@ -1,16 +1,22 @@
 """The workcell as a kind of world that runs can name (entry point `mend.worlds`)."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from robots.catalogue import Catalogue
+from robots.feasibility.check import check_scene
 from robots.robot import Robot
 from robots.vision.color_model import ColorModel
 from sim.simulated_agent import SimulatedAgent
+from sim.workcell.gripper import PR2_GRIPPER
 from sim.workcell.options import read_options
+from sim.workcell.reach import reachable
 from sim.workcell.robot_model import MODEL, check_installed, robot_urdf
 from sim.world import WorldSetup
+from tasks.definition import BehaviorNode, GoalNode
 from tasks.plugins import load_plugins
 from tasks.scene import Scene
+from tasks.scene_problem import SceneProblem
 
 
 class WorkcellAdapter:
@@ -58,6 +64,13 @@ class WorkcellAdapter:
             interventions=setup.interventions,
             snapshot=setup.snapshot,
         )
+
+    def check_scene(
+        self, scene: Scene, nodes: Sequence[GoalNode | BehaviorNode]
+    ) -> list[SceneProblem]:
+        """What keeps the robot from doing the leaves among `nodes` in a scene."""
+        check_installed()
+        return check_scene(scene, nodes, PR2_GRIPPER, reachable)
 
     def train_colors(self, scene: Scene) -> ColorModel:
         """Learn the colours of a scene's objects from rendered pictures of them."""

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from robots.catalogue import Part as CataloguePart
 from robots.grasp import grasp_of
 from sim.acts import PULL_M_PER_S, Acts, Impossible
-from sim.footprint import Footprint
 from sim.workcell.bench import Bench
 from sim.workcell.body import PERIOD_S, WorkcellBody
 from sim.workcell.hand import HOLD_FORCE_N, PULL_FORCE_N, Hand
@@ -24,6 +23,7 @@ from sim.workcell.obstacle import (
 from sim.workcell.parts import Part, PartPose
 from sim.workcell.physics import Client, Point
 from sim.workcell.pr2 import Pr2
+from tasks.footprint import Footprint
 from tasks.scene import Pose
 
 PULLED_OUT_M = 0.5

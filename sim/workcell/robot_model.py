@@ -61,7 +61,12 @@ _MESH_PREFIX = "package://example-robot-data/robots/pr2_description/meshes/"
 MODEL = "pr2"
 URDF = "robot.urdf"
 
-_LAYOUT = 3
+_TIP_LINKS = ("r_gripper_l_finger_tip_link", "r_gripper_r_finger_tip_link")
+_TIP_MASS_KG = 0.2
+"""Stands for the drive's inertia, which fingers feel through their gears. Much lighter than what
+they hold, the engine's solver would not converge, and what they hold would creep."""
+
+_LAYOUT = 4
 """Raised whenever this module makes different files from the same package."""
 
 
@@ -181,6 +186,8 @@ def _trim_link(link: ElementTree.Element) -> None:
     if not _KEPT_VISUALS.match(name):
         for element in link.findall("visual"):
             link.remove(element)
+    if name in _TIP_LINKS:
+        _weigh(link, _TIP_MASS_KG)
     if link.find("inertial") is None:
         # PyBullet gives a link without inertia a mass of 1 kg.
         inertial = ElementTree.SubElement(link, "inertial")
@@ -190,3 +197,13 @@ def _trim_link(link: ElementTree.Element) -> None:
             "inertia",
             {"ixx": "1e-6", "iyy": "1e-6", "izz": "1e-6", "ixy": "0", "ixz": "0", "iyz": "0"},
         )
+
+
+def _weigh(link: ElementTree.Element, mass_kg: float) -> None:
+    """Give a link another mass, and the inertia of the same shape."""
+    for mass in link.iterfind("inertial/mass"):
+        ratio = mass_kg / float(mass.get("value", "1"))
+        mass.set("value", str(mass_kg))
+        for inertia in link.iterfind("inertial/inertia"):
+            for axis, value in inertia.items():
+                inertia.set(axis, str(float(value) * ratio))

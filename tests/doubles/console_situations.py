@@ -106,7 +106,7 @@ async def wrong_tree(_: Service, open_page: OpenPage) -> Page:
 
 
 async def delete_tree(service: Service, open_page: OpenPage) -> Page:
-    await service.trees.save(
+    await service.library.trees.save(
         "shelf", "name: shelf\ntree: {behavior: pick_and_place, object: a, place: b}\n"
     )
     page = await open_page("/trees/shelf")

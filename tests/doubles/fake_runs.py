@@ -6,6 +6,7 @@ from typing import Any, Literal
 from uuid import UUID, uuid4
 
 from dialogue.script import CloseReason
+from server.documents import CheckedDocument, DocumentMistake, Uploaded, WrongDocumentError
 from server.errors import ConflictError, InvalidError, LostRaceError, NotFoundError
 from server.journal import events as ev
 from server.journal.journal import Entry, Journal
@@ -22,28 +23,23 @@ from server.runtime.views import (
     Snapshot,
     WorldView,
 )
-from server.trees import CheckedTree, TreeMistake, WrongTreeError
 from tasks.intervention import Intervention
-from tasks.scenario import Scenario
 
 TREES = {"eket": "then: []", "tea_table": "and: []"}
 JPEG = b"\xff\xd8\xff\xd9"
 
 
-def check_tree(text: str) -> CheckedTree:
+class FakeTreeChecker:
     """Takes any text that has a `then` or `and`; a first line `name: x` names it."""
-    if "then" not in text and "and" not in text:
-        mistake = TreeMistake(line=1, column=1, node=None, message="there is no goal node")
-        raise WrongTreeError([mistake], ["line 1: there is no goal node"])
-    name = text.removeprefix("name: ").split("\n")[0].strip() if "name: " in text[:6] else None
-    return CheckedTree(name, {"text": text})
 
+    def check(self, text: str, uploaded: Uploaded) -> CheckedDocument:  # noqa: ARG002
+        if "then" not in text and "and" not in text:
+            mistake = DocumentMistake(line=1, column=1, node=None, message="there is no goal node")
+            raise WrongDocumentError("task", [mistake])
+        name = text.removeprefix("name: ").split("\n")[0].strip() if "name: " in text[:6] else None
+        return CheckedDocument(name, {"text": text})
 
-class FakeScenarios:
-    """A `ScenarioLibrary` of one."""
-
-    def scenarios(self) -> list[Scenario]:
-        return [Scenario(name="eket_paper", tree="eket")]
+    try_in_worlds = check
 
 
 class FakeWorlds:

@@ -49,7 +49,7 @@ async def random_events(seed: int) -> Sequence[ev.Event]:
     )
     settings = Settings(port=0, journal=Path(IN_MEMORY), log_level="error", speech_voice="none")
     async with open_service(settings) as service:
-        await service.trees.save("random", json.dumps(task))
+        await service.library.trees.save("random", json.dumps(task))
         run = await service.runtime.start_run(request)
         await service.runtime.wait_for_end(run.id)
         return _paused(await service.journal.read(0, 100_000, run.id))

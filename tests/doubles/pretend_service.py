@@ -52,6 +52,8 @@ class PretendWorlds:
     def lay_out(self, world: str, tree: LoadedTree, seed: int) -> Scene:  # noqa: ARG002
         return self.scene
 
+    def refuse_impossible(self, world: str, scene: Scene, tree: LoadedTree) -> None: ...
+
     def open(self, state: RunState, run: Any) -> NoHardware:  # noqa: ARG002
         return NoHardware(self.restarted)
 
@@ -60,12 +62,12 @@ class PretendWorlds:
 class PretendTrees:
     definition: TaskTreeDefinition
 
-    async def load(self, name: str) -> LoadedTree:
+    async def load(self, name: str, scene: str | None = None) -> LoadedTree:  # noqa: ARG002
         return LoadedTree(name, self.definition, None)
 
 
 class NoScenarios:
-    def load(self, name: str) -> Scenario:
+    async def load_scenario(self, name: str) -> Scenario:
         raise AssertionError(f"no test asks for the scenario {name}")
 
 

@@ -10,6 +10,7 @@ from typing import Any
 from uuid import UUID, uuid4
 
 from server.errors import NotFoundError
+from server.fixed_documents import GivenFiles
 from server.journal import events as ev
 from server.journal.journal import Entry
 from server.journal.sqlite import SqliteJournal
@@ -87,20 +88,18 @@ class RecordedService:
     started: Callable[[], None] = lambda: None
     settings: list[Settings] = field(default_factory=list)
     requests: list[RunRequest] = field(default_factory=list)
-    trees: dict[str, str] = field(default_factory=dict)
-
-    async def save(self, name: str | None, text: str) -> None:
-        """Keep a task file, as the service's library of trees does."""
-        assert name is not None
-        self.trees[name] = text
+    given: list[GivenFiles] = field(default_factory=list)
 
     @asynccontextmanager
-    async def open(self, settings: Settings, *, recover: bool = True) -> AsyncIterator[Any]:
+    async def open(
+        self, settings: Settings, *, recover: bool = True, given: GivenFiles
+    ) -> AsyncIterator[Any]:
         assert not recover, "a run of its own takes up no other run"
+        self.given.append(given)
         self.settings.append(settings)
         journal = SqliteJournal(settings.journal_path)
         runs = RecordedRuns(journal, self.events, self.stops, self.started, self.requests)
         try:
-            yield SimpleNamespace(runtime=runs, journal=journal, trees=self, settings=settings)
+            yield SimpleNamespace(runtime=runs, journal=journal, settings=settings)
         finally:
             journal.close()

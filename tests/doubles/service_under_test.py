@@ -7,18 +7,21 @@ from typing import Any
 
 import httpx
 import uvicorn
-from fake_runs import TREES, FakeRuns, FakeScenarios, FakeWorlds, check_tree
+from fake_runs import TREES, FakeRuns, FakeTreeChecker, FakeWorlds
 from fastapi import FastAPI
 
 from server.app import create_app, serve_config
+from server.documents import DocumentKind
+from server.fixed_documents import GivenFiles, NamedTexts, fixed_documents
 from server.journal.sqlite import SqliteJournal
-from server.library import SceneLibrary, Scenes
+from server.journaled_documents import JournaledDocuments
+from server.library import build_library
 from server.models import RobotModels
 from server.poses.feed import PoseFeed
 from server.poses.record import PoseRecords
+from server.scene_checks import WorldChecks
 from server.settings import Settings
 from server.speech.abilities import NO_SPEECH, SpeechAbilities
-from server.trees import JournaledTrees
 
 TOKEN = "correct-horse-battery"
 
@@ -56,15 +59,16 @@ def build(
     journal = SqliteJournal(":memory:")
     runs = runs_in(journal)
     chosen = Settings(port=0, **settings)
-    trees = JournaledTrees(journal, TREES, check_tree)
+    library = build_library(journal, fixed_documents(GivenFiles(), None), WorldChecks({}))
+    trees = JournaledDocuments(DocumentKind.TREE, journal, NamedTexts(TREES), FakeTreeChecker())
     poses = PoseFeed(lambda *_: None, lambda _: None, records)
     app = create_app(
         runs,
         journal,
         chosen,
-        trees_library=trees,
-        scenarios=FakeScenarios(),
-        scenes=SceneLibrary(Scenes(None)),
+        trees=trees,
+        scenes=library.scenes,
+        scenarios=library.scenarios,
         worlds=FakeWorlds(),
         models=RobotModels(models),
         poses=poses,

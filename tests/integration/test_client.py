@@ -41,7 +41,8 @@ async def client(service: ServiceUnderTest) -> AsyncIterator[MendClient]:
 
 async def test_trees_are_kept_and_deleted(client: MendClient) -> None:
     tree = await client.upload_tree("then: []", "mine")
-    assert await client.tree("mine") == tree
+    kept = await client.tree("mine")
+    assert kept.model_dump() == tree.model_dump(exclude={"worlds"})
     assert [each.name for each in await client.trees()] == ["eket", "mine", "tea_table"]
     await client.delete_tree("mine")
     with pytest.raises(RefusedError, match="no tree 'mine'") as refused:

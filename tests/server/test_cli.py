@@ -19,6 +19,7 @@ from recorded_service import RecordedService, recorded_events
 
 from server.cli import main
 from server.cli.check import kind_of_file
+from server.documents import DocumentKind
 from server.journal import events as ev
 from server.journal.reader import JournalReader
 from server.journal.sqlite import SqliteJournal
@@ -312,7 +313,7 @@ def test_a_task_file_is_run_under_its_own_name(
     file = write_file(tmp_path, TASK)
     assert mend("run", str(file)).code == 0
     assert recorded.requests[0].tree == "just_one"
-    assert recorded.trees == {"just_one": TASK}
+    assert recorded.given[0].texts == {DocumentKind.TREE: {"just_one": TASK}}
 
 
 def test_a_task_file_with_mistakes_is_not_run(

@@ -1,12 +1,13 @@
-"""Trees are taken with the scene that they name: from a folder of the user's, or the library."""
+"""Documents are found among given files, in a folder of the user's, and in the library."""
 
 from pathlib import Path
 
 import pytest
 
-from server.errors import InvalidError
-from server.library import Scenes, check_uploaded_tree
-from server.trees import WrongTreeError
+from server.document_checks import TreeChecker
+from server.documents import DocumentKind, WrongDocumentError
+from server.fixed_documents import GivenFiles, fixed_documents
+from server.scene_checks import WorldChecks
 from tasks.library import SCENES, NotInLibraryError
 
 TREE = """\
@@ -27,9 +28,22 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def test_a_scene_of_the_folder_is_found_before_the_library(folder: Path) -> None:
-    assert Scenes(folder).find("bench").objects.keys() == {"cup"}
-    assert Scenes(folder).find("eket").name == "eket"
+def scenes(folder: Path | None, **given: str):
+    return fixed_documents(GivenFiles({DocumentKind.SCENE: given}), folder)[DocumentKind.SCENE]
+
+
+def check(text: str, folder: Path | None):
+    checker = TreeChecker(fixed_documents(GivenFiles(), folder), WorldChecks({}))
+    return checker.check(text, {DocumentKind.SCENE: {}})
+
+
+def test_a_given_file_is_found_before_the_folder_and_this_before_the_library(folder: Path) -> None:
+    assert scenes(folder).read("bench") == SCENE
+    assert scenes(folder, bench="mine").read("bench") == "mine"
+    (folder / "eket.yaml").write_text(SCENE)
+    assert scenes(folder).read("eket") == SCENE
+    assert scenes(None).read("eket") == SCENES.read("eket")
+    assert scenes(folder, cup="x").names() == sorted({*SCENES.names(), "bench", "cup"})
 
 
 @pytest.mark.parametrize("name", ["../bench", "/etc/passwd", "bench.yaml", ""])
@@ -37,27 +51,21 @@ def test_a_name_never_leads_out_of_the_folder(folder: Path, name: str) -> None:
     inner = folder / "inner"
     inner.mkdir()
     with pytest.raises(NotInLibraryError):
-        Scenes(inner).find(name)
+        scenes(inner).read(name)
 
 
 def test_a_tree_is_checked_against_the_scene_of_the_folder(folder: Path) -> None:
-    assert check_uploaded_tree(TREE, Scenes(folder)).name == "mine"
-    with pytest.raises(InvalidError) as caught:
-        check_uploaded_tree(TREE.replace("cup", "pot"), Scenes(folder))
-    assert any("pot" in problem for problem in caught.value.problems)
-    with pytest.raises(InvalidError) as caught:
-        check_uploaded_tree(TREE, Scenes(None))
-    assert any("bench" in problem for problem in caught.value.problems)
-
-
-def test_every_scene_of_the_library_is_found_without_a_folder() -> None:
-    assert [Scenes(None).find(name).name for name in SCENES.names()] == SCENES.names()
+    assert check(TREE, folder).name == "mine"
+    for text, where, what in ((TREE.replace("cup", "pot"), folder, "pot"), (TREE, None, "bench")):
+        with pytest.raises(WrongDocumentError) as caught:
+            check(text, where)
+        assert any(what in problem for problem in caught.value.problems)
 
 
 def test_every_mistake_of_a_tree_says_where_it_is(folder: Path) -> None:
     text = TREE.replace("pick_and_place", "pick_and_plac") + "nonsense: 1\n"
-    with pytest.raises(WrongTreeError) as wrong:
-        check_uploaded_tree(text, Scenes(folder))
+    with pytest.raises(WrongDocumentError) as wrong:
+        check(text, folder)
     lines = text.splitlines()
     assert len(wrong.value.mistakes) == len(wrong.value.problems) == 2
     for mistake in wrong.value.mistakes:
@@ -69,9 +77,9 @@ def test_every_mistake_of_a_tree_says_where_it_is(folder: Path) -> None:
 
 def test_a_list_item_is_pointed_at_after_its_dash_and_broken_yaml_where_it_breaks() -> None:
     nested = "name: x\ntree:\n  then:\n    - {behavior: nothing}\n"
-    with pytest.raises(WrongTreeError) as wrong:
-        check_uploaded_tree(nested, Scenes(None))
+    with pytest.raises(WrongDocumentError) as wrong:
+        check(nested, None)
     assert (wrong.value.mistakes[0].line, wrong.value.mistakes[0].column) == (4, 7)
-    with pytest.raises(WrongTreeError) as broken:
-        check_uploaded_tree("name: x\ntree: }\n", Scenes(None))
+    with pytest.raises(WrongDocumentError) as broken:
+        check("name: x\ntree: }\n", None)
     assert (broken.value.mistakes[0].line, broken.value.mistakes[0].column) == (2, 7)

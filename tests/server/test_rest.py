@@ -6,6 +6,7 @@ import pytest
 from service_under_test import ServiceUnderTest, build
 
 from server.runtime.requests import RunRequest
+from tasks.library import SCENARIOS, SCENES
 
 # Fixed, so that every worker collects the same tests.
 NOBODY = "2dc8e3f6-6479-4c12-9baf-d2534d0b7e34"
@@ -332,7 +333,9 @@ async def test_health_scenarios_robots_and_metrics(client: httpx.AsyncClient) ->
     await start(client)
     assert (await client.get("/healthz")).json() == {"status": "ok"}
     assert (await client.get("/readyz")).json() == {"status": "ok"}
-    assert (await client.get("/api/scenarios")).json()[0]["name"] == "eket_paper"
+    scenarios = (await client.get("/api/scenarios")).json()
+    assert [each["name"] for each in scenarios] == SCENARIOS.names()
+    assert all(each["built_in"] and each["tree"] == "eket" for each in scenarios)
     assert (await client.get("/api/robots")).json()[0]["robot"] == "robot"
     metrics = (await client.get("/metrics")).text
     assert 'mend_runs{status="running"} 1.0' in metrics
@@ -376,10 +379,11 @@ async def test_worlds_say_why_they_cannot_run(client: httpx.AsyncClient) -> None
 
 async def test_scenes_are_listed_and_read(client: httpx.AsyncClient) -> None:
     listed = (await client.get("/api/scenes")).json()
-    assert {"name": "eket", "objects": 6, "places": 6} in listed
+    assert {"name": "eket", "built_in": True, "objects": 6, "places": 6} in listed
     scene = (await client.get("/api/scenes/eket")).json()
-    assert scene["name"] == "eket"
-    assert scene["objects"]["green_leg"]["size"] == [0.03, 0.2, 0.08]
+    assert (scene["name"], scene["built_in"]) == ("eket", True)
+    assert scene["definition"]["objects"]["green_leg"]["size"] == [0.03, 0.2, 0.08]
+    assert scene["text"] == SCENES.read("eket")
     assert (await client.get("/api/scenes/nowhere")).status_code == 404
     assert (await client.get("/api/scenes/..%2Feket")).status_code in (404, 422)
 

@@ -86,12 +86,12 @@ async def test_latest_world_replaces_the_one_before(journal: SqliteJournal) -> N
 async def test_pictures_and_trees_are_kept(journal: SqliteJournal) -> None:
     picture = uuid4()
     await journal.append(Entry(pictures={picture: b"\xff\xd8jpeg"}))
-    await journal.save_tree("mine", "then: []")
-    await journal.save_tree("mine", "and: []")
+    await journal.save_document("tree", "mine", "then: []")
+    await journal.save_document("tree", "mine", "and: []")
     assert await journal.picture(picture) == b"\xff\xd8jpeg"
-    assert await journal.trees() == {"mine": "and: []"}
-    assert await journal.delete_tree("mine")
-    assert not await journal.delete_tree("mine")
+    assert await journal.documents("tree") == {"mine": "and: []"}
+    assert await journal.delete_document("tree", "mine")
+    assert not await journal.delete_document("tree", "mine")
 
 
 async def test_runs_are_listed_in_the_order_in_which_they_began(journal: SqliteJournal) -> None:

@@ -6,11 +6,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from robots.catalogue import Part
-from server.library import behavior_parameters
-from sim.footprint import Footprint
+from server.behaviors import behavior_parameters
 from sim.random_parts import DrawnSizes
 from sim.random_scene import MOST_PARTS, random_scene, scene_document
 from sim.standing_room import standing
+from tasks.footprint import Footprint
 from tasks.library import NotInLibraryError
 from tasks.scene import Pose, Scene, SceneObject
 from tasks.scene_file import check_scene_text

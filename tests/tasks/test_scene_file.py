@@ -15,6 +15,7 @@ from tasks.scene_file import (
     built_in_scene,
     check_scene_file,
     check_scene_text,
+    read_scene_text,
 )
 
 SCENE = """\
@@ -90,3 +91,68 @@ def test_the_schemas_take_the_library_and_refuse_mistakes() -> None:
     assert not task_check.is_valid({"name": "t", "tree": {"behavior": "jump"}})
     assert not scene_check.is_valid({"name": "s", "objects": {}})
     jsonschema_rs.validator_for(scenario_schema())
+
+
+ROW = """\
+name: s
+objects:
+  bolt:
+    color: [1, 0.5, 0]
+    size: [0.03, 0.05, 0.05]
+    poses:
+      - {x: 0.5, y: 0.1}
+      - {x: 0.5, y: 0.2}
+places:
+  bolt:
+    grid: {first: {x: 0.4, y: -0.1}, rows: 2, columns: 2, step: [0.1, 0.05]}
+  shelf: {pose: {x: 0.6, y: 0.2, z: 0.9}}
+"""
+
+
+def test_several_poses_stand_for_several_equal_parts() -> None:
+    scene = check_scene_text(ROW)
+    assert list(scene.objects) == ["bolt_1", "bolt_2"]
+    assert scene.objects["bolt_1"].size == scene.objects["bolt_2"].size
+    assert [each.pose.y for each in scene.objects.values()] == [0.1, 0.2]
+
+
+def test_a_grid_stands_for_its_rows_and_columns() -> None:
+    places = check_scene_text(ROW).places
+    assert list(places) == ["bolt_1", "bolt_2", "bolt_3", "bolt_4", "shelf"]
+    assert [(each.pose.x, each.pose.y) for each in places.values()][:4] == [
+        (0.4, -0.1),
+        (0.4, -0.05),
+        (0.5, -0.1),
+        (0.5, -0.05),
+    ]
+
+
+def test_mistakes_in_several_poses_are_told_with_their_lines() -> None:
+    assert told(ROW.replace("{x: 0.5, y: 0.2}", "{x: left, y: 0.2}")) == [
+        "s:8: 'objects.bolt_2.pose.x' must be a valid number, but it is \"left\""
+    ]
+    assert told(ROW.replace("rows: 2", "rows: 0")) == [
+        "s:11: the grid of 'bolt': 'rows' must be greater than or equal to 1, but it is 0"
+    ]
+    assert told(ROW.replace("shelf: {", "bolt_2: {")) == [
+        "s:12: there are two 'bolt_2', the other one from line 11"
+    ]
+    assert told(ROW.replace("poses:", "pose: {x: 0, y: 0}\n    poses:")) == [
+        "s:7: 'bolt' has 'pose' and 'poses'; it may have only one of them"
+    ]
+    assert told(ROW.replace("grid: {first", "grid: 4 #"))[0] == (
+        "s:11: 'grid' of 'bolt' must be a mapping, but it is 4"
+    )
+
+
+def test_the_line_of_each_of_several_parts_is_known() -> None:
+    read = read_scene_text(ROW)
+    assert read.line_of(("objects", "bolt_2", "pose")) == 8
+    assert read.line_of(("objects", "bolt_2", "size")) == 5
+    assert read.line_of(("places", "bolt_3", "pose", "x")) == 11
+
+
+def test_the_schema_takes_several_poses() -> None:
+    check = jsonschema_rs.validator_for(scene_schema())
+    assert check.is_valid(json.loads(json.dumps(read_document(ROW)[0])))
+    assert not check.is_valid(json.loads(json.dumps(read_document(ROW.replace("poses", "po"))[0])))

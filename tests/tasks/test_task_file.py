@@ -67,9 +67,9 @@ def test_json_is_read_as_well() -> None:
 
 
 def test_names_that_would_be_equal_get_a_number() -> None:
-    text = f"{{name: t, tree: {{and: [{LEAF}, {LEAF}, {{and: [{LEAF}]}}]}}}}"
+    text = f"{{name: t, tree: {{or: [{LEAF}, {LEAF}, {{or: [{LEAF}]}}]}}}}"
     names = [node.name for node in check(text).definition.nodes]
-    assert names == ["and", "a", "a_2", "and_2", "a_3"]
+    assert names == ["or", "a", "a_2", "or_2", "a_3"]
 
 
 def test_every_mistake_is_told_at_once_in_the_order_of_lines() -> None:
@@ -185,8 +185,11 @@ def test_a_deep_tree_is_read_without_recursion() -> None:
 
 @pytest.mark.slow
 def test_a_hundred_thousand_nodes_are_read_and_beyond_the_limit_refused() -> None:
-    leaf = {"behavior": "pick_and_place", "object": "a", "place": "b"}
-    text = json.dumps({"name": "t", "tree": {"and": [leaf] * 100_000}})
+    leaves = [
+        {"behavior": "pick_and_place", "object": f"a{number}", "place": f"b{number}"}
+        for number in range(100_000)
+    ]
+    text = json.dumps({"name": "t", "tree": {"and": leaves}})
     assert len(check(text).definition.nodes) == 100_001
     text = "{name: t, tree: {and: [" + "{and: []}," * 200_000 + "]}}"
     assert (1, None, "the tree has more than 200000 nodes") in problems(text)

@@ -84,6 +84,7 @@ def every_event() -> list[ev.Event]:
             seed=7,
             speed="max",
             scenario="eket_paper",
+            script={"name": "eket_paper", "tree": "eket"},
             options={"max_attempts": 3},
         ),
         ev.NodeStarted(**work(), boot="boot-1", attempt=1, candidates=[candidate]),
@@ -145,6 +146,9 @@ def every_event() -> list[ev.Event]:
         ev.RobotBack(**robot(), boot="boot-2", continues=False),
         ev.RobotResumed(**robot(), step=1),
         ev.NodeDone(**node(), robot="robot", by="robot"),
+        ev.NodeUndone(**node(), robot="robot", reason="the pink bar is gone"),
+        ev.NodeLeftOut(**node(), robot="robot", helper="ben"),
+        ev.NodeReturned(**node(), robot="robot"),
         ev.NodeAbandoned(**node(), leaf="/1/0", reason="no robot can reach it"),
         ev.RunPaused(**stamp()),
         ev.RunResumed(**stamp()),
@@ -173,7 +177,9 @@ async def record(path: Path) -> None:
             pictures={PICTURE: b"\xff\xd8\xff\xd9"} if isinstance(event, ev.IssueRaised) else {},
         )
         await journal.append(entry)
-    await journal.save_tree("mine", "then:\n- {behavior: pick_and_place, object: pink_bar}\n")
+    await journal.save_document(
+        "tree", "mine", "then:\n- {behavior: pick_and_place, object: pink_bar}\n"
+    )
     journal.close()
 
 

@@ -13,6 +13,7 @@ import type {
   RunStarted,
   RunStatus,
 } from "../wire/types";
+import { finishedWords } from "./sentences";
 import { activationOf, type LeafStatus } from "./activation";
 import { shapeOf, type TreeShape } from "./tree_shape";
 
@@ -132,7 +133,7 @@ function applied(state: RunState, event: Event): RunState {
     case "run_resumed":
       return { ...state, status: "running" };
     case "run_finished":
-      return end(state, "finished", { reason: "the task is done", node: null, missing: event.missing });
+      return end(state, "finished", { reason: finishedWords(event.missing), node: null, missing: event.missing });
     case "run_failed":
       return end(state, "failed", { reason: event.reason, node: event.node, missing: [] });
     case "run_aborted":

@@ -100,7 +100,7 @@ export function linesOf(event: Event): Line[] {
         ...event.missing.flatMap((part) =>
           line("setback", `${plain(part.object)} is not at ${plain(part.place)}${asSaid(part.left_out_by)}.`),
         ),
-        ...line("finished", `The run has finished: ${finished(event.missing)}.`),
+        ...line("finished", `The run has finished: ${finishedWords(event.missing)}.`),
       ];
     case "run_failed":
       return line("failed", `The run has failed: ${event.reason}`);
@@ -125,14 +125,14 @@ export function linesOf(event: Event): Line[] {
       const failed = event.failed_attempt ? ", a failed attempt" : "";
       return line("setback", `${plain(event.name)} is put back${failed}: ${event.reason}.`);
     }
-    case "node_abandoned":
-      return line("setback", `The alternative ${plain(event.name)} is abandoned: ${event.reason}.`);
     case "node_undone":
       return line("setback", `${plain(event.name)} is done no longer: ${event.reason}.`);
     case "node_left_out":
       return line("setback", `${plain(event.name)} is left out, as ${event.helper} said.`);
     case "node_returned":
       return line("done", `sees ${plain(event.name)}, which was left out, at its place.`, event.robot);
+    case "node_abandoned":
+      return line("setback", `The alternative ${plain(event.name)} is abandoned: ${event.reason}.`);
     case "suspected_false_alarm": {
       const told = event.told.length > 0 ? `; a mail goes to ${event.told.join(", ")}` : "";
       const what = `${plain(event.issue)} ${plain(event.object ?? event.name)}`;
@@ -196,6 +196,18 @@ export function linesOf(event: Event): Line[] {
   }
 }
 
+/** What a finished run came to: the task is done, perhaps without what was left out. */
+export function finishedWords(missing: readonly MissingPart[]): string {
+  const said = new Map<string | null, string[]>();
+  for (const { object, left_out_by: by } of missing) said.set(by, [...(said.get(by) ?? []), object]);
+  const parts = [...said].map(([by, objects]) => `without ${enumerated(objects)}${asSaid(by)}`);
+  return parts.length === 0 ? "the task is done" : `the task is done ${enumerated(parts)}`;
+}
+
+function enumerated(words: readonly string[]): string {
+  return [words.slice(0, -1).join(", "), ...words.slice(-1)].filter((each) => each !== "").join(" and ");
+}
+
 /** Put a line behind those that there are, joined to the last one if both are of one thread. */
 export function joined(lines: Line[], line: Line): void {
   const last = lines.at(-1);
@@ -211,12 +223,6 @@ function comparison(event: NodeStarted): string {
   const others = event.candidates.length - 1;
   if (others < 1) return "";
   return `, chosen among ${event.candidates.length}`;
-}
-
-/** What a finished run came to: the task is done, perhaps without what was left out. */
-function finished(missing: readonly MissingPart[]): string {
-  if (missing.length === 0) return "the task is done";
-  return `the task is done without ${missing.map((part) => plain(part.object)).join(", ")}`;
 }
 
 function asSaid(by: string | null): string {

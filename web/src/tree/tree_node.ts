@@ -43,7 +43,7 @@ function stateOf(view: NodeView, inDialogue: ReadonlySet<string>): NodeState {
   return view.activation_level > 0 ? "eligible" : "waiting";
 }
 
-/** The nodes of a checked definition in its JSON form, as of `TreeView.definition`. */
+/** The nodes of a checked definition in its JSON form, as of `DocumentView.definition`. */
 export function nodesOfDefinition(definition: Readonly<Record<string, unknown>>): TreeNode[] {
   const nodes = definition.nodes as readonly DefinedNode[];
   const paths = pathsOf(nodes.map((node) => node.parent ?? null));

@@ -2,15 +2,15 @@
 import { useEffect, useState } from "preact/hooks";
 import { connection } from "../state/service";
 import * as rest from "../wire/rest";
-import type { TreeCheck } from "../wire/types";
+import type { DocumentCheck } from "../wire/types";
 
 const PAUSE_MS = 300;
 
 export interface Checked {
   /** Of the last text that was checked; null before the first. */
-  check: TreeCheck | null;
+  check: DocumentCheck | null;
   /** The last definition without mistakes, for the drawing. */
-  definition: TreeCheck["definition"];
+  definition: DocumentCheck["definition"];
   /** Whether `check` is of an earlier text. */
   pending: boolean;
   /** Why the text could not be checked; empty if it could. */

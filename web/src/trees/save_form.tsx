@@ -2,13 +2,13 @@
 import { useState } from "preact/hooks";
 import { Confirm } from "../app/confirm";
 import * as rest from "../wire/rest";
-import type { TreeSummary } from "../wire/types";
+import type { DocumentSummary } from "../wire/types";
 
 interface SaveFormProps {
   tree: string | null;
   text: string;
   name: string;
-  trees: readonly TreeSummary[];
+  trees: readonly DocumentSummary[];
   changed: boolean;
   onName: (name: string) => void;
   onSaved: (name: string) => void;

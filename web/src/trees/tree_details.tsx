@@ -4,12 +4,12 @@ import { Confirm } from "../app/confirm";
 import { go } from "../app/router";
 import { connection } from "../state/service";
 import * as rest from "../wire/rest";
-import type { TreeView } from "../wire/types";
+import type { DocumentView } from "../wire/types";
 import { DefinitionDrawing } from "./definition_drawing";
 import { dropDraft } from "./draft";
 
 export function TreeDetails({ tree }: { tree: string }) {
-  const [found, setFound] = useState<TreeView | null>(null);
+  const [found, setFound] = useState<DocumentView | null>(null);
   const [mistake, setMistake] = useState("");
   const connected = connection.value === "connected";
   useEffect(() => {
@@ -42,7 +42,7 @@ export function TreeDetails({ tree }: { tree: string }) {
   );
 }
 
-function TreeActions({ tree }: { tree: TreeView }) {
+function TreeActions({ tree }: { tree: DocumentView }) {
   const [asking, setAsking] = useState(false);
   const [mistake, setMistake] = useState("");
   const remove = async () => {
@@ -88,7 +88,7 @@ function TreeActions({ tree }: { tree: TreeView }) {
   );
 }
 
-function described({ name, definition }: TreeView) {
+function described({ name, definition }: DocumentView) {
   const { description, scene, nodes } = definition;
   return {
     name,

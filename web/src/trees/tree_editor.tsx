@@ -3,7 +3,7 @@ import { useEffect, useState } from "preact/hooks";
 import { Confirm } from "../app/confirm";
 import { go } from "../app/router";
 import * as rest from "../wire/rest";
-import type { TreeSummary } from "../wire/types";
+import type { DocumentSummary } from "../wire/types";
 import { useChecked } from "./checked";
 import { DefinitionDrawing } from "./definition_drawing";
 import { type Draft, dropDraft, keepDraft, keptDraft } from "./draft";
@@ -18,7 +18,7 @@ import "./trees.css";
 interface Beginning {
   saved: Draft;
   draft: Draft | null;
-  trees: readonly TreeSummary[];
+  trees: readonly DocumentSummary[];
 }
 
 export function TreeEditor({ tree }: { tree: string | null }) {
@@ -42,7 +42,7 @@ async function begin(tree: string | null): Promise<Beginning> {
   return { saved: { text: renamed(text, copy), name: copy, note }, draft, trees };
 }
 
-function titleOf(tree: string | null, trees: readonly TreeSummary[]): string {
+function titleOf(tree: string | null, trees: readonly DocumentSummary[]): string {
   if (tree === null) return "New task tree";
   return trees.some((each) => each.name === tree && each.built_in) ? `Copy of ${tree}` : `Edit ${tree}`;
 }

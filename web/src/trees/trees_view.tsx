@@ -2,14 +2,14 @@
 import { useEffect, useState } from "preact/hooks";
 import { connection } from "../state/service";
 import * as rest from "../wire/rest";
-import type { TreeSummary } from "../wire/types";
+import type { DocumentSummary } from "../wire/types";
 import { DropZone, FileButton } from "./drop_zone";
 import { TreeDetails } from "./tree_details";
 import { takeFile } from "./upload";
 import "./trees.css";
 
 export function TreesView({ tree }: { tree: string | null }) {
-  const [trees, setTrees] = useState<readonly TreeSummary[] | null>(null);
+  const [trees, setTrees] = useState<readonly DocumentSummary[] | null>(null);
   const [mistake, setMistake] = useState("");
   const connected = connection.value === "connected";
   useEffect(() => {
@@ -47,7 +47,7 @@ export function TreesView({ tree }: { tree: string | null }) {
   );
 }
 
-function TreeList({ trees, chosen }: { trees: readonly TreeSummary[] | null; chosen: string | null }) {
+function TreeList({ trees, chosen }: { trees: readonly DocumentSummary[] | null; chosen: string | null }) {
   if (trees === null) return <p class="quiet">Loading …</p>;
   return (
     <ul>

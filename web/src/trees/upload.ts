@@ -1,7 +1,7 @@
 // A task file from this device: saved if it is right, and opened in the editor if it is not.
 import { go } from "../app/router";
 import * as rest from "../wire/rest";
-import type { TreeSummary } from "../wire/types";
+import type { DocumentSummary } from "../wire/types";
 import { keepDraft } from "./draft";
 import { freeName, nameIn, nameOfFile, renamed } from "./tree_text";
 
@@ -15,7 +15,7 @@ export class NotATaskFile extends Error {}
  *
  * Raises `NotATaskFile`, and `Refusal` or `Unreachable` where the service did not take it.
  */
-export async function takeFile(file: File, trees: readonly TreeSummary[]): Promise<void> {
+export async function takeFile(file: File, trees: readonly DocumentSummary[]): Promise<void> {
   const text = await textOf(file);
   const check = await rest.checkTree(text, new AbortController().signal);
   const name = check.name ?? nameIn(text) ?? nameOfFile(file.name);

@@ -11,12 +11,12 @@ import type {
   RunStatus,
   RunSummary,
   RunView,
-  Scenario,
+  ScenarioSummary,
   SessionView,
   SpeechView,
-  TreeCheck,
-  TreeSummary,
-  TreeView,
+  DocumentCheck,
+  DocumentSummary,
+  DocumentView,
   WorldView,
 } from "./types";
 
@@ -140,14 +140,14 @@ export const phraseSoundPath = (name: string) => `/api/speech/phrases/${segment(
 
 export const robots = () => call<RobotView[]>("GET", "/api/robots");
 export const worlds = () => call<WorldView[]>("GET", "/api/worlds");
-export const scenarios = () => call<Scenario[]>("GET", "/api/scenarios");
-export const trees = () => call<TreeSummary[]>("GET", "/api/trees");
-export const tree = (name: string) => call<TreeView>("GET", `/api/trees/${segment(name)}`);
+export const scenarios = () => call<ScenarioSummary[]>("GET", "/api/scenarios");
+export const trees = () => call<DocumentSummary[]>("GET", "/api/trees");
+export const tree = (name: string) => call<DocumentView>("GET", `/api/trees/${segment(name)}`);
 export const saveTree = (text: string, name?: string) =>
-  call<TreeView>("POST", "/api/trees", name === undefined ? { text } : { name, text });
+  call<DocumentView>("POST", "/api/trees", name === undefined ? { text } : { name, text });
 /** Check a task file without keeping it. */
 export const checkTree = (text: string, signal: AbortSignal) =>
-  call<TreeCheck>("POST", "/api/trees/check", { text }, { signal });
+  call<DocumentCheck>("POST", "/api/trees/check", { text }, { signal });
 export const deleteTree = (name: string) => call<void>("DELETE", `/api/trees/${segment(name)}`);
 
 export const picturePath = (picture: string) => `/api/pictures/${segment(picture)}`;

@@ -1,14 +1,14 @@
 // What can be chosen for a new run, what is filled in, and the request that it makes.
 import * as rest from "../../wire/rest";
-import type { RobotView, RunRequest, Scenario, TreeSummary, WorldView } from "../../wire/types";
+import type { RobotView, RunRequest, ScenarioSummary, DocumentSummary, WorldView } from "../../wire/types";
 
 const LARGEST_SEED = 2 ** 31;
 const PREFERRED_WORLD = "workcell";
 
 export interface Choices {
-  trees: readonly TreeSummary[];
+  trees: readonly DocumentSummary[];
   worlds: readonly WorldView[];
-  scenarios: readonly Scenario[];
+  scenarios: readonly ScenarioSummary[];
   robots: readonly RobotView[];
 }
 

@@ -1,0 +1,1 @@
+"""What in a scene a robot cannot do, found out before anything moves."""

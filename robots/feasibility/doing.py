@@ -1,0 +1,186 @@
+"""Whether the arm can do a leaf: grasp its object, bring it to its place, and let it go there."""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from itertools import product
+
+from robots.behaviors.behavior import Move, Situation
+from robots.behaviors.grasp_choice import LIFTS_M, clear_z
+from robots.behaviors.pick_and_place import PickAndPlace, PickAndPlaceParameters
+from robots.body import ToolPose
+from robots.clearance import in_the_way
+from robots.feasibility.standing import Standing
+from robots.grasp import Grasp, grasps_of
+from robots.gripper import GripperModel
+from robots.link.messages import Location
+from robots.vision.seen_box import SeenBox
+from tasks.scene import Pose, Scatter
+from tasks.scene_problem import SceneProblem
+
+Reachable = Callable[[Sequence[ToolPose]], bool]
+"""Whether the arm can go through all these poses from neutral, by the planner that it uses."""
+
+ROOM_M = 0.002
+"""Kept between the gripper and what stands beside a part."""
+_SIDES = (-1.0, 1.0)
+_STEP_M, _STEPS = 0.002, 100
+
+
+@dataclass(frozen=True, slots=True)
+class Surroundings:
+    """What stands around a part when it is grasped, and when it is let go."""
+
+    start: Sequence[Standing]
+    place: Sequence[Standing]
+
+
+@dataclass(frozen=True, slots=True)
+class ArmCheck:
+    """The gripper and the reach of the robot that is to do it."""
+
+    gripper: GripperModel
+    reachable: Reachable
+    scatter: Scatter
+    table_z: float
+
+    def cannot_do(
+        self, start: Standing, place: Standing | None, around: Surroundings
+    ) -> SceneProblem | None:
+        """Why the arm cannot take a part from `start` to `place`; None where it can."""
+        roomy, last = [], None
+        for grasp in grasps_of(start.part, self.gripper):
+            problem = self._tight(start, place, grasp, around)
+            last = problem or last
+            if problem is None:
+                roomy.append(grasp)
+        if not roomy:
+            return last
+        if any(self._reaches(start, place, grasp, around) for grasp in roomy):
+            return None
+        return self._out_of_reach(start, place, roomy, around)
+
+    def _tight(
+        self, start: Standing, place: Standing | None, grasp: Grasp, around: Surroundings
+    ) -> SceneProblem | None:
+        near = self._near(start, grasp, around.start, self.scatter.xy)
+        if near is not None:
+            more_mm = self._lacking_mm(start, grasp, near, self.scatter.xy)
+            return SceneProblem(
+                start.where,
+                f"{near.name} stands too close to {start.name} for the fingers to grasp that: "
+                f"put them {more_mm:.0f} mm further apart",
+            )
+        if place is None:
+            return None
+        near = self._near(place, grasp, around.place, 0.0)
+        if near is None:
+            return None
+        more_mm = self._lacking_mm(place, grasp, near, 0.0)
+        return SceneProblem(
+            place.where,
+            f"{near.name} is too close to the place of {place.name} for the fingers to let it go "
+            f"there: put them {more_mm:.0f} mm further apart",
+        )
+
+    def _lacking_mm(self, standing: Standing, grasp: Grasp, near: SeenBox, more_m: float) -> float:
+        """How much further away from the part its neighbour would leave room."""
+        tool = _tool(standing, standing.pose, grasp)
+        dx, dy = near.x - tool.x, near.y - tool.y
+        away_m = math.hypot(dx, dy)
+        cos, sin = (dx / away_m, dy / away_m) if away_m > 0.0 else (1.0, 0.0)
+        for step in range(1, _STEPS):
+            shift_m = step * _STEP_M
+            moved = replace(near, x=near.x + cos * shift_m, y=near.y + sin * shift_m)
+            if in_the_way(self.gripper, tool, grasp.opening_m, [moved], ROOM_M + more_m) is None:
+                return 1e3 * shift_m
+        return 1e3 * _STEPS * _STEP_M
+
+    def _near(
+        self, standing: Standing, grasp: Grasp, others: Sequence[Standing], more_m: float
+    ) -> SeenBox | None:
+        tool = _tool(standing, standing.pose, grasp)
+        boxes = [box for each in others for box in each.boxes]
+        return in_the_way(self.gripper, tool, grasp.opening_m, boxes, ROOM_M + more_m)
+
+    def _reaches(
+        self, start: Standing, place: Standing | None, grasp: Grasp, around: Surroundings
+    ) -> bool:
+        """Whether wherever the world may scatter the start to, some lift is within reach."""
+        return all(
+            any(
+                self.reachable(self._way(start, at, place, grasp, lift_m, around))
+                for lift_m in LIFTS_M
+            )
+            for at in self._scattered(start.pose)
+        )
+
+    def _scattered(self, pose: Pose) -> list[Pose]:
+        """The corners of where a start pose may come to be."""
+        if self.scatter.xy == 0.0:
+            return [pose]
+        shift_m = self.scatter.xy
+        return [
+            pose.model_copy(update={"x": pose.x + dx * shift_m, "y": pose.y + dy * shift_m})
+            for dx, dy in product(_SIDES, _SIDES)
+        ]
+
+    def _way(
+        self,
+        start: Standing,
+        at: Pose,
+        place: Standing | None,
+        grasp: Grasp,
+        lift_m: float,
+        around: Surroundings,
+    ) -> list[ToolPose]:
+        """The way of the tool point, as the behavior lays it out."""
+        found = Location(x=at.x, y=at.y, z=start.bottom_z, yaw=at.yaw)
+        target = found
+        if place is not None:
+            pose = place.pose
+            target = Location(x=pose.x, y=pose.y, z=place.bottom_z, yaw=pose.yaw)
+        boxes = [box for each in (*around.start, *around.place) for box in each.boxes]
+        situation = Situation(
+            start.part,
+            found,
+            target,
+            self.table_z,
+            self.gripper,
+            grasp,
+            clear_z(found, target, self.table_z, boxes),
+            lift_m,
+        )
+        parameters = PickAndPlaceParameters(object=start.name, place=start.name)
+        steps = PickAndPlace().steps(parameters, situation)
+        return [each.action.to for each in steps if isinstance(each.action, Move)]
+
+    def _out_of_reach(
+        self,
+        start: Standing,
+        place: Standing | None,
+        grasps: Sequence[Grasp],
+        around: Surroundings,
+    ) -> SceneProblem:
+        """Whether the start, the place or only the way between them cannot be reached."""
+        if not any(self._reaches(start, None, grasp, around) for grasp in grasps):
+            return SceneProblem(start.where, self._too_far(start.name, start, "starts"))
+        assert place is not None
+        if not any(self._reaches(place, None, grasp, around) for grasp in grasps):
+            return SceneProblem(place.where, self._too_far(start.name, place, "is to go"))
+        return SceneProblem(
+            place.where,
+            f"the arm reaches where {start.name} starts and where it is to go, but not both with "
+            "one grasp: turn or move one of them",
+        )
+
+    def _too_far(self, name: str, standing: Standing, verb: str) -> str:
+        pose = standing.pose
+        return (
+            f"the arm does not reach ({pose.x:.3f}, {pose.y:.3f}, {standing.bottom_z:.3f}), where "
+            f"{name} {verb}, with the gripper pointing down"
+        )
+
+
+def _tool(standing: Standing, pose: Pose, grasp: Grasp) -> ToolPose:
+    return grasp.tool_pose(pose.x, pose.y, standing.bottom_z, pose.yaw)

@@ -1,0 +1,80 @@
+"""Whether parts stand: on the table or on each other, and firmly."""
+
+from collections.abc import Iterator, Sequence
+
+import shapely
+
+from robots.feasibility.standing import RESTS_M, Standing, beneath
+from tasks.scene import Scene, Table
+from tasks.scene_problem import SceneProblem
+
+FIRM_M = 0.005
+"""The middle of a part is at least so far inside the edge of what carries it."""
+
+
+def cannot_stand(
+    standing: Standing, others: Sequence[Standing], scene: Scene
+) -> Iterator[SceneProblem]:
+    """A part beyond the table, in the air or below the table, or that would tip over."""
+    name, pose, table = standing.name, standing.pose, scene.table
+    others = [each for each in others if each.where != standing.where]
+    on_table = abs(standing.bottom_z - table.height) <= RESTS_M
+    carriers = [] if on_table else beneath(standing, others)
+    if not table.is_under(pose.x, pose.y):
+        yield SceneProblem(standing.where, f"{name} at {_at(standing)} is beyond {_extents(table)}")
+    elif on_table:
+        if not _outline(table).buffer(1e-6).contains(standing.ground):
+            yield SceneProblem(
+                standing.where,
+                f"{name} at {_at(standing)} reaches over the edge of {_extents(table)}",
+            )
+    elif not carriers:
+        yield SceneProblem(standing.where, _in_the_air(standing, others, table))
+    elif not _firm(standing, carriers):
+        below = " and ".join(each.name for each in carriers)
+        yield SceneProblem(
+            standing.where,
+            f"{name} would tip off {below}: its middle has to be at least {FIRM_M * 1e3:.0f} mm "
+            f"inside the edge of what carries it",
+        )
+
+
+def _firm(standing: Standing, carriers: Sequence[Standing]) -> bool:
+    """Whether the middle is well over what is between the points of support."""
+    touching = shapely.union_all([each.ground.intersection(standing.ground) for each in carriers])
+    hull = touching.convex_hull.buffer(-FIRM_M)
+    return bool(hull.contains(shapely.Point(standing.pose.x, standing.pose.y)))
+
+
+def _in_the_air(standing: Standing, others: Sequence[Standing], table: Table) -> str:
+    name, z = standing.name, standing.bottom_z
+    if z < table.height:
+        return (
+            f"{name} at z {z:.3f} is below the table, whose top is at z {table.height:.3f}; "
+            "leave z out to put it on the table"
+        )
+    under = [each for each in others if each.ground.intersects(standing.ground)]
+    near = min(under, key=lambda each: abs(each.deck_z - z), default=None)
+    if near is None:
+        return (
+            f"{name} at {_at(standing)} and z {z:.3f} is in the air: nothing is below it but the "
+            f"table at z {table.height:.3f}; leave z out to put it there"
+        )
+    return (
+        f"{name} at z {z:.3f} rests on nothing: the top of {near.name} below it is at z "
+        f"{near.deck_z:.3f}"
+    )
+
+
+def _outline(table: Table) -> shapely.Polygon:
+    (x, y), (length, width) = table.center, table.size
+    return shapely.box(x - length / 2, y - width / 2, x + length / 2, y + width / 2)
+
+
+def _at(standing: Standing) -> str:
+    return f"({standing.pose.x:.3f}, {standing.pose.y:.3f})"
+
+
+def _extents(table: Table) -> str:
+    x0, y0, x1, y1 = _outline(table).bounds
+    return f"the table, which is from x {x0:.2f} to {x1:.2f} and from y {y0:.2f} to {y1:.2f}"

@@ -1,0 +1,226 @@
+"""Task trees, scenes and scenarios over REST: the same doors for every kind."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Query, Request, Response
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from server.api.parts import DocumentName, Limit, Offset, Parts, WithParts
+from server.api.problems import ProblemError, documented, validation_sentences
+from server.documents import (
+    SPOKEN,
+    DocumentCheck,
+    DocumentKind,
+    DocumentLibrary,
+    DocumentSummary,
+    DocumentView,
+    KeptDocument,
+    ScenarioSummary,
+    SceneSummary,
+)
+from server.errors import InvalidError
+from tasks.scene import Name
+
+YAML_TYPES = ("application/yaml", "application/x-yaml", "text/yaml", "text/x-yaml")
+
+TREE_EXAMPLE = """\
+name: two_boxes
+tree:
+  then:
+    - {behavior: pick_and_place, object: red_box, place: left}
+    - {behavior: pick_and_place, object: blue_box, place: right}
+"""
+SCENE_EXAMPLE = """\
+name: one_box
+objects:
+  red_box: {color: [1.0, 0.1, 0.1], size: [0.04, 0.06, 0.05], pose: {x: 0.5, y: -0.4}}
+places:
+  left: {pose: {x: 0.5, y: 0.0}}
+"""
+SCENARIO_EXAMPLE = """\
+name: eket_stolen_bar
+tree: eket
+interventions:
+  - {when: {object: pink_bar, step: 4}, do: {act: steal, object: pink_bar}}
+answers: [yes]
+"""
+
+
+class DocumentUpload(BaseModel):
+    """A file as YAML or JSON text; `name` wins over the one in the file."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+
+    name: Name | None = None
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Doors:
+    """What differs from kind to kind: the path, the library, how a list looks, an example."""
+
+    kind: DocumentKind
+    path: str
+    library: Callable[[Parts], DocumentLibrary]
+    summary: type[DocumentSummary]
+    example: str
+
+
+def _upload_body(doors: Doors) -> dict[str, Any]:
+    return {
+        "requestBody": {
+            "required": True,
+            "content": {
+                "application/json": {
+                    "schema": DocumentUpload.model_json_schema(),
+                    "example": {"text": doors.example},
+                },
+                "application/yaml": {"schema": {"type": "string"}, "example": doors.example},
+            },
+        }
+    }
+
+
+def _router(doors: Doors) -> APIRouter:
+    """The routes of one kind of document."""
+    router = APIRouter(prefix="/api", tags=[doors.path.lstrip("/")])
+    _add_reading(router, doors)
+    _add_writing(router, doors)
+    return router
+
+
+def _add_reading(router: APIRouter, doors: Doors) -> None:
+    kind, what = doors.kind, SPOKEN[doors.kind]
+
+    @router.get(
+        doors.path,
+        operation_id=f"list_{kind}s",
+        response_model=list[doors.summary],  # type: ignore[name-defined]
+        description=f"Every {what} that a run may name.",
+        responses=documented(401, 421, 422),
+    )
+    async def list_documents(
+        parts: WithParts, limit: Limit = 1000, offset: Offset = 0
+    ) -> Sequence[DocumentSummary]:
+        return await doors.library(parts).summaries(offset, limit)
+
+    @router.get(
+        f"{doors.path}/{{name}}",
+        operation_id=f"get_{kind}",
+        description=f"One {what} with its file's text.",
+        responses=documented(401, 404, 421, 422),
+    )
+    async def get_document(name: DocumentName, parts: WithParts) -> DocumentView:
+        return await doors.library(parts).get(name)
+
+    @router.post(
+        f"{doors.path}/check",
+        operation_id=f"check_{kind}",
+        response_model=DocumentCheck,
+        description=f"Check a {what} without keeping it: its definition, or every mistake with "
+        "its line, and what keeps the robot of which world from doing it.",
+        responses=documented(400, 401, 403, 413, 415, 421, 422),
+        openapi_extra=_upload_body(doors),
+    )
+    async def check_document(request: Request, parts: WithParts) -> DocumentCheck:
+        upload = await _read_upload(request, None)
+        checked = await doors.library(parts).check(upload.text)
+        return checked if upload.name is None else checked.model_copy(update={"name": upload.name})
+
+
+def _add_writing(router: APIRouter, doors: Doors) -> None:
+    kind, what = doors.kind, SPOKEN[doors.kind]
+    replaced: dict[int | str, dict[str, Any]] = {
+        200: {"model": KeptDocument, "description": f"An uploaded {what} was replaced."},
+        **documented(400, 401, 403, 409, 413, 415, 421, 422),
+    }
+
+    async def keep(upload: DocumentUpload, parts: Parts, response: Response) -> KeptDocument:
+        document, new = await doors.library(parts).save(upload.name, upload.text)
+        response.status_code = 201 if new else 200
+        response.headers["Location"] = f"/api{doors.path}/{document.name}"
+        return document
+
+    @router.post(
+        doors.path,
+        operation_id=f"upload_{kind}",
+        status_code=201,
+        response_model=KeptDocument,
+        description=f"Check a {what} and keep it under the name in its file, or the one sent.",
+        responses=replaced,
+        openapi_extra=_upload_body(doors),
+    )
+    async def upload_document(
+        request: Request,
+        response: Response,
+        parts: WithParts,
+        name: Annotated[Name | None, Query(description="For a YAML body: its name.")] = None,
+    ) -> KeptDocument:
+        return await keep(await _read_upload(request, name), parts, response)
+
+    @router.put(
+        f"{doors.path}/{{name}}",
+        operation_id=f"put_{kind}",
+        status_code=201,
+        response_model=KeptDocument,
+        description=f"Check a {what} and keep it under this name.",
+        responses=replaced,
+        openapi_extra=_upload_body(doors),
+    )
+    async def put_document(
+        name: DocumentName, request: Request, response: Response, parts: WithParts
+    ) -> KeptDocument:
+        return await keep(await _read_upload(request, name), parts, response)
+
+    @router.delete(
+        f"{doors.path}/{{name}}",
+        operation_id=f"delete_{kind}",
+        status_code=204,
+        description=f"Delete an uploaded {what}; runs that were started with it go on.",
+        responses=documented(401, 403, 404, 409, 421, 422),
+    )
+    async def delete_document(name: DocumentName, parts: WithParts) -> None:
+        await doors.library(parts).delete(name)
+
+
+async def _read_upload(request: Request, name: str | None) -> DocumentUpload:
+    kind = request.headers.get("content-type", "").partition(";")[0].strip().lower()
+    body = await request.body()
+    if kind in YAML_TYPES:
+        return DocumentUpload(name=name, text=_decode(body))
+    if kind != "application/json":
+        raise ProblemError(
+            415, "send the file as application/json with a 'text', or as application/yaml"
+        )
+    try:
+        upload = DocumentUpload.model_validate_json(body)
+    except ValidationError as error:
+        sentences = validation_sentences(error.errors())
+        raise InvalidError("the upload cannot be used", sentences) from None
+    return upload if name is None else upload.model_copy(update={"name": name})
+
+
+def _decode(body: bytes) -> str:
+    try:
+        return body.decode("utf-8")
+    except UnicodeDecodeError as error:
+        raise ProblemError(400, f"the body is not UTF-8: byte {error.start} is wrong") from None
+
+
+DOORS = (
+    Doors(DocumentKind.TREE, "/trees", lambda parts: parts.trees, DocumentSummary, TREE_EXAMPLE),
+    Doors(DocumentKind.SCENE, "/scenes", lambda parts: parts.scenes, SceneSummary, SCENE_EXAMPLE),
+    Doors(
+        DocumentKind.SCENARIO,
+        "/scenarios",
+        lambda parts: parts.scenarios,
+        ScenarioSummary,
+        SCENARIO_EXAMPLE,
+    ),
+)
+
+router = APIRouter()
+for each in DOORS:
+    router.include_router(_router(each))

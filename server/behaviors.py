@@ -1,0 +1,10 @@
+"""The behaviors that are installed, as the readers of task files need them."""
+
+from pydantic import BaseModel
+
+from tasks.plugins import load_plugins
+
+
+def behavior_parameters() -> dict[str, type[BaseModel]]:
+    """The parameter model of every behavior, by name."""
+    return {name: each.parameters for name, each in load_plugins("mend.behaviors").items()}

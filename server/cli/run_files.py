@@ -1,0 +1,86 @@
+"""The TREE, --scene and --scenario of `mend run`: names of the library, or files."""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from server.cli.failures import CommandLineError
+from server.cli.task_files import read_task, read_text
+from server.documents import DocumentKind
+from server.fixed_documents import GivenFiles
+from tasks.library import TREES
+from tasks.scenario import Scenario
+from tasks.scenario_file import built_in_scenario, check_scenario_file
+from tasks.scene import Scene
+from tasks.scene_file import built_in_scene, check_scene_file
+
+SUFFIXES = (".yaml", ".yml", ".json")
+
+
+@dataclass(frozen=True, slots=True)
+class RunFiles:
+    """What a run is to name, and the texts of the files that were given for it.
+
+    `scenes` is the folder beside the task file, where its scene may be.
+    """
+
+    tree: str
+    scene: str | None = None
+    scenario: Scenario | None = None
+    given: GivenFiles = field(default_factory=GivenFiles)
+    scenes: Path | None = None
+
+
+def read_run_files(tree: str, scene: str | None, scenario: str | None) -> RunFiles:
+    """Take what names a file for one, everything else for a name.
+
+    Raises `InvalidFileError` for a file with mistakes, `CommandLineError` for a task file that goes
+    by the name of a built-in tree, `NotInLibraryError`, and `OSError` for what cannot be read.
+    """
+    texts: dict[DocumentKind, dict[str, str]] = {}
+    chosen = _read_scene(scene, Path(tree), texts) if scene else None
+    name, scenes = _read_tree(tree, chosen, texts)
+    script = _read_scenario(scenario, texts) if scenario else None
+    return RunFiles(name, chosen.name if chosen else None, script, GivenFiles(texts), scenes)
+
+
+def is_file(argument: str) -> bool:
+    """Whether an argument names a file rather than something of the library."""
+    return Path(argument).suffix in SUFFIXES or "/" in argument
+
+
+def _read_tree(
+    argument: str, scene: Scene | None, texts: dict[DocumentKind, dict[str, str]]
+) -> tuple[str, Path | None]:
+    """The tree's name, and the folder with its scenes."""
+    if not is_file(argument):
+        return argument, None
+    path = Path(argument)
+    text = read_text(path)
+    name = read_task(path, scene).definition.name
+    if name in TREES.names() and text != TREES.read(name):
+        raise CommandLineError(
+            f"'{path}' has the name of a built-in task tree, '{name}': give it another name"
+        )
+    texts[DocumentKind.TREE] = {name: text}
+    scenes = path.parent / "scenes"
+    return name, scenes if scenes.is_dir() else None
+
+
+def _read_scene(argument: str, tree: Path, texts: dict[DocumentKind, dict[str, str]]) -> Scene:
+    if is_file(argument):
+        path = Path(argument)
+    else:
+        path = tree.parent / "scenes" / f"{argument}.yaml"
+        if not is_file(str(tree)) or not path.is_file():
+            return built_in_scene(argument)
+    scene = check_scene_file(path)
+    texts[DocumentKind.SCENE] = {scene.name: read_text(path)}
+    return scene
+
+
+def _read_scenario(argument: str, texts: dict[DocumentKind, dict[str, str]]) -> Scenario:
+    if not is_file(argument):
+        return built_in_scenario(argument)
+    scenario = check_scenario_file(Path(argument))
+    texts[DocumentKind.SCENARIO] = {scenario.name: read_text(Path(argument))}
+    return scenario

@@ -1,0 +1,16 @@
+"""`mend scenes`: the scenes that come with Mend."""
+
+from server.cli.failures import told_plainly
+from server.cli.output import print_rows
+from tasks.library import SCENES
+from tasks.scene_file import built_in_scene
+
+
+def scenes() -> None:
+    """List the scenes that come with Mend: how many objects and places each has."""
+    with told_plainly():
+        loaded = [built_in_scene(name) for name in SCENES.names()]
+    print_rows(
+        [(each.name, str(len(each.objects)), str(len(each.places))) for each in loaded],
+        ("scene", "objects", "places"),
+    )

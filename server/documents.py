@@ -1,0 +1,174 @@
+"""The documents that runs name: task trees, scenes and scenarios, built-in or uploaded."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Any, Literal, Protocol
+
+from server.errors import InvalidError
+from server.runtime.views import View
+
+
+class DocumentKind(StrEnum):
+    """The kinds of document; the journal keeps uploaded ones by these names."""
+
+    TREE = "tree"
+    SCENE = "scene"
+    SCENARIO = "scenario"
+
+
+SPOKEN = {
+    DocumentKind.TREE: "task tree",
+    DocumentKind.SCENE: "scene",
+    DocumentKind.SCENARIO: "scenario",
+}
+"""What a kind is called in a sentence."""
+
+
+class DocumentSummary(View):
+    """One line about a document. `built_in` ones cannot be replaced or deleted.
+
+    They come with Mend, or are in the folder of scenes that the service was started with.
+    """
+
+    name: str
+    built_in: bool
+
+
+class SceneSummary(DocumentSummary):
+    """One line about a scene; the numbers are None where its file has mistakes by now."""
+
+    objects: int | None
+    places: int | None
+
+
+class ScenarioSummary(DocumentSummary):
+    """One line about a scenario; `tree` is None where its file has mistakes by now."""
+
+    tree: str | None
+    description: str
+    answers: list[Literal["yes", "no", "silence"]]
+
+
+class DocumentView(DocumentSummary):
+    """A document: its file's `text`, and the `definition` in its JSON form."""
+
+    text: str
+    definition: dict[str, Any]
+
+
+class DocumentMistake(View):
+    """One mistake of a document: where it is, from 1, and one sentence.
+
+    `column` is where the line's content begins, or exactly where a text stops being readable;
+    `node` the path of a task tree's node.
+    """
+
+    line: int | None
+    column: int | None
+    node: str | None
+    message: str
+
+
+class WorldFit(View):
+    """What keeps the robot of one world from doing what a document says; nothing if it can."""
+
+    world: str
+    problems: list[DocumentMistake]
+
+
+class KeptDocument(DocumentView):
+    """A document that was just kept, and how the worlds that check scenes can do it."""
+
+    worlds: list[WorldFit]
+
+
+class DocumentCheck(View):
+    """What a document is worth: its `definition` in JSON form, or what is wrong with it."""
+
+    name: str | None
+    definition: dict[str, Any] | None
+    errors: list[DocumentMistake]
+    worlds: list[WorldFit]
+
+
+class WrongDocumentError(InvalidError):
+    """A document has mistakes."""
+
+    def __init__(self, what: str, mistakes: Sequence[DocumentMistake]) -> None:
+        count = "a mistake" if len(mistakes) == 1 else f"{len(mistakes)} mistakes"
+        super().__init__(f"the {what} file has {count}", [_sentence(each) for each in mistakes])
+        self.mistakes = list(mistakes)
+
+
+def _sentence(mistake: DocumentMistake) -> str:
+    where = "line" if mistake.line is None else f"line:{mistake.line}"
+    return f"{where}: " + (f"{mistake.node}: " if mistake.node else "") + mistake.message
+
+
+Uploaded = Mapping[DocumentKind, Mapping[str, str]]
+"""The texts of uploaded documents by kind and name."""
+
+
+@dataclass(frozen=True, slots=True)
+class CheckedDocument:
+    """A document without mistakes; `name` None where the file has none.
+
+    `uses` are the documents without which this one means nothing.
+    """
+
+    name: str | None
+    definition: dict[str, Any]
+    uses: frozenset[tuple[DocumentKind, str]] = frozenset()
+    worlds: Sequence[WorldFit] = ()
+
+
+class DocumentChecker(Protocol):
+    """Reads documents of one kind."""
+
+    def check(self, text: str, uploaded: Uploaded) -> CheckedDocument:
+        """Raises `WrongDocumentError` with every mistake."""
+        ...
+
+    def try_in_worlds(self, text: str, uploaded: Uploaded) -> CheckedDocument:
+        """As `check`, and asks every world whether its robot can do it.
+
+        Raises `WrongDocumentError` also where no world's robot can.
+        """
+        ...
+
+
+class FixedDocuments(Protocol):
+    """Documents of one kind that cannot be changed."""
+
+    def names(self) -> Sequence[str]: ...
+
+    def read(self, name: str) -> str:
+        """The text of one of the names."""
+        ...
+
+
+class DocumentLibrary(Protocol):
+    """Where the API finds, keeps and deletes the documents of one kind."""
+
+    async def summaries(self, offset: int = 0, limit: int = 1000) -> Sequence[DocumentSummary]: ...
+
+    async def get(self, name: str) -> DocumentView:
+        """Raises `NotFoundError`, and `InvalidError` where it has mistakes by now."""
+        ...
+
+    async def check(self, text: str) -> DocumentCheck:
+        """Check a document without keeping it."""
+        ...
+
+    async def save(self, name: str | None, text: str) -> tuple[KeptDocument, bool]:
+        """Check and keep a document; the second value says whether its name is new.
+
+        `name` wins over the file's own. Raises `InvalidError`, and `ConflictError` (built in, or
+        another uploaded document would no longer fit).
+        """
+        ...
+
+    async def delete(self, name: str) -> None:
+        """Raises `NotFoundError`, `ConflictError` (built in, or used by an uploaded one)."""
+        ...

@@ -1,0 +1,185 @@
+"""What cannot work in a task tree whatever the robot: things done twice, or in the wrong order."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from tasks.definition import BehaviorNode, GoalNode
+from tasks.footprint import Footprint
+from tasks.leaf_order import LeafOrder
+from tasks.scene import Pose, Scene, SceneObject
+
+Nodes = Sequence[GoalNode | BehaviorNode]
+
+_SAME_HEIGHT_M = 0.006
+"""What is so near to the top of a part rests on it."""
+
+
+@dataclass(frozen=True, slots=True)
+class TreeProblem:
+    """One mistake: the leaf's index among the nodes, which of its parameters, one sentence."""
+
+    leaf: int
+    parameter: Literal["object", "place"]
+    message: str
+
+
+def find_tree_problems(nodes: Nodes, scene: Scene | None) -> list[TreeProblem]:
+    """Every mistake of a tree; with a scene, also of the order in which parts are stacked."""
+    found = [*_done_twice(nodes, "place"), *_done_twice(nodes, "object")]
+    if scene is not None and not found:
+        found += _wrongly_stacked(nodes, scene)
+    return found
+
+
+# --- Two leaves for one thing ---------------------------------------------------------------------
+
+
+def _done_twice(nodes: Nodes, parameter: Literal["object", "place"]) -> Iterator[TreeProblem]:
+    """Two leaves that both have to be done, with one place, or with one object to be placed."""
+    under: dict[int, dict[str, int]] = {}
+    # Children come after their parents: backwards, everything under a node is known at the node.
+    for index in range(len(nodes) - 1, -1, -1):
+        node = nodes[index]
+        if isinstance(node, BehaviorNode):
+            own = _named(node, parameter, index)
+        else:
+            own = under.pop(index, {})
+        if node.parent is None:
+            continue
+        above = under.setdefault(node.parent, {})
+        small, large = sorted((own, above), key=len)
+        if nodes[node.parent].kind != "or":
+            for name in small.keys() & large.keys():
+                yield _twice(nodes, parameter, name, own[name], above[name])
+        large |= small
+        under[node.parent] = large
+
+
+def _named(node: BehaviorNode, parameter: str, index: int) -> dict[str, int]:
+    """The object or place of a leaf that brings something somewhere."""
+    if node.object is None or node.place is None:
+        return {}
+    return {node.object if parameter == "object" else node.place: index}
+
+
+def _twice(
+    nodes: Nodes, parameter: Literal["object", "place"], name: str, first: int, second: int
+) -> TreeProblem:
+    if parameter == "place":
+        what = f"the place '{name}' is filled twice"
+        right = "give one of them another place, or make them alternatives of one OR"
+    else:
+        what = f"the object '{name}' is placed twice"
+        right = "give one of them another object, or make them alternatives of one OR"
+    by = f"by '{nodes[first].name}' and by '{nodes[second].name}'"
+    return TreeProblem(max(first, second), parameter, f"{what}, {by}: {right}")
+
+
+# --- The order of what stands on what -------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class _Standing:
+    """A leaf's part where it starts, or where it is to be."""
+
+    leaf: int
+    part: str
+    ground: Footprint
+    bottom_m: float
+    top_m: float
+    """Where something may stand on it."""
+
+    def carries(self, other: "_Standing") -> bool:
+        return abs(self.top_m - other.bottom_m) < _SAME_HEIGHT_M and self.ground.overlaps(
+            other.ground
+        )
+
+    def fills(self, other: "_Standing") -> bool:
+        """Whether both are in one space."""
+        return min(self.top_m, other.top_m) - max(
+            self.bottom_m, other.bottom_m
+        ) > _SAME_HEIGHT_M and self.ground.overlaps(other.ground)
+
+
+def _wrongly_stacked(nodes: Nodes, scene: Scene) -> Iterator[TreeProblem]:
+    starts, places = _starts(nodes, scene), _places(nodes, scene)
+    order = LeafOrder(nodes)
+    for lower, upper in _stacked(places):
+        if not order.exclusive(lower.leaf, upper.leaf) and not order.is_before(
+            lower.leaf, upper.leaf, surely=False
+        ):
+            yield TreeProblem(
+                upper.leaf,
+                "place",
+                f"'{upper.part}' is to stand on '{lower.part}', which is not sure to be placed "
+                f"before it: put '{lower.part}' before '{upper.part}' in a THEN",
+            )
+    for lower, upper in _stacked(starts):
+        if not order.exclusive(lower.leaf, upper.leaf) and not order.is_before(
+            upper.leaf, lower.leaf
+        ):
+            yield TreeProblem(
+                lower.leaf,
+                "object",
+                f"'{upper.part}' starts on '{lower.part}' and is not sure to be taken off before "
+                f"it: put '{upper.part}' before '{lower.part}' in a THEN",
+            )
+    for place in places:
+        for start in starts:
+            if start.part != place.part and start.fills(place):
+                if order.is_before(start.leaf, place.leaf):
+                    continue
+                yield TreeProblem(
+                    place.leaf,
+                    "place",
+                    f"'{place.part}' is to go where '{start.part}' starts: put '{start.part}' "
+                    f"before it in a THEN, or choose another place",
+                )
+
+
+def _stacked(standing: Sequence[_Standing]) -> Iterator[tuple[_Standing, _Standing]]:
+    """Every pair of which the first one carries the second one."""
+    by_top: dict[int, list[_Standing]] = {}
+    for each in standing:
+        by_top.setdefault(round(each.top_m / _SAME_HEIGHT_M), []).append(each)
+    for upper in standing:
+        level = round(upper.bottom_m / _SAME_HEIGHT_M)
+        for near in (level - 1, level, level + 1):
+            for lower in by_top.get(near, ()):
+                if lower.part != upper.part and lower.carries(upper):
+                    yield lower, upper
+
+
+def _starts(nodes: Nodes, scene: Scene) -> list[_Standing]:
+    """Where the objects of leaves start."""
+    return [
+        _standing(index, node.object, scene.objects[node.object], None, scene)
+        for index, node in enumerate(nodes)
+        if isinstance(node, BehaviorNode)
+        and node.object in scene.objects
+        and node.place is not None
+        and node.object is not None
+    ]
+
+
+def _places(nodes: Nodes, scene: Scene) -> list[_Standing]:
+    """Where the objects of leaves are to be."""
+    return [
+        _standing(
+            index, node.object, scene.objects[node.object], scene.places[node.place].pose, scene
+        )
+        for index, node in enumerate(nodes)
+        if isinstance(node, BehaviorNode)
+        and node.object is not None
+        and node.place is not None
+        and node.object in scene.objects
+        and node.place in scene.places
+    ]
+
+
+def _standing(leaf: int, name: str, part: SceneObject, at: Pose | None, scene: Scene) -> _Standing:
+    pose = part.pose if at is None else at
+    bottom_m = scene.table.height if pose.z is None else pose.z
+    ground = Footprint(pose.x, pose.y, pose.yaw, part.size[0], part.size[1])
+    return _Standing(leaf, name, ground, bottom_m, bottom_m + part.size[2])

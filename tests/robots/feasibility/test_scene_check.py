@@ -1,0 +1,193 @@
+"""The check of a scene: each mistake in one sentence at its place, and nothing about what works."""
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from robots.body import ToolPose
+from robots.feasibility.check import check_scene
+from sim.workcell.gripper import PR2_GRIPPER
+from tasks.definition import BehaviorNode, GoalNode
+from tasks.scene import Place, Pose, Scatter, Scene, SceneObject
+from tasks.scene_problem import SceneProblem
+
+REACH_M = 0.74
+
+
+def within_reach(way: Sequence[ToolPose]) -> bool:
+    """A stand-in for the arm: a circle around its shoulder."""
+    return all(math.hypot(each.x, each.y + 0.19) <= REACH_M for each in way)
+
+
+def box(x: float, y: float, size=(0.03, 0.05, 0.05), **more: Any) -> SceneObject:
+    pose = Pose(x=x, y=y, z=more.pop("z", None), yaw=more.pop("yaw", 0.0))
+    return SceneObject(color=(0.9, 0.0, 0.0), size=size, pose=pose, **more)
+
+
+def scene(objects: dict[str, SceneObject], **places: Pose) -> Scene:
+    return Scene(
+        name="made_up",
+        objects=objects,
+        places={name: Place(pose=pose) for name, pose in places.items()},
+    )
+
+
+def leaf(name: str, place: str, parent: int | None = 0) -> BehaviorNode:
+    return BehaviorNode(
+        parent=parent,
+        name=f"{name}_to_{place}",
+        behavior="pick_and_place",
+        parameters={"object": name, "place": place},
+    )
+
+
+def goal(kind: str) -> GoalNode:
+    return GoalNode(kind=kind, parent=None, name="root")
+
+
+def problems_of(made: Scene, *nodes: GoalNode | BehaviorNode) -> list[SceneProblem]:
+    return check_scene(made, nodes, PR2_GRIPPER, within_reach)
+
+
+FREE = Pose(x=0.5, y=0.05)
+
+
+@pytest.mark.parametrize(
+    ("part", "where", "says"),
+    [
+        (box(0.5, -0.4, (0.09, 0.10, 0.05)), "size", "is 90 mm wide at its narrower side"),
+        (box(0.5, -0.4, (0.006, 0.09, 0.05)), "size", "is only 6 mm wide"),
+        (box(0.5, -0.4, (0.03, 0.05, 0.008)), "size", "is 8 mm high"),
+        (box(0.5, -0.4, mass_kg=0.9), "mass_kg", "weighs 0.90 kg"),
+        (
+            box(0.5, -0.4, (0.2, 0.2, 0.02), knob=(0.09, 0.1, 0.03)),
+            "knob",
+            "knob of part is 90",
+        ),
+        (box(0.5, -0.4, (0.2, 0.2, 0.02), knob=(0.03, 0.03, 0.006)), "knob", "is 6 mm high"),
+        (box(0.2, -0.4), "pose", "is beyond the table"),
+        (box(0.36, -0.4), "pose", "reaches over the edge"),
+        (box(0.5, -0.4, z=0.75), "pose", "is in the air"),
+        (box(0.5, -0.4, z=0.65), "pose", "is below the table"),
+        (box(0.75, -0.5), "pose", "the arm does not reach (0.750, -0.500, 0.700)"),
+    ],
+)
+def test_a_part_that_cannot_be_taken_is_told_of_where_it_is(
+    part: SceneObject, where: str, says: str
+) -> None:
+    made = scene({"part": part}, target=FREE)
+    (found,) = problems_of(made, leaf("part", "target", None))
+    assert found.where == ("objects", "part", where)
+    assert says in found.message
+
+
+@pytest.mark.parametrize(
+    ("at", "says"),
+    [
+        (Pose(x=1.2, y=0.0), "is beyond the table"),
+        (Pose(x=1.04, y=0.0), "reaches over the edge"),
+        (Pose(x=0.5, y=0.05, z=0.80), "is in the air"),
+        (Pose(x=0.8, y=0.1), "the arm does not reach"),
+        (Pose(x=0.5, y=-0.25), "the place of part is where other stands"),
+        (Pose(x=0.5, y=-0.25, z=0.77), "the top of other below it is at z 0.750"),
+        (Pose(x=0.5, y=-0.215, z=0.75), "would tip off other"),
+    ],
+)
+def test_a_place_that_cannot_be_filled_is_told_of(at: Pose, says: str) -> None:
+    made = scene({"part": box(0.5, -0.5), "other": box(0.5, -0.25)}, target=at)
+    (found,) = problems_of(made, leaf("part", "target", None))
+    assert found.where == ("places", "target", "pose")
+    assert says in found.message
+
+
+def wall(x: float, y: float) -> SceneObject:
+    """So tall and long that nothing can be grasped right beside it."""
+    return box(x, y, (0.2, 0.05, 0.12))
+
+
+def test_a_place_right_beside_something_tall_is_told_of() -> None:
+    made = scene({"part": box(0.5, -0.5), "wall": wall(0.5, -0.25)}, target=Pose(x=0.5, y=-0.199))
+    (found,) = problems_of(made, leaf("part", "target", None))
+    assert found.where == ("places", "target", "pose")
+    assert "wall is too close to the place of part" in found.message
+
+
+def test_two_parts_in_one_spot_are_told_of() -> None:
+    made = scene({"one": box(0.5, -0.4), "two": box(0.51, -0.41)}, target=FREE)
+    (found,) = problems_of(made, leaf("one", "target", None))
+    assert found.where == ("objects", "two", "pose")
+    assert "start in one spot" in found.message
+
+
+def test_a_part_wide_both_ways_beside_another_is_told_how_far_to_move_it() -> None:
+    def beside(y: float) -> list[SceneProblem]:
+        parts = {"one": box(0.5, -0.4, (0.05, 0.03, 0.05)), "two": box(0.5, y, (0.2, 0.03, 0.08))}
+        return problems_of(scene(parts, target=FREE), leaf("one", "target", None))
+
+    (found,) = beside(-0.365)
+    assert "two stands too close to one" in found.message
+    assert beside(-0.30) == []
+
+
+def test_places_inside_each_other_matter_unless_only_one_of_them_is_filled() -> None:
+    made = scene(
+        {"one": box(0.5, -0.5), "two": box(0.5, -0.35)}, left=FREE, right=Pose(x=0.51, y=0.06)
+    )
+    leaves = leaf("one", "left"), leaf("two", "right")
+    (found,) = problems_of(made, goal("and"), *leaves)
+    assert "would be inside each other" in found.message
+    assert problems_of(made, goal("or"), *leaves) == []
+
+
+def test_what_is_taken_away_before_is_in_nobodys_way() -> None:
+    made = scene(
+        {"one": box(0.5, -0.5), "two": wall(0.5, -0.3)},
+        left=Pose(x=0.5, y=-0.249),
+        right=FREE,
+    )
+    one, two = leaf("one", "left"), leaf("two", "right")
+    (found,) = problems_of(made, goal("and"), two, one)
+    assert "two is too close to the place of one" in found.message
+    assert problems_of(made, goal("then"), two, one) == []
+
+
+def test_a_tower_is_possible_and_so_is_a_part_on_four_legs() -> None:
+    small = (0.03, 0.03, 0.04)
+    parts = {
+        f"leg_{n}": box(0.40 + 0.09 * (n % 2), -0.6 + 0.09 * (n // 2), small) for n in range(4)
+    }
+    parts["top"] = box(0.6, -0.4, (0.14, 0.14, 0.012), knob=(0.03, 0.03, 0.035))
+    places = {f"leg_{n}": Pose(x=0.45 + 0.1 * (n % 2), y=-0.1 + 0.1 * (n // 2)) for n in range(4)}
+    places["top"] = Pose(x=0.5, y=-0.05, z=0.74)
+    made = scene(parts, **places)
+    leaves = [leaf(name, name) for name in parts]
+    assert problems_of(made, goal("then"), *leaves) == []
+    without_two = [goal("then"), *leaves[:2], leaves[4]]
+    assert any("would tip off" in each.message for each in problems_of(made, *without_two))
+
+
+def test_scatter_needs_its_room_too() -> None:
+    made = scene({"one": box(0.5, -0.4), "two": wall(0.5, -0.34)}, target=FREE)
+    scattered = made.model_copy(update={"scatter": Scatter(xy=0.02)})
+    assert problems_of(made, leaf("one", "target", None)) == []
+    (found,) = problems_of(scattered, leaf("one", "target", None))
+    assert "two stands too close to one" in found.message
+
+
+@given(
+    x=st.floats(0.42, 0.62),
+    y=st.floats(-0.5, -0.3),
+    yaw=st.floats(-3.1, 3.1),
+    width=st.floats(0.010, 0.078),
+    length=st.floats(0.010, 0.15),
+    height=st.floats(0.013, 0.12),
+)
+def test_every_part_within_the_limits_that_stands_alone_is_possible(
+    x: float, y: float, yaw: float, width: float, length: float, height: float
+) -> None:
+    made = scene({"part": box(x, y, (width, length, height), yaw=yaw)}, target=FREE)
+    assert problems_of(made, leaf("part", "target", None)) == []

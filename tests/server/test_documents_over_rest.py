@@ -1,0 +1,258 @@
+"""Scenes, scenarios and task trees over REST: checked, kept, replaced and deleted."""
+
+from collections.abc import AsyncIterator
+
+import httpx
+import pytest
+from service_under_test import build
+
+from server.documents import DocumentKind
+from server.fixed_documents import GivenFiles, fixed_documents
+from server.journal.sqlite import SqliteJournal
+from server.library import Library, build_library
+from server.scene_checks import WorldChecks
+from tasks.scene_problem import SceneProblem
+
+SCENE = """\
+name: bench
+objects:
+  cup: {color: [1.0, 0.1, 0.1], size: [0.05, 0.05, 0.08], pose: {x: 0.5, y: -0.3}}
+  pot: {color: [0.1, 0.1, 1.0], size: [0.05, 0.05, 0.05], pose: {x: 0.5, y: -0.5}}
+places:
+  tray: {pose: {x: 0.5, y: 0.0}}
+"""
+TREE = """\
+name: serve
+scene: bench
+tree: {behavior: pick_and_place, object: cup, place: tray}
+"""
+SCENARIO = """\
+name: clumsy
+tree: serve
+interventions:
+  - {when: {object: cup, step: 4}, do: {act: steal, object: cup}}
+answers: [yes, no]
+"""
+YAML = {"content-type": "application/yaml"}
+
+
+class TimidWorld:
+    """A world whose robot takes nothing that is higher than 6 cm."""
+
+    own_process = False
+    lays_out_anything = False
+
+    def check_available(self) -> None: ...
+
+    def check_scene(self, scene, leaves) -> list[SceneProblem]:
+        names = {each.object for each in leaves} or set(scene.objects)
+        return [
+            SceneProblem(("objects", name, "size"), f"'{name}' is too high")
+            for name in sorted(names)
+            if scene.objects[name].size[2] > 0.06
+        ]
+
+
+class BoldWorld(TimidWorld):
+    def check_scene(self, scene, leaves) -> list[SceneProblem]:  # noqa: ARG002
+        return []
+
+
+class IdleWorld:
+    """One that checks nothing."""
+
+    def check_available(self) -> None: ...
+
+
+def library(**worlds) -> Library:
+    checks = WorldChecks(worlds)
+    return build_library(SqliteJournal(":memory:"), fixed_documents(GivenFiles(), None), checks)
+
+
+@pytest.fixture
+async def client() -> AsyncIterator[httpx.AsyncClient]:
+    service = build()
+    own = library(timid=TimidWorld(), bold=BoldWorld(), idle=IdleWorld())
+    parts = service.app.state.parts
+    object.__setattr__(parts, "trees", own.trees)
+    object.__setattr__(parts, "scenes", own.scenes)
+    object.__setattr__(parts, "scenarios", own.scenarios)
+    async with service.client() as client:
+        yield client
+    own.journal.close()
+    service.journal.close()
+
+
+async def keep_all(client: httpx.AsyncClient) -> None:
+    for path, text in (("scenes", SCENE), ("trees", TREE), ("scenarios", SCENARIO)):
+        response = await client.post(f"/api/{path}", content=text, headers=YAML)
+        assert response.status_code == 201, response.text
+
+
+async def test_a_scene_a_tree_and_a_scenario_are_kept_and_read(client: httpx.AsyncClient) -> None:
+    await keep_all(client)
+    scene = (await client.get("/api/scenes/bench")).json()
+    assert (scene["text"], scene["built_in"]) == (SCENE, False)
+    assert scene["definition"]["objects"]["cup"]["size"] == [0.05, 0.05, 0.08]
+    tree = (await client.get("/api/trees/serve")).json()
+    assert tree["definition"]["nodes"][0]["parameters"]["object"] == "cup"
+    scenario = (await client.get("/api/scenarios/clumsy")).json()
+    assert scenario["definition"]["answers"] == ["yes", "no"]
+    listed = (await client.get("/api/scenes")).json()
+    assert {"name": "bench", "built_in": False, "objects": 2, "places": 1} in listed
+    listed = (await client.get("/api/scenarios")).json()
+    assert {
+        "name": "clumsy",
+        "built_in": False,
+        "tree": "serve",
+        "description": "",
+        "answers": ["yes", "no"],
+    } in listed
+
+
+@pytest.mark.parametrize(
+    ("path", "text"), [("scenes", SCENE), ("trees", TREE), ("scenarios", SCENARIO)]
+)
+async def test_put_keeps_under_the_name_of_the_address(
+    client: httpx.AsyncClient, path: str, text: str
+) -> None:
+    await keep_all(client)
+    first = await client.put(f"/api/{path}/other", content=text, headers=YAML)
+    assert first.status_code == 201
+    assert first.headers["location"] == f"/api/{path}/other"
+    assert (await client.put(f"/api/{path}/other", json={"text": text})).status_code == 200
+    assert (await client.get(f"/api/{path}/other")).json()["definition"]["name"] == "other"
+    assert (await client.delete(f"/api/{path}/other")).status_code == 204
+    assert (await client.get(f"/api/{path}/other")).status_code == 404
+
+
+@pytest.mark.parametrize(
+    ("path", "name", "text"),
+    [
+        ("scenes", "eket", SCENE),
+        ("scenarios", "eket_paper", SCENARIO.replace("serve", "eket").replace("cup", "pink_bar")),
+        ("trees", "eket", TREE),
+    ],
+)
+async def test_what_is_built_in_is_protected(
+    client: httpx.AsyncClient, path: str, name: str, text: str
+) -> None:
+    await keep_all(client)
+    for response in (
+        await client.put(f"/api/{path}/{name}", content=text, headers=YAML),
+        await client.delete(f"/api/{path}/{name}"),
+    ):
+        assert response.status_code == 409
+        assert response.headers["content-type"] == "application/problem+json"
+        assert "built in" in response.json()["detail"]
+
+
+async def test_mistakes_are_told_with_their_lines_and_nothing_is_kept(
+    client: httpx.AsyncClient,
+) -> None:
+    wrong = SCENE.replace("0.08]", "high]")
+    refused = await client.post("/api/scenes", content=wrong, headers=YAML)
+    assert refused.status_code == 422
+    assert refused.json()["errors"] == [
+        "line:3: 'objects.cup.size.2' must be a valid number, but it is \"high\""
+    ]
+    assert (await client.get("/api/scenes/bench")).status_code == 404
+    checked = (await client.post("/api/scenes/check", json={"text": wrong})).json()
+    assert checked["definition"] is None
+    assert [(each["line"], each["column"]) for each in checked["errors"]] == [(3, 3)]
+
+
+async def test_a_scenario_for_what_is_not_there_is_refused(client: httpx.AsyncClient) -> None:
+    refused = await client.post("/api/scenarios", content=SCENARIO, headers=YAML)
+    assert refused.status_code == 422
+    assert "there is no task tree 'serve'" in refused.json()["errors"][0]
+    await keep_all(client)
+    unknown = SCENARIO.replace("object: cup}}", "object: mug}}").replace("clumsy", "mugs")
+    refused = await client.post("/api/scenarios", content=unknown, headers=YAML)
+    assert "the object 'mug', which the scene 'bench' has not" in refused.json()["errors"][0]
+
+
+async def test_what_only_some_worlds_can_do_is_kept_and_said(client: httpx.AsyncClient) -> None:
+    kept = (await client.post("/api/scenes", content=SCENE, headers=YAML)).json()
+    fits = {each["world"]: each["problems"] for each in kept["worlds"]}
+    assert fits.keys() == {"timid", "bold"}
+    assert fits["bold"] == []
+    assert [(each["line"], each["message"]) for each in fits["timid"]] == [(3, "'cup' is too high")]
+    tree = (await client.post("/api/trees/check", json={"text": TREE})).json()
+    (problem,) = {each["world"]: each["problems"] for each in tree["worlds"]}["timid"]
+    assert (problem["node"], problem["message"]) == ("/", "'cup' is too high")
+
+
+async def test_what_no_world_can_do_is_refused() -> None:
+    checked = await library(timid=TimidWorld()).scenes.check(SCENE)
+    assert [each.message for each in checked.errors] == ["in the world 'timid': 'cup' is too high"]
+    low = SCENE.replace("0.08]", "0.05]")
+    assert (await library(timid=TimidWorld()).scenes.check(low)).errors == []
+
+
+async def test_a_scene_that_a_tree_needs_is_neither_deleted_nor_spoilt(
+    client: httpx.AsyncClient,
+) -> None:
+    await keep_all(client)
+    without_cup = SCENE.replace("  cup:", "  mug:")
+    for response in (
+        await client.delete("/api/scenes/bench"),
+        await client.put("/api/scenes/bench", content=without_cup, headers=YAML),
+        await client.delete("/api/trees/serve"),
+    ):
+        assert response.status_code == 409
+        assert "change or delete it first" in response.json()["detail"]
+    changed = SCENE.replace("0.08]", "0.06]")
+    assert (await client.put("/api/scenes/bench", content=changed, headers=YAML)).is_success
+    for path in ("scenarios/clumsy", "trees/serve", "scenes/bench"):
+        assert (await client.delete(f"/api/{path}")).status_code == 204
+
+
+@pytest.mark.parametrize("path", ["scenes", "scenarios"])
+@pytest.mark.parametrize(
+    ("content", "kind", "status"),
+    [
+        (b'{"text": 7}', "application/json", 422),
+        (b'{"text": "", "more": 1}', "application/json", 422),
+        (b"\xff", "application/yaml", 400),
+        (b"name: x", "text/plain", 415),
+        (b"{", "application/json", 422),
+        (b"", "application/yaml", 422),
+    ],
+)
+async def test_hostile_uploads_are_refused(
+    client: httpx.AsyncClient, path: str, content: bytes, kind: str, status: int
+) -> None:
+    response = await client.post(f"/api/{path}", content=content, headers={"content-type": kind})
+    assert response.status_code == status
+    assert response.headers["content-type"] == "application/problem+json"
+
+
+async def test_a_tree_is_loaded_with_its_scene_or_another_one_that_it_fits() -> None:
+    own = library()
+    await own.scenes.save(None, SCENE)
+    await own.trees.save(None, TREE)
+    await own.scenes.save("high", SCENE.replace("0.08]", "0.11]"))
+    await own.scenes.save("bare", SCENE.replace("  cup:", "  mug:"))
+    loaded = await own.load("serve")
+    assert loaded.scene is not None
+    assert loaded.scene.name == "bench"
+    other = await own.load("serve", "high")
+    assert other.scene is not None
+    assert (other.scene.name, other.scene.objects["cup"].size[2]) == ("high", 0.11)
+    assert other.definition.scene == "high"
+    with pytest.raises(Exception, match="cannot be used"):
+        await own.load("serve", "bare")
+    with pytest.raises(Exception, match="there is no scene 'nowhere'"):
+        await own.load("serve", "nowhere")
+
+
+async def test_documents_of_two_kinds_may_have_one_name() -> None:
+    journal = SqliteJournal(":memory:")
+    await journal.save_document(DocumentKind.SCENE, "x", "a scene")
+    await journal.save_document(DocumentKind.TREE, "x", "a tree")
+    assert await journal.documents("scene") == {"x": "a scene"}
+    assert await journal.delete_document("tree", "x")
+    assert await journal.documents("scene") == {"x": "a scene"}
+    assert await journal.documents("tree") == {}
+    journal.close()
