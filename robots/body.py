@@ -169,6 +169,14 @@ class Body(Protocol):
         """The distance between the finger tips, from the joint positions."""
         ...
 
+    def gripper_effort_n(self) -> float:
+        """The force with which the fingers press together, from their effort sensors."""
+        ...
+
+    def finger_hulls(self) -> Sequence[NDArray[np.float64]]:
+        """What of the gripper may hide a held part: convex pieces (n, 3), now, tool frame."""
+        ...
+
     def contact_force_n(self) -> float:
-        """The force against the arm (not between the fingers), as its effort sensors tell it."""
+        """The external force at the tool point, weight of what is held included, by efforts."""
         ...

@@ -38,18 +38,19 @@ class ToolBox:
 class GripperModel:
     """Lengths in metres; the tool point is in the middle between the fingers.
 
-    Closed, the tips reach `tip_reach_m` below the tool point. The fingers stay parallel on links
-    of `link_m` whose far joints lie `link_offset_m` outward, so that opening raises the tips; of
-    fingers that slide, the links have length 0. A pad ends `pad_above_tip_m` above the tip;
-    `overlap_m` of what is grasped has to be beside it. The top of what is grasped may be
-    `deepest_m` above the tool point. `fingers` are slices of each finger, `palm` of what is
-    above, both from below.
+    Closed on something the fingers press with `grip_force_n`. Closed, the tips reach `tip_reach_m`
+    below the tool point. The fingers stay parallel on links of `link_m` whose far joints lie
+    `link_offset_m` outward, so that opening raises the tips; of fingers that slide, the links have
+    length 0. A pad ends `pad_above_tip_m` above the tip; `overlap_m` of what is grasped has to be
+    beside it. The top of what is grasped may be `deepest_m` above the tool point. `fingers` are
+    slices of each finger, `palm` of what is above, both from below.
     """
 
     min_width_m: float
     max_width_m: float
     max_opening_m: float
     max_mass_kg: float
+    grip_force_n: float
     tip_reach_m: float
     pad_above_tip_m: float
     overlap_m: float

@@ -9,11 +9,11 @@ from robots.arm import Arm, Routine
 from robots.behaviors.preparation import LOOK_AGAIN_S
 from robots.body import CameraImage, ToolPose
 from robots.catalogue import Part
+from robots.grip import GripState
 from robots.link.messages import FinishedResult, Holding, Location, Look, Looked, ReportBody
 from robots.result import Result
 from robots.senses import Senses
 from robots.understanding import Understanding
-from robots.vision.forearm import GripReading, GripState, steady
 from robots.vision.head import HeadSighting
 from robots.vision.presence import Presence, is_at
 
@@ -22,7 +22,9 @@ LOOK_PERIOD_S = 0.5
 _RESTS_WITHIN_M = 0.006
 """An object rests if it is this near to where the look before saw it."""
 _STEADY_S = 0.3
-_STEADY_SPREAD_PX = 4.0
+_TRY_EVERY_S = 2.0
+"""Where the picture cannot tell whether anything is held out, the fingers close that often."""
+_OFFERED_SHARE = 0.5
 _CLEAR_FORCE_N = 20.0
 _MOST_READINGS = 6
 
@@ -58,11 +60,13 @@ class Looker:
     def answer_and_judge(self, command: str, fulfilled: bool | None) -> Routine[Looked]:
         """All that the head camera sees, and what became of the finished results.
 
-        What seems gone has to be gone in a second picture as well: a hand may pass by.
+        What seems gone has to be gone in a second picture as well: a hand may pass by. With the
+        arm in view it judges none.
         """
         image = self.senses.look()
-        verdicts = self._judge(image, self.finished)
-        doubted = [each for each in self.finished if verdicts[each.message] is Presence.GONE]
+        results = self.finished if self.arm.at_neutral else ()
+        verdicts = self._judge(image, results)
+        doubted = [each for each in results if verdicts[each.message] is Presence.GONE]
         if doubted:
             yield from self.arm.wait(LOOK_AGAIN_S)
             image = self.senses.look()
@@ -218,14 +222,16 @@ def take_from_person(looker: Looker, command: str, part: Part, within_s: float) 
 
 
 def _wait_until_offered(looker: Looker, part: Part, end_s: float) -> Routine[bool]:
-    """Watch the forearm camera until the part is held still between the fingers."""
+    """Watch until the part is held still between the fingers, or it is time to close and feel."""
     watch = looker.senses.new_watch(part)
     period_s = looker.senses.forearm_period_s
     needed = max(3, math.ceil(_STEADY_S / period_s))
-    readings: list[GripReading] = []
+    shown, begin_s = 0, looker.arm.body.time_s()
     while looker.arm.body.time_s() < end_s - 1e-9:
-        readings = [*readings[1 - needed :], looker.senses.measure_grip(watch)]
-        if len(readings) == needed and steady(readings, _STEADY_SPREAD_PX):
+        seen = looker.senses.measure_grip(watch).composition
+        shown = shown + 1 if seen is not None and seen.own >= _OFFERED_SHARE else 0
+        blind = seen is None and looker.arm.body.time_s() - begin_s >= _TRY_EVERY_S
+        if shown >= needed or blind:
             return True
         yield from looker.arm.wait(period_s)
     return False

@@ -10,9 +10,11 @@ from robots.body import Body, CameraImage, ToolPose
 from robots.catalogue import Catalogue, Part
 from robots.clip import Clip
 from robots.grasp import Grasp, grasp_of
+from robots.grip.cues import CueModel
+from robots.grip.reading import GripReading, GripState
+from robots.grip.watch import GripWatch, Hand
 from robots.link.messages import Location, Position, Sighting
 from robots.vision.color_model import ColorModel
-from robots.vision.forearm import GripReading, GripState, GripTolerances, GripWatch
 from robots.vision.head import HeadSighting
 from robots.vision.obstruction import (
     Clearance,
@@ -57,13 +59,13 @@ class Senses:
         body: Body,
         model: ColorModel,
         catalogue: Catalogue,
-        tolerances: GripTolerances | None = None,
+        cues: CueModel | None = None,
         clearance: Clearance | None = None,
         fit: Fit | None = None,
     ) -> None:
         self._body = body
         self._model = model
-        self._tolerances = tolerances
+        self._cues = cues
         self._clearance = clearance or Clearance()
         self._fit = fit or Fit()
         self._seen: _Seen | None = None
@@ -121,7 +123,7 @@ class Senses:
     def new_watch(self, part: Part, grasp: Grasp | None = None) -> GripWatch:
         """A grip watch that knows nothing yet; without `grasp`, for the best one."""
         grasp = grasp or grasp_of(part, self._body.gripper)
-        return GripWatch(part, grasp, self._model, self._tolerances, self.forearm_period_s)
+        return GripWatch(part, grasp, self._model, self._body.gripper, self._cues)
 
     def watch_grip(self, part: Part, grasp: Grasp | None = None) -> None:
         """The fingers have closed on a part: follow it from now on."""
@@ -135,21 +137,29 @@ class Senses:
         self.grip = None
 
     def read_grip(self) -> GripReading | None:
-        """Take a forearm picture into account; None if nothing is followed."""
+        """Take the hand as it is now into account; None if nothing is followed."""
         if self.grip is None:
             return None
-        image = self._look_at_hand()
-        return self.grip.update(image, self._body.tool_pose(), self._body.gripper_opening_m())
+        return self.grip.update(self._hand())
 
     def measure_grip(self, watch: GripWatch) -> GripReading:
-        """Judge a forearm picture by a watch without coming to a verdict."""
-        image = self._look_at_hand()
-        return watch.measure(image, self._body.tool_pose(), self._body.gripper_opening_m())
+        """Judge the hand by a watch without coming to a verdict."""
+        return watch.measure(self._hand())
 
     def film(self) -> None:
         """Take a forearm picture for the clip, if there is none yet of this moment."""
         if self.clip.due(self._body.time_s()):
             self._look_at_hand()
+
+    def _hand(self) -> Hand:
+        body = self._body
+        return Hand(
+            image=self._look_at_hand(),
+            tool=body.tool_pose(),
+            opening_m=body.gripper_opening_m(),
+            effort_n=body.gripper_effort_n(),
+            fingers=body.finger_hulls(),
+        )
 
     def _look_at_hand(self) -> CameraImage:
         image = self._body.cameras[FOREARM].capture()

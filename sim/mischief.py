@@ -11,6 +11,7 @@ from tasks.scene import Scene
 
 _ACTS = (Act.STEAL, Act.MOVE, Act.BLOCK)
 _SHARES = (0.6, 0.25, 0.15)
+_SHARE_OF_OTHERS = 0.4
 _ATTEMPTS = (1, 2)
 _ATTEMPT_SHARES = (0.8, 0.2)
 
@@ -20,7 +21,9 @@ def random_interventions(
 ) -> list[ScriptedIntervention]:
     """Steal, move and block at random moments, at most once per two leaves.
 
-    `objects` are those that the tree's leaves handle, `steps` how many steps their behavior has.
+    Mostly it befalls the object that is handled at that moment, else any that a leaf handles: one
+    that stands finished, or that is still to come. `objects` are those that the tree's leaves
+    handle, `steps` how many steps their behavior has.
     """
     handled = list(dict.fromkeys(objects))
     count = int(rng.integers(0, (len(handled) + 1) // 2 + 1))
@@ -33,10 +36,15 @@ def random_interventions(
                 fraction=round(float(rng.random()), 3),
                 attempt=int(rng.choice(_ATTEMPTS, p=_ATTEMPT_SHARES)),
             ),
-            do=_intervention(each, scene, rng),
+            do=_intervention(_victim(each, handled, rng), scene, rng),
         )
         for each in chosen
     ]
+
+
+def _victim(handled_now: str, handled: Sequence[str], rng: np.random.Generator) -> str:
+    other = handled[int(rng.integers(len(handled)))]
+    return other if rng.random() < _SHARE_OF_OTHERS else handled_now
 
 
 def _intervention(handled: str, scene: Scene, rng: np.random.Generator) -> Intervention:

@@ -26,6 +26,7 @@ from robots.behaviors.preparation import (
 from robots.behaviors.put_down import put_down
 from robots.body import ToolPose
 from robots.catalogue import Part
+from robots.grip import GripReading
 from robots.link.messages import (
     Detection,
     Finished,
@@ -39,7 +40,6 @@ from robots.link.messages import (
 from robots.monitors.monitor import BEFORE_FIRST_STEP, Meanwhile, Monitor, MonitorView
 from robots.senses import FOREARM, HEAD, Senses
 from robots.vision.drawing import draw_detection, encode_jpeg
-from robots.vision.forearm import GripReading
 from robots.vision.presence import Presence, is_at
 
 _CAREFUL = 0.5

@@ -4,8 +4,8 @@ from typing import ClassVar
 
 from robots.behaviors.phase import Phase
 from robots.behaviors.pick_and_place import PickAndPlace
+from robots.grip import GripState
 from robots.monitors.grip import GripMonitor
-from robots.vision.forearm import GripState
 
 
 class Dropped(GripMonitor):
@@ -15,4 +15,3 @@ class Dropped(GripMonitor):
     behaviors: ClassVar[frozenset[str]] = frozenset({PickAndPlace.name})
     phases: ClassVar[frozenset[Phase]] = frozenset({Phase.LIFT, Phase.CARRY})
     state: ClassVar[GripState] = GripState.LOST
-    how: ClassVar[str] = "is no longer"

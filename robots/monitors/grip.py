@@ -1,18 +1,17 @@
-"""What `missed` and `dropped` share: the object is not where it must be in the forearm picture."""
+"""What `missed` and `dropped` share: the fingers do not hold the object."""
 
 from typing import ClassVar
 
+from robots.grip import GripState
 from robots.link.messages import Detection
 from robots.monitors.monitor import Meanwhile, Monitor, MonitorView, NoParameters
-from robots.vision.forearm import GripState
 from tasks.scene import StrictModel
 
 
 class GripMonitor(Monitor[NoParameters]):
-    """Raises its issue once the pictures show the grip in `state`; `how` says so in words."""
+    """Raises its issue once opening, effort and picture together say that the grip is `state`."""
 
     state: ClassVar[GripState]
-    how: ClassVar[str]
     meanwhile: ClassVar[Meanwhile] = Meanwhile.GO_TO_NEUTRAL
     camera: ClassVar[str | None] = "forearm"
     parameters: ClassVar[type[StrictModel]] = NoParameters
@@ -27,5 +26,10 @@ class GripMonitor(Monitor[NoParameters]):
             expected=grip.expected,
             tolerance_px=grip.tolerance_px,
             area_px=0 if grip.blob is None else grip.blob.area_px,
-            explanation=f"{grip.name} {self.how} where it must be between the fingers",
+            explanation=f"{grip.reason} ({_percent(1.0 - grip.probability)} % sure)",
         )
+
+
+def _percent(probability: float) -> int:
+    """Never 100: nothing is quite sure."""
+    return min(99, round(100 * probability))

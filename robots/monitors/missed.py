@@ -4,8 +4,8 @@ from typing import ClassVar
 
 from robots.behaviors.phase import Phase
 from robots.behaviors.pick_and_place import PickAndPlace
+from robots.grip import GripState
 from robots.monitors.grip import GripMonitor
-from robots.vision.forearm import GripState
 
 
 class Missed(GripMonitor):
@@ -15,4 +15,3 @@ class Missed(GripMonitor):
     behaviors: ClassVar[frozenset[str]] = frozenset({PickAndPlace.name})
     phases: ClassVar[frozenset[Phase]] = frozenset({Phase.APPROACH, Phase.GRASP, Phase.LIFT})
     state: ClassVar[GripState] = GripState.ABSENT
-    how: ClassVar[str] = "never was"

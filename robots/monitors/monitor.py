@@ -9,8 +9,8 @@ from typing import Any, ClassVar, Generic, TypeVar
 from robots.behaviors.phase import Phase
 from robots.body import CameraImage, Reach
 from robots.catalogue import Part
+from robots.grip import GripReading
 from robots.link.messages import Detection, WasDone
-from robots.vision.forearm import GripReading
 from robots.vision.head import HeadSighting
 from robots.vision.obstruction import Obstruction
 from robots.vision.presence import Presence

@@ -9,7 +9,7 @@ from robots.link.messages import Detection
 from robots.monitors.monitor import ANY_BEHAVIOR, Meanwhile, Monitor, MonitorView
 from robots.monitors.unreachable import why_beyond_reach
 from robots.vision.head import HeadSighting
-from robots.vision.presence import Presence
+from robots.vision.presence import AT_PLACE_HEIGHT_M, Presence
 from tasks.scene import StrictModel
 
 
@@ -22,7 +22,7 @@ class UndoneParameters(StrictModel):
 class Undone(Monitor[UndoneParameters]):
     """Raises `undone` before step 1 of what was done before, and after the last step.
 
-    Where it sees the object in reach the robot goes on by itself; else somebody has to help.
+    Where it sees the object stand in reach the robot goes on by itself; else somebody has to help.
     """
 
     issue: ClassVar[str] = "undone"
@@ -36,6 +36,7 @@ class Undone(Monitor[UndoneParameters]):
         super().__init__(settings)
         self._again = settings.again
         self._goes_on = False
+        self._asked = False
 
     @property
     def interrupts(self) -> bool:
@@ -57,16 +58,25 @@ class Undone(Monitor[UndoneParameters]):
         ):
             # Where it is now is what people have to hear of: `unreachable` tells them.
             return None
-        self._goes_on = view.sighting is not None
+        if view.sighting is not None and self._asked:
+            return None
+        self._goes_on = _stands_on_the_table(view.sighting, view)
+        self._asked = True
         return _detection(f"{name} is no longer at its place", view.sighting)
 
     def _after_the_last_step(self, name: str, view: MonitorView) -> Detection | None:
         if view.presence is not Presence.GONE:
             return None
         graspable = view.placed is not None and why_beyond_reach(name, view.placed, view) is None
-        self._goes_on = graspable and self._again > 0
+        free = graspable and _stands_on_the_table(view.placed, view)
+        self._goes_on = free and self._again > 0
         self._again -= 1
         return _detection(f"{name} was placed, but is not at its place", view.placed)
+
+
+def _stands_on_the_table(sighting: HeadSighting | None, view: MonitorView) -> bool:
+    """Whether it stands free: what hangs on others may hide that one of them is gone."""
+    return sighting is not None and abs(sighting.z - view.table_z) <= AT_PLACE_HEIGHT_M
 
 
 def _detection(what: str, sighting: HeadSighting | None) -> Detection:

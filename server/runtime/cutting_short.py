@@ -1,6 +1,6 @@
 """Cutting short: active leaves are put back because something else has changed under them."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 
 from server.journal import events as ev
 from server.runtime.context import RunContext
@@ -10,7 +10,7 @@ from server.runtime.robot_side import Doing, RobotSide
 
 
 class CuttingShort:
-    """Puts active leaves of one run back: first the events, then the robots that held them."""
+    """Puts active leaves of one run back, and lets the robots that held them retreat."""
 
     def __init__(
         self,
@@ -24,18 +24,22 @@ class CuttingShort:
         self._dialogues = dialogues
         self._reports = reports
 
-    async def commit(self, leaves: Iterable[int], reason: str, after: Iterable[ev.Event]) -> None:
-        """Put leaves back, then commit what comes `after` that, then let their robots retreat."""
+    def put_back(self, leaves: Iterable[int], reason: str) -> list[ev.Event]:
+        """The events that put active leaves back, and abort the dialogues about them."""
         state = self._context.state
         events: list[ev.Event] = []
-        owners: list[str] = []
         for leaf in leaves:
-            owner = state.tree.owner(leaf) or ""
             if dialogue := state.dialogue_of(leaf):
                 events.append(self._dialogues.abort(dialogue))
+            owner = state.tree.owner(leaf) or ""
             events.append(self._reports.reset(leaf, owner, reason, failed=False))
-            owners.append(owner)
-        await self._context.commit([*events, *after])
+        return events
+
+    async def commit(self, leaves: Iterable[int], events: Sequence[ev.Event]) -> None:
+        """Commit events that put leaves back; then let the robots that held them retreat."""
+        tree = self._context.state.tree
+        owners = [tree.owner(leaf) or "" for leaf in leaves]
+        await self._context.commit(events)
         for owner in owners:
             if self._sides[owner].doing is not Doing.ABSENT:
                 self._sides[owner].retreat()

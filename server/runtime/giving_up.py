@@ -85,12 +85,11 @@ class GivingUp:
             reason = f"'{name}' could not be done: {reason}"
             await fail_run(self._context, reason, state.tree.path_of(leaf))
             return
+        put_back = self._cutting_short.put_back(given_up.put_back, "its alternative was abandoned")
         abandoned = ev.NodeAbandoned(
             **self._context.stamp(),
             **self._reports.node(given_up.alternative),
             leaf=state.tree.path_of(leaf),
             reason=reason,
         )
-        await self._cutting_short.commit(
-            given_up.put_back, "its alternative was abandoned", [abandoned]
-        )
+        await self._cutting_short.commit(given_up.put_back, [*put_back, abandoned])

@@ -73,17 +73,16 @@ class Results:
     ) -> None:
         tree = self._context.state.tree
         because: dict[int, int] = {leaf: leaf for leaf in gone}
-        active: dict[int, int] = {}
+        active: set[int] = set()
         for leaf in sorted(because):
             found = tree.what_to_take_back(leaf)
             for each in found.taken_back:
                 because.setdefault(each, leaf)
-            active.update(dict.fromkeys(found.put_back, leaf))
+            active.update(found.put_back)
+        put_back = self._cutting_short.put_back(active, "what it comes after is no longer done")
         # What a THEN puts after another leaf is after it in the tree as well.
         undone = [self._undone(leaf, because[leaf], side) for leaf in sorted(because, reverse=True)]
-        await self._cutting_short.commit(
-            active, "what it comes after is no longer done", [*before, *undone]
-        )
+        await self._cutting_short.commit(active, [*before, *put_back, *undone])
 
     def _undone(self, leaf: int, because_of: int, side: RobotSide) -> ev.NodeUndone:
         tree = self._context.state.tree

@@ -7,6 +7,7 @@ from uuid import uuid4
 
 from robots.link.messages import (
     CommandBody,
+    FinishedResult,
     Hello,
     Hold,
     Holding,
@@ -43,11 +44,16 @@ class Purpose(StrEnum):
     BASELINE = "baseline"
     WATCH = "watch"
     HELP = "help"
+    RESUME = "resume"
     LAST = "last"
 
 
-JUDGING = (Purpose.CHOOSE, Purpose.LAST)
-"""Looks for which what leaves have finished is judged as well."""
+JUDGING = (Purpose.CHOOSE, Purpose.BASELINE, Purpose.RESUME, Purpose.LAST)
+"""Looks before something is built or asked: they judge what is finished as well."""
+
+
+FRESH_S = 1.0
+"""What was seen so long ago still holds (the run's clock)."""
 
 
 class CommandSender(Protocol):
@@ -72,7 +78,9 @@ class RobotSide:
     seen: dict[str, Sighting] = field(default_factory=dict)
     gripper: Point = (0.0, 0.0, 0.0)
     looked_at: float | None = None
-    """When it last looked for a choice and judged what is finished; None if out of date."""
+    """When it last judged what is finished; None if that is out of date."""
+    finished: list[FinishedResult] = field(default_factory=list)
+    """The results that there are to judge now."""
 
     @property
     def free(self) -> bool:
@@ -121,7 +129,13 @@ class RobotSide:
     def look(self, purpose: Purpose, **fields: Any) -> None:
         """Look, for a purpose; `fields` are those of the `look` command."""
         self.purpose = purpose
+        if purpose in JUDGING:
+            fields["finished"] = list(self.finished)
         self._tell(Doing.LOOKING, str(uuid4()), Look(**fields))
+
+    def looked_just_now(self, now: float) -> bool:
+        """Whether what it saw and judged last still holds."""
+        return self.looked_at is not None and now - self.looked_at <= FRESH_S
 
     def hold(self, until: float, rate: float | None) -> None:
         """Simulated worlds: let time pass until `until` (the robot's clock)."""

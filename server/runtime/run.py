@@ -271,6 +271,9 @@ class Run:
         state = self._context.state
         if state.status is not RunStatus.RUNNING:
             return False
+        results = list(results_of(state))
+        for side in self._sides.values():
+            side.finished = results
         for dialogue in state.open_dialogues:
             if await self._dialogues.drive(dialogue, self._sides[dialogue.opened.robot]):
                 return True
@@ -287,15 +290,17 @@ class Run:
         state = self._context.state
         execution = state.executions.get(side.robot)
         if execution is not None:
-            if execution.held:
+            if execution.held and side.looked_just_now(self._context.clock.now()):
                 side.resume(execution)
+            elif execution.held:
+                side.look(Purpose.RESUME)
             return False
         if side.holds_execution:
             side.retreat()
             return False
         if state.tree.done(0):
             if not state.executions:
-                self._look_at_everything(side, Purpose.LAST)
+                side.look(Purpose.LAST)
             return False
         return await self._start_something(side)
 
@@ -304,9 +309,8 @@ class Run:
         choice = choose(state, side)
         if choice is None:
             return False
-        fresh = side.looked_at is not None and self._context.clock.now() - side.looked_at <= 1.0
-        if not fresh:
-            self._look_at_everything(side, Purpose.CHOOSE)
+        if not side.looked_just_now(self._context.clock.now()):
+            side.look(Purpose.CHOOSE)
             return False
         assert side.hello is not None, "a free robot has said hello"
         execution = Execution(uuid4(), choice.leaf, side.robot, side.hello.boot)
@@ -325,10 +329,6 @@ class Run:
         )
         self._start(side, execution)
         return True
-
-    def _look_at_everything(self, side: RobotSide, purpose: Purpose) -> None:
-        """Look where everything is, and whether what is finished is still there."""
-        side.look(purpose, finished=list(results_of(self._context.state)))
 
     def _start(self, side: RobotSide, execution: Execution) -> None:
         state = self._context.state

@@ -21,6 +21,7 @@ GRIPPER = GripperModel(
     max_width_m=0.078,
     max_opening_m=0.090,
     max_mass_kg=0.5,
+    grip_force_n=33.0,
     tip_reach_m=0.010,
     pad_above_tip_m=0.0,
     overlap_m=0.007,

@@ -5,10 +5,12 @@ from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 
 import numpy as np
+from numpy.typing import NDArray
 
 from robots.body import ArmPath, Camera, Matrix4, Reach, ToolPose
 from robots.gripper import GripperModel
 from sim.tabletop.arm import GRIPPER, StraightPath
+from sim.tabletop.gripper_shape import finger_hulls
 from sim.tabletop.state import CONTROL_PERIOD_S, PUSH_N, TabletopState
 from tasks.scene import Table
 
@@ -99,6 +101,12 @@ class TabletopBody:
 
     def gripper_opening_m(self) -> float:
         return self._state.gripper.opening_m
+
+    def gripper_effort_n(self) -> float:
+        return GRIPPER.grip_force_n if self._state.held is not None else 0.0
+
+    def finger_hulls(self) -> Sequence[NDArray[np.float64]]:
+        return finger_hulls(self._state.gripper.opening_m)
 
     def contact_force_n(self) -> float:
         return PUSH_N if self._state.touching else 0.0

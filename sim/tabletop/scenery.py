@@ -10,6 +10,7 @@ from robots.body import CameraImage, Matrix4, ToolPose
 from sim.depth_noise import DepthNoise, Pinhole
 from sim.lighting import Lighting
 from sim.raster import Light, Mesh, Rasterizer, RenderedImage, box_triangles
+from sim.tabletop.gripper_shape import FINGER, PALM, finger_offset_m
 from sim.tabletop.part import PartPose, TablePart
 from sim.tabletop.state import CONTROL_PERIOD_S, TabletopState
 
@@ -28,14 +29,6 @@ TABLE_COLOR = (0.72, 0.70, 0.68)
 BLOCKER_COLOR = (0.30, 0.30, 0.32)
 BLOCKER_SIZE_M = (0.10, 0.10, 0.30)
 
-_FINGER = box_triangles((0.012, 0.02, 0.07), (0.0, 0.0, 0.025))
-_PALM = np.concatenate(
-    [
-        box_triangles((0.13, 0.05, 0.04), (0.0, 0.0, 0.09)),
-        box_triangles((0.05, 0.05, 0.30), (0.0, 0.0, 0.26)),
-    ]
-)
-
 
 class Scenery:
     """Draws the state of a tabletop world."""
@@ -51,9 +44,9 @@ class Scenery:
         self._rasterizer = Rasterizer(
             [
                 *(Mesh(_triangles_of(part), part.color) for part in self._parts),
-                Mesh(_FINGER, _GREY),
-                Mesh(_FINGER, _GREY),
-                Mesh(_PALM, _GREY),
+                Mesh(FINGER, _GREY),
+                Mesh(FINGER, _GREY),
+                Mesh(np.concatenate(PALM), _GREY),
                 Mesh(box_triangles(BLOCKER_SIZE_M), BLOCKER_COLOR),
                 Mesh(top, TABLE_COLOR),
             ]
@@ -90,7 +83,7 @@ class Scenery:
 
     def _place_arm(self) -> None:
         tool = self._state.arm.pose
-        half = self._state.gripper.opening_m / 2 + 0.006
+        half = finger_offset_m(self._state.gripper.opening_m)
         dx, dy = half * math.cos(tool.yaw), half * math.sin(tool.yaw)
         first = len(self._parts)
         _set_upright(self._transforms[first], tool.x + dx, tool.y + dy, tool.z, tool.yaw)

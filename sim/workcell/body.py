@@ -11,6 +11,8 @@ from robots.motion.kinematics import Joints
 from robots.motion.limits import MotionLimits
 from robots.motion.planner import JointPath, PathPlanner, PathSegment
 from robots.motion.timing import TimedMotion
+from sim.workcell.effort_sensors import ENCODER_NOISE_M, FINGER_NOISE_N
+from sim.workcell.finger_hulls import Hull
 from sim.workcell.finger_motion import FingerMotion
 from sim.workcell.gripper import PR2_GRIPPER, finger_angle_rad
 from sim.workcell.physics import CONTROL_HZ
@@ -57,9 +59,16 @@ class WorkcellBody:
 
     cameras: Mapping[str, Camera]
 
-    def __init__(self, pr2: Pr2, rng: np.random.Generator, step: Callable[[], None]) -> None:
+    def __init__(
+        self,
+        pr2: Pr2,
+        rng: np.random.Generator,
+        sensor_rng: np.random.Generator,
+        step: Callable[[], None],
+    ) -> None:
         """`step` lets the rest of the world make one physics step."""
         self._pr2 = pr2
+        self._sensor_rng = sensor_rng
         self._rng = rng
         self._step = step
         self._planner = PathPlanner(pr2.tool, np.array(PREFERRED_RAD))
@@ -171,7 +180,15 @@ class WorkcellBody:
         return self._pr2.tool.pose(self._pr2.arm_joints())
 
     def gripper_opening_m(self) -> float:
-        return self._pr2.gripper_opening_m()
+        noise_m = ENCODER_NOISE_M * float(self._sensor_rng.standard_normal())
+        return max(0.0, self._pr2.gripper_opening_m() + noise_m)
+
+    def gripper_effort_n(self) -> float:
+        noise_n = FINGER_NOISE_N * float(self._sensor_rng.standard_normal())
+        return max(0.0, self._pr2.gripper_effort_n() + noise_n)
+
+    def finger_hulls(self) -> Sequence[Hull]:
+        return self._pr2.finger_hulls()
 
     def contact_force_n(self) -> float:
         return self._pr2.contact_force_n()

@@ -35,6 +35,7 @@ PR2_GRIPPER = GripperModel(
     max_width_m=0.078,
     max_opening_m=2 * inner_side_m(FINGERS_OPEN_RAD),
     max_mass_kg=0.5,
+    grip_force_n=33.0,
     tip_reach_m=0.0193,
     pad_above_tip_m=0.002,
     overlap_m=0.007,

@@ -7,6 +7,7 @@ import numpy as np
 
 from robots.body import Matrix4
 from robots.motion.kinematics import Joints, KinematicChain
+from sim.workcell.finger_hulls import FingerHulls, Hull
 from sim.workcell.gripper import FINGERS_OPEN_RAD, inner_side_m
 from sim.workcell.physics import Client, Point
 from sim.workcell.quiet import silenced
@@ -42,6 +43,8 @@ _FINGER_FRICTION = 1.2
 _FINGER_SPIN_FRICTION = 0.02
 
 _WRIST_TO_TOOL_M = 0.18
+_FINGER_LENGTH_M = 0.0914
+"""From a finger's joint to where it presses."""
 
 _PAD_M = 0.005
 """Contacts this near to the inner side of a finger are with what is between the fingers."""
@@ -72,6 +75,7 @@ class Pr2:
         self.head_camera_pose = KinematicChain(urdf, HEAD_CAMERA_FRAME, ()).pose(np.zeros(0))
         shoulder = KinematicChain(urdf, SHOULDER_FRAME, ARM_JOINTS[:1]).pose(np.zeros(1))
         self.shoulder = (float(shoulder[0, 3]), float(shoulder[1, 3]))
+        self._hulls = FingerHulls(urdf)
         self._set_up_dynamics(link_of)
         self._paint(link_of)
         self.place_arm(np.array(NEUTRAL_RAD))
@@ -141,6 +145,18 @@ class Pr2:
     def gripper_opening_m(self) -> float:
         """The distance between the finger tips, which stay parallel."""
         return sum(inner_side_m(angle) for angle in self.finger_angles())
+
+    def gripper_effort_n(self) -> float:
+        """The force with which the fingers press together, by their motors' torques."""
+        states = self._client.getJointStates(self.body_id, self._fingers[:2])
+        closing_nm = -sum(float(state[3]) for state in states) / 2
+        return max(0.0, closing_nm / _FINGER_LENGTH_M)
+
+    def finger_hulls(self) -> Sequence[Hull]:
+        """The gripper's convex pieces in the tool frame, by the measured finger angles."""
+        states = self._client.getJointStates(self.body_id, self._fingers)
+        angles = {name: state[0] for name, state in zip(FINGER_JOINTS, states, strict=True)}
+        return self._hulls.at(angles)
 
     def touched_by(self, body_id: int) -> tuple[bool, bool]:
         """Whether the left and the right finger touch a body."""

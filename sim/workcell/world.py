@@ -47,7 +47,7 @@ class WorkcellWorld:
         """Raises `WorldUnavailableError` where the physics engine or the robot is missing."""
         chosen = options or WorkcellOptions()
         self._scene = scene
-        layout_rng, light_rng, self._rng, depth_rng = np.random.default_rng(seed).spawn(4)
+        layout_rng, light_rng, depth_rng, self._rng, self._sensor_rng = _generators(seed)
         self._lighting = Lighting(LIGHT, chosen.light, chosen.camera_noise, light_rng)
         self._depth_noise = DepthNoise(chosen.depth_noise, depth_rng)
         self._build(chosen)
@@ -65,7 +65,7 @@ class WorkcellWorld:
         self._iterations = _REST_ITERATIONS
         self._bench = Bench(client, self._scene)
         self._pr2 = Pr2(client)
-        self._body = WorkcellBody(self._pr2, self._rng, self._step)
+        self._body = WorkcellBody(self._pr2, self._rng, self._sensor_rng, self._step)
         self._person = Person(client, self._bench, self._pr2, self._body)
         self._renderer: Renderer = (
             BulletRenderer(client) if options.renderer == "bullet" else FastRenderer(client)
@@ -208,3 +208,8 @@ class WorkcellWorld:
             part.take_away()
         else:
             part.put(part.last_rest)
+
+
+def _generators(seed: int) -> list[np.random.Generator]:
+    """One each for the layout, the light, the depth's noise, the person and arm, the sensors."""
+    return np.random.default_rng(seed).spawn(5)

@@ -51,6 +51,8 @@ class PretendRobot:
     `patient`: it lets no time pass while a question is open, as live helpers take their time.
     `films`: two pictures follow every issue. `thefts`: whenever one object has been placed, another
     one (or itself) that was placed is gone, so often. `hidden_at_place`: what no look can judge.
+    `in_reach`: what is gone is not stolen but elsewhere on the table. `slow`: it is still at its
+    first start until it is interrupted.
     """
 
     name: str
@@ -77,6 +79,8 @@ class PretendRobot:
     thefts: dict[str, list[str]] = field(default_factory=dict)
     gone: set[str] = field(default_factory=set)
     hidden_at_place: set[str] = field(default_factory=set)
+    in_reach: bool = False
+    slow: bool = False
 
     def hello(self) -> Hello:
         return Hello(
@@ -157,7 +161,8 @@ class PretendRobots:
         match body:
             case Start():
                 self._starts[robot.name] = body
-                await self._work(robot, body)
+                if not robot.slow:
+                    await self._work(robot, body)
             case Look():
                 await self._look(robot, command, body)
             case Hold() if robot.patient:
@@ -166,6 +171,7 @@ class PretendRobots:
                 robot.time = max(robot.time, until)
                 await self.report(robot, Held(command=command))
             case Interrupt(retreat=retreat):
+                robot.slow = False
                 at = "neutral" if retreat else "in_place"
                 await self.report(robot, Holding.model_validate({"execution": None, "at": at}))
             case Resume(execution=execution):
@@ -182,7 +188,7 @@ class PretendRobots:
         if start.was_done is not None and not resumed and part not in robot.gone:
             await self.report(robot, Finished(execution=start.execution, found_in_place=True))
             return
-        if part in robot.gone and part not in robot.right:
+        if part in robot.gone and part not in robot.right and not robot.in_reach:
             await self._issue(robot, start, "undone" if start.was_done else "missing", 0)
             holding = {"execution": start.execution, "at": "neutral"}
             await self.report(robot, Holding.model_validate(holding))

@@ -26,6 +26,7 @@ GRIPPER = GripperModel(
     max_width_m=0.075,
     max_opening_m=0.085,
     max_mass_kg=0.5,
+    grip_force_n=30.0,
     tip_reach_m=0.010,
     pad_above_tip_m=0.0,
     overlap_m=0.007,
@@ -229,6 +230,13 @@ class ScriptedBody:
         if not self._gripper_closed:
             return self._opened_m
         return 0.0 if self.in_hand is None else grasp_of(PARTS[self.in_hand[0]], GRIPPER).width_m
+
+    def gripper_effort_n(self) -> float:
+        return GRIPPER.grip_force_n if self.in_hand is not None and self._gripper_closed else 0.0
+
+    def finger_hulls(self) -> list[np.ndarray]:
+        """It has no fingers to be seen."""
+        return []
 
     def contact_force_n(self) -> float:
         return self.force_n

@@ -41,7 +41,7 @@ def test_mischief_befalls_at_most_every_second_leaf_and_only_what_is_there(
     for each in planned:
         assert each.when is not None
         assert 1 <= each.when.step <= 8
-        assert each.do.object in (None, each.when.object)
+        assert each.do.object in (None, *objects)
 
 
 def test_the_same_seed_gives_the_same_mischief() -> None:
@@ -51,4 +51,7 @@ def test_the_same_seed_gives_the_same_mischief() -> None:
 def test_mischief_is_of_every_kind() -> None:
     planned = [each.do for seed in range(60) for each in mischief(seed, NAMES)]
     assert {each.act for each in planned} == {Act.STEAL, Act.MOVE, Act.BLOCK}
+    planned_at = [each for seed in range(60) for each in mischief(seed, NAMES)]
+    elsewhere = [each for each in planned_at if each.when and each.do.object != each.when.object]
+    assert 0 < len(elsewhere) < len(planned_at)
     assert {each.manner for each in planned if each.act is Act.STEAL} == {"vanish", "pull"}

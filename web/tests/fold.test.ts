@@ -44,6 +44,7 @@ describe("fold", () => {
     for (const type of [
       "node_reset",
       "node_abandoned",
+      "node_undone",
       "run_paused",
       "run_failed",
       "run_finished",

@@ -5,9 +5,9 @@ from typing import ClassVar
 from pydantic import Field
 
 from robots.behaviors import Phase
+from robots.grip import GripState
 from robots.link.messages import Detection
 from robots.monitors import Meanwhile, Monitor, MonitorView
-from robots.vision.forearm import GripState
 from tasks.scene import StrictModel
 
 

@@ -9,6 +9,7 @@ from pydantic import ValidationError
 
 from robots.behaviors.phase import Phase
 from robots.body import Reach
+from robots.grip import GripReading, GripState
 from robots.monitors.blocked import Blocked
 from robots.monitors.dropped import Dropped
 from robots.monitors.missed import Missed
@@ -17,7 +18,6 @@ from robots.monitors.monitor import Meanwhile, Monitor, MonitorView
 from robots.monitors.positioning import Positioning
 from robots.monitors.unreachable import Unreachable
 from robots.vision.blob import Blob
-from robots.vision.forearm import GripReading, GripState
 from robots.vision.head import HeadSighting
 from robots.vision.obstruction import Obstruction
 from tasks.plugins import load_plugins
@@ -38,8 +38,20 @@ VIEW = MonitorView(
 
 def grip(state: GripState) -> GripReading:
     image = DrawnScene().picture(with_depth=False)
+    held = state in (GripState.HELD, GripState.UNDECIDED)
     return GripReading(
-        "pink_bar", state, False, BLOB, (80.0, 60.0), 3.0, 30.0, (30.0, 0.0), 0.7, image
+        name="pink_bar",
+        state=state,
+        probability=0.999 if held else 0.0002,
+        opening_m=0.03 if held else 0.003,
+        width_m=0.03,
+        presses=held,
+        composition=None,
+        blob=BLOB,
+        expected=(80.0, 60.0),
+        tolerance_px=3.0,
+        overhang_px=1.0,
+        image=image,
     )
 
 
@@ -131,6 +143,9 @@ def test_missed_and_dropped_never_speak_of_the_same_grip(state: GripState) -> No
             assert detection.camera == "forearm"
             assert detection.center == BLOB.center
             assert detection.expected == (80.0, 60.0)
+            assert detection.explanation == (
+                "the fingers closed to 3 mm where the pink bar is 30 mm wide (99 % sure)"
+            )
 
 
 def test_positioning_speaks_of_what_needs_help() -> None:

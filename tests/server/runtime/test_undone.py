@@ -1,16 +1,26 @@
 """What is seen gone is done no longer: it is taken back, and nothing is built on it."""
 
+import asyncio
 from typing import Any
 
+import numpy as np
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from pretend_robots import PretendRobot
 from pretend_service import pretend_service
 from task_documents import definition_of
 
+from dialogue.registry import load_scripts
 from server.journal import events as ev
 from server.journal.audit import audit
 from server.runtime.context import RunSettings
+from server.runtime.run_state import RunState
 from server.runtime.views import RunStatus, RunView
 from sim.tabletop.layout import lay_out
+from tasks.definition import TaskTreeDefinition
+from tasks.random_task import random_task
+from tasks.task_tree import TaskTree
 
 NAMES = [(f"part_{i}", f"spot_{i}") for i in range(1, 6)]
 SCENE = lay_out(NAMES, seed=1)
@@ -18,11 +28,16 @@ LEAVES = [{"behavior": "pick_and_place", "object": part, "place": spot} for part
 
 
 async def run_with(
-    tree: Any, thefts: dict[str, list[str]], *, settings: RunSettings | None = None, **fields: Any
+    tree: Any,
+    thefts: dict[str, list[str]],
+    *,
+    settings: RunSettings | None = None,
+    hidden: frozenset[str] = frozenset(),
+    **fields: Any,
 ) -> tuple[RunView, list[ev.Event]]:
     """A run in which parts are gone once another one has been placed; its audit finds nothing."""
     async with pretend_service(
-        definition_of(tree), scene=SCENE, settings=settings, thefts=thefts
+        definition_of(tree), scene=SCENE, settings=settings, thefts=thefts, hidden_at_place=hidden
     ) as service:
         view, events = await service.run_to_end(**fields)
     assert audit(events, {node.node: node.kind for node in view.nodes}) == []
@@ -114,3 +129,112 @@ async def test_the_last_leaf_for_a_part_says_where_it_is_to_be() -> None:
     )
     assert view.status is RunStatus.FINISHED
     assert [each.name for each in events if isinstance(each, ev.NodeUndone)] == ["part_3", "back"]
+
+
+async def test_what_is_hidden_is_believed_to_be_where_it_was_put() -> None:
+    hidden = frozenset({"part_1"})
+    view, events = await run_with({"then": LEAVES[:2]}, {"part_2": ["part_1"]}, hidden=hidden)
+    assert view.status is RunStatus.FINISHED
+    assert [line for line in story(events) if "undone" in line] == []
+
+
+async def test_what_another_robot_builds_on_it_is_cut_short() -> None:
+    tree = {"then": [LEAVES[0], {"and": LEAVES[1:4]}]}
+    async with pretend_service(definition_of(tree), scene=SCENE) as service:
+        gone: set[str] = set()
+        make = {
+            "fast": PretendRobot("fast", gone=gone, thefts={"part_3": ["part_1"]}, in_reach=True),
+            "slow": PretendRobot("slow", gone=gone, slow=True, in_reach=True),
+        }
+        service.robots.make = lambda name: make[name]
+        service.robots.robots.update(make)
+        # The slow one takes a part as soon as it may; the fast one then sees the first one gone.
+        view, events = await asyncio.wait_for(
+            service.run_to_end(world="live", robots=["fast", "slow"]), timeout=10
+        )
+    assert audit(events, {node.node: node.kind for node in view.nodes}) == []
+    assert view.status is RunStatus.FINISHED
+    cut = [each for each in events if isinstance(each, ev.NodeReset)]
+    assert [(each.robot, each.reason, each.failed_attempt) for each in cut] == [
+        ("slow", "what it comes after is no longer done", False)
+    ]
+
+
+# --- Everything at once -----------------------------------------------------------------------
+
+
+def folded(events: list[ev.Event]) -> RunState:
+    """The state of a run as its journal says it."""
+    started = events[0]
+    assert isinstance(started, ev.RunStarted)
+    state = RunState(started, load_scripts())
+    for event in events[1:]:
+        state.fold(event)
+    return state
+
+
+def folded_directly(events: list[ev.Event]) -> TaskTree:
+    """A tree to which the events' transitions were applied by direct calls."""
+    started = events[0]
+    assert isinstance(started, ev.RunStarted)
+    tree = TaskTree(TaskTreeDefinition.model_validate(started.tree))
+    tree.running = True
+    for event in events:
+        match event:
+            case ev.NodeStarted():
+                tree.start(tree.index_of(event.node), event.robot)
+            case ev.NodeDone():
+                tree.finish(tree.index_of(event.node))
+            case ev.NodeReset():
+                tree.put_back(tree.index_of(event.node), failed=event.failed_attempt)
+            case ev.NodeUndone():
+                tree.take_back(tree.index_of(event.node))
+            case ev.NodeAbandoned():
+                tree.abandon(tree.index_of(event.node))
+    return tree
+
+
+def seen_of(tree: TaskTree) -> list[tuple[Any, ...]]:
+    nodes = range(len(tree))
+    return [
+        (tree.done(i), tree.active(i), tree.abandoned(i), tree.attempts(i), tree.owner(i))
+        for i in nodes
+    ]
+
+
+@pytest.mark.slow
+@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@given(
+    seed=st.integers(0, 2**31 - 1),
+    leaves=st.integers(1, 14),
+    chance=st.floats(0, 0.6),
+    answers=st.sampled_from(["random", "none", "yes"]),
+)
+def test_every_run_ends_and_finishes_only_with_everything_there(
+    seed: int, leaves: int, chance: float, answers: str
+) -> None:
+    rng = np.random.default_rng(seed)
+    definition = definition_of(random_task(rng, leaves)["tree"])
+    thefts = {
+        f"part_{part}": [f"part_{rng.integers(1, leaves + 1)}" for _ in range(rng.integers(1, 4))]
+        for part in range(1, leaves + 1)
+        if rng.random() < chance
+    }
+
+    async def run() -> tuple[RunView, list[ev.Event], set[str]]:
+        async with pretend_service(definition, thefts=thefts) as service:
+            said: Any = ["yes"] * 200 if answers == "yes" else answers
+            view, events = await asyncio.wait_for(
+                service.run_to_end(answers=said, seed=seed), timeout=60
+            )
+            [robot] = service.robots.robots.values()
+            return view, events, robot.gone - robot.right
+
+    view, events, gone = asyncio.run(run())
+    assert audit(events, {node.node: node.kind for node in view.nodes}) == []
+    assert seen_of(folded_directly(events)) == seen_of(folded(events).tree)
+    if answers == "yes":
+        assert view.status is RunStatus.FINISHED
+    if view.status is RunStatus.FINISHED:
+        done = {node.object for node in view.nodes if node.done and node.object}
+        assert not gone & done, "it has finished, but something is gone that it counts as done"

@@ -9,6 +9,7 @@ const SENTENCES: Readonly<Record<string, (part: string) => string>> = {
   unreachable: (part) => `The ${part} is where the arm cannot grasp it.`,
   positioning: (part) => `The ${part} needs a second hand while the robot places it.`,
   missing: (part) => `The robot looked for the ${part} and cannot see it anywhere.`,
+  undone: (part) => `The ${part} is not at its place.`,
   blocked: () => "Something is in the way of the robot's arm.",
 };
 

@@ -13,6 +13,7 @@ import type {
   RunStarted,
   RunStatus,
 } from "../wire/types";
+import { finishedWords } from "./sentences";
 import { activationOf, type LeafStatus } from "./activation";
 import { shapeOf, type TreeShape } from "./tree_shape";
 
@@ -116,12 +117,15 @@ function applied(state: RunState, event: Event): RunState {
       return withExecution(raised, event.robot, (execution) => ({ ...execution, held: true }));
     }
     case "node_done":
+    case "node_left_out":
       return endExecution(withLeaf(state, event.node, (leaf) => ({ ...leaf, status: "done", owner: null })), event.node);
     case "node_reset": {
       const failed = event.failed_attempt ? 1 : 0;
       const put = (leaf: LeafState): LeafState => ({ status: "idle", owner: null, attempts: leaf.attempts + failed });
       return endExecution(withLeaf(state, event.node, put), event.node);
     }
+    case "node_undone":
+      return withLeaf(state, event.node, (leaf) => ({ ...leaf, status: "idle", owner: null }));
     case "node_abandoned":
       return { ...state, abandoned: new Set(state.abandoned).add(indexOf(state, event.node)) };
     case "run_paused":
@@ -129,7 +133,7 @@ function applied(state: RunState, event: Event): RunState {
     case "run_resumed":
       return { ...state, status: "running" };
     case "run_finished":
-      return end(state, "finished", { reason: "the task is done", node: null, missing: event.missing });
+      return end(state, "finished", { reason: finishedWords(event.missing), node: null, missing: event.missing });
     case "run_failed":
       return end(state, "failed", { reason: event.reason, node: event.node, missing: [] });
     case "run_aborted":

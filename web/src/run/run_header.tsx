@@ -31,11 +31,8 @@ export function RunHeader({ newest, moment }: { newest: RunState; moment: Moment
           </span>
           {started.scenario !== null && <span class="quiet">scenario {plain(started.scenario)}</span>}
         </p>
-        {result !== null && status !== "finished" && <p class="mistake">{result.reason}</p>}
-        {result !== null && result.missing.length > 0 && (
-          <p class="mistake">
-            At the end the robot did not see {result.missing.map((part) => plain(part.object)).join(", ")} at its place.
-          </p>
+        {result !== null && (status !== "finished" || result.missing.length > 0) && (
+          <p class="mistake">{result.reason}</p>
         )}
       </div>
       {!ended(status) && <RunControls run={started.run} paused={status === "paused"} />}

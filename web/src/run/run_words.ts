@@ -21,9 +21,7 @@ export const STATUS_SIGNS: Readonly<Record<RunStatus, string>> = {
 /** What came of a run, in a sentence; empty while it goes on. */
 export function outcome({ result }: RunSummary): string {
   if (result === null) return "";
-  const missing = result.missing.map((part) => part.object).join(", ");
-  const reason = result.reason.charAt(0).toUpperCase() + result.reason.slice(1);
-  return missing === "" ? reason : `${reason}; not at its place at the end: ${missing}`;
+  return result.reason.charAt(0).toUpperCase() + result.reason.slice(1);
 }
 
 const UNITS: readonly (readonly [Intl.RelativeTimeFormatUnit, number])[] = [

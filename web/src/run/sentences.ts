@@ -1,5 +1,5 @@
 // The transcript of a run: each event as the lines that a person reads.
-import type { Act, CloseReason, Event, Help, Intervention, NodeStarted, Resolution } from "../wire/types";
+import type { Act, CloseReason, Event, Help, Intervention, MissingPart, NodeStarted, Resolution } from "../wire/types";
 import { plain } from "../tree/words";
 
 /** What kind of news a line brings; each has its own look. */
@@ -84,9 +84,9 @@ export function linesOf(event: Event): Line[] {
     case "run_finished":
       return [
         ...event.missing.flatMap((part) =>
-          line("setback", `The last look misses ${plain(part.object)} at ${plain(part.place)}.`),
+          line("setback", `${plain(part.object)} is not at ${plain(part.place)}${asSaid(part.left_out_by)}.`),
         ),
-        ...line("finished", "The run has finished: the task is done."),
+        ...line("finished", `The run has finished: ${finishedWords(event.missing)}.`),
       ];
     case "run_failed":
       return line("failed", `The run has failed: ${event.reason}`);
@@ -111,6 +111,12 @@ export function linesOf(event: Event): Line[] {
       const failed = event.failed_attempt ? ", a failed attempt" : "";
       return line("setback", `${plain(event.name)} is put back${failed}: ${event.reason}.`);
     }
+    case "node_undone":
+      return line("setback", `${plain(event.name)} is done no longer: ${event.reason}.`);
+    case "node_left_out":
+      return line("setback", `${plain(event.name)} is left out, as ${event.helper} said.`);
+    case "node_returned":
+      return line("done", `sees ${plain(event.name)}, which was left out, at its place.`, event.robot);
     case "node_abandoned":
       return line("setback", `The alternative ${plain(event.name)} is abandoned: ${event.reason}.`);
     case "issue_raised": {
@@ -166,6 +172,22 @@ export function linesOf(event: Event): Line[] {
     default:
       return [];
   }
+}
+
+/** What a finished run came to: the task is done, perhaps without what was left out. */
+export function finishedWords(missing: readonly MissingPart[]): string {
+  const said = new Map<string | null, string[]>();
+  for (const { object, left_out_by: by } of missing) said.set(by, [...(said.get(by) ?? []), object]);
+  const parts = [...said].map(([by, objects]) => `without ${enumerated(objects)}${asSaid(by)}`);
+  return parts.length === 0 ? "the task is done" : `the task is done ${enumerated(parts)}`;
+}
+
+function asSaid(by: string | null): string {
+  return by === null ? "" : `, as ${by} said`;
+}
+
+function enumerated(words: readonly string[]): string {
+  return [words.slice(0, -1).join(", "), ...words.slice(-1)].filter((each) => each !== "").join(" and ");
 }
 
 /** Put a line behind those that there are, joined to the last one if both are of one thread. */

@@ -78,6 +78,7 @@ export function takeDialogueEvent(event: Event, me: string): void {
       put(opened(event));
       return;
     case "node_done":
+    case "node_left_out":
     case "node_reset":
       stopHelping((each) => each.run === event.run && each.node === event.node);
       return;

@@ -1,6 +1,6 @@
 // What stands on the lanes of a run's timeline.
 import { plain } from "../../tree/words";
-import type { DialogueClosed, Event, NodeDone, NodeReset, Resolution } from "../../wire/types";
+import type { DialogueClosed, Event, NodeDone, NodeLeftOut, NodeReset, Resolution } from "../../wire/types";
 import { deed } from "../sentences";
 
 export type LaneKind = "steps" | "faults" | "dialogues" | "people" | "resolutions";
@@ -33,6 +33,12 @@ export const RESOLUTION_WORDS: Readonly<Record<Resolution, string>> = {
   robot_retry: "tries again",
 };
 
+const ENDINGS = {
+  node_done: ["done", "done"],
+  node_left_out: ["put-back", "left out"],
+  node_reset: ["put-back", "put back"],
+} as const;
+
 interface Growing extends TimelineItem {
   parts: Growing[];
 }
@@ -62,8 +68,12 @@ export function lanesOf(events: readonly Event[], now: number): Lane[] {
         break;
       }
       case "node_done":
+      case "node_left_out":
       case "node_reset":
         endExecution(running, event);
+        break;
+      case "node_undone":
+        lanes.faults.push(point(event, "undone", `${plain(event.name)} is done no longer: ${event.reason}`, "fault", event.node));
         break;
       case "issue_raised": {
         const about = plain(event.object ?? event.name);
@@ -123,14 +133,15 @@ function closePart(parts: Growing[] | undefined, time: number): void {
   if (last !== undefined) last.end = time;
 }
 
-function endExecution(running: Map<string, Growing>, event: NodeDone | NodeReset): void {
+function endExecution(running: Map<string, Growing>, event: NodeDone | NodeLeftOut | NodeReset): void {
   const item = running.get(event.node);
   if (item === undefined) return;
   running.delete(event.node);
   closePart(item.parts, event.time);
   item.end = event.time;
-  item.look = event.type === "node_done" ? "execution done" : "execution put-back";
-  item.title += event.type === "node_done" ? ", done" : ", put back";
+  const [look, word] = ENDINGS[event.type];
+  item.look = `execution ${look}`;
+  item.title += `, ${word}`;
 }
 
 function closeDialogue(open: Map<string, Growing>, event: DialogueClosed): void {

@@ -1,0 +1,84 @@
+"""What a reading of the hand says, and the verdict with it."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+from robots.body import CameraImage
+from robots.grip.composition import Composition
+from robots.vision.blob import Blob
+
+_MM = 1e3
+
+
+class GripState(StrEnum):
+    """The verdict since the gripper closed."""
+
+    UNDECIDED = "undecided"
+    HELD = "held"
+    ABSENT = "absent"
+    """The object never was between the fingers."""
+    LOST = "lost"
+    """It was, and is not any more."""
+
+
+_NEXT = {
+    GripState.UNDECIDED: {GripState.HELD, GripState.ABSENT},
+    GripState.HELD: {GripState.LOST},
+    GripState.ABSENT: set[GripState](),
+    GripState.LOST: set[GripState](),
+}
+
+
+class GripTransitionError(Exception):
+    """A grip changed in a way that cannot be; the message says from what to what."""
+
+
+def follow(state: GripState, wanted: GripState) -> GripState:
+    """The wanted state. Raises `GripTransitionError` if it may not follow this one."""
+    if wanted not in _NEXT[state]:
+        expected = " or ".join(sorted(_NEXT[state])) or "nothing more"
+        raise GripTransitionError(f"a grip that is {state} can become {expected}, not {wanted}")
+    return wanted
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class GripReading:
+    """One reading of opening, effort and picture, and the verdict with it.
+
+    `probability` is how sure it is that `name` is held rightly. The fingers are `opening_m` apart
+    where the part is `width_m` wide. `composition` says which colours the picture shows where the
+    part must be seen; None where the fingers hide it or its colour cannot be told. `blob` are the
+    pixels of its colours, `expected` the centre of its outline (pixels) and `overhang_px` how far
+    the blob hangs over that, for a picture 160 pixels wide; `tolerance_px` of it are usual.
+    """
+
+    name: str
+    state: GripState
+    probability: float
+    opening_m: float
+    width_m: float
+    presses: bool
+    composition: Composition | None
+    blob: Blob | None
+    expected: tuple[float, float]
+    tolerance_px: float
+    overhang_px: float | None
+    image: CameraImage
+
+    @property
+    def reason(self) -> str:
+        """Why it is not held, if it is not: the strongest sign of it."""
+        name = self.name.replace("_", " ")
+        opening, width = self.opening_m * _MM, self.width_m * _MM
+        seen = self.composition
+        wide = f"where the {name} is {width:.0f} mm wide"
+        if abs(opening - width) > width / 3 or not self.presses:
+            if opening < width:
+                return f"the fingers closed to {opening:.0f} mm {wide}"
+            return f"the fingers are {opening:.0f} mm apart {wide}"
+        if seen is not None and seen.most_other is not None and seen.other > seen.own:
+            other = seen.most_other.replace("_", " ")
+            return f"what is between the fingers has the colours of the {other}, not the {name}"
+        if abs(opening - width) > width / 10:
+            return f"the fingers are {opening:.0f} mm apart {wide}"
+        return f"what is between the fingers does not look like the {name}"

@@ -1,0 +1,90 @@
+"""Where a held part must be seen in the forearm picture: its outline but for what hides it."""
+
+from collections.abc import Sequence
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from robots.body import CameraImage, Matrix4
+from robots.catalogue import Part
+from robots.grasp import Grasp, corners_in_tool
+from robots.grip.composition import Composition
+from robots.vision.blob import Mask
+from robots.vision.color_model import ColorModel, Segmentation
+from robots.vision.projection import project
+
+REFERENCE_WIDTH_PX = 160
+"""Lengths in pixels are for a picture this wide and grow with it."""
+
+_NEAR_M = 0.04
+"""So near to the tool point a part stays where it is even if it turns between the fingers."""
+
+_RIM_PX = 2.0
+"""Projections are that exact: the tool point's and the grasp's error, seen from the forearm."""
+
+_TELLING_SHARE = 0.5
+"""Of a part without a hue nothing is seen but that much of another's colour is not its own."""
+
+_FEWEST_PX = 14
+"""Fewer pixels than these may be anything."""
+
+
+def outline(
+    image: CameraImage,
+    tool: Matrix4,
+    pieces: Sequence[NDArray[np.float64]],
+    shift_px: NDArray[np.float64] | None = None,
+) -> Mask:
+    """Where convex pieces, points (n, 3) in the tool frame, would be seen: 1 there, 0 elsewhere."""
+    canvas = np.zeros(image.bgr.shape[:2], np.uint8)
+    for points in pieces:
+        pixels = project(image, points @ tool[:3, :3].T + tool[:3, 3])
+        if shift_px is not None:
+            pixels = pixels + shift_px
+        hull = cv2.convexHull(np.rint(pixels).astype(np.int32))
+        cv2.fillConvexPoly(canvas, hull, 1)
+    return canvas
+
+
+def near_tool(part: Part, grasp: Grasp) -> list[NDArray[np.float64]]:
+    """The corners of the part's boxes, cut off where they are far from the tool point."""
+    pieces = [np.clip(each, -_NEAR_M, _NEAR_M) for each in corners_in_tool(part, grasp)]
+    return [each for each in pieces if np.ptp(each, axis=0).min() > 0.0]
+
+
+def visible_region(
+    image: CameraImage,
+    tool: Matrix4,
+    near: Sequence[NDArray[np.float64]],
+    fingers: Sequence[NDArray[np.float64]],
+) -> Mask:
+    """Where the part must be seen and neither its rim nor a finger is."""
+    scale = image.bgr.shape[1] / REFERENCE_WIDTH_PX
+    size = 2 * round(_RIM_PX * scale) + 1
+    rim = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (size, size))
+    inside = cv2.erode(outline(image, tool, near), rim)
+    hidden = cv2.dilate(outline(image, tool, fingers), rim)
+    return np.where((np.asarray(inside) > 0) & (np.asarray(hidden) == 0), 1, 0).astype(np.uint8)
+
+
+def composition(
+    region: Mask, segmentation: Segmentation, model: ColorModel, name: str
+) -> Composition | None:
+    """Which colours a region shows; None where that cannot tell whether it is part `name`."""
+    scale = region.shape[1] / REFERENCE_WIDTH_PX
+    pixels = int(np.count_nonzero(region))
+    if name not in model.names or pixels < _FEWEST_PX * scale * scale:
+        return None
+    inside = region > 0
+    own = segmentation.mask(name)[inside] > 0
+    others = {
+        other: float(np.mean((segmentation.mask(other)[inside] > 0) & ~own))
+        for other in model.names
+        if other != name
+    }
+    most = max(others, key=lambda other: others[other], default=None)
+    share = 0.0 if most is None else others[most]
+    if not model.has_hue(name) and share < _TELLING_SHARE:
+        return None
+    return Composition(pixels, float(np.mean(own)), share, most if share > 0.0 else None)

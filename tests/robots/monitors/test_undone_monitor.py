@@ -1,0 +1,115 @@
+"""`undone`: when it speaks, and when the robot can place the object again by itself."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from drawn_scene import PARTS, TABLE_Z
+
+from robots.behaviors.phase import Phase
+from robots.body import Reach
+from robots.monitors.missing import Missing
+from robots.monitors.monitor import Meanwhile, Monitor, MonitorView
+from robots.monitors.undone import Undone
+from robots.vision.blob import Blob
+from robots.vision.head import HeadSighting
+from robots.vision.presence import Presence
+from tasks.plugins import load_plugins
+
+BLOB = Blob((50.0, 60.0), 200, (40, 50, 20, 20), np.zeros((120, 160), np.uint8))
+SEEN = HeadSighting(0.5, -0.2, TABLE_Z, 0.0, TABLE_Z + 0.04, True, 1.0, BLOB, 0.0)
+BEFORE = MonitorView(
+    time_s=1.0,
+    step=0,
+    phase=Phase.PREPARE,
+    part=PARTS["pink_bar"],
+    needs_help=False,
+    reach=Reach((0.0, 0.0), 0.3, 0.8),
+    table_z=TABLE_Z,
+    was_done="gone",
+    sighting=SEEN,
+)
+AFTER = replace(
+    BEFORE, step=8, phase=Phase.CONFIRM, was_done=None, placed=SEEN, presence=Presence.GONE
+)
+
+
+def test_it_watches_before_the_first_step_and_after_the_last_of_any_behavior() -> None:
+    assert load_plugins("mend.monitors")["undone"] is Undone
+    monitor: Monitor[Any] = Undone.create({})
+    assert [phase for phase in Phase if monitor.watches("push", phase)] == [
+        Phase.PREPARE,
+        Phase.CONFIRM,
+    ]
+    assert monitor.meanwhile is Meanwhile.DO_NOT_START
+
+
+@pytest.mark.parametrize("was_done", ["gone", "there"])
+def test_what_was_done_and_is_nowhere_is_undone_and_not_missing(was_done: Any) -> None:
+    view = replace(BEFORE, sighting=None, was_done=was_done)
+    monitor = Undone.create({})
+    detection = monitor.check(view)
+    assert detection is not None
+    assert "pink_bar is no longer at its place and nowhere" in detection.explanation
+    assert monitor.interrupts
+    assert Missing.create({}).check(view) is None
+
+
+def test_what_was_done_and_stands_elsewhere_in_reach_is_told_while_it_goes_on() -> None:
+    monitor = Undone.create({})
+    detection = monitor.check(BEFORE)
+    assert detection is not None
+    assert "no longer at its place but at (0.50, -0.20)" in detection.explanation
+    assert detection.center == BLOB.center
+    assert not monitor.interrupts
+
+
+def test_what_hangs_on_others_is_asked_about_though_it_is_seen() -> None:
+    monitor = Undone.create({})
+    assert monitor.check(replace(BEFORE, sighting=replace(SEEN, z=TABLE_Z + 0.05))) is not None
+    assert monitor.interrupts
+
+
+def test_once_somebody_was_asked_and_it_is_there_nothing_more_is_said() -> None:
+    monitor = Undone.create({})
+    assert monitor.check(replace(BEFORE, sighting=None)) is not None
+    assert monitor.check(BEFORE) is None
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [
+        {"was_done": None},
+        {"part": None},
+        {"sighting": replace(SEEN, x=0.95)},
+        {"sighting": replace(SEEN, z=TABLE_Z - 0.05)},
+        {"refusal": "the arm finds no path for it"},
+    ],
+)
+def test_it_is_silent_where_nothing_was_done_or_another_monitor_says_what_is_wrong(
+    changed: dict[str, Any],
+) -> None:
+    assert Undone.create({}).check(replace(BEFORE, **changed)) is None
+
+
+@pytest.mark.parametrize("presence", [Presence.THERE, Presence.HIDDEN, None])
+def test_after_the_last_step_only_what_is_seen_gone_is_undone(presence: Any) -> None:
+    assert Undone.create({}).check(replace(AFTER, presence=presence)) is None
+
+
+@pytest.mark.parametrize("again", [0, 1, 3])
+def test_what_was_placed_in_vain_is_placed_again_so_often_and_then_asked_about(again: int) -> None:
+    monitor = Undone.create({"again": again})
+    for left in range(again, -1, -1):
+        detection = monitor.check(AFTER)
+        assert detection is not None
+        assert "was placed, but is not at its place" in detection.explanation
+        assert monitor.interrupts is (left == 0)
+
+
+@pytest.mark.parametrize("placed", [None, replace(SEEN, x=0.95), replace(SEEN, z=TABLE_Z + 0.05)])
+def test_what_it_cannot_take_again_is_asked_about_at_once(placed: Any) -> None:
+    monitor = Undone.create({})
+    assert monitor.check(replace(AFTER, placed=placed)) is not None
+    assert monitor.interrupts
