@@ -88,7 +88,7 @@ def draw_look(rng: np.random.Generator, sizes: DrawnSizes, earlier: list[PartLoo
 
 def draw_color(rng: np.random.Generator) -> Color:
     """Any colour, as linear RGB: bright, pale, dark and grey ones alike."""
-    hue, saturation, value = rng.random(), rng.random() ** 0.5, rng.uniform(0.02, 1.0)
+    hue, saturation, value = rng.random(), rng.random() ** 0.5, rng.uniform(0.14, 1.0)
     red, green, blue = colorsys.hsv_to_rgb(hue, saturation, value)
     return round(red, 2), round(green, 2), round(blue, 2)
 
