@@ -1,6 +1,7 @@
 """How well the head camera finds and names the parts of random scenes, against a plain locator.
 
-    python benchmarks/perception.py [--scenes N] [--seed S] [--world workcell] [--noise G] [--verbose]
+    python benchmarks/perception.py [--scenes N] [--seed S] [--world workcell] [--noise G]
+        [--verbose]
 
 Scenes have 1 to 30 parts of all sizes, equal ones, close ones and stacks, in noise of colour and
 depth and in varying light; each is looked at once, at its start, with nobody interfering. A part

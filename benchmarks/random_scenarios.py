@@ -3,9 +3,10 @@
     python benchmarks/random_scenarios.py [--runs 1000] [--world tabletop|workcell] [--seed 0]
         [--jobs 2] [--quick] [--replay SEED]
 
-Random trees, random interventions, and helpers that answer at random, never, or always yes. Every
-run's events are audited, and its end is compared with its events and with where the simulated
-world's parts really are. The exit code is 1 if any run broke a constraint, hung or told an
+Half of the runs are random trees over random scenes, the others random trees with OR over made-up
+scenes (tabletop) or over the EKET base (workcell); with random interventions, and helpers that
+answer at random, never, or always yes. Every run's events are audited, and its end is compared with
+its events and with where the simulated world's parts really are. The exit code is 1 if any run broke a constraint, hung or told an
 untruth, or if one with a willing helper did not finish. `--replay` prints one run's events.
 """
 
@@ -51,7 +52,8 @@ KINDS: tuple[Answers, ...] = ("random", "unreliable", "none", "willing")
 """Who helps: somebody who answers at random, the same who keeps promises badly, nobody, and
 somebody who always says yes and does it."""
 
-MOST_LEAVES = {"tabletop": 60, "workcell": 6}
+MOST_LEAVES = {"tabletop": 60, "workcell": 12}
+MOST_PARTS = {"tabletop": 30, "workcell": 12}
 QUIET_S = {"tabletop": 120.0, "workcell": 300.0}
 """Wall seconds without an event after which a run counts as hung, on however busy a machine."""
 
@@ -93,12 +95,39 @@ class Outcome:
 # --- One run -----------------------------------------------------------------------------------
 
 
-def random_tree(world: str, rng: np.random.Generator, most_leaves: int) -> tuple[str, int]:
-    """A task file and how many leaves its tree has."""
+@dataclass(frozen=True, slots=True)
+class Drawn:
+    """A task file, how many leaves its tree has, and its scene's file if it brings one."""
+
+    tree: str
+    leaves: int
+    scene: str | None = None
+
+
+def draw(world: str, seed: int, most_leaves: int) -> Drawn:
+    """What the run of a seed is about."""
+    rng = np.random.default_rng(seed)
+    if seed // len(KINDS) % 2:
+        return _random_scene(world, seed, min(most_leaves, MOST_PARTS[world]))
     if world == "workcell":
-        return _random_base(rng)
+        return Drawn(*_random_base(rng))
     leaves = int(rng.integers(1, most_leaves + 1))
-    return json.dumps(random_task(rng, leaves)), leaves
+    return Drawn(json.dumps(random_task(rng, leaves)), leaves)
+
+
+def _random_scene(world: str, seed: int, most_parts: int) -> Drawn:
+    """A scene that the world's robot can do, and a tree that places all its parts."""
+    from sim.random_scene import random_scene, scene_document
+    from sim.world import SceneChecker
+    from tasks.plugins import load_plugins
+
+    adapter = load_plugins("mend.worlds")[world]
+    check = adapter.check_scene if isinstance(adapter, SceneChecker) else None
+    parts = int(np.random.default_rng(seed).integers(1, most_parts + 1))
+    drawn = random_scene(seed, parts, check)
+    tree = {**drawn.tree, "name": "random", "scene": "random"}
+    scene = {**scene_document(drawn.scene), "name": "random"}
+    return Drawn(json.dumps(tree), parts, json.dumps(scene))
 
 
 def _random_base(rng: np.random.Generator) -> tuple[str, int]:
@@ -150,12 +179,13 @@ async def run_once(
     from server.composition import open_service
 
     answers = KINDS[seed % len(KINDS)]
-    rng = np.random.default_rng(seed)
-    text, leaves = random_tree(world, rng, most_leaves or MOST_LEAVES[world])
+    drawn = draw(world, seed, most_leaves or MOST_LEAVES[world])
     settings = Settings(port=0, journal=Path(IN_MEMORY), log_level="error")
     began = time.perf_counter()
     async with open_service(settings) as service:
-        await service.library.trees.save("random", text)
+        if drawn.scene is not None:
+            await service.library.scenes.save("random", drawn.scene)
+        await service.library.trees.save("random", drawn.tree)
         run = (await service.runtime.start_run(request(world, seed, answers))).id
         view = await _ended_or_hung(service, run, QUIET_S[world])
         wall_s = time.perf_counter() - began
@@ -168,7 +198,7 @@ async def run_once(
     return Outcome(
         seed=seed,
         answers=answers,
-        leaves=leaves,
+        leaves=drawn.leaves,
         status=view.status if view.status.ended else "hung",
         reason=view.result.reason if view.result else "",
         wall_s=wall_s,
