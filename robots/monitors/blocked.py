@@ -56,7 +56,7 @@ class Blocked(Monitor[BlockedParameters]):
 
     def check(self, view: MonitorView) -> Detection | None:
         if view.contact is not None:
-            return Detection(camera="head", explanation=_felt(view.contact))
+            return Detection(camera="head", felt=True, explanation=_felt(view.contact))
         if view.step == BEFORE_FIRST_STEP and view.obstruction is not None:
             x, y, z = view.obstruction.position
             return Detection(
