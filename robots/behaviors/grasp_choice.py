@@ -31,8 +31,9 @@ _OVER_M = 0.015
 _BESIDE_M = 0.12
 """What stands so near to the straight way is on it: half a gripper, and half of what it carries."""
 
-MARGIN_M = 0.001
-"""Kept between the gripper and what stands beside an object, as it is seen."""
+MARGIN_M = 0.0005
+"""Kept between the gripper and what stands beside an object, as it is seen: hardly more than the
+gripper model has to spare, as scenes are checked for more."""
 
 
 def ways_to_grasp(

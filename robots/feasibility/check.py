@@ -133,10 +133,24 @@ class _SceneCheck:
         above = _resting_on(job.start, others)
         gone = {each.name for each in self._jobs if self._order.is_before(each.leaf, job.leaf)}
         # What stands in the same spot was told of already.
-        return [
+        waiting = [
             each
             for each in others
             if each not in above and each.name not in gone and not job.start.meets(each)
+        ]
+        return [*waiting, *(each for each in self._filled(job) if not job.start.meets(each))]
+
+    def _filled(self, job: Job) -> list[Standing]:
+        """The places of other parts that may be filled while a part is handled."""
+        if not self._together:
+            return []
+        return [
+            each.place
+            for each in self._jobs
+            if each.name != job.name
+            and each.place is not None
+            and not self._order.exclusive(each.leaf, job.leaf)
+            and not self._order.is_before(job.leaf, each.leaf)
         ]
 
     def _around_place(self, job: Job) -> list[Standing]:
@@ -145,13 +159,9 @@ class _SceneCheck:
             return []
         rivals = [each for each in self._jobs if each.name != job.name] if self._together else []
         places = [
-            each.place
-            for each in rivals
-            if each.place is not None
-            and each.place.where != job.place.where
-            and not job.place.meets(each.place)
-            and not self._order.exclusive(each.leaf, job.leaf)
-            and not self._order.is_before(job.leaf, each.leaf)
+            each
+            for each in self._filled(job)
+            if each.where != job.place.where and not job.place.meets(each)
         ]
         above = _resting_on(job.place, places)
         gone = {each.name for each in rivals if self._order.is_before(each.leaf, job.leaf)}

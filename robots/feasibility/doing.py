@@ -21,7 +21,7 @@ from tasks.scene_problem import SceneProblem
 Reachable = Callable[[Sequence[ToolPose]], bool]
 """Whether the arm can go through all these poses from neutral, by the planner that it uses."""
 
-ROOM_M = 0.004
+ROOM_M = 0.002
 """Kept between the gripper and what stands beside a part: more than a robot keeps from what it
 sees, as that is never exact."""
 _SIDES = (-1.0, 1.0)
@@ -37,6 +37,31 @@ class Surroundings:
 
 
 @dataclass(frozen=True, slots=True)
+class _Tight:
+    """A neighbour is `lacking_m` too close to a part, where it starts or where it is to go."""
+
+    standing: Standing
+    neighbour: str
+    lacking_m: float
+    at_start: bool
+
+    @property
+    def told(self) -> SceneProblem:
+        name, apart = self.standing.name, f"put them {1e3 * self.lacking_m:.0f} mm further apart"
+        if self.at_start:
+            message = (
+                f"{self.neighbour} stands too close to {name} for the fingers to grasp that: "
+                f"{apart}"
+            )
+        else:
+            message = (
+                f"{self.neighbour} is too close to the place of {name} for the fingers to let it "
+                f"go there: {apart}"
+            )
+        return SceneProblem(self.standing.where, message)
+
+
+@dataclass(frozen=True, slots=True)
 class ArmCheck:
     """The gripper and the reach of the robot that is to do it."""
 
@@ -49,42 +74,32 @@ class ArmCheck:
         self, start: Standing, place: Standing | None, around: Surroundings
     ) -> SceneProblem | None:
         """Why the arm cannot take a part from `start` to `place`; None where it can."""
-        roomy, last = [], None
-        for grasp in grasps_of(start.part, self.gripper):
-            problem = self._tight(start, place, grasp, around)
-            last = problem or last
-            if problem is None:
-                roomy.append(grasp)
+        grasps = grasps_of(start.part, self.gripper)
+        tight = {grasp: self._tight(start, place, grasp, around) for grasp in grasps}
+        roomy = [grasp for grasp, problem in tight.items() if problem is None]
         if not roomy:
-            return last
+            # What lacks least is what is easiest to mend.
+            lacking = [problem for problem in tight.values() if problem is not None]
+            return min(lacking, key=lambda each: each.lacking_m).told
         if any(self._reaches(start, place, grasp, around) for grasp in roomy):
             return None
         return self._out_of_reach(start, place, roomy, around)
 
     def _tight(
         self, start: Standing, place: Standing | None, grasp: Grasp, around: Surroundings
-    ) -> SceneProblem | None:
-        near = self._near(start, grasp, around.start, self.scatter.xy)
-        if near is not None:
-            more_mm = self._lacking_mm(start, grasp, near, self.scatter.xy)
-            return SceneProblem(
-                start.where,
-                f"{near.name} stands too close to {start.name} for the fingers to grasp that: "
-                f"put them {more_mm:.0f} mm further apart",
-            )
-        if place is None:
-            return None
-        near = self._near(place, grasp, around.place, 0.0)
-        if near is None:
-            return None
-        more_mm = self._lacking_mm(place, grasp, near, 0.0)
-        return SceneProblem(
-            place.where,
-            f"{near.name} is too close to the place of {place.name} for the fingers to let it go "
-            f"there: put them {more_mm:.0f} mm further apart",
-        )
+    ) -> "_Tight | None":
+        """What leaves too little room for the fingers; None where there is enough."""
+        sites = [(start, around.start, self.scatter.xy)]
+        if place is not None:
+            sites.append((place, around.place, 0.0))
+        for standing, others, more_m in sites:
+            near = self._near(standing, grasp, others, more_m)
+            if near is not None:
+                lacking_m = self._lacking_m(standing, grasp, near, more_m)
+                return _Tight(standing, near.name or "something", lacking_m, standing is start)
+        return None
 
-    def _lacking_mm(self, standing: Standing, grasp: Grasp, near: SeenBox, more_m: float) -> float:
+    def _lacking_m(self, standing: Standing, grasp: Grasp, near: SeenBox, more_m: float) -> float:
         """How much further away from the part its neighbour would leave room."""
         tool = _tool(standing, standing.pose, grasp)
         dx, dy = near.x - tool.x, near.y - tool.y
@@ -94,8 +109,8 @@ class ArmCheck:
             shift_m = step * _STEP_M
             moved = replace(near, x=near.x + cos * shift_m, y=near.y + sin * shift_m)
             if in_the_way(self.gripper, tool, grasp.opening_m, [moved], ROOM_M + more_m) is None:
-                return 1e3 * shift_m
-        return 1e3 * _STEPS * _STEP_M
+                return shift_m
+        return _STEPS * _STEP_M
 
     def _near(
         self, standing: Standing, grasp: Grasp, others: Sequence[Standing], more_m: float

@@ -179,7 +179,7 @@ def test_scatter_needs_its_room_too() -> None:
 
 
 @given(
-    x=st.floats(0.42, 0.62),
+    x=st.floats(0.44, 0.60),
     y=st.floats(-0.5, -0.3),
     yaw=st.floats(-3.1, 3.1),
     width=st.floats(0.010, 0.078),
@@ -191,3 +191,13 @@ def test_every_part_within_the_limits_that_stands_alone_is_possible(
 ) -> None:
     made = scene({"part": box(x, y, (width, length, height), yaw=yaw)}, target=FREE)
     assert problems_of(made, leaf("part", "target", None)) == []
+
+
+def test_what_may_be_placed_before_is_in_the_way_of_the_fingers() -> None:
+    made = scene(
+        {"one": box(0.5, -0.5), "tall": wall(0.5, -0.3)}, left=FREE, right=Pose(x=0.5, y=-0.449)
+    )
+    one, tall = leaf("one", "left"), leaf("tall", "right")
+    (found,) = problems_of(made, goal("and"), one, tall)
+    assert "tall stands too close to one" in found.message
+    assert problems_of(made, goal("then"), one, tall) == []
