@@ -90,8 +90,8 @@ class Outlook:
             case Next.OTHERS_FIRST:
                 return f"I go on with {names} first, then {who} again ({which})"
             case Next.INSTEAD:
-                return f"I go on with {names} instead"
+                return f"I take {names} instead"
             case Next.EITHER:
-                return f"{who} again ({which}), or I go on with {names} instead"
+                return f"{who} again ({which}), or I take {names} instead"
             case Next.RUN_FAILS:
                 return "the task ends here, unfinished"

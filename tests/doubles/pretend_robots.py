@@ -77,7 +77,7 @@ class PretendRobot:
     commands: list[CommandBody] = field(default_factory=list)
     right: set[str] = field(default_factory=set)
     hidden: set[str] = field(default_factory=set)
-    gone: set[str] = field(default_factory=set)
+    lost: set[str] = field(default_factory=set)
     placed: set[str] = field(default_factory=set)
     obstructed: bool = False
     felt: bool = False
@@ -191,7 +191,7 @@ class PretendRobots:
             case Intervene(intervention=deed, by=by):
                 if deed.act in (Act.PLACE, Act.PUT_BACK, Act.HAND_OVER):
                     robot.right.add(deed.object or "")
-                    robot.gone.discard(deed.object or "")
+                    robot.lost.discard(deed.object or "")
                 if deed.act is Act.PLACE:
                     robot.placed.add(deed.object or "")
                     robot.stolen.discard(deed.object or "")
@@ -217,7 +217,7 @@ class PretendRobots:
                 for known in (robot.right, robot.placed, robot.finished):
                     known.discard(part)
                 if due[0][0] in ("missed", "dropped", "missing"):
-                    robot.gone.add(part)
+                    robot.lost.add(part)
                 robot.obstructed = due[0][0] == "blocked" and not robot.felt
                 await self._issue(robot, start, due[0][0], step)
                 at = "in_place" if due[0][0] in ("unreachable", "missing", "blocked") else "neutral"
@@ -290,7 +290,7 @@ class PretendRobots:
                 x=0.5 if name in robot.placed else 0.4, y=y, z=0.7, yaw=0, time=robot.time
             )
             for name, y in ((f"part_{i}", 0.01 * i) for i in range(100))
-            if name not in robot.hidden | robot.gone
+            if name not in robot.hidden | robot.lost | (robot.gone - robot.right)
         }
         await self.report(
             robot,

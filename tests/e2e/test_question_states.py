@@ -34,7 +34,7 @@ async def test_answer_to_a_question_that_nobody_can_have_read_is_not_taken_and_t
     await page.clock.install(time=0)
     await page.clock.pause_at(60_000)
     dialogue = await stage.runs.open(stage.run, "dropped")
-    for question, answer in (("I dropped", "no"), ("Will you place the yellow bar", "yes")):
+    for question, answer in (("I lost hold", "no"), ("Will you place the yellow bar", "yes")):
         await expect(page.get_by_role("heading", name=question)).to_be_visible()
         await give(page, "yes")
         await expect(too_early).to_be_visible()
@@ -64,7 +64,7 @@ async def test_final_answer_can_be_undone(stage: Stage) -> None:
     await expect(page.get_by_role("button", name="Undo")).to_be_hidden()
     await page.locator(".answer.no").click()
     await page.clock.fast_forward(3_100)
-    await expect(page.get_by_text("I will try again later")).to_be_visible()
+    await expect(page.get_by_text("I try again (attempt 2 of 3)").first).to_be_visible()
     assert stage.runs.dialogue(dialogue).answered_by == "anna"
 
 
@@ -97,8 +97,8 @@ async def test_held_answer_is_dropped_when_somebody_else_answers(stage: Stage) -
 @pytest.mark.parametrize(
     ("call", "words"),
     [
-        ("put_right:in_reach", "the robot saw that it was put right"),
-        ("silence", "Closed without help"),
+        ("put_right:in_reach:appeared", "I see the yellow bar within my reach now"),
+        ("silence", "no help was seen"),
         ("abort", "the robot has stopped this task"),
     ],
 )
@@ -186,7 +186,7 @@ async def test_phone_shows_question_picture_and_answers_at_once(
 ) -> None:
     page = await stage.open_page(viewport={"width": width, "height": height})
     await stage.runs.open(stage.run, "dropped")
-    await expect(page.get_by_role("heading", name="I dropped")).to_be_in_viewport(ratio=1)
+    await expect(page.get_by_role("heading", name="I lost hold")).to_be_in_viewport(ratio=1)
     await expect(page.get_by_role("img", name="camera saw")).to_be_in_viewport(ratio=0.7)
     for answer in ("yes", "no"):
         button = page.locator(f".answer.{answer}")

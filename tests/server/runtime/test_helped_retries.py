@@ -82,4 +82,4 @@ async def test_the_other_alternative_is_taken_instead() -> None:
     assert view.status is RunStatus.FINISHED
     assert [each.node for each in of_type(events, ev.NodeDone)] == ["/1"]
     last = [each.text for each in of_type(events, ev.Prompt) if each.kind == "say"][-1]
-    assert last == "All right. I go on with the part 2 instead."
+    assert last == "All right. I take the part 2 instead."
