@@ -107,10 +107,10 @@ async def test_what_is_moved_from_its_place_is_placed_again_without_a_question(
     tmp_path: Path,
 ) -> None:
     move = {
-        "when": {"object": "blue_leg", "step": 2},
-        "do": {"act": "move", "object": "pink_bar", "to": {"x": 0.50, "y": 0.25}},
+        "when": {"object": "pink_bar", "step": 2},
+        "do": {"act": "move", "object": "green_leg", "to": {"x": 0.72, "y": -0.10}},
     }
     view, events = await build(tmp_path, [move], answers="none")
-    assert undone(events) == ["pink_bar"]
-    assert raised(events) == [("undone", "pink_bar")]
+    assert undone(events) == ["green_leg"]
+    assert raised(events) == [("undone", "green_leg")]
     assert view.status is RunStatus.FINISHED
