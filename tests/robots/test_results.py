@@ -32,10 +32,9 @@ def at(place: str, **moved: float) -> Resting:
     return Resting(where.x + moved.get("x", 0.0), where.y + moved.get("y", 0.0), z, where.yaw)
 
 
-def lid(place: str) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
-    """A box that hides a place from above: where its middle is, and its size."""
-    where = PLACES[place]
-    return ((where.x, where.y, TABLE_Z + 0.06), (0.30, 0.30, 0.01))
+def lid(place: str) -> Resting:
+    """Where the top lies that hides a place from above."""
+    return Resting(PLACES[place].x, PLACES[place].y, TABLE_Z + 0.045)
 
 
 def judged(bench: RobotBench, *results: FinishedResult) -> Looked:
@@ -72,7 +71,7 @@ def test_what_stands_elsewhere_and_what_is_nowhere_is_gone() -> None:
 def test_what_something_hides_is_neither_there_nor_gone() -> None:
     bench = bench_with()
     bench.body.vanish("pink_bar")
-    bench.body.grey_boxes.append(lid("left"))
+    bench.body.parts["purple_top"] = lid("left")
     looked = judged(bench, BAR)
     assert (looked.there, looked.gone) == ([], [])
 
@@ -112,7 +111,7 @@ def test_what_is_seen_at_its_place_is_finished_without_moving(was_done: Any) -> 
 def test_what_was_placed_and_is_hidden_since_is_found_in_place() -> None:
     bench = bench_with()
     bench.body.vanish("pink_bar")
-    bench.body.grey_boxes.append(lid("left"))
+    bench.body.parts["purple_top"] = lid("left")
     restart(bench, "there")
     assert bench.of(Finished) == [Finished(execution="e", found_in_place=True)]
 
@@ -123,7 +122,7 @@ def test_what_is_hidden_but_was_not_left_there_is_not_believed_to_be_there(
 ) -> None:
     bench = bench_with()
     bench.body.vanish("pink_bar")
-    bench.body.grey_boxes.append(lid("left"))
+    bench.body.parts["purple_top"] = lid("left")
     restart(bench, was_done)
     assert bench.of(Finished) == []
     assert [each.issue for each in bench.of(IssueDetected)] == [issue]

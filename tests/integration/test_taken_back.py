@@ -1,0 +1,116 @@
+"""What people take after it was done, in a simulated world: it is seen, and done again."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+
+from server.composition import open_service
+from server.journal import events as ev
+from server.journal.audit import audit
+from server.runtime.requests import RunRequest
+from server.runtime.views import RunStatus, RunView
+from server.settings import Settings
+
+FRAME = ("green_leg", "pink_bar", "yellow_bar", "blue_leg")
+ALL = (*FRAME, "purple_top")
+
+
+async def build(
+    tmp_path: Path, interventions: list[dict[str, Any]], **request: Any
+) -> tuple[RunView, list[ev.Event]]:
+    """The EKET base in the tabletop world while people do what the scenario says."""
+    scenario = {"name": "thief", "tree": "eket", "interventions": interventions}
+    settings = Settings(port=0, data_dir=tmp_path, speech_voice="none", log_level="error")
+    async with open_service(settings) as service:
+        await service.library.scenarios.save("thief", yaml.safe_dump(scenario))
+        run = await service.runtime.start_run(
+            RunRequest(
+                tree="eket", world="tabletop", speed="max", seed=7, scenario="thief", **request
+            )
+        )
+        view = await service.runtime.wait_for_end(run.id)
+        events = await service.journal.read(0, 100_000, run.id)
+    assert audit(events, {node.node: node.kind for node in view.nodes}) == []
+    return view, events
+
+
+def steal(part: str, *, during: str, step: int, fraction: float = 0.0) -> dict[str, Any]:
+    return {
+        "when": {"object": during, "step": step, "fraction": fraction},
+        "do": {"act": "steal", "object": part},
+    }
+
+
+def undone(events: list[ev.Event]) -> list[str]:
+    """What was seen gone, in the order in which it was taken back."""
+    found = (each for each in events if isinstance(each, ev.NodeUndone))
+    return [each.name for each in found if each.because_of is None]
+
+
+def raised(events: list[ev.Event]) -> list[tuple[str, str | None]]:
+    issues = (each for each in events if isinstance(each, ev.IssueRaised))
+    return [(each.issue, each.object) for each in issues if each.issue != "positioning"]
+
+
+@pytest.mark.slow
+async def test_a_leg_stolen_after_it_was_placed_is_placed_again_and_what_follows_found(
+    tmp_path: Path,
+) -> None:
+    thefts = [steal("green_leg", during="yellow_bar", step=3)]
+    view, events = await build(tmp_path, thefts, answers=["yes"] * 20)
+    assert view.status is RunStatus.FINISHED
+    assert undone(events) == ["green_leg"]
+    assert raised(events) == [("undone", "green_leg")]
+    follows = [e for e in events if isinstance(e, ev.NodeUndone) and e.because_of is not None]
+    assert [each.name for each in follows] == ["yellow_bar", "pink_bar"]
+
+
+@pytest.mark.slow
+async def test_all_parts_stolen_after_they_were_placed_are_placed_again(tmp_path: Path) -> None:
+    thefts = [steal(part, during="purple_top", step=8, fraction=0.9) for part in ALL]
+    view, events = await build(tmp_path, thefts, answers=["yes"] * 40)
+    assert view.status is RunStatus.FINISHED
+    assert view.result is not None
+    assert view.result.missing == []
+    assert sorted(undone(events)) == sorted(FRAME)
+    assert {issue for issue, _ in raised(events)} == {"undone"}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("step", [6, 7, 8])
+async def test_what_is_stolen_while_it_is_placed_is_never_called_done(
+    step: int, tmp_path: Path
+) -> None:
+    thefts = [steal("pink_bar", during="pink_bar", step=step, fraction=0.5)]
+    view, events = await build(tmp_path, thefts, answers="none", max_attempts=1)
+    assert view.status is RunStatus.FAILED
+    assert view.result is not None
+    assert view.result.reason == "'pink_bar' could not be done: it failed 1 times"
+    assert not [e for e in events if isinstance(e, ev.NodeDone) and e.name == "pink_bar"]
+    assert {part for _, part in raised(events)} == {"pink_bar"}
+
+
+@pytest.mark.slow
+async def test_with_nobody_there_a_stolen_part_ends_the_run_with_its_name(tmp_path: Path) -> None:
+    thefts = [steal("pink_bar", during="blue_leg", step=8, fraction=0.9)]
+    view, events = await build(tmp_path, thefts, answers="none", max_attempts=1)
+    assert view.status is RunStatus.FAILED
+    assert view.result is not None
+    assert view.result.reason == "'pink_bar' could not be done: it failed 1 times"
+    assert undone(events) == ["pink_bar"]
+
+
+@pytest.mark.slow
+async def test_what_is_moved_from_its_place_is_placed_again_without_a_question(
+    tmp_path: Path,
+) -> None:
+    move = {
+        "when": {"object": "pink_bar", "step": 2},
+        "do": {"act": "move", "object": "green_leg", "to": {"x": 0.72, "y": -0.10}},
+    }
+    view, events = await build(tmp_path, [move], answers="none")
+    assert undone(events) == ["green_leg"]
+    assert raised(events) == [("undone", "green_leg")]
+    assert view.status is RunStatus.FINISHED
