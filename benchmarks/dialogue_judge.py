@@ -202,7 +202,7 @@ def _somewhere(judge: DialogueJudge, index: int, event: ev.Prompt, _: re.Match[s
     return None if judge.rests(index, event.object) else "it is not on the table"
 
 
-def _nowhere(judge: DialogueJudge, index: int, event: ev.Prompt, _: re.Match[str]) -> str | None:
+def _nowhere(judge: DialogueJudge, _: int, event: ev.Prompt, __: re.Match[str]) -> str | None:
     moment = judge.at_issue(event.node)
     gone = moment.resting.get(event.object or "") is None
     hidden = moment.blocked
