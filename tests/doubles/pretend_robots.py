@@ -55,7 +55,8 @@ class PretendRobot:
     one (or itself) that was placed is gone, so often. `hidden_at_place`: what no look can judge.
     What it misses, drops or looks for in vain is lost to sight until somebody brings it, and
     something is in its way from when it is blocked until somebody clears it. `felt`: its issues
-    were felt; no camera sees anything in its way then.
+    were felt; no camera sees anything in its way then. `wrong`: what it believes to have missed
+    or dropped stands within its reach all the time.
     `in_reach`: what is gone is not stolen but elsewhere on the table. `slow`: it is still at its
     first start until it is interrupted.
     """
@@ -81,6 +82,7 @@ class PretendRobot:
     placed: set[str] = field(default_factory=set)
     obstructed: bool = False
     felt: bool = False
+    wrong: bool = False
     deaf: bool = False
     stubborn: bool = False
     patient: bool = False
@@ -213,7 +215,7 @@ class PretendRobots:
             if due and due[0][0] in robot.interrupting:
                 faults.remove(due[0])
                 robot.right.discard(part)
-                if due[0][0] in ("missed", "dropped", "missing"):
+                if due[0][0] in ("missed", "dropped", "missing") and not robot.wrong:
                     robot.lost.add(part)
                 robot.obstructed = due[0][0] == "blocked" and not robot.felt
                 await self._issue(robot, start, due[0][0], step)
@@ -264,7 +266,8 @@ class PretendRobots:
         fulfilled = None
         if look.expect is not None:
             clear = look.expect == "way_clear" and not robot.obstructed
-            fulfilled = (look.object or "") in robot.right or clear
+            there = robot.wrong and look.expect == "in_reach" and look.object not in robot.lost
+            fulfilled = (look.object or "") in robot.right or clear or there
             if not fulfilled and robot.patient and look.within_s > FIRST_LOOK_S:
                 return
             if not fulfilled:
