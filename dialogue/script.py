@@ -167,8 +167,8 @@ class Script:
     """The table of one kind of issue.
 
     `opening` names the first state, `failed_opening` the one that takes its place once the robot
-    has failed at this so often that another try is not worth offering, and `on_the_way` the one
-    where the robot goes on by itself, so that there is nothing to ask. `put_right` says what the
+    has failed at this so often that another try is not worth offering, `on_the_way` the one where
+    the robot goes on by itself, so that there is nothing to ask. `put_right` says what the
     robot may see happen before anyone answers, the most telling first, and how the issue is then
     resolved; `denied` what of it the issue itself says not to be so. `reasks` is how often promised
     help that is not seen is asked about again. `felt` is the script for an issue that was felt and
@@ -179,8 +179,8 @@ class Script:
     states: Mapping[str, State]
     put_right: Mapping[Expectation, Resolution] = field(default_factory=dict)
     reasks: int = 2
-    on_the_way: str | None = None
     failed_opening: str | None = None
+    on_the_way: str | None = None
     denied: frozenset[Expectation] = frozenset()
     felt: "Script | None" = None
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from sim.workcell.gripper import PR2_GRIPPER
 from tasks.scene import Pose, SceneObject
 
 Size = tuple[float, float, float]
@@ -19,17 +20,17 @@ class DrawnSizes:
     by its knob.
     """
 
-    width_m: tuple[float, float] = (0.012, 0.060)
-    length_m: tuple[float, float] = (0.012, 0.200)
-    height_m: tuple[float, float] = (0.020, 0.120)
+    width_m: tuple[float, float] = (PR2_GRIPPER.min_width_m, PR2_GRIPPER.max_width_m)
+    length_m: tuple[float, float] = (PR2_GRIPPER.min_width_m, 0.200)
+    height_m: tuple[float, float] = (0.012, 0.120)
     slenderness: float = 4.0
     """A part is at most so many times as high as it is wide: higher ones fall over."""
     plate_side_m: tuple[float, float] = (0.050, 0.200)
     plate_height_m: tuple[float, float] = (0.008, 0.030)
-    knob_width_m: tuple[float, float] = (0.018, 0.040)
-    knob_height_m: tuple[float, float] = (0.025, 0.050)
+    knob_width_m: tuple[float, float] = (PR2_GRIPPER.min_width_m, 0.048)
+    knob_height_m: tuple[float, float] = (0.012, 0.060)
     density_kg_m3: tuple[float, float] = (300.0, 900.0)
-    mass_kg: tuple[float, float] = (0.01, 0.4)
+    mass_kg: tuple[float, float] = (0.01, PR2_GRIPPER.max_mass_kg)
 
     def scaled(self, scale: float) -> "DrawnSizes":
         """The same with only the lowest fraction `scale` of every range of the boxes' sides."""
@@ -87,7 +88,7 @@ def draw_look(rng: np.random.Generator, sizes: DrawnSizes, earlier: list[PartLoo
 
 def draw_color(rng: np.random.Generator) -> Color:
     """Any colour, as linear RGB: bright, pale, dark and grey ones alike."""
-    hue, saturation, value = rng.random(), rng.random() ** 0.5, rng.uniform(0.02, 1.0)
+    hue, saturation, value = rng.random(), rng.random() ** 0.5, rng.uniform(0.14, 1.0)
     red, green, blue = colorsys.hsv_to_rgb(hue, saturation, value)
     return round(red, 2), round(green, 2), round(blue, 2)
 

@@ -31,6 +31,7 @@ _ON_ANOTHER = 0.2
 """So many of all starts and places are on another part, where there is one for it."""
 _SUPPORT_MARGIN_M = 0.010
 """The middle of a part is at least so far from the edge of what it stands on."""
+_ROUNDING_M = 0.002
 _OVERHANG = 1.5
 """A part is at most so many times as long as what it stands on."""
 _POSES_TRIED = 60
@@ -243,6 +244,7 @@ class _Drawing:
             # by way of others.
             and (start_on is None or is_start)
             and min(drawn.look.size[:2]) > 2 * _SUPPORT_MARGIN_M
+            and min(look.size[:2]) > _SUPPORT_MARGIN_M + _ROUNDING_M
             and max(look.size[:2]) <= _OVERHANG * min(drawn.look.size[:2])
             and self._top(sites[name], drawn.look) + look.height_m
             <= self._table.height + _HIGHEST_M

@@ -1,4 +1,7 @@
-"""The room that a part needs where it stands: its own, and that of the gripper around it."""
+"""The room that a part needs where it stands: its own, and that of the gripper around it.
+
+Quick and rough, for drawing scenes; whether a robot can do them is for its world to check.
+"""
 
 import math
 from collections.abc import Sequence
@@ -16,9 +19,9 @@ _FINGER_M = 0.024
 _FINGER_WIDTH_M = 0.026
 _TIP_M = 0.014
 """How far the finger tips reach below the tool point."""
-_HAND_M = (0.16, 0.09)
+_HAND_M = (0.16, 0.06)
 """The hand above the fingers: along the direction in which they open, and across."""
-_HAND_HEIGHT_M = 0.060
+_HAND_HEIGHT_M = 0.045
 """How far the hand is above the tool point."""
 
 

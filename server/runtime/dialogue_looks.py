@@ -13,14 +13,11 @@ from dialogue.evidence import (
     put_right,
 )
 from dialogue.script import Expectation, Help
+from robots.link.messages import FinishedResult
 from server.journal import events as ev
-from server.runtime.at_place import is_at_place
 from server.runtime.context import RunContext
 from server.runtime.robot_side import Doing, Purpose, RobotSide
 from server.runtime.run_state import EXPECTED, DialogueState
-
-AT_PLACE_TOLERANCE_M = 0.03
-"""An object seen this close to its place's centre counts as placed."""
 
 FIRST_LOOK_S = 1.0
 """So long the first look may take to see whether an object rests within reach."""
@@ -78,6 +75,7 @@ class DialogueLooks:
             expect=EXPECTED[awaiting.help],
             within_s=max(0.0, awaiting.until - self._context.clock.now()),
             rate=self._rate,
+            finished=_result_of(dialogue),
         )
 
     def help_looked_for_from(self, dialogue: DialogueState, awaiting: ev.HelpAwaited) -> float:
@@ -128,8 +126,9 @@ class DialogueLooks:
         expect: Expectation | None,
         within_s: float,
     ) -> None:
+        result = _result_of(dialogue)
         if expect is None:
-            side.look(purpose, rate=self._rate)
+            side.look(purpose, rate=self._rate, finished=result)
             return
         side.look(
             purpose,
@@ -138,6 +137,7 @@ class DialogueLooks:
             expect=str(expect),
             within_s=within_s,
             rate=self._rate,
+            finished=result,
         )
 
     def _hold(self, side: RobotSide, until: float) -> None:
@@ -206,12 +206,15 @@ class DialogueLooks:
         return Look(frozenset(fulfilled), seen_at(side, dialogue.raised.object))
 
     def _is_at_place(self, dialogue: DialogueState, side: RobotSide) -> bool:
-        scene = self._context.state.scene
-        place = scene.places.get(dialogue.raised.place or "")
-        seen = side.seen.get(dialogue.raised.object or "")
-        if seen is None or place is None:
-            return False
-        return is_at_place(seen, place, scene, AT_PLACE_TOLERANCE_M)
+        return any(each in side.there for each in _result_of(dialogue))
+
+
+def _result_of(dialogue: DialogueState) -> list[FinishedResult]:
+    """What there is to see once the leaf is done, if it has an object and a place."""
+    handled, place = dialogue.raised.object, dialogue.raised.place
+    if handled is None or place is None:
+        return []
+    return [FinishedResult(object=handled, place=place)]
 
 
 def seen_at(side: RobotSide, name: str | None) -> Point | None:

@@ -150,9 +150,9 @@ def issue_of(raised: ev.IssueRaised) -> Issue:
         object=raised.object,
         place=raised.place,
         step=raised.step,
+        interrupts=raised.interrupts,
         reason="" if raised.detection is None else raised.detection.explanation,
         felt=raised.detection is not None and raised.detection.felt,
-        interrupts=raised.interrupts,
     )
 
 
