@@ -207,7 +207,7 @@ class PretendRobots:
         if start.was_done is not None and not resumed and part not in robot.stolen:
             await self.report(robot, Finished(execution=start.execution, found_in_place=True))
             return
-        if part in robot.stolen and part in robot.gone:
+        if part in robot.stolen and part in robot.lost:
             await self._issue(robot, start, "undone" if start.was_done else "missing", 0)
             holding = {"execution": start.execution, "at": "neutral"}
             await self.report(robot, Holding.model_validate(holding))
@@ -236,7 +236,7 @@ class PretendRobots:
         robot.stolen.discard(part)
         robot.finished.add(part)
         if part in robot.returns:
-            robot.gone -= robot.stolen
+            robot.lost -= robot.stolen
             robot.stolen.clear()
         thefts = robot.thefts.get(part, [])
         if thefts:
@@ -273,7 +273,7 @@ class PretendRobots:
     def _steal(self, robot: PretendRobot, part: str) -> None:
         robot.stolen.add(part)
         if not robot.in_reach:
-            robot.gone.add(part)
+            robot.lost.add(part)
         robot.right.discard(part)
         robot.placed.discard(part)
 
@@ -293,7 +293,7 @@ class PretendRobots:
                 x=0.5 if name in robot.placed else 0.4, y=y, z=0.7, yaw=0, time=robot.time
             )
             for name, y in ((f"part_{i}", 0.01 * i) for i in range(100))
-            if name not in robot.hidden | robot.lost | (robot.gone - robot.right)
+            if name not in robot.hidden | robot.lost
         }
         await self.report(
             robot,
