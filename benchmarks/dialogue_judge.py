@@ -303,6 +303,8 @@ def _goes_on(judge: DialogueJudge, index: int, event: ev.Prompt, _: re.Match[str
 
 
 def _left_out(judge: DialogueJudge, index: int, event: ev.Prompt, _: re.Match[str]) -> str | None:
+    if event.kind == "ask":
+        return None
     later = judge.following(index)[:3]
     told = any(isinstance(each, ev.NodeLeftOut) and each.node == event.node for each in later)
     return None if told else "it was not left out"

@@ -22,9 +22,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from dialogue_judge import DialogueJudge, Moment, Untruth
-from random_scenarios import MOST_LEAVES, random_tree, where_parts_rest
+from random_scenarios import MOST_LEAVES, draw, where_parts_rest
 
 from server.composition import open_service
 from server.dialogues import answers as answering
@@ -117,8 +116,7 @@ async def run_once(world: str, kind: str, seed: int, *, show: bool = False) -> O
     """One random run with a helper of one kind, judged."""
     helper = HELPERS[kind]
     answering.DEFAULT_DELAY_S = helper.delay_s
-    rng = np.random.default_rng([seed, 12])
-    text, _ = random_tree(world, rng, min(MOST_LEAVES[world], 8))
+    drawn = draw(world, seed, min(MOST_LEAVES[world], 8))
     settings = Settings(port=0, journal=Path(IN_MEMORY), log_level="error")
     request = RunRequest(
         tree="random",
@@ -130,7 +128,9 @@ async def run_once(world: str, kind: str, seed: int, *, show: bool = False) -> O
         person=helper.person,
     )
     async with open_service(settings) as service:
-        await service.trees.save("random", text)
+        if drawn.scene is not None:
+            await service.library.scenes.save("random", drawn.scene)
+        await service.library.trees.save("random", drawn.tree)
         watched = WatchedWorld(service.journal)
         run = (await service.runtime.start_run(request)).id
         view = await asyncio.wait_for(service.runtime.wait_for_end(run), 600.0)
@@ -211,7 +211,7 @@ def main() -> int:
                 print(f"seed {seed}, {kind}, event {untruth.seq}: {untruth.what!r}: {untruth.why}")
             for broken in outcome.broken:
                 print(f"seed {seed}, {kind}: {broken}")
-            sys.stdout.flush()
+            print(".", end="", file=sys.stderr, flush=True)
     print_table(outcomes)
     return int(any(each.untruths or each.broken for each in outcomes))
 

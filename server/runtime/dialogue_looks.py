@@ -99,7 +99,7 @@ class DialogueLooks:
         return self._next_watch.get(dialogue.id)
 
     def _look_first(self, dialogue: DialogueState, side: RobotSide) -> None:
-        expect = self._expected(dialogue)
+        expect = self._expected_first(dialogue)
         within_s = FIRST_LOOK_S if expect is Expectation.IN_REACH else 0.0
         self._look(dialogue, side, Purpose.BASELINE, expect, within_s)
 
@@ -156,11 +156,16 @@ class DialogueLooks:
             return Expectation.AT_PLACE
         return None
 
+    def _expected_first(self, dialogue: DialogueState) -> Expectation | None:
+        """What the first look is asked to wait for; of what was felt it sees whether it is seen."""
+        felt = dialogue.raised.detection is not None and dialogue.raised.detection.felt
+        return Expectation.WAY_CLEAR if felt else self._expected(dialogue)
+
     # --- What a look saw ----------------------------------------------------------------------
 
     def first_look(self, dialogue: DialogueState, side: RobotSide, fulfilled: bool) -> Look:
         """What the first look saw: everything later is compared with it."""
-        return self._seen(dialogue, side, self._expected(dialogue) if fulfilled else None)
+        return self._seen(dialogue, side, self._expected_first(dialogue) if fulfilled else None)
 
     def contradicted(self, dialogue: DialogueState, first: Look) -> PutRight | None:
         """What the first look saw of that which the issue itself says not to be so."""

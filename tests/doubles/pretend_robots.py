@@ -57,7 +57,8 @@ class PretendRobot:
     `thefts`: whenever one object has been placed, another one (or itself) that was placed is
     stolen, so often; with `in_reach` it is only elsewhere on the table then. `hidden_at_place`:
     what no look can judge. `returns`: once such an object is placed, all that was stolen is back at
-    its place. `slow`: it is still at its first start until it is interrupted.
+    its place. `slow`: it is still at its first start until it is interrupted. `wrong`: what it
+    believes to have missed or dropped stands within its reach all the time.
     """
 
     name: str
@@ -81,6 +82,7 @@ class PretendRobot:
     placed: set[str] = field(default_factory=set)
     obstructed: bool = False
     felt: bool = False
+    wrong: bool = False
     deaf: bool = False
     stubborn: bool = False
     patient: bool = False
@@ -205,7 +207,7 @@ class PretendRobots:
         if start.was_done is not None and not resumed and part not in robot.stolen:
             await self.report(robot, Finished(execution=start.execution, found_in_place=True))
             return
-        if part in robot.stolen and part in robot.gone:
+        if part in robot.stolen and part in robot.lost:
             await self._issue(robot, start, "undone" if start.was_done else "missing", 0)
             holding = {"execution": start.execution, "at": "neutral"}
             await self.report(robot, Holding.model_validate(holding))
@@ -216,7 +218,7 @@ class PretendRobots:
                 faults.remove(due[0])
                 for known in (robot.right, robot.placed, robot.finished):
                     known.discard(part)
-                if due[0][0] in ("missed", "dropped", "missing"):
+                if due[0][0] in ("missed", "dropped", "missing") and not robot.wrong:
                     robot.lost.add(part)
                 robot.obstructed = due[0][0] == "blocked" and not robot.felt
                 await self._issue(robot, start, due[0][0], step)
@@ -234,7 +236,7 @@ class PretendRobots:
         robot.stolen.discard(part)
         robot.finished.add(part)
         if part in robot.returns:
-            robot.gone -= robot.stolen
+            robot.lost -= robot.stolen
             robot.stolen.clear()
         thefts = robot.thefts.get(part, [])
         if thefts:
@@ -271,7 +273,7 @@ class PretendRobots:
     def _steal(self, robot: PretendRobot, part: str) -> None:
         robot.stolen.add(part)
         if not robot.in_reach:
-            robot.gone.add(part)
+            robot.lost.add(part)
         robot.right.discard(part)
         robot.placed.discard(part)
 
@@ -279,7 +281,8 @@ class PretendRobots:
         fulfilled = None
         if look.expect is not None:
             clear = look.expect == "way_clear" and not robot.obstructed
-            fulfilled = (look.object or "") in robot.right or clear
+            there = robot.wrong and look.expect == "in_reach" and look.object not in robot.lost
+            fulfilled = (look.object or "") in robot.right or clear or there
             if not fulfilled and robot.patient and look.within_s > FIRST_LOOK_S:
                 return
             if not fulfilled:
@@ -290,7 +293,7 @@ class PretendRobots:
                 x=0.5 if name in robot.placed else 0.4, y=y, z=0.7, yaw=0, time=robot.time
             )
             for name, y in ((f"part_{i}", 0.01 * i) for i in range(100))
-            if name not in robot.hidden | robot.lost | (robot.gone - robot.right)
+            if name not in robot.hidden | robot.lost
         }
         await self.report(
             robot,
