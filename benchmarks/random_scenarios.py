@@ -6,8 +6,9 @@
 Half of the runs are random trees over random scenes, the others random trees with OR over made-up
 scenes (tabletop) or over the EKET base (workcell); with random interventions, and helpers that
 answer at random, never, or always yes. Every run's events are audited, and its end is compared with
-its events and with where the simulated world's parts really are. The exit code is 1 if any run broke a constraint, hung or told an
-untruth, or if one with a willing helper did not finish. `--replay` prints one run's events.
+its events and with where the simulated world's parts really are. The exit code is 1 if any run
+broke a constraint, hung or told an untruth, or if one with a willing helper did not finish.
+`--replay` prints one run's events.
 """
 
 # ruff: noqa: T201

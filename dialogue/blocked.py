@@ -1,18 +1,38 @@
-"""The script for `blocked`: clear the way or the place, and the robot goes on."""
+"""The scripts for `blocked`: clear the way or the place, and the robot goes on.
+
+What was seen in the way is gone once it is seen gone. What was felt no camera can clear: it takes a
+person's word and a look.
+"""
 
 from dialogue.offer import Offer, offer_script
 from dialogue.script import Expectation, Help
 from tasks.resolution import Resolution
 
-script = offer_script(
-    Offer(
-        question="Something is in my way, on the {object} or at its place. Can you clear it away?",
-        yes_effect="You clear it away; I go on as soon as I see that the way is free.",
-        help=Help.CLEAR_WAY,
-        request="Please clear it away. I wait until I see that my way is free.",
-        resolution=Resolution.ROBOT_FINISH,
-        thanks="Thank you. The way is free and I go on.",
-        not_seen="I do not see my way free yet. Are you still clearing it?",
-        put_right={Expectation.WAY_CLEAR: Resolution.ROBOT_FINISH},
-    )
+SEEN = Offer(
+    question="I see something in my way, or at the place of the {object}. Can you clear it away?",
+    failed="I have now been stopped {times} on my way with the {object}.",
+    yes_effect="You clear it away; I go on as soon as I see my way free ({attempt}).",
+    help=Help.CLEAR_WAY,
+    request="Please clear it away. I wait until I see my way free.",
+    resolution=Resolution.ROBOT_FINISH,
+    thanks="Thank you. I see my way free.",
+    unchanged="I see nothing in my way.",
+    not_seen="I do not see my way free yet. Are you still clearing it?",
+    put_right={Expectation.WAY_CLEAR: Resolution.ROBOT_FINISH},
+    denied=frozenset({Expectation.WAY_CLEAR}),
 )
+
+FELT = Offer(
+    question="I felt something hold up my arm and stopped. Can you clear its way?",
+    failed="I have now been stopped {times} on my way with the {object}.",
+    yes_effect="You clear the way of my arm; I go on as soon as I see nothing in it ({attempt}).",
+    help=Help.CLEAR_WAY,
+    request="Please clear the way of my arm. I look whether it is free.",
+    resolution=Resolution.ROBOT_FINISH,
+    thanks="Thank you. I see my way free.",
+    unchanged="I see nothing in my way, and nothing holds my arm now.",
+    not_seen="I still see or feel something in my way. Are you still clearing it?",
+    put_right={},
+)
+
+script = offer_script(SEEN, felt=FELT)

@@ -3,7 +3,10 @@
 from enum import StrEnum
 from typing import Literal
 
+from dialogue.evidence import Change, PutRight
+from dialogue.outlook import Outlook
 from dialogue.script import (
+    ATTEMPT_FAILED,
     Ask,
     AskState,
     AwaitHelp,
@@ -13,12 +16,13 @@ from dialogue.script import (
     Expectation,
     Help,
     HelpState,
+    LeaveState,
     Say,
     Script,
     State,
     Turn,
 )
-from dialogue.wording import word
+from dialogue.wording import sentence, word
 from tasks.issue import Issue
 from tasks.resolution import Resolution
 
@@ -42,6 +46,12 @@ _LEGAL_CALLS = {
 _ROBOT_GOES_ON = (Resolution.ROBOT_FINISH, Resolution.COLLAB_FINISH)
 """Once it sees the help, or to take it, the robot moves."""
 
+_SEEN_NOW = {
+    Expectation.AT_PLACE: "I see the {object} at its place now.",
+    Expectation.IN_REACH: "I see the {object} within my reach now.",
+    Expectation.WAY_CLEAR: "I see nothing in my way now.",
+}
+
 
 class IllegalTransitionError(Exception):
     """A call came that the conversation's phase does not allow; nothing was changed."""
@@ -59,12 +69,22 @@ class Conversation:
 
     The same calls always give the same turns. The script must be sound (`dialogue.soundness`); then
     it closes after a bounded number of calls, exactly once. A call that the phase does not allow
-    raises `IllegalTransitionError`.
+    raises `IllegalTransitionError`. `outlook` is that of the moment when the issue was raised and
+    decides which way is taken; `said_with` is that of now, and words what is said (other robots
+    may have changed it meanwhile).
     """
 
-    def __init__(self, script: Script, issue: Issue) -> None:
-        self._script = script
+    def __init__(
+        self,
+        script: Script,
+        issue: Issue,
+        outlook: Outlook,
+        said_with: Outlook | None = None,
+    ) -> None:
+        self._script = script.felt if issue.felt and script.felt is not None else script
         self._issue = issue
+        self._outlook = outlook
+        self._said_with = said_with or outlook
         self._phase = Phase.NEW
         self._at: AskState | HelpState | None = None
         self._reasks_left = 0
@@ -85,109 +105,185 @@ class Conversation:
         """What would put the issue right now, the most telling first; empty unless asking."""
         return tuple(self._script.put_right) if self._phase is Phase.ASKING else ()
 
+    @property
+    def denied(self) -> frozenset[Expectation]:
+        """What the first look may contradict: what the issue says not to be so.
+
+        A robot that was contradicted before, and met the same issue again, believes the issue.
+        """
+        return self._script.denied if self._outlook.unchanged == 1 else frozenset()
+
     def open(self) -> list[Turn]:
         """Begin."""
         self._require("open")
         on_the_way = self._script.on_the_way
         if on_the_way is not None and not self._issue.interrupts:
-            return self._enter(on_the_way)
-        return self._enter(self._script.opening)
+            return self._enter(on_the_way, heard=False)
+        failed = self._script.failed_opening if self._outlook.own_failure else None
+        return self._enter(failed or self._script.opening, heard=False)
 
     def answer(self, answer: Literal["yes", "no"]) -> list[Turn]:
         """Take a helper's answer to the open question."""
         self._require("answer")
         match self._at, answer:
             case AskState(yes=following), "yes":
-                return self._enter(following)
+                return self._enter(following, heard=True)
             case AskState(no=following), "no":
-                return self._enter(following)
+                return self._enter(following, heard=False)
             case HelpState(help=promised), "yes":
                 self._phase = Phase.AWAITING_HELP
                 return [AwaitHelp(promised)]
             case HelpState(otherwise=following), "no":
-                return self._enter(following)
+                return self._enter(following, heard=False)
         raise ValueError(f"an answer is 'yes' or 'no', not {answer!r}")
 
-    def help_seen(self) -> list[Turn]:
-        """The camera saw the promised help."""
+    def help_seen(self, change: Change) -> list[Turn]:
+        """The camera saw what was promised; `change`: what it saw to change since the question."""
         state = self._require_help_state("help_seen")
-        return [
-            Say(self._word(state.thanks)),
-            self._close(CloseReason.RESOLVED, state.resolution, helped=True),
-        ]
+        said = self._word(state.thanks if change.by_a_person else state.unchanged)
+        return self._settle(CloseReason.RESOLVED, state.resolution, said, change)
 
     def help_not_seen(self) -> list[Turn]:
         """The promised help was not seen in time: ask about it again, or give up."""
         state = self._require_help_state("help_not_seen")
         if self._reasks_left == 0:
-            return self._give_up("I still do not see that help. I will try again later.")
+            return self._give_up("I still do not see that help.")
         self._reasks_left -= 1
         self._phase = Phase.ASKING
         return [
             Ask(
                 text=self._word(state.not_seen),
-                yes_effect="I keep watching for it.",
-                no_effect=self._word(state.otherwise_effect),
-                yes_final=_is_final(state),
-                no_final=_is_final(self._script.states[state.otherwise]),
+                yes_effect=self._word("I keep watching for it ({attempt})."),
+                no_effect=self._effect(state.otherwise, state.otherwise_effect),
+                timeout_effect=self._word(ATTEMPT_FAILED),
+                yes_final=self._is_final(state),
+                no_final=self._is_final(self._following(state.otherwise)),
             )
         ]
 
-    def put_right(self, seen: Expectation) -> list[Turn]:
+    def put_right(self, seen: PutRight) -> list[Turn]:
         """The robot saw the issue put right before anyone answered: withdraw the question.
 
         Raises `ValueError` when the script does not watch for what was seen.
         """
         self._require("put_right")
-        if seen not in self._script.put_right:
-            raise ValueError(f"'{seen}' does not put an issue '{self._issue.kind}' right")
-        return [
-            Say("I see that it is put right. Thank you."),
-            self._close(CloseReason.WITHDRAWN, self._script.put_right[seen], helped=True),
-        ]
+        resolution = self._script.put_right.get(seen.seen)
+        if resolution is None:
+            raise ValueError(f"'{seen.seen}' does not put an issue '{self._issue.kind}' right")
+        thanks = "Thank you. " if seen.change.by_a_person else ""
+        said = thanks + self._word(_SEEN_NOW[seen.seen])
+        return self._settle(CloseReason.WITHDRAWN, resolution, said, seen.change)
 
     def silence(self) -> list[Turn]:
-        """Nobody answered and nobody is left to ask: give up."""
+        """Nobody answered and nobody is left to ask: go on without an answer, or give up."""
         self._require("silence")
-        return self._give_up("I heard no answer. I will try again later.")
+        if isinstance(self._at, AskState) and self._at.unanswered is not None:
+            return self._enter(self._at.unanswered, heard=False)
+        return self._give_up("I heard no answer.")
 
     def abort(self) -> list[Turn]:
-        """The run has ended."""
+        """The run has ended, or the issue no longer matters."""
         self._require("abort")
-        return [self._close(CloseReason.ABORTED, None, helped=False)]
+        return [self._close(CloseReason.ABORTED, None)]
 
-    def _enter(self, name: str) -> list[Turn]:
-        state = self._script.states[name]
+    # --- Going from state to state ------------------------------------------------------------
+
+    def _enter(self, name: str, *, heard: bool) -> list[Turn]:
+        state = self._following(name)
         match state:
             case AskState():
                 self._at, self._phase = state, Phase.ASKING
-                return [
-                    Ask(
-                        text=self._word(state.text),
-                        yes_effect=self._word(state.yes_effect),
-                        no_effect=self._word(state.no_effect),
-                        yes_final=_is_final(self._script.states[state.yes]),
-                        no_final=_is_final(self._script.states[state.no]),
-                    )
-                ]
+                return [self._ask(state)]
             case HelpState():
                 self._at, self._phase = state, Phase.AWAITING_HELP
                 self._reasks_left = self._script.reasks
                 return [Say(self._word(state.text)), AwaitHelp(state.help)]
-            case CloseState():
-                helped = state.resolution is not Resolution.ROBOT_RETRY
-                return [
-                    Say(self._word(state.text)),
-                    self._close(CloseReason.RESOLVED, state.resolution, helped=helped),
-                ]
+            case LeaveState():
+                return [Say(self._word(state.text)), self._close(CloseReason.LEFT_OUT, None)]
+            case CloseState(resolution=Resolution.ROBOT_RETRY):
+                said = f"{self._word(state.text)} {self._next_after_failure()}"
+                close = self._close(CloseReason.RESOLVED, Resolution.ROBOT_RETRY, failed=True)
+                return [Say(said), close]
+            case CloseState(resolution=resolution):
+                helped = heard and resolution is Resolution.COLLAB_FINISH
+                close = self._close(CloseReason.RESOLVED, resolution, helped=helped)
+                return [Say(self._word(state.text)), close]
+
+    def _ask(self, state: AskState) -> Ask:
+        return Ask(
+            text=self._word(state.text),
+            yes_effect=self._effect(state.yes, state.yes_effect),
+            no_effect=self._effect(state.no, state.no_effect),
+            timeout_effect=self._word(state.unanswered_effect),
+            yes_final=self._is_final(self._following(state.yes)),
+            no_final=self._is_final(self._following(state.no)),
+        )
+
+    def _following(self, name: str) -> State:
+        """A state, or what follows it where its question is not put."""
+        state = self._script.states[name]
+        if isinstance(state, AskState) and self._passes_over(state):
+            return self._following(state.no)
+        return state
+
+    def _effect(self, following: str, effect: str) -> str:
+        """What an answer will do; where it leads past a question, what that one's no does."""
+        state = self._script.states[following]
+        if isinstance(state, AskState) and self._passes_over(state):
+            return self._effect(state.no, state.no_effect)
+        return self._word(effect)
+
+    def _passes_over(self, state: AskState) -> bool:
+        return state.if_refused and not self._outlook.may_be_left
+
+    def _settle(
+        self, reason: CloseReason, wanted: Resolution, said: str, change: Change
+    ) -> list[Turn]:
+        """Close with what was seen, which tells whether anybody has helped, and what comes next."""
+        helped = change.by_a_person
+        resolution = self._resolution_for(wanted, helped)
+        failed = not helped or self._outlook.helped_out
+        match resolution:
+            case Resolution.ROBOT_RETRY if failed:
+                then = self._next_after_failure()
+            case Resolution.ROBOT_RETRY:
+                then = sentence(self._said_with.after_help())
+            case Resolution.ROBOT_FINISH:
+                then = sentence(self._said_with.going_on())
+            case _:
+                then = ""
+        failed = failed and resolution is Resolution.ROBOT_RETRY
+        close = self._close(reason, resolution, helped=helped, failed=failed)
+        return [Say(f"{said} {then}".strip()), close]
+
+    def _resolution_for(self, wanted: Resolution, helped: bool) -> Resolution:
+        if helped and not self._outlook.helped_out:
+            return wanted
+        if wanted is Resolution.HUMAN_FINISH:
+            # It lies there, but nobody was seen to put it there: the robot finds it in place.
+            return wanted if helped else Resolution.ROBOT_FINISH
+        if wanted is Resolution.ROBOT_FINISH and self._outlook.unchanged > 1:
+            # It went on before for no more than this, and met the same issue again.
+            return Resolution.ROBOT_RETRY
+        return Resolution.ROBOT_RETRY if self._outlook.helped_out else wanted
 
     def _give_up(self, last_word: str) -> list[Turn]:
-        closing = self._close(CloseReason.GAVE_UP, Resolution.ROBOT_RETRY, helped=False)
-        return [Say(last_word), closing]
+        closing = self._close(CloseReason.GAVE_UP, Resolution.ROBOT_RETRY, failed=True)
+        return [Say(f"{last_word} {self._next_after_failure()}"), closing]
 
-    def _close(self, reason: CloseReason, resolution: Resolution | None, *, helped: bool) -> Close:
+    def _next_after_failure(self) -> str:
+        return sentence(self._said_with.if_it_fails())
+
+    def _close(
+        self,
+        reason: CloseReason,
+        resolution: Resolution | None,
+        *,
+        helped: bool = False,
+        failed: bool = False,
+    ) -> Close:
         self._at, self._phase = None, Phase.CLOSED
-        return Close(reason, resolution, helped)
+        return Close(reason, resolution, helped, failed)
 
     def _require(self, call: str) -> None:
         expected = _LEGAL_CALLS[self._phase]
@@ -200,15 +296,16 @@ class Conversation:
         return self._at
 
     def _word(self, text: str) -> str:
-        return word(text, self._issue)
+        worded = word(text, self._issue, self._said_with)
+        return f"{worded[:1].upper()}{worded[1:]}"
 
-
-def _is_final(following: State) -> bool:
-    """Whether what an answer leads to closes the dialogue or sets the robot in motion."""
-    match following:
-        case AskState():
-            return False
-        case HelpState(resolution=resolution):
-            return resolution in _ROBOT_GOES_ON
-        case CloseState():
-            return True
+    @staticmethod
+    def _is_final(following: State) -> bool:
+        """Whether what an answer leads to closes the dialogue or sets the robot in motion."""
+        match following:
+            case AskState():
+                return False
+            case HelpState(resolution=resolution):
+                return resolution in _ROBOT_GOES_ON
+            case CloseState() | LeaveState():
+                return True

@@ -2,4 +2,6 @@
 
 from dialogue.lost_part import lost_part_script
 
-script = lost_part_script("I dropped the {object}.")
+script = lost_part_script(
+    "I lost hold of the {object}.", "I have now failed {times} to hold the {object}."
+)

@@ -6,20 +6,23 @@ from dialogue.script import Expectation, Help, ScriptWithParameters
 from tasks.resolution import Resolution
 
 
-def lost_part_script(what_happened: str) -> ScriptWithParameters[Patience]:
-    """The script for an object that the robot has not got; `what_happened` is its first sentence.
+def lost_part_script(what_happened: str, failed: str) -> ScriptWithParameters[Patience]:
+    """The script for an object that the robot has not got.
 
+    `what_happened` is its first sentence, `failed` the one once it has happened too often.
     Source: Blankenburg et al. 2020, Section 3.3.
     """
     return offer_script(
         Offer(
-            question=f"{what_happened} Shall I try again?",
-            yes_effect="You put the {object} back on the table; I pick it up later.",
+            question=f"{what_happened}{{why}} Shall I try again?",
+            failed=f"{failed}{{why}}",
+            yes_effect="You put the {object} back on the table, and {again}.",
             help=Help.PUT_BACK,
-            request="Please put the {object} back where it was on the table. I will pick "
-            "it up later.",
+            request="Please put the {object} back where it was on the table.",
             resolution=Resolution.ROBOT_RETRY,
-            thanks="Thank you. I see the {object} and will pick it up later.",
+            thanks="Thank you. I see the {object} back on the table.",
+            unchanged="I see the {object} on the table, but I saw nothing change: {attempt} has "
+            "failed.",
             not_seen="I do not see the {object} on the table yet. Are you still putting it back?",
             put_right={
                 Expectation.AT_PLACE: Resolution.HUMAN_FINISH,

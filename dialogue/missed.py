@@ -2,4 +2,6 @@
 
 from dialogue.lost_part import lost_part_script
 
-script = lost_part_script("I missed the {object}.")
+script = lost_part_script(
+    "I missed the {object}.", "I have now failed {times} to pick up the {object}."
+)

@@ -18,52 +18,77 @@ from dialogue.script import (
 )
 from tasks.resolution import Resolution
 
+FAILED = "failed"
+
 
 @dataclass(frozen=True, slots=True)
 class Offer:
     """What a script asks for (`question`), what a yes means, and how the help is seen through.
 
+    `failed` says how often the robot has failed at this itself; it then no longer asks for `help`.
     `request` says what to do and `not_seen` asks for it again; once `help` is seen the robot says
-    `thanks` and the dialogue closes with `resolution`. `put_right` is a script's.
+    `thanks` (or `unchanged`, where it was so before) and the dialogue closes with `resolution`.
+    `put_right` and `denied` are a script's.
     """
 
     question: str
+    failed: str
     yes_effect: str
     help: Help
     request: str
     resolution: Resolution
     thanks: str
+    unchanged: str
     not_seen: str
     put_right: Mapping[Expectation, Resolution]
+    denied: frozenset[Expectation] = frozenset()
 
 
-def offer_script(offer: Offer) -> ScriptWithParameters[Patience]:
-    """The script of an offer; a helper who refuses it is asked to place the object."""
+def offer_script(offer: Offer, felt: Offer | None = None) -> ScriptWithParameters[Patience]:
+    """The script of an offer; a helper who refuses it is asked to place the object.
+
+    `felt` is what is offered instead for an issue that was felt and not seen.
+    """
 
     def make(patience: Patience) -> Script:
-        return Script(
-            opening="question",
-            states={
-                "question": AskState(
-                    text=offer.question,
-                    yes="request",
-                    yes_effect=offer.yes_effect,
-                    no=place_branch.OPENING,
-                    no_effect=place_branch.OPENING_EFFECT,
-                ),
-                "request": HelpState(
-                    text=offer.request,
-                    help=offer.help,
-                    resolution=offer.resolution,
-                    thanks=offer.thanks,
-                    not_seen=offer.not_seen,
-                    otherwise=place_branch.OPENING,
-                    otherwise_effect=place_branch.OPENING_EFFECT,
-                ),
-                **place_branch.STATES,
-            },
-            put_right=offer.put_right,
-            reasks=patience.reasks,
-        )
+        return _script(offer, patience, None if felt is None else _script(felt, patience, None))
 
     return ScriptWithParameters(Patience, make)
+
+
+def _script(offer: Offer, patience: Patience, felt: Script | None) -> Script:
+    return Script(
+        opening="question",
+        failed_opening=FAILED,
+        states={
+            "question": AskState(
+                text=offer.question,
+                yes="request",
+                yes_effect=offer.yes_effect,
+                no=place_branch.OPENING,
+                no_effect=place_branch.OPENING_EFFECT,
+            ),
+            "request": HelpState(
+                text=offer.request,
+                help=offer.help,
+                resolution=offer.resolution,
+                thanks=offer.thanks,
+                unchanged=offer.unchanged,
+                not_seen=offer.not_seen,
+                otherwise=place_branch.OPENING,
+                otherwise_effect=place_branch.OPENING_EFFECT,
+            ),
+            FAILED: AskState(
+                text=f"{offer.failed} Will you place the {{object}} yourself?",
+                yes="place",
+                yes_effect=place_branch.YES_EFFECT,
+                no="leave",
+                no_effect=place_branch.LEAVE_EFFECT,
+            ),
+            **place_branch.STATES,
+        },
+        put_right=offer.put_right,
+        denied=offer.denied,
+        reasks=patience.reasks,
+        felt=felt,
+    )

@@ -1,6 +1,7 @@
 """The branch that ends every refused offer (Blankenburg et al. 2020, Figure 3).
 
-The robot asks whether the helper will place the object; if not, it will try again later.
+The robot asks whether the helper will place the object; if not, it tries again later. Where that
+has failed before, or where nothing would be left to try, it first asks whether to leave it out.
 """
 
 from collections.abc import Mapping
@@ -8,33 +9,52 @@ from typing import Annotated
 
 from pydantic import Field
 
-from dialogue.script import AskState, CloseState, Help, HelpState, State
+from dialogue.script import (
+    ATTEMPT_FAILED,
+    AskState,
+    CloseState,
+    Help,
+    HelpState,
+    LeaveState,
+    State,
+)
 from tasks.resolution import Resolution
 from tasks.scene import StrictModel
 
 OPENING = "will_you_place"
-OPENING_EFFECT = "I ask whether you will place the {object} yourself."
+OPENING_EFFECT = "I ask whether you will place the {object} yourself ({attempt})."
+
+YES_EFFECT = "You put the {object} at its place; it is done once I see it there ({attempt})."
+LEAVE_EFFECT = "I ask whether I shall leave the {object} out ({attempt})."
 
 STATES: Mapping[str, State] = {
     OPENING: AskState(
         text="Will you place the {object} yourself?",
         yes="place",
-        yes_effect="You put the {object} at its place; it is done once I see it there.",
-        no="later",
-        no_effect="I try again later.",
+        yes_effect=YES_EFFECT,
+        no="leave",
+        no_effect=LEAVE_EFFECT,
     ),
     "place": HelpState(
-        text="Thank you. Please put the {object} at its place; I am watching for it.",
+        text="Please put the {object} at its place; I am watching for it.",
         help=Help.PLACE,
         resolution=Resolution.HUMAN_FINISH,
         thanks="Thank you. I see the {object} at its place.",
+        unchanged="I see the {object} at its place, as before.",
         not_seen="I do not see the {object} at its place yet. Are you still placing it?",
-        otherwise="later",
-        otherwise_effect="I try again later.",
+        otherwise="leave",
+        otherwise_effect=LEAVE_EFFECT,
     ),
-    "later": CloseState(
-        text="All right. I will try again later.", resolution=Resolution.ROBOT_RETRY
+    "leave": AskState(
+        text="Shall I leave the {object} out?",
+        yes="left_out",
+        yes_effect="I leave the {object} out, and the task counts it as left out by you.",
+        no="later",
+        no_effect=ATTEMPT_FAILED,
+        if_refused=True,
     ),
+    "left_out": LeaveState(text="All right. I leave the {object} out."),
+    "later": CloseState(text="All right.", resolution=Resolution.ROBOT_RETRY),
 }
 
 

@@ -1,17 +1,31 @@
-"""The script for `positioning`: one sentence, and both place the object together.
+"""The script for `positioning`: the robot asks for help with placing, and goes on slowly meanwhile.
 
+Nothing waits for the answer: a yes makes it work of both, anything else the robot's own.
 Source: Blankenburg et al. 2020, Section 3.3.
 """
 
-from dialogue.script import CloseState, Script
+from dialogue.script import AskState, CloseState, Script
 from tasks.resolution import Resolution
 
+ALONE_EFFECT = "I place the {object} slowly by myself."
+
 script = Script(
-    opening="both",
+    opening="help_me",
     states={
-        "both": CloseState(
-            text="Please help me position the {object} while I place it slowly. Thank you.",
-            resolution=Resolution.COLLAB_FINISH,
-        )
+        "help_me": AskState(
+            text="Please help me position the {object} now; I place it slowly. Are you helping?",
+            yes="together",
+            yes_effect="You help while I place the {object} slowly; both of us have done it then.",
+            no="alone",
+            no_effect=ALONE_EFFECT,
+            unanswered="alone",
+            unanswered_effect=ALONE_EFFECT,
+        ),
+        "together": CloseState(
+            text="All right. I place it slowly.", resolution=Resolution.COLLAB_FINISH
+        ),
+        "alone": CloseState(
+            text="I place it slowly by myself.", resolution=Resolution.ROBOT_FINISH
+        ),
     },
 )

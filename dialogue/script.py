@@ -32,16 +32,18 @@ class CloseReason(StrEnum):
 
     RESOLVED = "resolved"
     WITHDRAWN = "withdrawn"
-    """The robot saw it put right before anyone answered."""
+    """The robot saw it put right, or saw that it was wrong, before anyone answered."""
     GAVE_UP = "gave_up"
     """Nobody answered, or the promised help was never seen."""
+    LEFT_OUT = "left_out"
+    """A helper said that the leaf is to be left out."""
     ABORTED = "aborted"
     """The run ended."""
 
 
 @dataclass(frozen=True, slots=True)
 class Ask:
-    """A yes/no question; the effects say in plain words what each answer will do.
+    """A yes/no question; the effects say in plain words what each answer, and silence, will do.
 
     An answer is final when nothing that is asked later can take it back.
     """
@@ -49,6 +51,7 @@ class Ask:
     text: str
     yes_effect: str
     no_effect: str
+    timeout_effect: str
     yes_final: bool = False
     no_final: bool = False
 
@@ -69,11 +72,15 @@ class AwaitHelp:
 
 @dataclass(frozen=True, slots=True)
 class Close:
-    """The dialogue is over. `helped`: help was verified, so this is no failed attempt."""
+    """The dialogue is over. `helped`: a person was seen to help, or heard to where both work.
+
+    `failed`: the leaf, which is put back, has failed once more.
+    """
 
     reason: CloseReason
     resolution: Resolution | None
     helped: bool
+    failed: bool = False
 
 
 Turn = Ask | Say | AwaitHelp | Close
@@ -90,11 +97,17 @@ class Expectation(StrEnum):
     """Nothing is in the arm's way."""
 
 
+ATTEMPT_FAILED = "{attempt} has failed, and {later}."
+"""What an answer, or silence, does that leaves the leaf to a later try."""
+
+
 @dataclass(frozen=True, slots=True)
 class AskState:
-    """Asks; `yes` and `no` name the states that follow.
+    """Asks; `yes`, `no` and `unanswered` name the states that follow.
 
-    Every text of a table may hold `{object}`, `{place}`, `{name}` (of the leaf) and `{robot}`.
+    Silence gives up unless `unanswered` says otherwise. A question that is only put `if_refused`
+    before (`Outlook.may_be_left`) is passed over the first time, as if the answer were no.
+    Every text of a table may hold the fields of `dialogue.wording`.
     """
 
     text: str
@@ -102,12 +115,17 @@ class AskState:
     yes_effect: str
     no: str
     no_effect: str
+    unanswered: str | None = None
+    unanswered_effect: str = ATTEMPT_FAILED
+    if_refused: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class HelpState:
     """Says what to do, watches for that help, and closes with `resolution` once it is seen.
 
+    `thanks` is said if something was seen to change that only a person can have changed, and
+    `unchanged` if it is as promised but was so before; what the robot does next is added to both.
     While it is not seen, `not_seen` asks whether it still comes; `otherwise` names the state that
     follows a no, and `otherwise_effect` says what that will do.
     """
@@ -116,6 +134,7 @@ class HelpState:
     help: Help
     resolution: Resolution
     thanks: str
+    unchanged: str
     not_seen: str
     otherwise: str
     otherwise_effect: str
@@ -123,30 +142,53 @@ class HelpState:
 
 @dataclass(frozen=True, slots=True)
 class CloseState:
-    """Says a last word and closes. A `robot_retry` reached this way is a failed attempt."""
+    """Says a last word and closes.
+
+    A `robot_retry` reached this way is a failed attempt, and the last word ends with what comes
+    next. `collab_finish` counts as help only after a yes.
+    """
 
     text: str
     resolution: Resolution
 
 
-State = AskState | HelpState | CloseState
+@dataclass(frozen=True, slots=True)
+class LeaveState:
+    """Says a last word and closes: a helper wants the leaf left out."""
+
+    text: str
+
+
+State = AskState | HelpState | CloseState | LeaveState
 
 
 @dataclass(frozen=True, slots=True)
 class Script:
     """The table of one kind of issue.
 
-    `put_right` says what the robot may see happen before anyone answers, the most telling first,
-    and how the issue is then resolved. `reasks` is how often promised help that is not seen is
-    asked about again. `on_the_way` is the state that it begins with instead where the robot goes on
-    by itself, so that there is nothing to ask.
+    `opening` names the first state, `failed_opening` the one that takes its place once the robot
+    has failed at this so often that another try is not worth offering, `on_the_way` the one where
+    the robot goes on by itself, so that there is nothing to ask. `put_right` says what the
+    robot may see happen before anyone answers, the most telling first, and how the issue is then
+    resolved; `denied` what of it the issue itself says not to be so. `reasks` is how often promised
+    help that is not seen is asked about again. `felt` is the script for an issue that was felt and
+    not seen, if that has one of its own.
     """
 
     opening: str
     states: Mapping[str, State]
     put_right: Mapping[Expectation, Resolution] = field(default_factory=dict)
     reasks: int = 2
+    failed_opening: str | None = None
     on_the_way: str | None = None
+    denied: frozenset[Expectation] = frozenset()
+    felt: "Script | None" = None
+
+    @property
+    def openings(self) -> tuple[str, ...]:
+        """Every state that a conversation may begin with."""
+        others = (self.failed_opening, self.on_the_way)
+        return (self.opening, *(each for each in others if each is not None))
 
 
 Parameters = TypeVar("Parameters", bound=BaseModel)

@@ -9,6 +9,7 @@ from dialogue.script import (
     Expectation,
     Help,
     HelpState,
+    LeaveState,
     Script,
     State,
 )
@@ -24,34 +25,39 @@ class UnsoundScriptError(Exception):
         self.problems = problems
 
 
-def check_script(name: str, script: Script) -> None:
-    """Raise `UnsoundScriptError` unless every walk through the table ends in a close."""
+def _problems(script: Script) -> list[str]:
     problems = [*_dangling(script)]
     if not problems:
         problems += [*_unreachable(script), *_endless(script)]
     problems += [*_badly_worded(script), *_unverified(script)]
     if script.reasks < 0:
         problems.append(f"it asks again {script.reasks} times; 0 is the least")
+    for each in sorted(script.denied - set(script.put_right)):
+        problems.append(f"it denies '{each}', for which it does not watch")
+    if script.felt is not None:
+        problems += [f"if it was felt: {each}" for each in _problems(script.felt)]
+    return problems
+
+
+def check_script(name: str, script: Script) -> None:
+    """Raise `UnsoundScriptError` unless every walk through the table ends in a close."""
+    problems = _problems(script)
     if problems:
         raise UnsoundScriptError(name, problems)
 
 
 def _following(state: State) -> tuple[str, ...]:
     match state:
-        case AskState(yes=yes, no=no):
-            return (yes, no)
+        case AskState(yes=yes, no=no, unanswered=unanswered):
+            return (yes, no, *([unanswered] if unanswered else []))
         case HelpState(otherwise=otherwise):
             return (otherwise,)
-        case CloseState():
+        case CloseState() | LeaveState():
             return ()
 
 
-def _openings(script: Script) -> tuple[str, ...]:
-    return (script.opening, *([script.on_the_way] if script.on_the_way else []))
-
-
 def _dangling(script: Script) -> Iterator[str]:
-    for opening in _openings(script):
+    for opening in script.openings:
         if opening not in script.states:
             yield f"its opening state '{opening}' is not in the table"
     for name, state in script.states.items():
@@ -61,8 +67,8 @@ def _dangling(script: Script) -> Iterator[str]:
 
 
 def _unreachable(script: Script) -> Iterator[str]:
-    reached = set(_openings(script))
-    waiting = [*reached]
+    reached = set(script.openings)
+    waiting = [*script.openings]
     while waiting:
         new = set(_following(script.states[waiting.pop()])) - reached
         reached |= new
@@ -116,8 +122,16 @@ def _unverified(script: Script) -> Iterator[str]:
             yield f"seeing '{seen}' puts it right with human_finish; {rule}"
 
 
-_NOT_SENTENCES = {"yes", "no", "otherwise", "help", "resolution"}
+_NOT_SENTENCES = {
+    "yes",
+    "no",
+    "unanswered",
+    "if_refused",
+    "otherwise",
+    "help",
+    "resolution",
+}
 _SENTENCES: dict[type, list[str]] = {
     kind: [field.name for field in fields(kind) if field.name not in _NOT_SENTENCES]
-    for kind in (AskState, HelpState, CloseState)
+    for kind in (AskState, HelpState, CloseState, LeaveState)
 }

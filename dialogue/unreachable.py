@@ -6,12 +6,14 @@ from tasks.resolution import Resolution
 
 script = offer_script(
     Offer(
-        question="I cannot reach the {object}. Can you hand it to me?",
-        yes_effect="You hold the {object} between my fingers; I take it and place it.",
+        question="I cannot reach the {object}.{why} Can you hand it to me?",
+        failed="I have now tried {times} and cannot reach the {object}.{why}",
+        yes_effect="You hold the {object} between my fingers; I take it and place it ({attempt}).",
         help=Help.HAND_OVER,
         request="Please hold the {object} between my fingers until I have gripped it.",
         resolution=Resolution.ROBOT_FINISH,
-        thanks="Thank you. I have the {object} and will place it.",
+        thanks="Thank you. I have the {object} between my fingers.",
+        unchanged="I have the {object} between my fingers.",
         not_seen="I do not see the {object} between my fingers yet. Are you still handing it over?",
         put_right={
             Expectation.AT_PLACE: Resolution.HUMAN_FINISH,

@@ -1,20 +1,39 @@
 """How a script's sentences are filled in, so that a busy person can take them in by ear."""
 
+import re
 from string import Formatter
 
+from dialogue.outlook import Outlook
+from dialogue.spoken import spoken
 from tasks.issue import Issue
 
-FIELDS = frozenset({"object", "place", "name", "robot"})
+FIELDS = frozenset(
+    {"object", "place", "name", "robot", "why", "attempt", "times", "again", "later", "go_on"}
+)
+"""`why`: what the robot sensed, as a sentence with a blank before it, or nothing. `attempt`:
+`attempt 1 of 3`. `times`: how often this has happened. `again`, `later`, `go_on`: what the robot
+does next after help, after a failed attempt, and if it need not begin anew."""
 
 
-def word(text: str, issue: Issue) -> str:
+def word(text: str, issue: Issue, outlook: Outlook) -> str:
     """Fill in a sentence; a leaf without an object or place is spoken of by its own name."""
     return text.format(
-        object=_spoken(issue.object or issue.name),
-        place=_spoken(issue.place or issue.name),
-        name=_spoken(issue.name),
-        robot=_spoken(issue.robot),
+        object=spoken(issue.object or issue.name),
+        place=spoken(issue.place or issue.name),
+        name=spoken(issue.name),
+        robot=spoken(issue.robot),
+        why=_why(issue),
+        attempt=f"attempt {outlook.attempt} of {outlook.attempts}",
+        times=outlook.times_spoken,
+        again=outlook.after_help(),
+        later=outlook.if_it_fails(),
+        go_on=outlook.going_on(),
     )
+
+
+def sentence(clause: str) -> str:
+    """A clause as a sentence of its own."""
+    return f"{clause[:1].upper()}{clause[1:].rstrip('.')}."
 
 
 def unknown_fields(text: str) -> list[str]:
@@ -26,5 +45,9 @@ def unknown_fields(text: str) -> list[str]:
     return [field for field in fields if field not in FIELDS]
 
 
-def _spoken(identifier: str) -> str:
-    return identifier.replace("_", " ").replace("-", " ")
+def _why(issue: Issue) -> str:
+    reason = issue.reason
+    if issue.object:
+        named = rf"(?<!the )(?<!a )\b{re.escape(issue.object)}\b"
+        reason = re.sub(named, f"the {issue.object}", reason)
+    return f" {sentence(spoken(reason))}" if reason else ""

@@ -13,8 +13,8 @@ from robots.body import ArmPath, Body, ToolPose
 T = TypeVar("T")
 Routine = Generator[None, None, T]
 
-_CLEAR_HEIGHT_M = 0.14
-"""How far the tool point is raised before it leaves sideways."""
+_CLEAR_HEIGHTS_M = (0.14, 0.10, 0.06, 0.03)
+"""How far the tool point is raised before it leaves sideways: the first that is within reach."""
 _RETREAT_SPEED = 0.6
 _POINTS_DOWN = -0.97
 
@@ -118,10 +118,12 @@ class Arm:
         pose = None if self.at_neutral else self.tool_pose()
         if pose is None:
             return
-        up = ToolPose(pose.x, pose.y, pose.z + _CLEAR_HEIGHT_M, pose.yaw)
-        path = self.body.plan_path([up])
-        if path is not None:
-            yield from self.follow(path, _RETREAT_SPEED)
+        for height_m in _CLEAR_HEIGHTS_M:
+            up = ToolPose(pose.x, pose.y, pose.z + height_m, pose.yaw)
+            path = self.body.plan_path([up])
+            if path is not None:
+                yield from self.follow(path, _RETREAT_SPEED)
+                return
 
     def _opening(self, opening_m: float | None) -> float:
         return self.body.gripper.max_opening_m if opening_m is None else opening_m

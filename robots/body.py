@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robots.gripper import GripperModel
+from robots.vision.seen_box import SeenBox
 
 Matrix4 = NDArray[np.float64]
 """A homogeneous transform, shape (4, 4)."""
@@ -75,6 +76,30 @@ class Reach:
     max_m: float
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class HeldBox:
+    """A box that the gripper holds: its full extents, and its middle's pose in the tool frame."""
+
+    size: tuple[float, float, float]
+    in_tool: Matrix4
+
+
+@dataclass(frozen=True, slots=True)
+class Leg:
+    """A part of a way: where it leads, how far the fingers are apart meanwhile, what they hold."""
+
+    to: ToolPose
+    opening_m: float
+    held: Sequence[HeldBox] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class NoWay:
+    """Why there is no path, as the end of a sentence: "the arm does not ..."."""
+
+    reason: str
+
+
 class ArmPath(Protocol):
     """A checked arm motion through the waypoints that it was planned for, in segments.
 
@@ -115,6 +140,10 @@ class Body(Protocol):
         Waypoints that differ in z only are joined by a straight vertical line. Fingers are alike:
         a body may turn all waypoints together by half a turn, to yaw + pi.
         """
+        ...
+
+    def plan_among(self, legs: Sequence[Leg], boxes: Sequence[SeenBox]) -> ArmPath | NoWay:
+        """As `plan_path`, and so that neither arm nor what it holds touches any of `boxes`."""
         ...
 
     def plan_neutral(self) -> ArmPath:
@@ -177,6 +206,13 @@ class Body(Protocol):
         """What of the gripper may hide a held part: convex pieces (n, 3), now, tool frame."""
         ...
 
+    def contact_force(self) -> NDArray[np.float64]:
+        """The external force (3, N, base frame) at the tool point, as the joints' efforts tell it.
+
+        The weight of what is held is part of it.
+        """
+        ...
+
     def contact_force_n(self) -> float:
-        """The external force at the tool point, weight of what is held included, by efforts."""
+        """How strong that force is."""
         ...

@@ -38,6 +38,14 @@ def in_the_way(
     return boxes[int(found[0])] if len(found) else None
 
 
+def beside(box: SeenBox, others: Sequence[SeenBox], margin_m: float) -> bool:
+    """Whether any other box is nearer than `margin_m`, seen from above."""
+    if not others:
+        return False
+    outlines = np.asarray(shapely.polygons(np.array([each.corners() for each in others])))
+    return bool((shapely.distance(shapely.Polygon(box.corners()), outlines) < margin_m).any())
+
+
 def _outline(room: ToolBox, tool: ToolPose) -> NDArray[np.float64]:
     """The corners (4, 2) of a room around the tool, from above."""
     cos, sin = math.cos(tool.yaw), math.sin(tool.yaw)

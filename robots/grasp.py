@@ -54,6 +54,14 @@ def grasp_of(part: Part, gripper: GripperModel) -> Grasp:
     return grasps_of(part, gripper)[0]
 
 
+def can_grasp(part: Part, gripper: GripperModel) -> bool:
+    """Whether there is any grasp of a part."""
+    try:
+        return bool(grasps_of(part, gripper))
+    except UngraspableError:
+        return False
+
+
 def grasps_of(part: Part, gripper: GripperModel) -> list[Grasp]:
     """All grasps of a part, by its knob if it has one, the best first.
 

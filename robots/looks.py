@@ -2,13 +2,15 @@
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 from robots.arm import Arm, Routine
+from robots.behaviors.grasp_choice import LIFTS_M
 from robots.behaviors.preparation import LOOK_AGAIN_S
 from robots.body import CameraImage, ToolPose
 from robots.catalogue import Part
+from robots.grasp import can_grasp, grasps_of
 from robots.grip import GripState
 from robots.link.messages import FinishedResult, Holding, Location, Look, Looked, ReportBody
 from robots.result import Result
@@ -119,7 +121,7 @@ class AtPlace:
 
 
 class InReach:
-    """An object rests, standing, where the arm can grasp it."""
+    """An object rests, standing, where the arm can grasp it and lift it."""
 
     def __init__(self, looker: Looker, part: Part) -> None:
         self._looker, self._part = looker, part
@@ -131,10 +133,24 @@ class InReach:
         now = self._before
         if before is None or now is None or not now.upright(senses.catalogue.table.height):
             return False
-        reach = self._looker.arm.body.reach
-        distance_m = math.hypot(now.x - reach.origin[0], now.y - reach.origin[1])
         moved_m = math.dist((now.x, now.y, now.z), (before.x, before.y, before.z))
-        return moved_m <= _RESTS_WITHIN_M and reach.min_m <= distance_m <= reach.max_m
+        return moved_m <= _RESTS_WITHIN_M and self._can_grasp(now)
+
+    def _can_grasp(self, at: HeadSighting) -> bool:
+        body = self._looker.arm.body
+        reach = body.reach
+        distance_m = math.hypot(at.x - reach.origin[0], at.y - reach.origin[1])
+        if not reach.min_m <= distance_m <= reach.max_m:
+            return False
+        if not can_grasp(self._part, body.gripper):
+            return False
+        grasps = grasps_of(self._part, body.gripper)
+        picks = [each.tool_pose(at.x, at.y, at.z, at.yaw) for each in grasps]
+        return any(
+            body.plan_path([replace(pick, z=pick.z + lift_m), pick]) is not None
+            for pick in dict.fromkeys(picks)
+            for lift_m in LIFTS_M
+        )
 
 
 class WayClear:
@@ -203,6 +219,8 @@ def take_from_person(looker: Looker, command: str, part: Part, within_s: float) 
     """Go to the hand-over pose and close the gripper on what is held between its fingers."""
     arm, senses = looker.arm, looker.senses
     end_s = arm.body.time_s() + within_s
+    if not can_grasp(part, arm.body.gripper):
+        return looker.answer(command, fulfilled=False)
     if not senses.holds(part.name):
         senses.let_go()
         yield from arm.go_to_hand_over()

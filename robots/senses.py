@@ -1,7 +1,7 @@
 """What one robot perceives: its cameras' pictures, and what they show."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +26,7 @@ from robots.vision.obstruction import (
 from robots.vision.occupancy import Fit, find_occupant, room_above, room_at_place
 from robots.vision.presence import Presence, judge_presence
 from robots.vision.projection import Points
+from robots.vision.scene_change import shows_change
 from robots.vision.seen_box import SeenBox
 from robots.vision.table_view import TableView, view_table
 from robots.vision.tracking import LastSeen
@@ -36,15 +37,20 @@ FOREARM = "forearm"
 _ARM_LENGTH_M = 0.7
 """How far the arm reaches back from the tool point, for telling it from an obstacle."""
 _ARM_RADIUS_M = 0.16
+_GRIPPER_RADIUS_M = 0.09
 _BELOW_TOOL_M = 0.03
 """So far the fingers, or what they hold, may reach below the tool point."""
 
 
 @dataclass(slots=True)
 class _Seen:
-    """The last head picture, and what was understood of it, by what else was looked for."""
+    """A head picture, and what was understood of it, by what else was looked for.
+
+    It was taken while `held` was in the gripper.
+    """
 
     image: CameraImage
+    held: str | None
     views: dict[Part | None, TableView | None] = field(default_factory=dict)
 
 
@@ -91,7 +97,9 @@ class Senses:
         """Where a part is in a head picture; nowhere while it is held."""
         known = self.catalogue.parts.get(part.name) == part
         view = self._understand(image, None if known else part)
-        return None if view is None else view.sightings.get(part.name)
+        sighting = None if view is None else view.sightings.get(part.name)
+        # What has not changed since an earlier picture is where it was, and seen now.
+        return None if sighting is None else replace(sighting, time=image.time)
 
     def sight_all(self, image: CameraImage) -> dict[str, Sighting]:
         """Where every part of the catalogue is that a head picture shows."""
@@ -99,7 +107,10 @@ class Senses:
         if view is None:
             return {}
         parts = self.catalogue.parts
-        return {name: each.to_message(parts[name]) for name, each in view.sightings.items()}
+        return {
+            name: replace(each, time=image.time).to_message(parts[name])
+            for name, each in view.sightings.items()
+        }
 
     def seen_boxes(self, image: CameraImage) -> Sequence[SeenBox]:
         """Everything that a head picture shows on the table, known or not."""
@@ -202,9 +213,11 @@ class Senses:
 
     def _understand(self, image: CameraImage, stranger: Part | None = None) -> TableView | None:
         """What a head picture shows; `stranger` is looked for besides the catalogue's parts."""
-        if self._seen is None or self._seen.image is not image:
-            self._seen = _Seen(image)
-        if stranger not in self._seen.views:
+        held = self.grip.part.name if self.grip is not None and self.holds() else None
+        seen = self._seen
+        if seen is None or seen.held != held or shows_change(seen.image, image):
+            self._seen = seen = _Seen(image, held)
+        if stranger not in seen.views:
             parts = {
                 name: part for name, part in self.catalogue.parts.items() if not self.holds(name)
             }
@@ -218,18 +231,24 @@ class Senses:
                 self._last_seen.spots,
                 self._is_own_arm,
             )
-            self._seen.views[stranger] = view
+            seen.views[stranger] = view
             for name, each in view.sightings.items() if view is not None else ():
                 self._last_seen.note(name, each.x, each.y)
-        return self._seen.views[stranger]
+        return seen.views[stranger]
 
     def _is_own_arm(self, points: Points) -> NDArray[np.bool_]:
-        """Which points are the arm: near the line from the tool point back through its camera."""
-        tool = self._body.tool_pose()[:3, 3]
+        """Which points are the arm: near the lines from the tool point back.
+
+        One leads through its camera, one the way that the gripper came down.
+        """
+        pose = self._body.tool_pose()
+        tool = pose[:3, 3]
         along = self._body.cameras[FOREARM].pose()[:3, 3] - tool
         back = tool + along / max(float(np.linalg.norm(along)), 1e-6) * _ARM_LENGTH_M
+        above = tool - pose[:3, 0] * _ARM_LENGTH_M
         low_z = tool[2] - (_BELOW_TOOL_M if self.grip is None else self.grip.part.height)
         own: NDArray[np.bool_] = near(points, [(tool, back)], _ARM_RADIUS_M)
+        own |= near(points, [(tool, above)], _GRIPPER_RADIUS_M)
         own &= points[:, 2] > low_z
         return own
 

@@ -8,7 +8,7 @@ from scipy.spatial.transform import Rotation
 
 from robots.body import Body, Matrix4
 from robots.catalogue import Catalogue, Part
-from robots.grasp import grasp_of, part_in_tool
+from robots.grasp import part_in_tool
 from robots.link.messages import PoseLayout, Poses, PoseValues, ShownObject, ShownPose, Sighting
 from robots.senses import Senses
 
@@ -78,8 +78,8 @@ class PoseDisplay:
         )
 
     def _shown(self, part: Part) -> ShownPose:
-        if self._senses.holds(part.name):
-            held = self._body.tool_pose() @ part_in_tool(grasp_of(part, self._body.gripper))
+        if self._senses.grip is not None and self._senses.holds(part.name):
+            held = self._body.tool_pose() @ part_in_tool(self._senses.grip.grasp)
             return ShownPose(pose=pose_values(held), held=True)
         located = self.located.get(part.name)
         if located is None:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from functools import singledispatchmethod
 
+from dialogue.evidence import Change
 from dialogue.script import CloseReason, Help
 from server.journal import events as ev
 from tasks.intervention import Act, Intervention
@@ -80,12 +81,26 @@ RESOLUTIONS: dict[Resolution, str] = {
 }
 
 CLOSINGS: dict[CloseReason, str] = {
-    CloseReason.WITHDRAWN: "the question is withdrawn: it was put right",
-    CloseReason.GAVE_UP: "the question is given up: nobody helped",
+    CloseReason.WITHDRAWN: "the question is withdrawn: by what the robot sees it is put right",
+    CloseReason.GAVE_UP: "the question is given up: no help was seen",
     CloseReason.ABORTED: "the question lapses: it no longer matters",
 }
 
-DOERS = {"robot": " by the robot", "human": " by the human", "both": " by robot and human together"}
+DOERS = {
+    "robot": " by the robot",
+    "human": " by the human",
+    "both": " by robot and human together",
+    "found": ": the robot found it in place",
+}
+
+CHANGES: dict[Change, str] = {
+    Change.UNKNOWN: "",
+    Change.NONE: ", as it was before",
+    Change.APPEARED: ": it has come back",
+    Change.MOVED: ": it has been moved",
+    Change.HANDED_OVER: "",
+    Change.CLEARED: "",
+}
 
 
 def grouped(lines: Iterable[Line]) -> Iterator[list[Line]]:
@@ -208,6 +223,20 @@ class Transcript:
         return [_line(event, "", text, Tone.FAULT)]
 
     @lines.register
+    def _(self, event: ev.SuspectedFalseAlarm) -> list[Line]:
+        subject = event.object or event.name
+        told = f"; a mail goes to {', '.join(event.told)}" if event.told else ""
+        text = (
+            f"the robot may be wrong: {event.issue} {subject} {event.times} times on end, and "
+            f"nothing was seen to change{told}"
+        )
+        return [_line(event, "", text, Tone.SETBACK)]
+
+    @lines.register
+    def _(self, _event: ev.FirstLook) -> list[Line]:
+        return []
+
+    @lines.register
     def _(self, _event: ev.ClipRecorded) -> list[Line]:
         return []
 
@@ -252,7 +281,8 @@ class Transcript:
 
     @lines.register
     def _(self, event: ev.HelpVerified) -> list[Line]:
-        return [_line(event, self._robot(event.robot), f"sees {_promised(event)}", Tone.WATCHED)]
+        text = f"sees {_promised(event)}{CHANGES[event.change]}"
+        return [_line(event, self._robot(event.robot), text, Tone.WATCHED)]
 
     @lines.register
     def _(self, event: ev.HelpNotSeen) -> list[Line]:

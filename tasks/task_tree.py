@@ -1,6 +1,7 @@
 """The task tree at run time: its state, its transitions and what may be started next."""
 
 from collections.abc import Mapping, Sequence
+from copy import deepcopy
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,6 +44,11 @@ class TaskTree:
         self._eligible = EligibleLeaves(self._shape, self._state)
         self._owners: dict[int, str] = {}
         self._attempts: NDArray[np.int64] = np.zeros(len(self._shape), dtype=np.int64)
+
+    def copy(self) -> "TaskTree":
+        """A tree in the same state, to try out what would follow from a transition."""
+        shared = {id(each): each for each in (self.definition, self._shape)}
+        return deepcopy(self, shared)
 
     # What never changes
 

@@ -2,12 +2,14 @@
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any
 
 from robots.arm import Arm, Routine
 from robots.behaviors.assignment import Assignment, Findings
 from robots.behaviors.behavior import Move, SetGripper, Step
 from robots.behaviors.confirmation import Outcome, look_at_outcome
+from robots.behaviors.contact import Contact, ContactWatch, Track, Try, hindering_n, is_arrival
 from robots.behaviors.execution_state import (
     ExecutionState,
     ExecutionTransitionError,
@@ -42,6 +44,7 @@ from robots.senses import FOREARM, HEAD, Senses
 from robots.vision.drawing import draw_detection, encode_jpeg
 from robots.vision.presence import Presence, is_at
 
+_BACK_OFF_SPEED = 0.3
 _CAREFUL = 0.5
 """While a person's hands are near, motion is scaled by this."""
 
@@ -82,6 +85,8 @@ class Execution:
         self._was_done = assignment.was_done
         self._raised: set[str] = set()
         self._forces_n: list[float] = []
+        self._contact: Contact | None = None
+        self._track = Track()
         self._next_check_s = -math.inf
         self._read_s = -math.inf
 
@@ -175,7 +180,7 @@ class Execution:
                     self._report(Resumed(execution=self.id, step=plan.first))
                     resumed = False
                 for number in range(plan.first, len(plan.steps) + 1):
-                    yield from self._walk(plan, number)
+                    yield from self._take_step(number)
                 there = yield from self._confirm()
             self._finish(found_in_place=False)
         except Interruption as interruption:
@@ -184,7 +189,7 @@ class Execution:
     def _prepare(self) -> Routine[Plan | None]:
         """The plan to walk; None if there is nothing left to do. Raises `Interruption`."""
         self._step, self._plan, self._seen = BEFORE_FIRST_STEP, None, Findings()
-        self._outcome = None
+        self._outcome = self._contact = None
         part, arm, senses = self._assignment.part, self._arm, self._senses
         carrying = yield from check_carrying(part, arm, senses)
         self._seen.carrying = carrying and goes_on_carrying(self._assignment, arm, senses)
@@ -217,12 +222,56 @@ class Execution:
 
     # --- The steps ----------------------------------------------------------------------------
 
-    def _walk(self, plan: Plan, number: int) -> Routine[None]:
-        """One step, checked at the camera's period. Raises `Interruption`."""
-        step = plan.steps[number - 1]
+    def _take_step(self, number: int) -> Routine[None]:
+        """One step, tried again more gently while something is felt. Raises `Interruption`."""
         self._step, self._was_done = number, None
-        self._report(StepStarted(execution=self.id, step=number, name=step.name))
-        self._begin(plan, number, step)
+        name = self._planned.steps[number - 1].name
+        self._report(StepStarted(execution=self.id, step=number, name=name))
+        tries = self._tries()
+        for count, each in enumerate(tries or [Try(math.inf, 1.0)], start=1):
+            felt_n = yield from self._walk(number, each)
+            if felt_n is None:
+                return
+            yield from self._back_off(number, Contact(felt_n, count), last=count == len(tries))
+
+    def _tries(self) -> Sequence[Try]:
+        """The tries of the first monitor to which it matters what is felt."""
+        return next((each.tries for each in self._watching(self._phase) if each.tries), ())
+
+    def _back_off(self, number: int, contact: Contact, *, last: bool) -> Routine[None]:
+        """Go back the way the arm came, ready to try again. Raises `Interruption`.
+
+        After the last try, or where no way leads on, the monitors judge what was felt.
+        """
+        self._move_to(ExecutionState.BACKING_OFF)
+        passed = self._track.way_back()
+        back = self._arm.body.plan_path(passed) if passed else None
+        for segment in range(0 if back is None else back.segments):
+            if back is not None:
+                self._arm.start(back, segment, _BACK_OFF_SPEED)
+            while self._arm.body.moving:
+                self._check_if_due()
+                yield
+        steps = self._planned.steps
+        again = None if last else self._arm.body.plan_path(waypoints_of(steps[number - 1 :]))
+        if again is None:
+            self._contact = contact
+            self._check(None)
+            raise ExecutionTransitionError(
+                f"expected an issue of {contact.force_n:.0f} N against the arm, got none"
+            )
+        self._plan = replace(self._planned, first=number, path=again)
+        self._move_to(ExecutionState.RUNNING)
+
+    def _walk(self, number: int, attempt: Try) -> Routine[float | None]:
+        """One try of a step, checked at the camera's period; the force if something was felt.
+
+        Raises `Interruption`.
+        """
+        plan = self._planned
+        step = plan.steps[number - 1]
+        self._track, contact = Track(), ContactWatch(attempt.limit_n)
+        self._begin(plan, number, step, attempt.speed)
         arrived_s: float | None = None
         # A step may be over before the camera's next picture; it is judged at its start as well.
         self._check(None)
@@ -233,9 +282,31 @@ class Execution:
                 arrived_s = now_s if arrived_s is None else arrived_s
                 settled = now_s - arrived_s >= step.settle_s - 1e-9
                 if settled and not self._grip_is_open_question(arrived_s):
-                    return
+                    return None
             yield
             self._forces_n.append(self._arm.body.contact_force_n())
+            if isinstance(step.action, Move) and arrived_s is None:
+                felt_n = self._feel(step.action, contact)
+                if felt_n is not None:
+                    return felt_n
+
+    def _feel(self, move: Move, contact: ContactWatch) -> float | None:
+        """Stop where something pushes lastingly; its force unless that ends the move."""
+        body, here = self._arm.body, self._arm.tool_pose()
+        self._track.note(here)
+        force = body.contact_force()
+        strength_n = body.contact_force_n() if here is None else hindering_n(force, here, move.to)
+        if not contact.feel(strength_n, body.control_period_s):
+            return None
+        self._arm.stop()
+        return None if here is not None and is_arrival(here, move.to) else contact.strongest_n
+
+    @property
+    def _planned(self) -> Plan:
+        """The plan that is walked. Raises `ExecutionTransitionError` before there is one."""
+        if self._plan is None:
+            raise ExecutionTransitionError(f"expected a plan while it is {self._state}, got none")
+        return self._plan
 
     @property
     def _phase(self) -> Phase:
@@ -246,13 +317,13 @@ class Execution:
             return Phase.PREPARE
         return self._plan.steps[self._step - 1].phase
 
-    def _begin(self, plan: Plan, number: int, step: Step) -> None:
+    def _begin(self, plan: Plan, number: int, step: Step, speed: float) -> None:
         part = self._assignment.part
         if isinstance(step.action, Move):
             if plan.path is not None:
                 if step.action.opening_m is not None:
                     self._arm.start_opening_to(step.action.opening_m)
-                self._arm.start(plan.path, plan.segment_of(number), step.action.speed)
+                self._arm.start(plan.path, plan.segment_of(number), step.action.speed * speed)
         elif step.action.to == "closed":
             if part is not None and step.phase is Phase.GRASP:
                 self._senses.watch_grip(part, plan.grasp)
@@ -339,6 +410,7 @@ class Execution:
             grip=grip,
             placed=None if outcome is None else outcome.sighting,
             presence=None if outcome is None else outcome.presence,
+            contact=self._contact,
             contact_forces_n=tuple(self._forces_n),
             pictures=pictures,
         )

@@ -9,6 +9,8 @@ class ExecutionState(StrEnum):
     PREPARING = "preparing"
     """Before step 1: the arm gets out of the camera's way, the object is looked for."""
     RUNNING = "running"
+    BACKING_OFF = "backing_off"
+    """Something was felt: the arm goes back the way it came, to try again more gently."""
     CONFIRMING = "confirming"
     """After the last step: the arm gets out of the camera's way, the object is looked for."""
     RETREATING = "retreating"
@@ -36,11 +38,15 @@ _NEXT: dict[ExecutionState, frozenset[ExecutionState]] = {
     ),
     ExecutionState.RUNNING: frozenset(
         {
+            ExecutionState.BACKING_OFF,
             ExecutionState.CONFIRMING,
             ExecutionState.RETREATING,
             ExecutionState.HOLDING,
             ExecutionState.FINISHED,
         }
+    ),
+    ExecutionState.BACKING_OFF: frozenset(
+        {ExecutionState.RUNNING, ExecutionState.RETREATING, ExecutionState.HOLDING}
     ),
     ExecutionState.CONFIRMING: frozenset(
         {

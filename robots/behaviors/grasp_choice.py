@@ -1,7 +1,8 @@
 """Which of its grasps an object can be taken and placed by, and over what it has to be lifted."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from itertools import product
 
 import numpy as np
@@ -11,7 +12,7 @@ from robots.arm import Arm
 from robots.behaviors.assignment import Assignment, Findings
 from robots.behaviors.behavior import Move, SetGripper, Situation, Step
 from robots.body import ToolPose
-from robots.catalogue import Part
+from robots.catalogue import Part, Size
 from robots.clearance import in_the_way
 from robots.grasp import Grasp, grasps_of
 from robots.gripper import GripperModel
@@ -30,8 +31,8 @@ _OVER_M = 0.015
 _BESIDE_M = 0.12
 """What stands so near to the straight way is on it: half a gripper, and half of what it carries."""
 
-_MARGIN_M = 0.002
-"""Kept between the gripper and what stands beside an object."""
+MARGIN_M = 0.001
+"""Kept between the gripper and what stands beside an object, as it is seen."""
 
 
 def ways_to_grasp(
@@ -57,9 +58,24 @@ def ways_to_grasp(
         )
 
 
-def others(part: Part | None, boxes: Sequence[SeenBox]) -> list[SeenBox]:
-    """What is seen but the part itself."""
-    return [each for each in boxes if part is None or each.name != part.name]
+def others(part: Part | None, boxes: Sequence[SeenBox], parts: Mapping[str, Part]) -> list[SeenBox]:
+    """What is seen but the part itself; known `parts` with a knob are two boxes each."""
+    found = []
+    for box in boxes:
+        if part is not None and box.name == part.name:
+            continue
+        known = parts.get(box.name or "")
+        found += [box] if known is None or known.knob is None else _plate_and_knob(box, known.knob)
+    return found
+
+
+def _plate_and_knob(box: SeenBox, knob: Size) -> list[SeenBox]:
+    length, width, height_m = box.size
+    plate_m = height_m - knob[2]
+    if plate_m <= 0.0:
+        return [box]
+    plate = replace(box, size=(length, width, plate_m))
+    return [plate, replace(box, size=knob, bottom_z=box.bottom_z + plate_m)]
 
 
 def crowded(steps: Sequence[Step], gripper: GripperModel, boxes: Sequence[SeenBox]) -> str | None:
@@ -76,7 +92,7 @@ def crowded(steps: Sequence[Step], gripper: GripperModel, boxes: Sequence[SeenBo
             opening_m = step.action.opening_m or gripper.max_opening_m
         if pose is None or opening_m == 0.0:
             continue
-        near = in_the_way(gripper, pose, opening_m, boxes, _MARGIN_M)
+        near = in_the_way(gripper, pose, opening_m, boxes, MARGIN_M)
         if near is not None:
             where = "to grasp it" if closing else "at its place"
             return f"{near.name or 'something unknown'} leaves no room for the fingers {where}"

@@ -7,7 +7,8 @@ from robots.arm import Arm, Routine
 from robots.behaviors.assignment import Assignment, Findings
 from robots.behaviors.behavior import Move, Step
 from robots.behaviors.grasp_choice import crowded, others, ways_to_grasp
-from robots.body import ArmPath, ToolPose
+from robots.behaviors.legs import legs_of, table_box
+from robots.body import ArmPath, NoWay, ToolPose
 from robots.catalogue import Part
 from robots.grasp import Grasp, UngraspableError
 from robots.senses import Senses
@@ -75,12 +76,14 @@ def make_plan(assignment: Assignment, arm: Arm, senses: Senses, findings: Findin
     part = assignment.part
     if part is not None and findings.sighting is None and not findings.carrying:
         return None
-    boxes = others(part, senses.seen_boxes(findings.image or senses.look()))
+    seen = senses.seen_boxes(findings.image or senses.look())
+    boxes = others(part, seen, senses.catalogue.parts)
     try:
         ways = list(ways_to_grasp(assignment, arm, senses, findings, boxes))
     except UngraspableError as error:
         findings.refusal = str(error)
         return None
+    table = table_box(senses.catalogue.table)
     refusals: list[str] = []
     for situation in ways:
         steps = assignment.behavior.steps(assignment.parameters, situation)
@@ -93,10 +96,16 @@ def make_plan(assignment: Assignment, arm: Arm, senses: Senses, findings: Findin
         if tight is not None:
             refusals.append(tight)
             continue
-        waypoints = waypoints_of(steps[first - 1 :])
-        path = arm.body.plan_path(waypoints) if waypoints else None
-        if waypoints and path is None:
-            refusals.append(f"the arm finds no path for {_name(part)}")
+        legs = legs_of(
+            steps[first - 1 :],
+            part,
+            situation.grasp,
+            arm.body.gripper,
+            carrying=findings.carrying,
+        )
+        path = arm.body.plan_among(legs, [table, *boxes]) if legs else None
+        if isinstance(path, NoWay):
+            refusals.append(f"with {_name(part)} the arm {path.reason}")
             continue
         return Plan(steps, first, path, situation.grasp)
     findings.refusal = refusals[0]

@@ -1,53 +1,96 @@
 """Freeing the gripper: what it holds goes where it does no harm."""
 
 import math
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 from robots.arm import Arm, Routine
-from robots.body import ToolPose
+from robots.behaviors.grasp_choice import MARGIN_M, others
+from robots.behaviors.legs import held_boxes, table_box
+from robots.body import ArmPath, Leg, NoWay, ToolPose
 from robots.catalogue import Part
-from robots.grasp import RELEASE_CLEARANCE_M, grasp_of
+from robots.clearance import beside, in_the_way
+from robots.grasp import RELEASE_CLEARANCE_M, Grasp
+from robots.gripper import GripperModel
 from robots.senses import Senses
+from robots.vision.seen_box import SeenBox
+from tasks.scene import Table
 
-_FREE_RADIUS_M = 0.15
-"""Nothing else may be this near to where something is put down."""
 _SPEED = 0.4
 _LIFT_M = 0.14
 """How far above where it is put down the tool point comes from."""
 
+_SPACING_M = 0.05
+_RINGS = 6
+"""A free spot is looked for on so many rings around where the arm is, so far apart."""
+_APART_M = 0.02
+"""What is put down keeps so far away from everything else."""
+
 
 def put_down(arm: Arm, senses: Senses, picked_at: ToolPose | None) -> Routine[None]:
-    """Open the gripper; first take what it holds to where it was picked, or straight down.
+    """Open the gripper; first take what it holds to where it was picked, or to a free spot.
 
     `picked_at` is the tool pose at which it was picked up, None if a person handed it over.
     """
-    if senses.holds():
+    grip = senses.grip
+    if grip is not None and senses.holds():
         yield from arm.lift()
-        for waypoints in _ways_down(arm, senses, picked_at):
-            path = arm.body.plan_path(waypoints)
-            if path is not None:
-                yield from arm.follow(path, _SPEED)
-                break
+        path = _way_down(arm, senses, grip.part, grip.grasp, picked_at)
+        if path is not None:
+            yield from arm.follow(path, _SPEED)
+            senses.let_go()
+            yield from arm.open_gripper(grip.grasp.opening_m)
+            return
     senses.let_go()
     yield from arm.open_gripper()
 
 
-def _ways_down(arm: Arm, senses: Senses, picked_at: ToolPose | None) -> list[list[ToolPose]]:
-    """Where what is held can be put down, the best first."""
-    ways = []
-    if picked_at is not None:
-        x, y, z, yaw = picked_at.x, picked_at.y, picked_at.z, picked_at.yaw
-        ways.append([ToolPose(x, y, z + _LIFT_M, yaw), picked_at])
-    pose, grip = arm.tool_pose(), senses.grip
-    if pose is not None and grip is not None and _is_free_below(senses, pose, grip.part):
-        height_m = grasp_of(grip.part, arm.body.gripper).height_m + RELEASE_CLEARANCE_M
-        table_z = senses.catalogue.table.height
-        ways.append([ToolPose(pose.x, pose.y, table_z + height_m, pose.yaw)])
-    return ways
+def _way_down(
+    arm: Arm, senses: Senses, part: Part, grasp: Grasp, picked_at: ToolPose | None
+) -> ArmPath | None:
+    """The path to the best spot that the arm can put something down at."""
+    table = senses.catalogue.table
+    boxes = others(part, senses.seen_boxes(senses.look()), senses.catalogue.parts)
+    spots = [] if picked_at is None else [picked_at]
+    here = arm.tool_pose()
+    if here is not None:
+        spots += _free_spots(here, part, grasp, arm.body.gripper, boxes, table)
+    held = held_boxes(part, grasp)
+    for spot in spots:
+        above = replace(spot, z=spot.z + _LIFT_M)
+        legs = [Leg(each, grasp.width_m, held) for each in (above, spot)]
+        path = arm.body.plan_among(legs, [table_box(table), *boxes])
+        if not isinstance(path, NoWay):
+            return path
+    return None
 
 
-def _is_free_below(senses: Senses, pose: ToolPose, held: Part) -> bool:
-    others = senses.sight_all(senses.look())
-    return all(
-        name == held.name or math.hypot(each.x - pose.x, each.y - pose.y) > _FREE_RADIUS_M
-        for name, each in others.items()
-    )
+def _free_spots(
+    here: ToolPose,
+    part: Part,
+    grasp: Grasp,
+    gripper: GripperModel,
+    boxes: Sequence[SeenBox],
+    table: Table,
+) -> Iterator[ToolPose]:
+    """Tool poses at which a part stands free on the table, the nearest first."""
+    z = table.height + grasp.height_m + RELEASE_CLEARANCE_M
+    for x, y in _rings(here.x, here.y):
+        spot = ToolPose(x, y, z, here.yaw)
+        stands = SeenBox(
+            x, y, here.yaw - grasp.yaw, part.size, table.height, part.name, complete=True
+        )
+        if not all(table.is_under(float(px), float(py)) for px, py in stands.corners()):
+            continue
+        if beside(stands, boxes, _APART_M):
+            continue
+        if in_the_way(gripper, spot, grasp.opening_m, boxes, MARGIN_M) is None:
+            yield spot
+
+
+def _rings(x: float, y: float) -> Iterator[tuple[float, float]]:
+    yield x, y
+    for ring in range(1, _RINGS + 1):
+        for number in range(6 * ring):
+            angle = math.tau * number / (6 * ring)
+            yield x + ring * _SPACING_M * math.cos(angle), y + ring * _SPACING_M * math.sin(angle)

@@ -132,7 +132,12 @@ class _SceneCheck:
         others = [each for each in self._starts.values() if each.name != job.name]
         above = _resting_on(job.start, others)
         gone = {each.name for each in self._jobs if self._order.is_before(each.leaf, job.leaf)}
-        return [each for each in others if each not in above and each.name not in gone]
+        # What stands in the same spot was told of already.
+        return [
+            each
+            for each in others
+            if each not in above and each.name not in gone and not job.start.meets(each)
+        ]
 
     def _around_place(self, job: Job) -> list[Standing]:
         """What may stand around a place when it is filled: not what is put onto it later."""
@@ -144,6 +149,7 @@ class _SceneCheck:
             for each in rivals
             if each.place is not None
             and each.place.where != job.place.where
+            and not job.place.meets(each.place)
             and not self._order.exclusive(each.leaf, job.leaf)
             and not self._order.is_before(job.leaf, each.leaf)
         ]

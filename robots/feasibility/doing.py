@@ -21,8 +21,9 @@ from tasks.scene_problem import SceneProblem
 Reachable = Callable[[Sequence[ToolPose]], bool]
 """Whether the arm can go through all these poses from neutral, by the planner that it uses."""
 
-ROOM_M = 0.002
-"""Kept between the gripper and what stands beside a part."""
+ROOM_M = 0.004
+"""Kept between the gripper and what stands beside a part: more than a robot keeps from what it
+sees, as that is never exact."""
 _SIDES = (-1.0, 1.0)
 _STEP_M, _STEPS = 0.002, 100
 

@@ -67,7 +67,8 @@ class Detection(Message):
     """What a monitor saw: blob centre and expected centre in pixels (u, v), blob area in px.
 
     `size_px` is the width and height of the camera's picture that the pixels count in; the picture
-    that is sent along may be an enlarged one.
+    that is sent along may be an enlarged one. `felt`: by force, not by a camera, so that no camera
+    can tell that it is over. `explanation` is a clause that people are told: what the robot sensed.
     """
 
     camera: str
@@ -76,6 +77,7 @@ class Detection(Message):
     expected: tuple[float, float] | None = None
     tolerance_px: float | None = None
     area_px: int = 0
+    felt: bool = False
     explanation: str = ""
 
 

@@ -1,26 +1,46 @@
 """`blocked`: something is in the arm's way or at the object's place, seen or felt."""
 
 from collections.abc import Sequence
-from typing import ClassVar
+from itertools import pairwise
+from typing import Annotated, ClassVar, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
+from robots.behaviors.contact import Contact, Try
 from robots.behaviors.phase import Phase
 from robots.behaviors.pick_and_place import PickAndPlace
 from robots.link.messages import Detection
 from robots.monitors.monitor import BEFORE_FIRST_STEP, Meanwhile, Monitor, MonitorView
 from tasks.scene import StrictModel
 
+PushLimit = Annotated[float, Field(gt=0.0, le=100.0)]
+SpeedShare = Annotated[float, Field(gt=0.0, le=1.0)]
+
 
 class BlockedParameters(StrictModel):
-    """A force above `limit_n` against the arm for `cycles` control cycles on end is a contact."""
+    """In each try of a motion the arm may push so hard (`limits_n`) and goes so fast.
 
-    limit_n: float = Field(default=40.0, gt=0.0)
-    cycles: int = Field(default=4, ge=1)
+    `speeds` are shares of the step's own.
+    """
+
+    limits_n: Annotated[tuple[PushLimit, ...], Field(strict=False)] = (25.0, 16.0, 10.0)
+    speeds: Annotated[tuple[SpeedShare, ...], Field(strict=False)] = (1.0, 0.4, 0.2)
+
+    @model_validator(mode="after")
+    def _require_gentler_tries(self) -> Self:
+        if len(self.limits_n) != len(self.speeds) or not self.limits_n:
+            raise ValueError("expected as many speeds as limits, and at least one of each")
+        for name, values in (("limits_n", self.limits_n), ("speeds", self.speeds)):
+            if any(later > earlier for earlier, later in pairwise(values)):
+                raise ValueError(f"expected each try to be gentler, got {name} {values}")
+        return self
 
 
 class Blocked(Monitor[BlockedParameters]):
-    """Raises `blocked` before step 1 (by what is seen) and in every step (by what is felt)."""
+    """Raises `blocked` before step 1 (by what is seen) and in every step (by what is felt).
+
+    What is felt counts only once the gentlest try has felt it too.
+    """
 
     issue: ClassVar[str] = "blocked"
     behaviors: ClassVar[frozenset[str]] = frozenset({PickAndPlace.name})
@@ -29,14 +49,14 @@ class Blocked(Monitor[BlockedParameters]):
     camera: ClassVar[str | None] = "head"
     parameters: ClassVar[type[StrictModel]] = BlockedParameters
 
-    def __init__(self, settings: BlockedParameters) -> None:
-        super().__init__(settings)
-        self._cycles = 0
+    @property
+    def tries(self) -> Sequence[Try]:
+        pairs = zip(self.settings.limits_n, self.settings.speeds, strict=True)
+        return [Try(limit_n, speed) for limit_n, speed in pairs]
 
     def check(self, view: MonitorView) -> Detection | None:
-        felt = self._feel(view.contact_forces_n)
-        if felt is not None:
-            return Detection(camera="head", explanation=f"{felt:.0f} N push against the arm")
+        if view.contact is not None:
+            return Detection(camera="head", felt=True, explanation=_felt(view.contact))
         if view.step == BEFORE_FIRST_STEP and view.obstruction is not None:
             x, y, z = view.obstruction.position
             return Detection(
@@ -47,9 +67,7 @@ class Blocked(Monitor[BlockedParameters]):
             )
         return None
 
-    def _feel(self, forces_n: Sequence[float]) -> float | None:
-        for force in forces_n:
-            self._cycles = self._cycles + 1 if force > self.settings.limit_n else 0
-            if self._cycles >= self.settings.cycles:
-                return force
-        return None
+
+def _felt(contact: Contact) -> str:
+    felt = f"{contact.force_n:.0f} N push against the arm"
+    return felt if contact.tries == 1 else f"{felt}, felt in {contact.tries} tries, each gentler"

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Any, ClassVar, Generic, TypeVar
 
+from robots.behaviors.contact import Contact, Try
 from robots.behaviors.phase import Phase
 from robots.body import CameraImage, Reach
 from robots.catalogue import Part
@@ -51,6 +52,7 @@ class MonitorView:
     `obstruction` what it saw in the way; all three are from before the first step. `grip` is what
     the newest forearm picture says, from when the gripper has closed on the object until it opens.
     `placed` and `presence` say where the object was seen in `CONFIRM`, after the last step.
+    `contact` is what pushed against the arm in every try of a motion.
     `contact_forces_n` are the readings of every control cycle since the last check.
     """
 
@@ -68,6 +70,7 @@ class MonitorView:
     grip: GripReading | None = None
     placed: HeadSighting | None = None
     presence: Presence | None = None
+    contact: Contact | None = None
     contact_forces_n: Sequence[float] = ()
     pictures: Mapping[str, CameraImage] = field(default_factory=dict)
 
@@ -106,6 +109,14 @@ class Monitor(ABC, Generic[P]):
         """Whether it checks in this phase of what is monitored as this behavior."""
         named = behavior in self.behaviors or self.behaviors == ANY_BEHAVIOR
         return named and phase in self.phases
+
+    @property
+    def tries(self) -> Sequence[Try]:
+        """How often, how hard and how fast the arm tries a motion in which it feels something.
+
+        Empty for a monitor to which it does not matter what is felt.
+        """
+        return ()
 
     @abstractmethod
     def check(self, view: MonitorView) -> Detection | None:

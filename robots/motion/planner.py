@@ -3,10 +3,11 @@
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
-from robots.body import Matrix4, ToolPose
+from robots.body import Matrix4, NoWay, ToolPose
 from robots.motion.curve import JointCurve
 from robots.motion.kinematics import Joints, KinematicChain
 
@@ -16,6 +17,8 @@ _LINE_STEPS = 8
 _SEEDS = 24
 _SEED_SPREAD_RAD = 0.6
 _ENOUGH_SEEDS = 4
+_ENOUGH_HITS = 10
+"""So many postures are tried before something is in the way of all."""
 _GOOD_COST = 3.0
 _WRIST = slice(4, 6)
 _MAX_DIP_M = 0.03
@@ -41,6 +44,14 @@ class JointPath:
     @property
     def segments(self) -> int:
         return len(self.ways)
+
+
+class Obstacles(Protocol):
+    """What a path may not touch."""
+
+    def first_on(self, path: JointPath) -> str | None:
+        """What the arm would touch first on a path; None if nothing."""
+        ...
 
 
 def pose_matrix(pose: ToolPose, yaw_offset: float = 0.0) -> Matrix4:
@@ -70,22 +81,36 @@ class PathPlanner:
         chain.solve(chain.pose(preferred), preferred, preferred)
 
     def plan(
-        self, start: Joints, waypoints: Sequence[ToolPose], rng: np.random.Generator
-    ) -> JointPath | None:
-        """Plan from `start` through all waypoints; None when a part of it cannot be reached.
+        self,
+        start: Joints,
+        waypoints: Sequence[ToolPose],
+        rng: np.random.Generator,
+        obstacles: "Obstacles | None" = None,
+    ) -> JointPath | NoWay:
+        """Plan from `start` through all waypoints, touching nothing.
 
         Raises `ValueError` without waypoints.
         """
         if not waypoints:
             raise ValueError("a path needs at least one waypoint")
         best: tuple[float, JointPath] | None = None
+        hit: str | None = None
         for tried, (seed, yaw_offset) in enumerate(self._attempts(start, rng)):
             found = self._try(start, waypoints, seed, yaw_offset)
-            if found is not None and (best is None or found[0] < best[0]):
+            touched = obstacles and found and obstacles.first_on(found[1])
+            if touched:
+                hit = hit or touched
+            elif found is not None and (best is None or found[0] < best[0]):
                 best = found
             if best is not None and (tried + 1 >= _ENOUGH_SEEDS or best[0] < _GOOD_COST):
                 break
-        return None if best is None else best[1]
+            if best is None and hit is not None and tried + 1 >= _ENOUGH_HITS:
+                break
+        if best is not None:
+            return best[1]
+        if hit is None:
+            return NoWay("does not reach all of the way with the gripper pointing down")
+        return NoWay(f"would touch {hit} on the way")
 
     def plan_to_joints(self, start: Joints, end: Joints) -> JointPath:
         """The straight way in joint space."""

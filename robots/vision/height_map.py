@@ -24,26 +24,17 @@ class HeightMap:
     """Heights in the base frame, calibrated by the table that the picture shows.
 
     `height_m` (h, w) is NaN where there is no depth and far above everything where the robot's
-    own arm is. `noise_m` is the standard deviation that the table's heights have. `table_px` is
+    own arm is. `drop_m` (h, w) is how much height a pixel of a vertical side that faces the camera
+    spans. `noise_m` is the standard deviation that the table's heights have. `table_px` is
     where the table itself is seen.
     """
 
     image: CameraImage
     height_m: Heights
+    drop_m: Heights
     noise_m: float
     table_px: NDArray[np.bool_]
     table_z: float
-
-    @property
-    def drop_m(self) -> Heights:
-        """How much height a pixel of a vertical side that faces the camera spans."""
-        rays = ground_rays(self.image)
-        level = np.hypot(rays[0], rays[1])
-        depth = self.image.pose[2, 3] - self.table_z
-        drop: Heights = (depth / -rays[2] / self.image.focal_px / np.maximum(level, 0.1)).astype(
-            np.float32
-        )
-        return drop
 
 
 def ground_rays(image: CameraImage) -> NDArray[np.float64]:
@@ -87,10 +78,17 @@ def measure_heights(
     return HeightMap(
         image,
         height.astype(np.float32),
+        _drop_m(image, rays, table.height),
         noise_m,
         np.asarray(near & (np.abs(height - table.height) < 3 * noise_m + 1e-4)),
         table.height,
     )
+
+
+def _drop_m(image: CameraImage, rays: NDArray[np.float64], table_z: float) -> Heights:
+    depth_m = (table_z - image.pose[2, 3]) / rays[2]
+    level = np.maximum(np.hypot(rays[0], rays[1]), 0.1)
+    return np.asarray(depth_m / image.focal_px / level, np.float32)
 
 
 def _fit_plane(

@@ -24,6 +24,11 @@ _STEP_SIGMAS = 4.0
 _SMALLEST_STEP_M = 0.002
 _FEWEST_PX = 5
 _GROWTH_PX = 3
+_TABLE_STRIDE = 11
+"""One in so many pixels of the table says well enough what its colour is."""
+_LONGEST_PX = 200
+_LOWER_SHARE = 0.3
+"""Between pieces of one surface at most this share of what is higher may be lower."""
 _LIKE = 14.0
 """Colours differ that are farther apart than this many grey levels and the noise's share."""
 _NOISE_SHARE = 3.0
@@ -48,12 +53,14 @@ class Surface:
 class Surfaces:
     """All level surfaces of a picture; `labels` (h, w) has each one's number, 0 elsewhere.
 
-    `tolerance_m`: what is nearer to a surface's height than this belongs to it.
+    `tolerance_m`: what is nearer to a surface's height than this belongs to it. `alike`: colours
+    (grey levels) that are nearer to each other are the same.
     """
 
     all: Sequence[Surface]
     labels: Labels
     tolerance_m: float
+    alike: float
     heights: HeightMap
     table_color: NDArray[np.float64]
 
@@ -61,43 +68,122 @@ class Surfaces:
 def find_surfaces(seen: HeightMap) -> Surfaces:
     """All level surfaces above the table."""
     calm = np.asarray(cv2.medianBlur(seen.image.bgr, 3), np.uint8)
-    noise = _picture_noise(seen.image.bgr)
-    alike = _LIKE + _NOISE_SHARE * noise
-    drop_m = seen.drop_m
-    lowest = seen.table_z + max(_LOWEST_M, _STEP_SIGMAS * seen.noise_m)
-    smooth = _smooth_if_level(seen.height_m, drop_m, np.float32(lowest))
+    alike = _LIKE + _NOISE_SHARE * _picture_noise(seen.image.bgr)
     step_m = max(_SMALLEST_STEP_M, _STEP_SIGMAS * 0.5 * seen.noise_m)
-    labels, count = _join(smooth, calm, np.float32(step_m), np.float32(alike))
     tolerance_m = max(0.004, _STEP_SIGMAS * seen.noise_m)
-    table = seen.image.bgr[seen.table_px]
+    table = seen.image.bgr[seen.table_px][::_TABLE_STRIDE]
     table_color = np.median(table, axis=0) if len(table) else np.full(3, np.nan)
-    tops, colors, sizes = _describe(labels, count, smooth, calm)
-    kept = _kept(sizes, tops)
-    labels = kept[labels]
-    wanted = np.flatnonzero(kept[1:]) + 1
-    order = kept[wanted] - 1
-    tops_kept, colors_kept = np.empty(len(wanted)), np.empty((len(wanted), 3))
-    tops_kept[order], colors_kept[order] = tops[wanted], colors[wanted]
-    distinct = np.abs(colors_kept - table_color).max(axis=1) > alike
-    cores = np.bincount(labels.ravel(), minlength=len(wanted) + 1)
+
+    lowest = seen.table_z + max(_LOWEST_M, _STEP_SIGMAS * seen.noise_m)
+    smooth = _smooth_if_level(seen.height_m, seen.drop_m, np.float32(lowest))
+    labels, count = _join(smooth, calm, np.float32(step_m), np.float32(alike))
+    labels, cores = _without_specks(labels, count, smooth, calm)
+    distinct = np.abs(cores.colors - table_color).max(axis=1) > alike
     for _ in range(_GROWTH_PX):
         labels = _grow(
             labels,
             seen.height_m,
             calm,
-            tops_kept,
-            colors_kept,
+            cores.tops,
+            cores.colors,
             distinct,
             np.float32(tolerance_m),
             np.float32(alike),
         )
-    surfaces = [
-        Surface(number + 1, us, vs, float(tops_kept[number]), int(cores[number + 1]), color)
-        for number, ((us, vs), color) in enumerate(
-            zip(_pixels_by_label(labels, len(wanted)), colors_kept, strict=True)
+    pixels = _pixels_by_label(labels, len(cores.tops))
+    labels, groups = _join_pieces(labels, pixels, cores, seen, step_m, tolerance_m, alike)
+    surfaces = _surfaces(groups, pixels, cores)
+    return Surfaces(surfaces, labels, tolerance_m, alike, seen, table_color)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Cores:
+    """Height, colour and size in pixels of each label, the first that of label 1."""
+
+    tops: NDArray[np.float64]
+    colors: NDArray[np.float64]
+    sizes: NDArray[np.int64]
+
+
+def _without_specks(
+    labels: Labels, count: int, smooth: Heights, calm: NDArray[np.uint8]
+) -> tuple[Labels, _Cores]:
+    """Labels numbered anew without those of too few pixels."""
+    tops, colors, sizes = _describe(labels, count, smooth, calm)
+    is_kept = sizes >= _FEWEST_PX
+    is_kept[0] = False
+    numbers = np.where(is_kept, np.cumsum(is_kept), 0).astype(np.int32)
+    return numbers[labels], _Cores(tops[is_kept], colors[is_kept], sizes[is_kept])
+
+
+def _join_pieces(
+    labels: Labels,
+    pixels: Sequence[tuple[Pixels, Pixels]],
+    cores: _Cores,
+    seen: HeightMap,
+    step_m: float,
+    tolerance_m: float,
+    alike: float,
+) -> tuple[Labels, list[list[int]]]:
+    """Pieces of one surface that something in front of it has cut, and their common label.
+
+    They are as high and of one colour, and nothing lower is seen between them.
+    """
+    count = len(cores.tops)
+    group = list(range(count))
+    for one in range(count):
+        for other in range(one + 1, count):
+            if abs(cores.tops[one] - cores.tops[other]) > step_m or group[one] == group[other]:
+                continue
+            if np.abs(cores.colors[one] - cores.colors[other]).max() > alike:
+                continue
+            if _nothing_between(pixels[one], pixels[other], cores.tops[one], seen, tolerance_m):
+                old, new = sorted((group[one], group[other]), reverse=True)
+                group = [new if each == old else each for each in group]
+    numbers = np.append(0, np.array(group, np.int64) + 1).astype(np.int32)
+    groups = [[each for each in range(count) if group[each] == key] for key in sorted(set(group))]
+    return numbers[labels], groups
+
+
+def _nothing_between(
+    one: tuple[Pixels, Pixels],
+    other: tuple[Pixels, Pixels],
+    top_z: float,
+    seen: HeightMap,
+    tolerance_m: float,
+) -> bool:
+    us, vs = np.append(one[0], other[0]), np.append(one[1], other[1])
+    left, top = int(us.min()), int(vs.min())
+    if max(int(us.max()) - left, int(vs.max()) - top) > _LONGEST_PX:
+        return False
+    canvas = np.zeros((int(vs.max()) - top + 1, int(us.max()) - left + 1), np.uint8)
+    hull = cv2.convexHull(np.stack([us - left, vs - top], axis=1).astype(np.int32))
+    cv2.fillConvexPoly(canvas, hull, 1)
+    canvas[vs - top, us - left] = 0
+    between = seen.height_m[top : top + canvas.shape[0], left : left + canvas.shape[1]][canvas > 0]
+    with np.errstate(invalid="ignore"):
+        higher = int(np.count_nonzero(between > top_z + tolerance_m))
+        lower = int(np.count_nonzero(between < top_z - tolerance_m))
+    return higher > 0 and lower <= _LOWER_SHARE * higher
+
+
+def _surfaces(
+    groups: Sequence[Sequence[int]], pixels: Sequence[tuple[Pixels, Pixels]], cores: _Cores
+) -> list[Surface]:
+    found = []
+    for group in groups:
+        sizes = cores.sizes[group].astype(np.float64)
+        found.append(
+            Surface(
+                group[0] + 1,
+                np.concatenate([pixels[each][0] for each in group]),
+                np.concatenate([pixels[each][1] for each in group]),
+                float(np.average(cores.tops[group], weights=sizes)),
+                int(sizes.sum()),
+                np.asarray(np.average(cores.colors[group], axis=0, weights=sizes), np.float64),
+            )
         )
-    ]
-    return Surfaces(surfaces, labels, tolerance_m, seen, table_color)
+    return found
 
 
 def _picture_noise(bgr: NDArray[np.uint8]) -> float:
@@ -109,13 +195,6 @@ def _picture_noise(bgr: NDArray[np.uint8]) -> float:
     kernel = np.array([[1, -2, 1], [-2, 4, -2], [1, -2, 1]], np.float32)
     answer = np.abs(np.asarray(cv2.filter2D(bgr[::2, :, 1].astype(np.float32), -1, kernel)))
     return float(np.median(answer)) * 1.4826 / 6.0
-
-
-def _kept(sizes: NDArray[np.int64], tops: NDArray[np.float64]) -> Labels:
-    """New numbers for the labels that are surfaces, 0 for those that are specks."""
-    is_kept = (sizes >= _FEWEST_PX) & np.isfinite(tops)
-    is_kept[0] = False
-    return np.where(is_kept, np.cumsum(is_kept), 0).astype(np.int32)
 
 
 def _pixels_by_label(labels: Labels, count: int) -> list[tuple[Pixels, Pixels]]:

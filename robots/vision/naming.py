@@ -13,10 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
-from robots.catalogue import Part
+from robots.catalogue import Part, Size
 from robots.vision.color_model import ColorModel, Segmentation, tint_sigma
 from robots.vision.level_surfaces import Surface, Surfaces
 from robots.vision.rectangle import Fitted, Rectangle
+
+Costs = NDArray[np.float64]
 
 UNKNOWN_COST = 25.0
 _NEVER = 1e6
@@ -79,11 +81,13 @@ class Namer:
         self._parts = list(parts.values())
         self._model = model
         self._ways = [way for part in self._parts for way in _ways_of(part)]
-        self._knobs = {(part.knob, part.size[2]) for part in self._parts if part.knob is not None}
+        without = (math.nan,) * 3
+        self._tints = np.array([model.tints.get(part.name, without) for part in self._parts])
         self._extents = np.array([way.extents for way in self._ways])
         self._heights = np.array([way.height_m for way in self._ways])
         self._base = np.array([way.cost for way in self._ways])
         self._knobbed = np.array([way.with_knob for way in self._ways])
+        self._knob_extents = np.array([(way.part.knob or way.part.size)[:2] for way in self._ways])
         owners = {part.name: index for index, part in enumerate(self._parts)}
         self._owner = np.array([owners[way.part.name] for way in self._ways])
 
@@ -112,11 +116,11 @@ class Namer:
             for index in range(len(self._parts)):
                 ways = np.flatnonzero(self._owner == index)
                 chosen[index] = ways[by_way[ways].argmin()]
-            geometry = by_way[chosen]
-            costs[row, : len(self._parts)] = geometry
-            for index in np.flatnonzero(geometry < UNKNOWN_COST).tolist():
+            costs[row, : len(self._parts)] = by_way[chosen]
+            costs[row, : len(self._parts)] += self._tint_costs(top.surface, surfaces.table_color)
+            for index in np.flatnonzero(costs[row, : len(self._parts)] < UNKNOWN_COST).tolist():
                 name = self._parts[index].name
-                costs[row, index] += self._color_cost(name, top.surface, surfaces, segmentation)
+                costs[row, index] += self._hue_cost(name, top.surface, segmentation)
                 costs[row, index] += _tracking_cost(top, last_seen.get(name))
             costs[row, len(self._parts) + row] = UNKNOWN_COST
             choices.append((chosen, swapped))
@@ -156,31 +160,38 @@ class Namer:
         ]
 
     def _is_knob(self, knob: Top, plate: Top, surfaces: Surfaces) -> bool:
-        rise = knob.surface.top_z - plate.surface.top_z
+        """Whether one surface stands on another as some part's knob stands on its plate."""
         on, under = knob.fitted.rectangle, plate.fitted.rectangle
-        for size, _ in self._knobs:
-            if abs(rise - size[2]) > surfaces.tolerance_m:
-                continue
-            off = np.abs(np.sort(on.extents) - np.sort(size[:2]))
-            if off.max() > _KNOB_WITHIN_M:
-                continue
-            whole = all(plate.fitted.whole)
-            near_m = _KNOB_WITHIN_M if whole else max(under.extents)
-            if math.hypot(on.x - under.x, on.y - under.y) <= near_m:
-                return True
-        return False
+        near_m = _KNOB_WITHIN_M if all(plate.fitted.whole) else max(under.extents)
+        if math.hypot(on.x - under.x, on.y - under.y) > near_m:
+            return False
+        if np.abs(knob.surface.color - plate.surface.color).max() > surfaces.alike:
+            return False
+        rise_m = knob.surface.top_z - plate.surface.top_z
+        return any(
+            abs(rise_m - part.knob[2]) <= surfaces.tolerance_m
+            and _can_measure(knob, part.knob)
+            and _can_measure(plate, part.size)
+            for part in self._parts
+            if part.knob is not None
+        )
 
     def _geometry_costs(
         self, top: Top, supports: NDArray[np.float64], drop_m: float
     ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
         sigma_m = _EXTENT_SIGMA_PX * drop_m * 0.6 + 0.0003
         seen, whole = np.array(top.fitted.rectangle.extents), np.array(top.fitted.whole)
+        knobs = self._knob_extents if top.knob is not None else None
         costs = []
         for order in ([0, 1], [1, 0]):
             off = (seen[None] - self._extents[:, order]) / sigma_m
             # Where an end is hidden the part may be longer than what is seen of it.
             off = np.where(whole[None] | (off > 0), off, 0.0)
-            costs.append(0.5 * (off**2).sum(axis=1))
+            cost = 0.5 * (off**2).sum(axis=1)
+            if knobs is not None:
+                off = (_knob_along(top) - knobs[:, order]) / (2 * sigma_m)
+                cost += np.where(self._knobbed, 0.5 * (off**2).sum(axis=1), 0.0)
+            costs.append(cost)
         straight, crossed = costs
         bottoms = top.surface.top_z - self._heights
         gap = np.abs(bottoms[:, None] - supports[None]).min(axis=1) / _HEIGHT_SIGMA_M
@@ -191,21 +202,44 @@ class Namer:
         total = np.minimum(straight, crossed) + height + knob + self._base
         return total, crossed < straight
 
-    def _color_cost(
-        self, name: str, surface: Surface, surfaces: Surfaces, segmentation: Segmentation
-    ) -> float:
-        cost = 0.0
-        if self._model.has_hue(name):
-            share = segmentation.share(name, surface.us, surface.vs)
-            cost += min(-math.log(share + 0.02), _MOST_SHARE_COST)
-        tint = self._model.tints.get(name)
-        reference = surfaces.table_color
-        if tint is None or not np.isfinite(reference).all():
-            return cost
+    def _tint_costs(self, surface: Surface, reference: NDArray[np.float64]) -> Costs:
+        """How unlike a surface's colour is each part's, as seen over the table's."""
         usable = (surface.color < _OVEREXPOSED) & (reference < _OVEREXPOSED)
+        if not np.isfinite(reference).all() or not usable.any():
+            return np.zeros(len(self._parts))
         seen = surface.color / np.maximum(reference, 1.0)
-        off = ((seen - tint) / tint_sigma(seen))[usable]
-        return cost + min(0.5 * float((off**2).sum()), _MOST_COLOR_COST)
+        off = ((seen - self._tints) / tint_sigma(seen))[:, usable]
+        # A part that was learned without a table to compare with has no tint.
+        costs = np.minimum(0.5 * (off**2).sum(axis=1), _MOST_COLOR_COST)
+        return np.asarray(np.nan_to_num(costs, nan=0.0))
+
+    def _hue_cost(self, name: str, surface: Surface, segmentation: Segmentation) -> float:
+        if not self._model.has_hue(name):
+            return 0.0
+        share = segmentation.share(name, surface.us, surface.vs)
+        return min(-math.log(share + 0.02), _MOST_SHARE_COST)
+
+
+def _can_measure(top: Top, size: Size) -> bool:
+    """Whether a surface can be the top of a box of some size, as far as its ends are seen."""
+    for straight in (True, False):
+        extents = size[:2] if straight else size[1::-1]
+        pairs = zip(top.fitted.rectangle.extents, extents, top.fitted.whole, strict=True)
+        if all(
+            seen <= side + _KNOB_WITHIN_M and (not whole or seen >= side - _KNOB_WITHIN_M)
+            for seen, side, whole in pairs
+        ):
+            return True
+    return False
+
+
+def _knob_along(top: Top) -> NDArray[np.float64]:
+    """The extents of a plate's knob along the plate's axes."""
+    if top.knob is None:
+        raise ValueError("expected a top with a knob")
+    knob, plate = top.knob.fitted.rectangle, top.fitted.rectangle
+    crossed = abs(math.sin(knob.yaw - plate.yaw)) > math.sqrt(0.5)
+    return np.array(knob.extents[::-1] if crossed else knob.extents)
 
 
 def _ways_of(part: Part) -> list[_Way]:

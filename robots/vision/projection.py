@@ -58,7 +58,11 @@ def pixels_covered(
     image: CameraImage, center: tuple[float, float, float], size: tuple[float, float]
 ) -> float:
     """How many pixels a level rectangle of `size` metres around `center` covers."""
-    to_eye = image.pose[:3, 3] - np.array(center)
-    distance_m = float(np.linalg.norm(to_eye))
-    slant = abs(float(to_eye[2])) / distance_m
-    return size[0] * size[1] * slant * (image.focal_px / distance_m) ** 2
+    return size[0] * size[1] / pixel_area_m2(image, center)
+
+
+def pixel_area_m2(image: CameraImage, at: tuple[float, float, float]) -> float:
+    """The area of a level surface that a pixel covers there."""
+    from_eye = np.array(at) - image.pose[:3, 3]
+    depth_m = float(from_eye @ image.pose[:3, 2])
+    return depth_m**3 / (image.focal_px**2 * abs(float(from_eye[2])))

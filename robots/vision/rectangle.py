@@ -15,13 +15,19 @@ from numpy.typing import NDArray
 from maps.compiled import compiled
 from robots.body import CameraImage
 from robots.vision.level_surfaces import Surface, Surfaces
+from robots.vision.projection import pixel_area_m2
 
 Array = NDArray[np.float64]
 
 _AROUND_PX = 5
+_DEEP = np.ones((25, 25), np.uint8)
 _COARSE_TO_FINE = (3.0, 1.5, 1.0)
 """Widths of the rim in pixels: a wide one first draws the rectangle near."""
 _ITERATIONS = 8
+_SPLINTER = 0.3
+"""What is as high as a surface and smaller than this share of it may be a splinter of its rim."""
+_SAME_HUE = 0.25
+"""A surface in another shade has all channels changed by the same factor, so far."""
 _SEEN_SIDE = 0.5
 """A side is seen if just outside more than this share of it nothing hides the view."""
 
@@ -100,13 +106,17 @@ def gather(
         inside = chosen
     with np.errstate(invalid="ignore"):
         low = height < surface.top_z - surfaces.tolerance_m
-    other = (labels > 0) & ~inside
-    unlike = np.isnan(height) & (
-        np.abs(image.bgr[patch].astype(np.float64) - surface.color).max(axis=2) > 40.0
-    )
+    splinters = [each.label for each in surfaces.all if _is_splinter(each, surface, surfaces)]
+    other = (labels > 0) & ~inside & ~np.isin(labels, splinters)
+    # Without depth only the table's own colour says that nothing is in front.
+    off = np.abs(image.bgr[patch].astype(np.float64) - surfaces.table_color).max(axis=2)
+    distinct = np.abs(surface.color - surfaces.table_color).max() > 2 * surfaces.alike
+    table = np.isnan(height) & (off < surfaces.alike) & distinct & ~inside
     with np.errstate(invalid="ignore"):
         in_front = height > surface.top_z + surfaces.tolerance_m
-    weight = (inside | low | other | unlike) & ~in_front
+    weight = (inside | low | other | table) & ~in_front
+    # Deep inside nothing changes, however the rectangle is moved to fit.
+    weight &= np.asarray(cv2.erode(inside.astype(np.uint8), _DEEP)) == 0
     vs, us = np.mgrid[
         patch[0].start : patch[0].start + height.shape[0],
         patch[1].start : patch[1].start + height.shape[1],
@@ -122,8 +132,20 @@ def gather(
         weight.ravel().astype(np.float64),
         to_eye[:2] * (tolerance / to_eye[2]),
         pixel_m,
-        pixel_m**2 * float(np.linalg.norm(to_eye) / to_eye[2]),
+        pixel_area_m2(image, (float(middle[0]), float(middle[1]), surface.top_z)),
     )
+
+
+def _is_splinter(other: Surface, surface: Surface, surfaces: Surfaces) -> bool:
+    """Whether what is as high as a surface may be a piece of its rim, or of its side just below.
+
+    Such a piece is small, or smaller and of the same hue in another shade.
+    """
+    if other is surface or abs(other.top_z - surface.top_z) > surfaces.tolerance_m:
+        return False
+    shades = (other.color + 1.0) / (surface.color + 1.0)
+    same_hue = np.ptp(shades) < _SAME_HUE * shades.mean()
+    return bool(other.core_px < (1.0 if same_hue else _SPLINTER) * surface.core_px)
 
 
 def _on_plane(
@@ -159,10 +181,11 @@ def fit_sized(evidence: Evidence, start: Rectangle) -> Fitted:
 
 def _fit(evidence: Evidence, start: Rectangle, *, sized: bool) -> Fitted:
     given = np.array([start.x, start.y, start.yaw, *start.extents])
+    telling = evidence.weight > 0
     found, misfit = _descend(
-        evidence.points,
-        evidence.inside,
-        evidence.weight,
+        evidence.points[telling],
+        evidence.inside[telling],
+        evidence.weight[telling],
         evidence.rim,
         given,
         3 if sized else 5,

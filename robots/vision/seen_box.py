@@ -15,7 +15,8 @@ class SeenBox:
 
     (x, y) is its centre, `yaw` the direction of its own x axis, `size` its length along that,
     its width and its height above `bottom_z`. `name` is the catalogue's part that it was taken
-    for, None for something unknown. `complete` is False where part of its top is not seen.
+    for, None for something unknown; a plate with a knob is two boxes of one name. `complete` is
+    False where part of its top is not seen.
     """
 
     x: float

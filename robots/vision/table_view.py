@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
@@ -19,7 +19,7 @@ from robots.vision.level_surfaces import Pixels, Surface, Surfaces, find_surface
 from robots.vision.naming import Match, Namer, Top
 from robots.vision.projection import Points, unproject
 from robots.vision.rectangle import Fitted, Rectangle, fit_any, fit_sized, gather
-from robots.vision.seen_box import SeenBox
+from robots.vision.seen_box import SeenBox, Size
 from tasks.scene import Table
 
 _COMPLETE_SHARE = 0.8
@@ -65,16 +65,19 @@ def view_table(
     tops = [Top(each, fit_any(gather(each, surfaces))) for each in surfaces.all]
     known = {name: part for name, part in parts.items() if name in model.names}
     matches, unknown = Namer(known, model).name(tops, surfaces, model.segment(image.bgr), last_seen)
-    sightings, boxes = {}, []
+    sightings: dict[str, HeadSighting] = {}
+    boxes: list[SeenBox] = []
     for match in matches:
         fitted = _fit_match(match, surfaces)
-        sighting = _sighting(match, fitted, image)
+        sighting = _sighting(match, _centred_by_knob(match, fitted), image)
         sightings[match.part.name] = sighting
-        boxes.append(_box(match, sighting))
-    for top in unknown:
-        if not any(_is_of(top, box, surfaces.tolerance_m) for box in boxes[: len(matches)]):
-            boxes.append(_unknown_box(top, table.height))
-    return TableView(heights, sightings, boxes)
+        boxes += _boxes(match, sighting)
+    strange = [
+        _unknown_box(top, table.height)
+        for top in unknown
+        if not any(_is_of(top, box, surfaces.tolerance_m) for box in boxes)
+    ]
+    return TableView(heights, sightings, [*boxes, *strange])
 
 
 def _fit_match(match: Match, surfaces: Surfaces) -> Fitted:
@@ -91,6 +94,15 @@ def _fit_match(match: Match, surfaces: Surfaces) -> Fitted:
     x, y = at.x + cos * shifts[0] - sin * shifts[1], at.y + sin * shifts[0] + cos * shifts[1]
     start = Rectangle(x, y, at.yaw, match.extents)
     return fit_sized(gather(match.top.surface, surfaces), start)
+
+
+def _centred_by_knob(match: Match, fitted: Fitted) -> Fitted:
+    """A plate of which an end is hidden is where its knob is."""
+    knob = match.top.knob
+    if knob is None or all(fitted.whole) or not all(knob.fitted.whole):
+        return fitted
+    at = replace(fitted.rectangle, x=knob.fitted.rectangle.x, y=knob.fitted.rectangle.y)
+    return replace(fitted, rectangle=at)
 
 
 def _sighting(match: Match, fitted: Fitted, image: CameraImage) -> HeadSighting:
@@ -134,16 +146,20 @@ def _corners(at: Rectangle, extents: tuple[float, float]) -> NDArray[np.float64]
     return SeenBox(at.x, at.y, at.yaw, (*extents, 0.0), 0.0, None, complete=True).corners()
 
 
-def _box(match: Match, sighting: HeadSighting) -> SeenBox:
+def _boxes(match: Match, sighting: HeadSighting) -> list[SeenBox]:
+    """The part's box, and on a plate its knob's: beside that there is room over the plate."""
     part = match.part
-    if match.upright:
-        size, bottom_z = (part.size[0], part.size[1], part.height), sighting.z
-    else:
+    if not match.upright:
         size = (*match.extents, match.height_m)
-        bottom_z = match.top.surface.top_z - match.height_m
-    return SeenBox(
-        sighting.x, sighting.y, sighting.yaw, size, bottom_z, part.name, sighting.complete
-    )
+        return [_named(match, sighting, size, match.top.surface.top_z - match.height_m)]
+    boxes = [_named(match, sighting, part.size, sighting.z)]
+    if part.knob is not None:
+        boxes.append(_named(match, sighting, part.knob, sighting.z + part.size[2]))
+    return boxes
+
+
+def _named(match: Match, at: HeadSighting, size: Size, bottom_z: float) -> SeenBox:
+    return SeenBox(at.x, at.y, at.yaw, size, bottom_z, match.part.name, at.complete)
 
 
 def _unknown_box(top: Top, table_z: float) -> SeenBox:

@@ -79,7 +79,25 @@ class MailRequest:
     question: str
     yes_effect: str
     no_effect: str
+    timeout_effect: str = ""
     answer_within_s: float | None = None
+    console_url: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class MailNotice:
+    """What an operator is told about an issue that may be a false alarm."""
+
+    run: UUID
+    dialogue: UUID
+    tree: str
+    robot: str
+    issue: str
+    object: str | None
+    node: str
+    name: str
+    times: int
+    explanation: str
     console_url: str | None = None
 
 
@@ -98,18 +116,19 @@ class Mailer:
             trim_blocks=True,
             autoescape=False,
         )
-        self._template = environment.get_template("mail_request.txt.j2")
+        self._request = environment.get_template("mail_request.txt.j2")
+        self._notice = environment.get_template("mail_notice.txt.j2")
 
     async def send(
-        self, request: MailRequest, to: Sequence[str], written: datetime
+        self, mail: MailRequest | MailNotice, to: Sequence[str], written: datetime
     ) -> tuple[str, ...]:
-        """Send a request for help and return the addresses that the server refused.
+        """Send a request for help, or a notice; returns the addresses that the server refused.
 
         Raises `MailError` when nobody could be written to. A mail that is sent again for the same
-        prompt has the same Message-ID.
+        prompt (or suspicion) has the same Message-ID.
         """
         settings = self._settings
-        message = self.compose(request, to, written)
+        message = self.compose(mail, to, written)
         try:
             refused, _ = await aiosmtplib.send(
                 message,
@@ -129,18 +148,27 @@ class Mailer:
             ) from error
         return tuple(refused)
 
-    def compose(self, request: MailRequest, to: Sequence[str], written: datetime) -> EmailMessage:
+    def compose(
+        self, mail: MailRequest | MailNotice, to: Sequence[str], written: datetime
+    ) -> EmailMessage:
         """The filled-in mail."""
+        about = f"{mail.issue}, {mail.object}" if mail.object else mail.issue
+        match mail:
+            case MailRequest():
+                subject, of = f"{mail.robot} asks for help ({about})", str(mail.prompt)
+                text = self._request.render(request=mail)
+            case MailNotice():
+                subject, of = f"{mail.robot} may be wrong ({about})", f"{mail.dialogue}.suspected"
+                text = self._notice.render(notice=mail)
         message = EmailMessage()
         message["From"] = self._settings.sender
         message["To"] = ", ".join(to)
         message["Date"] = format_datetime(written)
-        message["Message-ID"] = f"<{request.prompt}@{self._settings.sender.rpartition('@')[2]}>"
-        about = f"{request.issue}, {request.object}" if request.object else request.issue
-        message["Subject"] = _one_line(f"{request.robot} asks for help ({about})")
+        message["Message-ID"] = f"<{of}@{self._settings.sender.rpartition('@')[2]}>"
+        message["Subject"] = _one_line(subject)
         # Mail programs do not answer such mails with "I am on holiday".
         message["Auto-Submitted"] = "auto-generated"
-        message.set_content(self._template.render(request=request))
+        message.set_content(text)
         return message
 
 

@@ -10,7 +10,9 @@ from uuid import UUID
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
 
-from dialogue.script import CloseReason, Help
+from dialogue.evidence import Change
+from dialogue.outlook import Outlook
+from dialogue.script import CloseReason, Expectation, Help
 from robots.link.messages import Detection
 from tasks.intervention import Intervention
 from tasks.resolution import Resolution
@@ -105,7 +107,11 @@ class StepStarted(NodeEvent):
 
 
 class IssueRaised(NodeEvent):
-    """A monitor detected a fault. `picture` names the image at `/api/pictures/{picture}`."""
+    """A monitor detected a fault. `picture` names the image at `/api/pictures/{picture}`.
+
+    `last_seen`: where the last look before it saw the object (base frame, metres). `outlook`: which
+    attempt this is, of how many, and what follows if it fails.
+    """
 
     type: Literal["issue_raised"] = "issue_raised"
     robot: str
@@ -117,6 +123,8 @@ class IssueRaised(NodeEvent):
     interrupts: bool
     detection: Detection | None = None
     picture: UUID | None = None
+    last_seen: tuple[float, float, float] | None = None
+    outlook: Outlook | None = None
 
 
 class ClipPicture(EventModel):
@@ -156,7 +164,8 @@ class Prompt(DialogueEvent):
     """The robot says something, or asks a yes/no question.
 
     `prompt` stays the same when a question is repeated; `version` counts up. `to` is the helper
-    that it is meant for first, None for everyone. `deadline` is in the run's clock.
+    that it is meant for first, None for everyone. `deadline` is in the run's clock, and
+    `timeout_effect` says what follows if nobody answers until then.
     """
 
     type: Literal["prompt"] = "prompt"
@@ -166,7 +175,20 @@ class Prompt(DialogueEvent):
     text: str
     answers: list[AnswerOption] = []
     deadline: float | None = None
+    timeout_effect: str = ""
     to: str | None = None
+
+
+class FirstLook(DialogueEvent):
+    """What the robot saw first after it had put its question: later looks are compared with it.
+
+    `fulfilled`: what was so already. `position`: where the object was seen (base frame, metres),
+    None if it was not.
+    """
+
+    type: Literal["first_look"] = "first_look"
+    fulfilled: list[Expectation]
+    position: tuple[float, float, float] | None
 
 
 class Claimed(DialogueEvent):
@@ -224,10 +246,11 @@ class HelpAwaited(DialogueEvent):
 
 
 class HelpVerified(DialogueEvent):
-    """The robot saw that the help really happened."""
+    """The robot saw what was promised. `change`: what it saw to change since it asked."""
 
     type: Literal["help_verified"] = "help_verified"
     help: Help
+    change: Change = Change.UNKNOWN
 
 
 class HelpNotSeen(DialogueEvent):
@@ -238,7 +261,10 @@ class HelpNotSeen(DialogueEvent):
 
 
 class Resolved(DialogueEvent):
-    """The issue is resolved, and so what becomes of the leaf."""
+    """The issue is resolved, and so what becomes of the leaf.
+
+    `helped`: a person was seen to help, or heard to where both work at once.
+    """
 
     type: Literal["resolved"] = "resolved"
     resolution: Resolution
@@ -283,11 +309,11 @@ class InterventionDone(Event):
 
 
 class NodeDone(NodeEvent):
-    """A leaf is done: `by` the robot, a human, or both."""
+    """A leaf is done: `by` the robot, a human, or both; `found`: its result was there already."""
 
     type: Literal["node_done"] = "node_done"
     robot: str | None
-    by: Literal["robot", "human", "both"]
+    by: Literal["robot", "human", "both", "found"]
 
 
 class NodeReset(NodeEvent):
@@ -333,6 +359,22 @@ class NodeAbandoned(NodeEvent):
     type: Literal["node_abandoned"] = "node_abandoned"
     leaf: str
     reason: str
+
+
+class SuspectedFalseAlarm(NodeEvent):
+    """The same issue came again with nothing seen to change: the robot may be wrong about it.
+
+    `times`: how often it has come on end. `explanation`: what the monitor said of it last. `told`:
+    the operators who are written to.
+    """
+
+    type: Literal["suspected_false_alarm"] = "suspected_false_alarm"
+    robot: str
+    issue: str
+    object: str | None
+    times: int
+    explanation: str = ""
+    told: list[str] = []
 
 
 class RunPaused(Event):
@@ -417,6 +459,7 @@ AnyEvent = Annotated[
     | ClipRecorded
     | DialogueOpened
     | Prompt
+    | FirstLook
     | Claimed
     | Released
     | Answered
@@ -435,6 +478,7 @@ AnyEvent = Annotated[
     | NodeReturned
     | NodeUndone
     | NodeAbandoned
+    | SuspectedFalseAlarm
     | RunPaused
     | RunResumed
     | RunFinished

@@ -1,12 +1,11 @@
-"""Keeps a run's open dialogues going: answers, deadlines, escalation, and looking for the help."""
+"""Keeps a run's open dialogues going: answers, deadlines, escalation, and what looks have seen."""
 
 from collections.abc import Callable, Sequence
 from typing import Literal
 from uuid import UUID, uuid4
 
-import numpy as np
-
-from dialogue.script import Expectation, Turn
+from dialogue.outlook import Outlook
+from dialogue.script import Ask, Turn
 from server.dialogues.answers import AnswerSource
 from server.dialogues.escalation import (
     EscalationPolicy,
@@ -19,23 +18,20 @@ from server.dialogues.escalation import (
 )
 from server.errors import ConflictError, LostRaceError, NotFoundError
 from server.journal import events as ev
-from server.runtime.at_place import is_at_place
 from server.runtime.context import RunContext
 from server.runtime.dialogue_events import DialogueEvents
+from server.runtime.dialogue_looks import DialogueLooks, seen_at
+from server.runtime.outlooks import is_suspect, outlook_at, outlook_now
+from server.runtime.promises import Promises
 from server.runtime.robot_side import Purpose, RobotSide
-from server.runtime.run_state import EXPECTED, MOST_EXTENSIONS, DialogueState, rehearse
-from sim.interventions import HELPER
-from sim.person import Promise, deed
+from server.runtime.run_state import MOST_EXTENSIONS, DialogueState, rehearse
 from tasks.scenario import Person
 
 TOLERANCE_S = 1e-6
 """Two moments of the run's clock closer than this are the same."""
 
-AT_PLACE_TOLERANCE_M = 0.03
-"""An object seen this close to its place's centre counts as placed."""
-
-Request = Callable[[ev.Escalated, DialogueState], None]
-"""Sends the mail of an escalation."""
+SendMail = Callable[[ev.Escalated | ev.SuspectedFalseAlarm, DialogueState], None]
+"""Writes to the operators: about a question that nobody answered, or a suspected false alarm."""
 
 
 class DialogueDriver:
@@ -47,32 +43,40 @@ class DialogueDriver:
         answers: AnswerSource,
         policy: EscalationPolicy,
         person: Person | None,
-        send_mail: Request,
+        send_mail: SendMail,
     ) -> None:
         self._context = context
         self._answers = answers
         self._policy = policy
-        self._person = person
+        self._promises = Promises(context, person)
+        self._looks = DialogueLooks(context, self._rate)
         self._send_mail = send_mail
-        self._was_right: dict[UUID, bool] = {}
-        self._deeds_sent: set[str] = set()
 
     # --- What the run calls -------------------------------------------------------------------
 
     def robot_rebooted(self) -> None:
         """The world was rebuilt: what a person was about to do has to be asked for again."""
-        self._deeds_sent.clear()
+        self._promises.forget()
 
-    def open(self, raised: ev.IssueRaised, before: Sequence[ev.Event]) -> list[ev.Event]:
-        """The events that open a dialogue about an issue, with its first prompts."""
+    def open(self, raised: ev.IssueRaised, side: RobotSide) -> list[ev.Event]:
+        """The events that raise an issue and open a dialogue about it, with its first prompts."""
+        state, most = self._context.state, self._context.settings.max_helped_retries
+        raised = raised.model_copy(update={"last_seen": seen_at(side, raised.object)})
+        outlook = outlook_at(state, side, raised, most)
+        raised = raised.model_copy(update={"outlook": outlook})
         make = DialogueEvents(self._context.stamp, uuid4(), raised)
-        turns = rehearse(self._context.state.scripts[raised.issue], raised, ["open"])
-        return [*before, make.opened(), *self._of_turns(make, turns, "", stopped=None)]
+        turns = rehearse(state.scripts[raised.issue], raised, ["open"], outlook)
+        said = self._of_turns(make, turns, "", waits=raised.interrupts, stopped=None)
+        return [raised, make.opened(), *said]
 
     async def drive(self, dialogue: DialogueState, side: RobotSide) -> bool:
         """Do what the dialogue needs now; True if that changed the state."""
+        if await self._tell_of_suspicion(dialogue):
+            return True
         if dialogue.awaiting is not None:
-            self._watch_for_help(dialogue, dialogue.awaiting, side)
+            if side.free or side.interruptible:
+                self._promises.have_kept(dialogue, dialogue.awaiting, side)
+            self._looks.watch_for_help(dialogue, dialogue.awaiting, side)
             return False
         ask = dialogue.open_ask
         if ask is None:
@@ -88,29 +92,60 @@ class DialogueDriver:
             return True
         if side.free:
             due = min(ask.deadline, scripted[1]) if scripted else ask.deadline
-            self._let_time_pass(dialogue, side, due)
+            self._looks.let_time_pass(dialogue, side, due)
         return False
 
     def next_due(self) -> float | None:
-        """When, in the run's clock, the next answer or deadline is due."""
+        """When, in the run's clock, the next answer, look or deadline is due."""
         dues = []
         for dialogue in self._context.state.open_dialogues:
             if (ask := dialogue.open_ask) is not None and ask.deadline is not None:
                 scripted = self._scripted(dialogue, ask)
                 dues.append(min(ask.deadline, scripted[1]) if scripted else ask.deadline)
-        return min(dues, default=None)
+            if (look := self._looks.next_watch(dialogue)) is not None:
+                dues.append(look)
+        now = self._context.clock.now()
+        return min((each for each in dues if each > now), default=min(dues, default=None))
 
     async def looked(
         self, dialogue: DialogueState, side: RobotSide, purpose: Purpose, fulfilled: bool
     ) -> None:
         """Take the answer of a look that was made for a dialogue."""
-        if purpose is Purpose.BASELINE:
-            self._was_right[dialogue.id] = fulfilled
-        elif purpose is Purpose.WATCH and fulfilled and dialogue.open_ask is not None:
-            seen = self._what_was_seen(dialogue, side)
-            await self._converse(dialogue, f"put_right:{seen}", [], side)
+        if purpose is Purpose.BASELINE and dialogue.first_look is None:
+            await self._looked_first(dialogue, side, fulfilled)
+        elif purpose is Purpose.WATCH and dialogue.open_ask is not None:
+            seen = self._looks.put_right(dialogue, side, fulfilled)
+            if seen is not None:
+                await self._converse(dialogue, f"put_right:{seen.seen}:{seen.change}", [], side)
         elif purpose is Purpose.HELP and dialogue.awaiting is not None:
             await self._help_looked_for(dialogue, dialogue.awaiting, side, fulfilled)
+
+    async def _looked_first(
+        self, dialogue: DialogueState, side: RobotSide, fulfilled: bool
+    ) -> None:
+        first = self._looks.first_look(dialogue, side, fulfilled)
+        noted = self._make(dialogue).first_look(first)
+        denied = self._looks.contradicted(dialogue, first) if dialogue.open_ask else None
+        if denied is None:
+            await self._context.commit([noted])
+        else:
+            call = f"put_right:{denied.seen}:{denied.change}"
+            await self._converse(dialogue, call, [noted], side)
+
+    async def _tell_of_suspicion(self, dialogue: DialogueState) -> bool:
+        """Once per leaf, tell the operators that the robot may be wrong; True if that was now."""
+        state, raised = self._context.state, dialogue.raised
+        leaf = state.tree.index_of(raised.node)
+        if leaf in state.suspected or not is_suspect(state, raised):
+            return False
+        outlook = raised.outlook or Outlook()
+        said = "" if raised.detection is None else raised.detection.explanation
+        told = list(self._policy.operators)
+        suspected = self._make(dialogue).suspected_false_alarm(outlook.unchanged, said, told)
+        await self._context.commit([suspected])
+        if told:
+            self._send_mail(suspected, dialogue)
+        return True
 
     async def answer(
         self,
@@ -192,20 +227,53 @@ class DialogueDriver:
     async def _nobody_answered(
         self, dialogue: DialogueState, ask: ev.Prompt, side: RobotSide
     ) -> None:
+        if not dialogue.raised.interrupts:
+            await self._converse(dialogue, "silence", [], side)
+            return
         make = self._make(dialogue)
-        now = self._context.clock.now()
-        match next_rung(self._policy, ask.version):
-            case Repeat(helper=helper, answer_within_s=within_s):
-                await self._context.commit([make.repeat(ask, now + within_s, helper)])
-            case ToHelper(helper=helper, answer_within_s=within_s):
-                escalated = make.escalated("helper", helper)
-                await self._context.commit([escalated, make.repeat(ask, now + within_s, helper)])
-            case Mail(addresses=addresses, answer_within_s=within_s):
+        rung = next_rung(self._policy, ask.version)
+        if isinstance(rung, Exhausted):
+            await self._converse(dialogue, "silence", [], side)
+            return
+        again = self._ask_again(dialogue, ask, side, rung)
+        match rung:
+            case Repeat():
+                await self._context.commit([again])
+            case ToHelper(helper=helper):
+                await self._context.commit([make.escalated("helper", helper), again])
+            case Mail(addresses=addresses):
                 escalated = make.escalated("mail", ", ".join(addresses))
-                await self._context.commit([escalated, make.repeat(ask, now + within_s, ask.to)])
+                await self._context.commit([escalated, again])
                 self._send_mail(escalated, dialogue)
-            case Exhausted():
-                await self._converse(dialogue, "silence", [], side)
+
+    def _ask_again(
+        self,
+        dialogue: DialogueState,
+        ask: ev.Prompt,
+        side: RobotSide,
+        rung: Repeat | ToHelper | Mail,
+    ) -> ev.Prompt:
+        """The open question once more, worded as things are now."""
+        script = self._context.state.scripts[dialogue.raised.issue]
+        turns = dialogue.turns_after([], script, self._outlook(dialogue, side))
+        worded = next(each for each in turns if isinstance(each, Ask))
+        deadline = self._context.clock.now() + rung.answer_within_s
+        to = ask.to if isinstance(rung, Mail) else rung.helper
+        effect = f"{self._if_silent(ask.version + 1)}{worded.timeout_effect}"
+        return self._make(dialogue).repeat(ask, worded, deadline, to, effect)
+
+    def _if_silent(self, version: int) -> str:
+        """What is done before silence counts as an answer, as the beginning of a sentence."""
+        match next_rung(self._policy, version):
+            case Repeat():
+                done = "I ask again"
+            case ToHelper(helper=helper):
+                done = f"I ask {helper}"
+            case Mail():
+                done = "I write to the operators"
+            case _:
+                return ""
+        return f"{done}; if nobody answers at all: "
 
     # --- Turns --------------------------------------------------------------------------------
 
@@ -218,15 +286,17 @@ class DialogueDriver:
         helper: str = "",
     ) -> list[ev.Event]:
         """Commit a call to the conversation: the events before it, and what it says to it."""
-        turns = dialogue.turns_after(call, self._context.state.scripts[dialogue.raised.issue])
+        script = self._context.state.scripts[dialogue.raised.issue]
+        turns = dialogue.turns_after([call], script, self._outlook(dialogue, side))
         make = self._make(dialogue)
         stopped = self._why_it_cannot_go_on(dialogue, side)
-        events = self._of_turns(make, turns, helper, stopped=stopped)
+        waits = dialogue.raised.interrupts
+        events = self._of_turns(make, turns, helper, waits=waits, stopped=stopped)
         return await self._context.commit([*before, *events])
 
     def _why_it_cannot_go_on(self, dialogue: DialogueState, side: RobotSide) -> str | None:
         """Why a robot cannot go on with what it was doing when it needed help; None if it can."""
-        state, settings = self._context.state, self._context.settings
+        state = self._context.state
         leaf = state.tree.index_of(dialogue.raised.node)
         execution = state.execution_of(leaf)
         has_it = (
@@ -235,109 +305,35 @@ class DialogueDriver:
             and execution.boot == side.hello.boot
             and not side.gone_for_good
         )
-        if not has_it:
-            return "the robot had lost what it was doing"
-        if state.helped_retries[leaf] >= settings.max_helped_retries:
-            return f"it was helped {settings.max_helped_retries} times before"
-        return None
+        return None if has_it else "the robot had lost what it was doing"
+
+    def _outlook(self, dialogue: DialogueState, side: RobotSide) -> Outlook:
+        """What follows, as things are now."""
+        state, raised = self._context.state, dialogue.raised
+        begins_anew = self._why_it_cannot_go_on(dialogue, side) is not None
+        leaf, outlook = state.tree.index_of(raised.node), raised.outlook or Outlook()
+        return outlook_now(state, side, leaf, outlook, begins_anew=begins_anew)
 
     def _of_turns(
-        self, make: DialogueEvents, turns: Sequence[Turn], helper: str, *, stopped: str | None
+        self,
+        make: DialogueEvents,
+        turns: Sequence[Turn],
+        helper: str,
+        *,
+        waits: bool,
+        stopped: str | None,
     ) -> list[ev.Event]:
+        """The events of turns; only where the robot `waits` for an answer is it asked for again."""
         now, settings = self._context.clock.now(), self._context.settings
         return make.of_turns(
             turns,
             ask_deadline=now + self._policy.answer_within_s,
+            if_silent=self._if_silent(1) if waits else "",
             to=first_helper(self._policy),
             help_until=now + settings.help_window_s,
             helper=helper,
             stopped=stopped,
         )
-
-    # --- Looking ------------------------------------------------------------------------------
-
-    @property
-    def _rate(self) -> float | None:
-        """How fast the clock may run while somebody is asked."""
-        if not self._answers.live:
-            return None
-        speed = self._context.state.started.speed
-        return 1.0 if speed == "max" else min(1.0, speed)
-
-    def _let_time_pass(self, dialogue: DialogueState, side: RobotSide, due: float) -> None:
-        """Until somebody answers, see whether it is put right; let a simulated clock run."""
-        watched = dialogue.conversation.watched_for
-        wait_s = max(0.0, due - self._context.clock.now())
-        if watched:
-            expect = Expectation.IN_REACH if Expectation.IN_REACH in watched else watched[0]
-            fields = {
-                "object": dialogue.raised.object,
-                "place": dialogue.raised.place,
-                "expect": str(expect),
-            }
-            if dialogue.id not in self._was_right:
-                side.look(Purpose.BASELINE, **fields)
-                return
-            if not self._was_right[dialogue.id]:
-                side.look(Purpose.WATCH, **fields, within_s=wait_s, rate=self._rate)
-                return
-        if side.hello is not None and side.hello.simulated:
-            side.hold(self._context.clock.to_robot(due), self._rate)
-
-    def _what_was_seen(self, dialogue: DialogueState, side: RobotSide) -> Expectation:
-        """The most telling of what the script watches for and the last look saw."""
-        watched = dialogue.conversation.watched_for
-        if Expectation.AT_PLACE in watched and self._seen_at_place(dialogue, side):
-            return Expectation.AT_PLACE
-        return Expectation.IN_REACH if Expectation.IN_REACH in watched else watched[0]
-
-    def _seen_at_place(self, dialogue: DialogueState, side: RobotSide) -> bool:
-        scene = self._context.state.scene
-        place = scene.places.get(dialogue.raised.place or "")
-        seen = side.seen.get(dialogue.raised.object or "")
-        if seen is None or place is None:
-            return False
-        return is_at_place(seen, place, scene, AT_PLACE_TOLERANCE_M)
-
-    def _watch_for_help(
-        self, dialogue: DialogueState, awaiting: ev.HelpAwaited, side: RobotSide
-    ) -> None:
-        if not (side.free or side.interruptible):
-            return
-        self._have_it_done(dialogue, awaiting, side)
-        side.look(
-            Purpose.HELP,
-            object=dialogue.raised.object,
-            place=dialogue.raised.place,
-            expect=EXPECTED[awaiting.help],
-            within_s=max(0.0, awaiting.until - self._context.clock.now()),
-            rate=self._rate,
-        )
-
-    def _have_it_done(
-        self, dialogue: DialogueState, awaiting: ev.HelpAwaited, side: RobotSide
-    ) -> None:
-        """Let the simulated person keep the promise, as reliably as they are."""
-        state, command = self._context.state, f"{dialogue.id}:{dialogue.helps}"
-        known = command in self._deeds_sent or command in state.intervened
-        if self._person is None or not self._person.acts or known:
-            return
-        self._deeds_sent.add(command)
-        rng = np.random.default_rng([state.started.seed, state.helps])
-        raised = dialogue.raised
-        promise = Promise(str(awaiting.help), raised.object, raised.place)
-        finished = {
-            state.tree.leaf_definition(leaf).object
-            for leaf in state.tree.leaves
-            if state.tree.done(leaf)
-        }
-        # Nobody takes for the promised object what stands finished at its place.
-        others = [name for name in state.scene.objects if name not in {raised.object, *finished}]
-        done = deed(promise, self._person, state.scene, others, rng)
-        if done is not None:
-            promised = awaiting.until - self._context.settings.help_window_s
-            at = self._context.clock.to_robot(promised + done.delay_s)
-            side.intervene(command, done.intervention, HELPER, at)
 
     async def _help_looked_for(
         self,
@@ -348,6 +344,16 @@ class DialogueDriver:
     ) -> None:
         make = self._make(dialogue)
         if fulfilled:
-            await self._converse(dialogue, "seen", [make.help_verified(awaiting)], side)
+            change = self._looks.change_seen(dialogue, side, awaiting.help)
+            verified = make.help_verified(awaiting, change)
+            await self._converse(dialogue, f"seen:{change}", [verified], side, dialogue.helper)
         elif self._context.clock.now() + TOLERANCE_S >= awaiting.until:
             await self._converse(dialogue, "not_seen", [make.help_not_seen(awaiting)], side)
+
+    @property
+    def _rate(self) -> float | None:
+        """How fast the clock may run while somebody is asked."""
+        if not self._answers.live:
+            return None
+        speed = self._context.state.started.speed
+        return 1.0 if speed == "max" else min(1.0, speed)

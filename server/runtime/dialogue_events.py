@@ -5,6 +5,7 @@ from datetime import datetime
 from typing import Any
 from uuid import UUID, uuid4
 
+from dialogue.evidence import Change, Look
 from dialogue.script import Ask, AwaitHelp, Close, CloseReason, Say, Turn
 from server.journal import events as ev
 from tasks.resolution import Resolution
@@ -33,7 +34,7 @@ class DialogueEvents:
     def say(self, say: Say) -> ev.Prompt:
         return ev.Prompt(**self._fields(), prompt=uuid4(), version=1, kind="say", text=say.text)
 
-    def ask(self, ask: Ask, deadline: float, to: str | None) -> ev.Prompt:
+    def ask(self, ask: Ask, deadline: float, to: str | None, if_silent: str) -> ev.Prompt:
         return ev.Prompt(
             **self._fields(),
             prompt=uuid4(),
@@ -45,20 +46,16 @@ class DialogueEvents:
                 ev.AnswerOption(value="no", effect=ask.no_effect, final=ask.no_final),
             ],
             deadline=deadline,
+            timeout_effect=if_silent,
             to=to,
         )
 
-    def repeat(self, asked: ev.Prompt, deadline: float, to: str | None) -> ev.Prompt:
-        """The same question again, with the next version."""
-        return asked.model_copy(
-            update={
-                **self._stamp(),
-                "seq": 0,
-                "version": asked.version + 1,
-                "deadline": deadline,
-                "to": to,
-            }
-        )
+    def repeat(
+        self, asked: ev.Prompt, ask: Ask, deadline: float, to: str | None, if_silent: str
+    ) -> ev.Prompt:
+        """The same question again, with the next version; `ask` words it as things are now."""
+        fields = self.ask(ask, deadline, to, if_silent)
+        return fields.model_copy(update={"prompt": asked.prompt, "version": asked.version + 1})
 
     def answered(self, asked: ev.Prompt, answer: str, helper: str) -> ev.Answered:
         return ev.Answered.model_validate(
@@ -92,8 +89,25 @@ class DialogueEvents:
     def released(self, helper: str, expired: bool) -> ev.Released:
         return ev.Released(**self._fields(), helper=helper, expired=expired)
 
-    def help_verified(self, awaiting: ev.HelpAwaited) -> ev.HelpVerified:
-        return ev.HelpVerified(**self._fields(), help=awaiting.help)
+    def first_look(self, look: Look) -> ev.FirstLook:
+        return ev.FirstLook(
+            **self._fields(), fulfilled=sorted(look.fulfilled), position=look.position
+        )
+
+    def suspected_false_alarm(
+        self, times: int, explanation: str, told: list[str]
+    ) -> ev.SuspectedFalseAlarm:
+        return ev.SuspectedFalseAlarm(
+            **self._stamp(),
+            **self._node,
+            **self._issue,
+            times=times,
+            explanation=explanation,
+            told=told,
+        )
+
+    def help_verified(self, awaiting: ev.HelpAwaited, change: Change) -> ev.HelpVerified:
+        return ev.HelpVerified(**self._fields(), help=awaiting.help, change=change)
 
     def help_not_seen(self, awaiting: ev.HelpAwaited) -> ev.HelpNotSeen:
         return ev.HelpNotSeen(**self._fields(), help=awaiting.help)
@@ -106,6 +120,7 @@ class DialogueEvents:
         turns: Sequence[Turn],
         *,
         ask_deadline: float,
+        if_silent: str,
         to: str | None,
         help_until: float,
         helper: str,
@@ -113,8 +128,9 @@ class DialogueEvents:
     ) -> list[ev.Event]:
         """The events of a conversation's turns.
 
-        `stopped`: why the robot cannot go on with what it was doing, as a `robot_finish` would
-        have it; the leaf is then put back instead.
+        `if_silent` says what the run does before it takes silence for an answer. `stopped`: why the
+        robot cannot go on with what it was doing, as a `robot_finish` would have it; the leaf is
+        then put back instead.
         """
         events: list[ev.Event] = []
         for turn in turns:
@@ -122,7 +138,8 @@ class DialogueEvents:
                 case Say():
                     events.append(self.say(turn))
                 case Ask():
-                    events.append(self.ask(turn, ask_deadline, to))
+                    effect = f"{if_silent}{turn.timeout_effect}"
+                    events.append(self.ask(turn, ask_deadline, to, effect))
                 case AwaitHelp():
                     events.append(
                         ev.HelpAwaited(
@@ -130,10 +147,10 @@ class DialogueEvents:
                         )
                     )
                 case Close():
-                    events.extend(self._close(turn, stopped))
+                    events.extend(self._close(turn, helper, stopped))
         return events
 
-    def _close(self, close: Close, stopped: str | None) -> list[ev.Event]:
+    def _close(self, close: Close, helper: str, stopped: str | None) -> list[ev.Event]:
         events: list[ev.Event] = []
         if close.reason in (CloseReason.RESOLVED, CloseReason.WITHDRAWN):
             assert close.resolution is not None, "a resolved issue has a resolution"
@@ -141,21 +158,20 @@ class DialogueEvents:
                 ev.Resolved(**self._fields(), resolution=close.resolution, helped=close.helped)
             )
         events.append(ev.DialogueClosed(**self._fields(), reason=close.reason))
-        match close.resolution:
-            case Resolution.HUMAN_FINISH:
-                events.append(
-                    ev.NodeDone(
-                        **self._stamp(), **self._node, robot=self._issue["robot"], by="human"
-                    )
-                )
-            case Resolution.ROBOT_RETRY | None:
-                reason = {
-                    CloseReason.GAVE_UP: "nobody helped",
-                    CloseReason.WITHDRAWN: "it was put right",
-                }.get(close.reason, "the robot will try again")
-                events.append(self.reset(reason, failed=not close.helped))
-            case Resolution.ROBOT_FINISH | Resolution.COLLAB_FINISH if stopped is not None:
-                events.append(self.reset(stopped, failed=False))
+        match close:
+            case Close(reason=CloseReason.LEFT_OUT):
+                robot = self._issue["robot"]
+                left = ev.NodeLeftOut(**self._stamp(), **self._node, robot=robot, helper=helper)
+                events.append(left)
+            case Close(resolution=Resolution.HUMAN_FINISH):
+                robot = self._issue["robot"]
+                done = ev.NodeDone(**self._stamp(), **self._node, robot=robot, by="human")
+                events.append(done)
+            case Close(resolution=Resolution.ROBOT_RETRY):
+                events.append(self.reset(_why_put_back(close), failed=close.failed))
+            case Close(resolution=Resolution.ROBOT_FINISH | Resolution.COLLAB_FINISH):
+                if stopped is not None:
+                    events.append(self.reset(stopped, failed=False))
         return events
 
     def reset(self, reason: str, *, failed: bool) -> ev.NodeReset:
@@ -166,3 +182,13 @@ class DialogueEvents:
             reason=reason,
             failed_attempt=failed,
         )
+
+
+def _why_put_back(close: Close) -> str:
+    if close.reason is CloseReason.GAVE_UP:
+        return "nobody helped"
+    if close.helped and close.failed:
+        return "it has failed after help too often"
+    if close.helped:
+        return "somebody has helped" if close.reason is CloseReason.RESOLVED else "it was put right"
+    return "it has failed"

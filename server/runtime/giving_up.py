@@ -27,12 +27,7 @@ class GivingUp:
 
     async def give_up_what_cannot_be_done(self) -> bool:
         """Give up one leaf that cannot be done; True if there was one."""
-        too_often = (
-            *self._failed_too_often(),
-            *self._helped_too_often(),
-            *self._gone_too_often(),
-        )
-        for leaf, reason in too_often:
+        for leaf, reason in (*self._failed_too_often(), *self._gone_too_often()):
             await self._give_up(leaf, reason)
             return True
         for leaf in self._for_nobody():
@@ -44,16 +39,6 @@ class GivingUp:
         state = self._context.state
         reason = f"it failed {state.request.max_attempts} times"
         return [(leaf, reason) for leaf in sorted(state.exhausted) if state.tree.eligible(leaf)]
-
-    def _helped_too_often(self) -> list[tuple[int, str]]:
-        """What fails each time is not done for ever, however willing the helper is."""
-        state, most = self._context.state, self._context.settings.max_helped_retries
-        reason = f"it failed again after {most} helped retries"
-        return [
-            (leaf, reason)
-            for leaf, retries in sorted(state.helped_retries.items())
-            if retries > most and state.tree.eligible(leaf)
-        ]
 
     def _gone_too_often(self) -> list[tuple[int, str]]:
         """What somebody takes away each time is not placed for ever."""

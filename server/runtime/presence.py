@@ -80,7 +80,11 @@ class Presence:
                     **self._context.stamp(), robot=robot, boot=hello.boot, continues=continues
                 )
             )
-        if execution is not None and not continues and state.dialogue_of(execution.leaf) is None:
+        dialogue = None if execution is None else state.dialogue_of(execution.leaf)
+        waits = dialogue is not None and dialogue.raised.interrupts
+        if execution is not None and not continues and not waits:
+            if dialogue is not None:
+                events.append(self._dialogues.abort(dialogue))
             events.append(
                 self._reports.reset(execution.leaf, robot, "its robot was lost", failed=False)
             )

@@ -97,8 +97,13 @@ class ReportEvents:
     ) -> list[ev.Event]:
         execution = self._current(side, body.execution)
         state = self._context.state
-        if execution is None or state.dialogue_of(execution.leaf) is not None:
+        if execution is None:
             return []
+        open_one = state.dialogue_of(execution.leaf)
+        if open_one is not None and open_one.raised.interrupts:
+            return []
+        # A question that held nothing up lapses once something else is wrong.
+        lapsed = [] if open_one is None else [self._dialogues.abort(open_one)]
         picture = _decode(body.jpeg)
         picture_id = uuid4() if picture else None
         if picture_id is not None and picture is not None:
@@ -119,8 +124,8 @@ class ReportEvents:
         if body.issue not in state.scripts:
             reason = f"there is no dialogue script for an issue '{body.issue}'"
             reset = self.reset(execution.leaf, side.robot, reason, failed=True)
-            return [raised, reset] if body.interrupts else [raised]
-        return self._dialogues.open(raised, [raised])
+            return [*lapsed, raised, reset] if body.interrupts else [*lapsed, raised]
+        return [*lapsed, *self._dialogues.open(raised, side)]
 
     def _clip_taken(self, body: ClipTaken, pictures: dict[UUID, bytes]) -> list[ev.Event]:
         """The clip of an issue that opened a dialogue; of another one it is not kept."""
@@ -164,6 +169,7 @@ class ReportEvents:
         path = state.tree.path_of(execution.leaf)
         helped = any(
             each.resolved is not None
+            and each.resolved.helped
             and each.resolved.resolution is Resolution.COLLAB_FINISH
             and each.raised.execution == execution.id
             for each in state.dialogues.values()
@@ -175,7 +181,7 @@ class ReportEvents:
             **self._context.stamp(),
             **self.node(execution.leaf),
             robot=side.robot,
-            by="both" if helped else "robot",
+            by="found" if body.found_in_place else "both" if helped else "robot",
         )
         return [*events, done]
 

@@ -81,6 +81,8 @@ class RobotSide:
     """When it last judged what is finished; None if that is out of date."""
     finished: list[FinishedResult] = field(default_factory=list)
     """The results that there are to judge now."""
+    there: frozenset[FinishedResult] = frozenset()
+    """Of the results that the last look judged, those that it saw to be so."""
 
     @property
     def free(self) -> bool:
@@ -130,7 +132,7 @@ class RobotSide:
         """Look, for a purpose; `fields` are those of the `look` command."""
         self.purpose = purpose
         if purpose in JUDGING:
-            fields["finished"] = list(self.finished)
+            fields["finished"] = [*fields.get("finished", ()), *self.finished]
         self._tell(Doing.LOOKING, str(uuid4()), Look(**fields))
 
     def looked_just_now(self, now: float) -> bool:
@@ -187,6 +189,7 @@ class RobotSide:
     def take_look(self, looked: Looked, time: float) -> Purpose | None:
         """Note what a look saw; returns its purpose if it is the look that was last asked for."""
         self.seen = dict(looked.objects)
+        self.there = frozenset(looked.there)
         self.gripper = (looked.gripper.x, looked.gripper.y, looked.gripper.z)
         if looked.command != self.command or self.doing is not Doing.LOOKING:
             return None

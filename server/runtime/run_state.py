@@ -9,6 +9,8 @@ from typing import Literal
 from uuid import UUID
 
 from dialogue.conversation import Conversation
+from dialogue.evidence import Change, PutRight
+from dialogue.outlook import Outlook
 from dialogue.script import CloseReason, Expectation, Help, Script, Turn
 from server.journal import events as ev
 from server.runtime.requests import RunRequest
@@ -66,6 +68,7 @@ class DialogueState:
     ask_number: int = 0
     asked_for_s: float | None = None
     """How long the open question waited for an answer when it was put."""
+    first_look: ev.FirstLook | None = None
     extensions: dict[UUID, int] = field(default_factory=dict)
     """How often each question's deadline may still be moved, where it was before."""
     clip: list[ev.ClipPicture] = field(default_factory=list)
@@ -88,9 +91,15 @@ class DialogueState:
             return None
         return None if self.asked.prompt in self.answers else self.asked
 
-    def turns_after(self, call: str, script: Script) -> list[Turn]:
-        """What the conversation would say after one more call, without making it."""
-        return rehearse(script, self.raised, [*self.calls, call])
+    @property
+    def helper(self) -> str:
+        """Who answered last; empty if nobody has."""
+        last = next(reversed(self.answers.values()), None)
+        return "" if last is None else last.helper
+
+    def turns_after(self, calls: Sequence[str], script: Script, outlook: Outlook) -> list[Turn]:
+        """What the conversation would say to the last of more calls, without making them."""
+        return rehearse(script, self.raised, [*self.calls, *calls], outlook)
 
     def advance(self, call: str) -> None:
         """Make a call to the conversation."""
@@ -99,15 +108,20 @@ class DialogueState:
 
 
 def converse(conversation: Conversation, call: str) -> list[Turn]:
-    """Make a call by its name: `open`, `yes`, `no`, `seen`, `not_seen`, `put_right:...`, ..."""
-    verb, _, argument = call.partition(":")
-    if verb in ("yes", "no"):
-        return conversation.answer("yes" if verb == "yes" else "no")
-    if verb == "put_right":
-        return conversation.put_right(Expectation(argument))
+    """Make a call by its name: `open`, `yes`, `no`, `not_seen`, `silence`, `abort`.
+
+    Two have arguments: `seen:moved` (a change) and `put_right:at_place:moved` (what is seen, too).
+    """
+    verb, *arguments = call.split(":")
+    match verb, arguments:
+        case "yes" | "no", []:
+            return conversation.answer("yes" if verb == "yes" else "no")
+        case "seen", [change]:
+            return conversation.help_seen(Change(change))
+        case "put_right", [seen, change]:
+            return conversation.put_right(PutRight(Expectation(seen), Change(change)))
     calls = {
         "open": conversation.open,
-        "seen": conversation.help_seen,
         "not_seen": conversation.help_not_seen,
         "silence": conversation.silence,
         "abort": conversation.abort,
@@ -115,9 +129,11 @@ def converse(conversation: Conversation, call: str) -> list[Turn]:
     return calls[verb]()
 
 
-def rehearse(script: Script, raised: ev.IssueRaised, calls: Sequence[str]) -> list[Turn]:
+def rehearse(
+    script: Script, raised: ev.IssueRaised, calls: Sequence[str], outlook: Outlook
+) -> list[Turn]:
     """What a conversation says to the last of `calls`, made one after the other."""
-    conversation = Conversation(script, issue_of(raised))
+    conversation = Conversation(script, issue_of(raised), raised.outlook or Outlook(), outlook)
     turns: list[Turn] = []
     for call in calls:
         turns = converse(conversation, call)
@@ -135,6 +151,8 @@ def issue_of(raised: ev.IssueRaised) -> Issue:
         place=raised.place,
         step=raised.step,
         interrupts=raised.interrupts,
+        reason="" if raised.detection is None else raised.detection.explanation,
+        felt=raised.detection is not None and raised.detection.felt,
     )
 
 
@@ -168,6 +186,10 @@ class RunState:
         self.last_handled: dict[str, int] = {}
         """Which leaf was started last for an object: the one that says where it is to be."""
         self.helped_retries: Counter[int] = Counter()
+        self.issues: dict[int, list[ev.IssueRaised]] = {}
+        """What was raised about each leaf, in order."""
+        self.suspected: set[int] = set()
+        """Leaves about which a false alarm is suspected."""
         self.asks = 0
         self.helps = 0
         self.seq = started.seq
@@ -237,6 +259,7 @@ class RunState:
     @_apply.register
     def _(self, event: ev.IssueRaised) -> None:
         self._raised = event
+        self.issues.setdefault(self.tree.index_of(event.node), []).append(event)
         if event.interrupts:
             self.executions[event.robot].held = True
 
@@ -244,7 +267,8 @@ class RunState:
     def _(self, event: ev.DialogueOpened) -> None:
         assert self._raised is not None, "a dialogue opens right after its issue was raised"
         script = self.scripts[event.issue]
-        dialogue = DialogueState(event, self._raised, Conversation(script, issue_of(self._raised)))
+        issue, outlook = issue_of(self._raised), self._raised.outlook or Outlook()
+        dialogue = DialogueState(event, self._raised, Conversation(script, issue, outlook))
         dialogue.advance("open")
         self.dialogues[event.dialogue] = dialogue
 
@@ -287,6 +311,14 @@ class RunState:
         dialogue.advance(event.answer)
 
     @_apply.register
+    def _(self, event: ev.FirstLook) -> None:
+        self.dialogues[event.dialogue].first_look = event
+
+    @_apply.register
+    def _(self, event: ev.SuspectedFalseAlarm) -> None:
+        self.suspected.add(self.tree.index_of(event.node))
+
+    @_apply.register
     def _(self, event: ev.HelpAwaited) -> None:
         dialogue = self.dialogues[event.dialogue]
         dialogue.awaiting = event
@@ -297,7 +329,7 @@ class RunState:
     def _(self, event: ev.HelpVerified) -> None:
         dialogue = self.dialogues[event.dialogue]
         dialogue.awaiting = None
-        dialogue.advance("seen")
+        dialogue.advance(f"seen:{event.change}")
 
     @_apply.register
     def _(self, event: ev.HelpNotSeen) -> None:

@@ -102,6 +102,7 @@ def dialogue_view(dialogue: DialogueState) -> DialogueView:
             answers=prompt.answers,
             deadline=prompt.deadline,
             to=prompt.to,
+            timeout_effect=prompt.timeout_effect,
             within_s=dialogue.asked_for_s if prompt.kind == "ask" else None,
             extensions_left=dialogue.extensions_left if prompt.kind == "ask" else 0,
         ),

@@ -50,7 +50,7 @@ class Runtime:
         scenarios: ScenarioSource,
         scripts: Mapping[str, Script],
         policy: EscalationPolicy,
-        send_mail: Callable[[RunState, ev.Escalated, DialogueState], None],
+        send_mail: Callable[[RunState, ev.Escalated | ev.SuspectedFalseAlarm, DialogueState], None],
         settings: RunSettings,
         monotonic: Callable[[], float],
         utc_now: Callable[[], datetime],

@@ -56,6 +56,7 @@ class PromptView(View):
     answers: list[AnswerOption]
     deadline: float | None
     to: str | None
+    timeout_effect: str = ""
     within_s: float | None = None
     """How long the question was to wait when it was put; an extension adds as much again."""
     extensions_left: int = 0

@@ -10,6 +10,7 @@ from robots.catalogue import Catalogue
 from robots.feasibility.check import check_scene
 from robots.robot import Robot
 from robots.vision.color_model import ColorModel
+from robots.vision.lookalikes import find_lookalikes
 from sim.simulated_agent import SimulatedAgent
 from sim.tabletop.arm import GRIPPER
 from sim.tabletop.body import can_reach
@@ -48,7 +49,8 @@ class TabletopAdapter:
         def reachable(way: Sequence[ToolPose]) -> bool:
             return all(can_reach(reach, scene.table, each) for each in way)
 
-        return check_scene(scene, nodes, GRIPPER, reachable)
+        lookalikes = find_lookalikes(scene, nodes, learn_colors(scene, TabletopOptions()))
+        return [*check_scene(scene, nodes, GRIPPER, reachable), *lookalikes]
 
     def train_colors(self, scene: Scene) -> ColorModel:
         """Learn the colours of a scene's objects from rendered pictures of them.

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from robots.body import ToolPose
 from robots.gripper import GripperModel, Slab
+from sim.tabletop.blocker import Blocker, between, shares_between
 
 SEGMENT_S = 0.5
 """How long a segment of a path takes at full speed, however long it is."""
@@ -55,6 +56,7 @@ class Arm:
         self.homeward = False
         self._start = pose
         self._target: ToolPose | None = None
+        self._ahead: Sequence[ToolPose] = ()
         self._fraction = 1.0
         self._held_up_s = 0.0
 
@@ -75,6 +77,7 @@ class Arm:
         """Go straight to a waypoint from wherever the tool is."""
         self._start = self.pose
         self._target = path.waypoints[segment]
+        self._ahead = path.waypoints[segment:]
         self._fraction = 0.0
         self._held_up_s = 0.0
         self.homeward = path.homeward
@@ -96,21 +99,39 @@ class Arm:
         straight_up = (self._target.x, self._target.y) == (self.pose.x, self.pose.y)
         return not (straight_up and self._target.z >= self.pose.z)
 
-    def push(self, duration_s: float) -> None:
-        """Try in vain to move on."""
-        self._held_up_s += duration_s
-        if self._held_up_s >= GIVE_UP_S:
-            self.stop()
+    @property
+    def way_ahead(self) -> Sequence[ToolPose]:
+        """Where the tool is, and the waypoints that it has still to go to."""
+        return [self.pose, *self._ahead] if self.moving else [self.pose]
 
-    def advance(self, duration_s: float) -> None:
+    def advance(self, duration_s: float, blocker: Blocker | None) -> bool:
+        """Go on; whether it runs into a blocker, before which it stops and pushes in vain."""
         if self._target is None:
-            return
-        self._fraction += duration_s * self.speed / SEGMENT_S
+            return False
+        wanted = min(1.0, self._fraction + duration_s * self.speed / SEGMENT_S)
+        self._fraction, runs_into = self._free_until(wanted, blocker)
         if self._fraction >= 1.0 - 1e-9:
             self.pose = self._target
             self._target = None
-        else:
-            self.pose = _between(self._start, self._target, self._fraction)
+            return False
+        self.pose = between(self._start, self._target, self._fraction)
+        self._held_up_s = self._held_up_s + duration_s if runs_into else 0.0
+        if self._held_up_s >= GIVE_UP_S:
+            self.stop()
+        return runs_into
+
+    def _free_until(self, wanted: float, blocker: Blocker | None) -> tuple[float, bool]:
+        """How far the segment can be gone, up to a fraction, and whether the blocker ends that."""
+        if blocker is None or self._target is None or not self.can_be_blocked:
+            return wanted, False
+        free, left = self._fraction, wanted - self._fraction
+        end = between(self._start, self._target, wanted)
+        for share in shares_between(self.pose, end):
+            fraction = self._fraction + left * share
+            if blocker.meets(between(self._start, self._target, fraction)):
+                return free, True
+            free = fraction
+        return wanted, False
 
 
 class Gripper:
@@ -178,13 +199,3 @@ class Gripper:
     def _move_to(self, opening_m: float) -> None:
         self._start_m = self.opening_m
         self._target_m = opening_m
-
-
-def _between(start: ToolPose, end: ToolPose, fraction: float) -> ToolPose:
-    turn = (end.yaw - start.yaw + math.pi) % (2 * math.pi) - math.pi
-    return ToolPose(
-        start.x + (end.x - start.x) * fraction,
-        start.y + (end.y - start.y) * fraction,
-        start.z + (end.z - start.z) * fraction,
-        start.yaw + turn * fraction,
-    )

@@ -7,11 +7,12 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
-from robots.body import ArmPath, Camera, Matrix4, Reach, ToolPose
+from robots.body import ArmPath, Camera, Leg, Matrix4, NoWay, Reach, ToolPose
 from robots.gripper import GripperModel
+from robots.vision.seen_box import SeenBox
 from sim.tabletop.arm import GRIPPER, StraightPath
 from sim.tabletop.gripper_shape import finger_hulls
-from sim.tabletop.state import CONTROL_PERIOD_S, PUSH_N, TabletopState
+from sim.tabletop.state import CONTROL_PERIOD_S, TabletopState
 from tasks.scene import Table
 
 _HIGHEST_M = 1.2
@@ -49,6 +50,15 @@ class TabletopBody:
         if all(can_reach(self._reach, self._state.scene.table, each) for each in waypoints):
             return StraightPath(tuple(waypoints))
         return None
+
+    def plan_among(
+        self,
+        legs: Sequence[Leg],
+        boxes: Sequence[SeenBox],  # noqa: ARG002
+    ) -> StraightPath | NoWay:
+        """As `plan_path`: a gripper that floats has no arm that could touch anything."""
+        path = self.plan_path([leg.to for leg in legs])
+        return path or NoWay("does not reach all of the way")
 
     def plan_neutral(self) -> StraightPath:
         return StraightPath((self._state.home.neutral,), homeward=True)
@@ -108,8 +118,11 @@ class TabletopBody:
     def finger_hulls(self) -> Sequence[NDArray[np.float64]]:
         return finger_hulls(self._state.gripper.opening_m)
 
+    def contact_force(self) -> NDArray[np.float64]:
+        return self._state.contact_force()
+
     def contact_force_n(self) -> float:
-        return PUSH_N if self._state.touching else 0.0
+        return float(np.linalg.norm(self.contact_force()))
 
 
 def can_reach(reach: Reach, table: Table, pose: ToolPose) -> bool:

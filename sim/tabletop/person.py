@@ -13,9 +13,6 @@ from tasks.scene import Pose
 _PULLED_OUT_M = 0.30
 """So far from where it was, a pulled part is out of sight."""
 
-BLOCK_DISTANCE_M = 0.22
-"""How far ahead of the tool somebody stands who is in its way."""
-
 
 @dataclass(slots=True)
 class Pull:
@@ -80,13 +77,13 @@ class Person(Acts[TablePart, PartPose]):
         return None if self.hand_over is None else self.hand_over.part
 
     def _stands_in_the_way(self) -> bool:
-        return self._state.blocker_at is not None
+        return self._state.blocker is not None
 
     def _stand_in_the_way(self) -> None:
-        self._state.blocker_at = self._state.ahead_of_arm(BLOCK_DISTANCE_M)
+        self._state.block_way()
 
     def _step_aside(self) -> None:
-        self._state.blocker_at = None
+        self._state.blocker = None
         self._state.touching = False
 
     def _take_away(self, part: TablePart, *, by_force: bool) -> None:

@@ -10,6 +10,7 @@ from robots.body import CameraImage, Matrix4, ToolPose
 from sim.depth_noise import DepthNoise, Pinhole
 from sim.lighting import Lighting
 from sim.raster import Light, Mesh, Rasterizer, RenderedImage, box_triangles
+from sim.tabletop.blocker import SIZE_M as BLOCKER_SIZE_M
 from sim.tabletop.gripper_shape import FINGER, PALM, finger_offset_m
 from sim.tabletop.part import PartPose, TablePart
 from sim.tabletop.state import CONTROL_PERIOD_S, TabletopState
@@ -27,7 +28,6 @@ _FLOOR_BGR = (96, 96, 96)
 _GREY = (0.45, 0.45, 0.45)
 TABLE_COLOR = (0.72, 0.70, 0.68)
 BLOCKER_COLOR = (0.30, 0.30, 0.32)
-BLOCKER_SIZE_M = (0.10, 0.10, 0.30)
 
 
 class Scenery:
@@ -92,11 +92,11 @@ class Scenery:
 
     def _place_blocker(self) -> None:
         index = len(self._parts) + 3
-        at = self._state.blocker_at
-        self._visible[index] = at is not None
-        if at is not None:
-            middle = self._state.scene.table.height + BLOCKER_SIZE_M[2] / 2
-            _set_upright(self._transforms[index], at[0], at[1], middle, 0.0)
+        blocker = self._state.blocker
+        self._visible[index] = blocker is not None
+        if blocker is not None:
+            middle = blocker.top_z - BLOCKER_SIZE_M[2] / 2
+            _set_upright(self._transforms[index], blocker.x, blocker.y, middle, 0.0)
 
 
 class TabletopCamera:

@@ -24,15 +24,15 @@ class TabletopSnapshot(StrictModel):
 
     `moved`: where those parts last rested that are not where they started. `gone`: those that
     somebody took away. `held` is for readers of the journal: a rebuilt robot holds nothing.
-    `blocker_at`: where somebody stands in the way, in the plane.
+    `blocker`: where somebody stands in the way, and up to what height (x, y, top).
     """
 
-    version: Literal[1] = 1
+    version: Literal[2] = 2
     time_s: float
     moved: dict[Name, RestPose]
     gone: list[Name]
     held: Name | None
-    blocker_at: tuple[float, float] | None
+    blocker: tuple[float, float, float] | None
     hand_over: HandOverSnapshot | None
 
 

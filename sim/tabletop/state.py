@@ -5,9 +5,11 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from robots.body import ToolPose
 from sim.tabletop.arm import GRIPPER, Arm, Gripper
+from sim.tabletop.blocker import SIZE_M, Blocker, on_the_way
 from sim.tabletop.part import PartPose, TablePart, Whereabouts
 from sim.tabletop.resting import on_top, settle
 from tasks.scene import Scene
@@ -16,6 +18,9 @@ CONTROL_PERIOD_S = 0.1
 
 PUSH_N = 120.0
 """How hard the arm pushes against somebody in its way."""
+
+_PASSES_M = 0.20
+"""So far above the table the tool passes on most ways."""
 
 _FINGER_M = 0.005
 """Fingers still grip what they overlap by less than they are wide."""
@@ -77,8 +82,8 @@ class TabletopState:
         }
         self.held: TablePart | None = None
         self.held_at = HeldAt(0.0, 0.0, 0.0, 0.0)
-        self.blocker_at: tuple[float, float] | None = None
-        """Where somebody stands who lets the arm only go up and home."""
+        self.blocker: Blocker | None = None
+        """Who stands in the way; the arm can always go up and home."""
         self.touching = False
         """Whether the arm has run into whoever stands in its way."""
         self.person_acts: Callable[[], None] = lambda: None
@@ -93,24 +98,34 @@ class TabletopState:
         self._carry()
         self.person_acts()
 
-    def reset(self, time_s: float, blocker_at: tuple[float, float] | None) -> None:
+    def reset(self, time_s: float, blocker: Blocker | None) -> None:
         """Start again at neutral with open, empty fingers (a rebuilt world)."""
         self.time_s = time_s
-        self.blocker_at = blocker_at
+        self.blocker = blocker
         self.touching = False
         self.held = None
         self.arm.jump(self.home.neutral)
         self.gripper.grip(GRIPPER.max_opening_m)
 
-    def ahead_of_arm(self, distance_m: float) -> tuple[float, float]:
-        """A point in the plane towards which the arm is on its way, or will be from neutral."""
+    def block_way(self) -> None:
+        """Somebody stands where the arm, on its way or setting off from here, runs into them."""
+        table = self.scene.table
+        middle = ToolPose(*table.center, table.height + _PASSES_M, 0.0)
+        ways = (self.arm.way_ahead, [self.arm.pose, middle])
+        found = (on_the_way(way, table.height) for way in ways)
+        self.blocker = next(
+            (each for each in found if each is not None),
+            Blocker(*table.center, table.height + SIZE_M[2]),
+        )
+
+    def contact_force(self) -> NDArray[np.float64]:
+        """What whoever stands in the way holds against the arm's motion (3, N)."""
+        force = np.zeros(3)
         tool, target = self.arm.pose, self.arm.target
-        dx, dy = (target.x - tool.x, target.y - tool.y) if target else (0.0, 0.0)
-        if math.hypot(dx, dy) < 0.01:
-            center = self.scene.table.center
-            dx, dy = center[0] - tool.x, center[1] - tool.y
-        scale = distance_m / (math.hypot(dx, dy) or 1.0)
-        return tool.x + dx * scale, tool.y + dy * scale
+        if self.touching and target is not None:
+            way = np.array([target.x - tool.x, target.y - tool.y, target.z - tool.z])
+            force = -PUSH_N * way / max(float(np.linalg.norm(way)), 1e-6)
+        return force
 
     def take_from_robot(self) -> None:
         """What the fingers hold is taken from between them; nobody has it for a moment."""
@@ -150,11 +165,7 @@ class TabletopState:
     def _advance_arm(self) -> None:
         if not self.arm.moving:
             return
-        self.touching = self.blocker_at is not None and self.arm.can_be_blocked
-        if self.touching:
-            self.arm.push(CONTROL_PERIOD_S)
-        else:
-            self.arm.advance(CONTROL_PERIOD_S)
+        self.touching = self.arm.advance(CONTROL_PERIOD_S, self.blocker)
 
     def _advance_gripper(self) -> None:
         if not self.gripper.moving:

@@ -3,6 +3,7 @@
 import json
 import math
 from collections.abc import Sequence
+from dataclasses import astuple
 from typing import Annotated, Any
 
 import numpy as np
@@ -13,10 +14,12 @@ from robots.link.messages import ShownObject, ShownPose
 from sim.depth_noise import DepthNoise
 from sim.lighting import Lighting
 from sim.raster import Light
+from sim.tabletop.blocker import SIZE_M as BLOCKER_SIZE_M
+from sim.tabletop.blocker import Blocker
 from sim.tabletop.body import TabletopBody
 from sim.tabletop.part import PartPose, TablePart, Whereabouts
 from sim.tabletop.person import Person
-from sim.tabletop.scenery import BLOCKER_COLOR, BLOCKER_SIZE_M, ForearmCamera, HeadCamera, Scenery
+from sim.tabletop.scenery import BLOCKER_COLOR, ForearmCamera, HeadCamera, Scenery
 from sim.tabletop.snapshot import TabletopSnapshot, to_rest_pose
 from sim.tabletop.state import TabletopState
 from tasks.intervention import Intervention
@@ -87,15 +90,16 @@ class TabletopWorld:
     def shown_poses(self) -> Sequence[ShownPose]:
         """Where they really are, for people who watch."""
         parts = [_shown_pose(each) for each in self._state.parts.values()]
-        x, y = self._state.blocker_at or (0.0, 0.0)
-        foot = (x, y, self.scene.table.height, 0.0, 0.0, 0.0, 1.0)
-        return [*parts, ShownPose(pose=foot, gone=self._state.blocker_at is None)]
+        blocker = self._state.blocker
+        x, y, bottom_z = (0.0, 0.0, 0.0) if blocker is None else blocker.foot
+        foot = (x, y, bottom_z, 0.0, 0.0, 0.0, 1.0)
+        return [*parts, ShownPose(pose=foot, gone=blocker is None)]
 
     def snapshot(self) -> dict[str, Any]:
         """The state from which `restore` can rebuild the world; JSON-compatible."""
         state, hand_over = self._state, self._person.hand_over
         return {
-            "version": 1,
+            "version": 2,
             "time_s": state.time_s,
             "moved": {
                 name: list(to_rest_pose(part.last_rest))
@@ -104,7 +108,7 @@ class TabletopWorld:
             },
             "gone": [name for name, part in state.parts.items() if self._is_lost(part)],
             "held": state.held.name if state.held else None,
-            "blocker_at": list(state.blocker_at) if state.blocker_at else None,
+            "blocker": list(astuple(state.blocker)) if state.blocker else None,
             "hand_over": {"object": hand_over.part.name, "until_s": hand_over.until_s}
             if hand_over
             else None,
@@ -120,7 +124,7 @@ class TabletopWorld:
         if unknown:
             raise ValueError(f"the snapshot has parts that the scene has not: {unknown}")
         self._person.withdraw()
-        self._state.reset(saved.time_s, saved.blocker_at)
+        self._state.reset(saved.time_s, Blocker(*saved.blocker) if saved.blocker else None)
         for name, part in self._state.parts.items():
             rest = saved.moved.get(name)
             part.rest_at(part.start if rest is None else PartPose(*rest))

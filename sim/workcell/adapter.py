@@ -7,6 +7,7 @@ from robots.catalogue import Catalogue
 from robots.feasibility.check import check_scene
 from robots.robot import Robot
 from robots.vision.color_model import ColorModel
+from robots.vision.lookalikes import find_lookalikes
 from sim.simulated_agent import SimulatedAgent
 from sim.workcell.gripper import PR2_GRIPPER
 from sim.workcell.options import read_options
@@ -70,7 +71,10 @@ class WorkcellAdapter:
     ) -> list[SceneProblem]:
         """What keeps the robot from doing the leaves among `nodes` in a scene."""
         check_installed()
-        return check_scene(scene, nodes, PR2_GRIPPER, reachable)
+        from sim.workcell.colors import learn_colors
+
+        lookalikes = find_lookalikes(scene, nodes, learn_colors(scene))
+        return [*check_scene(scene, nodes, PR2_GRIPPER, reachable), *lookalikes]
 
     def train_colors(self, scene: Scene) -> ColorModel:
         """Learn the colours of a scene's objects from rendered pictures of them."""

@@ -3,20 +3,24 @@
 from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
-from robots.body import ArmPath, Camera, Matrix4, Reach, ToolPose
+from robots.body import ArmPath, Camera, Leg, Matrix4, NoWay, Reach, ToolPose
 from robots.gripper import GripperModel
+from robots.motion.collision import Hand
 from robots.motion.curve import JointCurve
 from robots.motion.kinematics import Joints
 from robots.motion.limits import MotionLimits
+from robots.motion.obstacles import PathObstacles
 from robots.motion.planner import JointPath, PathPlanner, PathSegment
 from robots.motion.timing import TimedMotion
+from robots.vision.seen_box import SeenBox
 from sim.workcell.effort_sensors import ENCODER_NOISE_M, FINGER_NOISE_N
 from sim.workcell.finger_hulls import Hull
 from sim.workcell.finger_motion import FingerMotion
 from sim.workcell.gripper import PR2_GRIPPER, finger_angle_rad
 from sim.workcell.physics import CONTROL_HZ
-from sim.workcell.pr2 import Pr2
+from sim.workcell.pr2 import JOINT_DAMPING_NM_S, Pr2
 from sim.workcell.robot_model import (
     ARM_JOINTS,
     FINGER_JOINTS,
@@ -24,6 +28,7 @@ from sim.workcell.robot_model import (
     NEUTRAL_RAD,
     PREFERRED_RAD,
 )
+from sim.workcell.touch import Touch
 
 PERIOD_S = 1.0 / CONTROL_HZ
 
@@ -46,9 +51,9 @@ _GIVE_UP_CYCLES = 240
 
 HAND_OVER_POSE = ToolPose(0.50, -0.30, 0.98, 0.0)
 
-REACH_MIN_M = 0.40
-REACH_MAX_M = 0.79
-"""Measured in front of the shoulder: the gripper pointing down, lifting from the table."""
+REACH_MIN_M = 0.30
+REACH_MAX_M = 0.81
+"""Nothing is grasped outside this range, wherever and however high it is; within, plans decide."""
 
 
 class WorkcellBody:
@@ -69,6 +74,7 @@ class WorkcellBody:
         """`step` lets the rest of the world make one physics step."""
         self._pr2 = pr2
         self._sensor_rng = sensor_rng
+        self._touch = Touch(pr2.dynamics(), JOINT_DAMPING_NM_S, PERIOD_S, sensor_rng)
         self._rng = rng
         self._step = step
         self._planner = PathPlanner(pr2.tool, np.array(PREFERRED_RAD))
@@ -110,6 +116,7 @@ class WorkcellBody:
         self._pr2.drive(self._target, velocities, self._gripper.target_rad, self._braking)
         self._braking = False
         self._step()
+        self._touch.feel(*self._pr2.arm_motion())
         self.cycle += 1
 
     def go_neutral_at_once(self) -> None:
@@ -118,16 +125,24 @@ class WorkcellBody:
         self._target = np.array(NEUTRAL_RAD)
         self._gripper = FingerMotion()
         self._pr2.place_arm(self._target)
+        self._touch.reset()
 
     def plan_path(self, waypoints: Sequence[ToolPose]) -> ArmPath | None:
         """Plan through all waypoints; each at its yaw, or each at its yaw + pi."""
-        return self._planner.plan(self._target, waypoints, self._rng)
+        return _path(self._planner.plan(self._target, waypoints, self._rng))
+
+    def plan_among(self, legs: Sequence[Leg], boxes: Sequence[SeenBox]) -> ArmPath | NoWay:
+        """Plan through all legs so that nothing touches any of `boxes`."""
+        hands = [_hand(leg) for leg in legs]
+        obstacles = PathObstacles.around(self._pr2.collisions, boxes, hands, self._target)
+        waypoints = [leg.to for leg in legs]
+        return self._planner.plan(self._target, waypoints, self._rng, obstacles)
 
     def plan_neutral(self) -> ArmPath:
         return self._planner.plan_to_joints(self._target, np.array(NEUTRAL_RAD))
 
     def plan_hand_over(self) -> ArmPath:
-        path = self._planner.plan(self._target, [HAND_OVER_POSE], self._rng)
+        path = _path(self._planner.plan(self._target, [HAND_OVER_POSE], self._rng))
         return path if path is not None else self.plan_neutral()
 
     def follow(self, path: ArmPath, segment: int, speed: float) -> None:
@@ -190,8 +205,11 @@ class WorkcellBody:
     def finger_hulls(self) -> Sequence[Hull]:
         return self._pr2.finger_hulls()
 
+    def contact_force(self) -> NDArray[np.float64]:
+        return self._touch.force
+
     def contact_force_n(self) -> float:
-        return self._pr2.contact_force_n()
+        return float(np.linalg.norm(self.contact_force()))
 
     @property
     def gripper_closing(self) -> bool:
@@ -237,3 +255,13 @@ class WorkcellBody:
         """Whether something keeps the arm from following its target."""
         lag = np.abs(self._target - self._pr2.arm_joints()).max()
         return bool(lag > _MOST_LAG_RAD)
+
+
+def _hand(leg: Leg) -> Hand:
+    """The gripper's joints on a leg, and what it holds."""
+    angle_rad = finger_angle_rad(leg.opening_m)
+    return Hand(dict.fromkeys(FINGER_JOINTS, angle_rad), leg.held)
+
+
+def _path(planned: JointPath | NoWay) -> JointPath | None:
+    return planned if isinstance(planned, JointPath) else None

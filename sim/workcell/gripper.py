@@ -41,18 +41,18 @@ PR2_GRIPPER = GripperModel(
     overlap_m=0.007,
     deepest_m=0.025,
     link_m=_LINK_M,
-    link_offset_m=_LINK_OFFSET_M,
+    link_offset_m=_LINK_OFFSET_M - _PAD_M,
     # The tips are wedges under the links; each slice is as thick as the wedge at its upper end.
     fingers=(
         Slab(0.000, 0.0150, 0.0225),
         Slab(0.007, 0.0205, 0.0225),
         Slab(0.014, 0.0265, 0.0225),
-        Slab(0.022, 0.0330, 0.0240),
+        Slab(0.022, 0.0330, 0.0260),
         Slab(0.030, 0.0400, 0.0290),
         Slab(0.039, 0.0480, 0.0370),
         Slab(0.053, 0.0480, 0.0455),
         Slab(0.064, 0.0480, 0.0550),
     ),
-    palm=(Slab(0.0735, 0.1015, 0.0485),),
+    palm=(Slab(0.0735, 0.1120, 0.0550),),
 )
 """Its links lean inward above the pads: what is higher there than `deepest_m` would touch them."""

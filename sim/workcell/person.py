@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robots.catalogue import Part as CataloguePart
-from robots.grasp import grasp_of
+from robots.grasp import can_grasp, grasp_of
 from sim.acts import PULL_M_PER_S, Acts, Impossible
 from sim.workcell.bench import Bench
 from sim.workcell.body import PERIOD_S, WorkcellBody
@@ -109,7 +109,12 @@ class Person(Acts[Part, PartPose]):
         self.obstacle.withdraw()
 
     def hold_out(self, part: Part, until_s: float) -> None:
-        """Hold a part between the robot's fingers once they are open and at rest."""
+        """Hold a part between the robot's fingers once they are open and at rest.
+
+        Raises `Impossible` for a part that they do not fit.
+        """
+        if not can_grasp(_as_catalogued(part), self._body.gripper):
+            raise Impossible(f"'{part.name}' does not fit between the robot's fingers")
         part.hide()
         self.hand_over = HandOver(part, until_s)
 
@@ -287,11 +292,13 @@ class Person(Acts[Part, PartPose]):
 
     def _pose_between_fingers(self, part: Part) -> PartPose:
         """Upright, with its thin sides to the fingers, grasped where the robot would."""
-        definition = part.definition
-        grasp = grasp_of(
-            CataloguePart(part.name, definition.size, definition.knob), self._body.gripper
-        )
+        grasp = grasp_of(_as_catalogued(part), self._body.gripper)
         tool = self._pr2.tool.pose(self._pr2.arm_joints())
         x, y, z = (float(value) for value in tool[:3, 3])
         yaw = math.atan2(tool[1, 1], tool[0, 1]) - grasp.yaw
         return PartPose.upright(x, y, z - grasp.height_m, yaw)
+
+
+def _as_catalogued(part: Part) -> CataloguePart:
+    """As the robot knows the part."""
+    return CataloguePart(part.name, part.definition.size, part.definition.knob)

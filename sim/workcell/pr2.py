@@ -1,15 +1,16 @@
 """The PR2 in the physics engine: joints, motors, finger coupling and what its sensors feel."""
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
 from robots.body import Matrix4
+from robots.motion.collision import CollisionModel
 from robots.motion.kinematics import Joints, KinematicChain
+from sim.workcell.arm_dynamics import LinkInertia, Pr2ArmDynamics
 from sim.workcell.finger_hulls import FingerHulls, Hull
 from sim.workcell.gripper import FINGERS_OPEN_RAD, inner_side_m
-from sim.workcell.physics import Client, Point
+from sim.workcell.physics import Client, Point, to_matrix
 from sim.workcell.quiet import silenced
 from sim.workcell.robot_model import (
     ARM_JOINTS,
@@ -30,7 +31,7 @@ _BRAKE_TORQUE_NM = 2000.0
 
 _ARM_POSITION_GAIN = 0.3
 _ARM_VELOCITY_GAIN = 1.0
-_JOINT_DAMPING = 0.1
+JOINT_DAMPING_NM_S = 0.1
 
 # The engine ignores the mimic joints that make real fingers move alike. A stiffness between the
 # two finger angles does it instead; stiffer or stronger than this, a part slides away sideways.
@@ -46,9 +47,6 @@ _WRIST_TO_TOOL_M = 0.18
 _FINGER_LENGTH_M = 0.0914
 """From a finger's joint to where it presses."""
 
-_PAD_M = 0.005
-"""Contacts this near to the inner side of a finger are with what is between the fingers."""
-
 _ARM_COLOR = (0.80, 0.80, 0.82, 1.0)
 _GRIPPER_COLOR = (0.35, 0.36, 0.38, 1.0)
 
@@ -58,7 +56,7 @@ class Pr2:
 
     def __init__(self, client: Client) -> None:
         self._client = client
-        urdf = robot_urdf()
+        urdf = self._urdf = robot_urdf()
         with silenced():
             self.body_id: int = client.loadURDF(
                 str(urdf), useFixedBase=True, flags=client.URDF_MERGE_FIXED_LINKS
@@ -71,6 +69,7 @@ class Pr2:
             {self._fingers[1], self._fingers[3]},
         )
         self.tool = KinematicChain(urdf, TOOL_FRAME, ARM_JOINTS)
+        self.collisions = CollisionModel(urdf, ARM_JOINTS, TOOL_FRAME)
         self._forearm_camera = KinematicChain(urdf, FOREARM_CAMERA_FRAME, _FOREARM_JOINTS)
         self.head_camera_pose = KinematicChain(urdf, HEAD_CAMERA_FRAME, ()).pose(np.zeros(0))
         shoulder = KinematicChain(urdf, SHOULDER_FRAME, ARM_JOINTS[:1]).pose(np.zeros(1))
@@ -164,33 +163,22 @@ class Pr2:
         left, right = self._sides
         return bool(touching & left), bool(touching & right)
 
-    def contact_force_n(self) -> float:
-        """The net force of all contacts but of what the fingers close on."""
-        contacts = self._client.getContactPoints(self.body_id)
-        if not contacts:
-            return 0.0
-        tool = self.tool.pose(self.arm_joints())
-        inner = [inner_side_m(angle) for angle in self.finger_angles()]
-        total = np.zeros(3)
-        for contact in contacts:
-            if contact[1] == contact[2] or self._is_between_fingers(contact, tool, inner):
-                continue
-            total += contact[9] * np.array(contact[7])
-            total += contact[10] * np.array(contact[11]) + contact[12] * np.array(contact[13])
-        return float(np.linalg.norm(total))
+    def arm_motion(self) -> tuple[Joints, Joints, Joints]:
+        """The arm joints' angles (rad), velocities (rad/s) and motor torques (N m)."""
+        states = self._client.getJointStates(self.body_id, self._arm)
+        angles, velocities, _, torques = zip(*states, strict=True)
+        return np.array(angles), np.array(velocities), np.array(torques)
 
-    def _is_between_fingers(
-        self, contact: tuple[Any, ...], tool: Matrix4, inner_m: Sequence[float]
-    ) -> bool:
-        """Whether a contact is at the inner side of a finger.
+    def dynamics(self) -> Pr2ArmDynamics:
+        """The arm as a rigid-body model, with its links as the engine weighs them."""
+        links = zip((*ARM_JOINTS, *FINGER_JOINTS), (*self._arm, *self._fingers), strict=True)
+        return Pr2ArmDynamics(self._urdf, {name: self._inertia(link) for name, link in links})
 
-        That includes the ends of the tips: closing on nothing, they brush over the table.
-        """
-        for links, side, inner in zip(self._sides, (1.0, -1.0), inner_m, strict=True):
-            if contact[3] in links:
-                sideways = np.dot(contact[5] - tool[:3, 3], tool[:3, 1])
-                return bool(side * sideways < inner + _PAD_M)
-        return False
+    def _inertia(self, link: int) -> LinkInertia:
+        info = self._client.getDynamicsInfo(self.body_id, link)
+        frame = to_matrix(info[3], info[4])
+        turn = frame[:3, :3]
+        return LinkInertia(info[0], frame[:3, 3], turn @ np.diag(info[2]) @ turn.T)
 
     def _links_by_joint(self) -> dict[str, int]:
         count = self._client.getNumJoints(self.body_id)
@@ -204,7 +192,7 @@ class Pr2:
                 link,
                 linearDamping=0,
                 angularDamping=0,
-                jointDamping=_JOINT_DAMPING,
+                jointDamping=JOINT_DAMPING_NM_S,
             )
             if name in FINGER_JOINTS:
                 self._client.changeDynamics(

@@ -7,7 +7,7 @@ import numpy as np
 
 from robots.body import ToolPose
 from robots.motion.kinematics import KinematicChain
-from robots.motion.planner import PathPlanner
+from robots.motion.planner import JointPath, PathPlanner
 from sim.workcell.robot_model import (
     ARM_JOINTS,
     NEUTRAL_RAD,
@@ -27,7 +27,7 @@ def reachable(way: Sequence[ToolPose]) -> bool:
 @lru_cache(maxsize=4096)
 def _reachable(way: tuple[ToolPose, ...]) -> bool:
     rng = np.random.default_rng(_SEED)
-    return _planner().plan(np.array(NEUTRAL_RAD), way, rng) is not None
+    return isinstance(_planner().plan(np.array(NEUTRAL_RAD), way, rng), JointPath)
 
 
 @cache

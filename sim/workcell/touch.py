@@ -1,13 +1,9 @@
 """What the arm feels: the external force at the tool point, from its joints' efforts."""
 
-from collections.abc import Mapping
-from pathlib import Path
-
 import numpy as np
 from numpy.typing import NDArray
 
-from robots.motion.momentum_observer import MomentumObserver, force_at_tool
-from sim.workcell.arm_dynamics import LinkInertia, Pr2ArmDynamics
+from robots.motion.momentum_observer import ArmDynamics, MomentumObserver, force_at_tool
 from sim.workcell.effort_sensors import ARM_NOISE_NM, EffortSensors
 
 Vector = NDArray[np.float64]
@@ -21,15 +17,14 @@ class Touch:
 
     def __init__(
         self,
-        urdf: Path,
-        inertias: Mapping[str, LinkInertia],
+        dynamics: ArmDynamics,
         damping_nm_s: float,
         period_s: float,
         rng: np.random.Generator,
     ) -> None:
         """`damping_nm_s` is the joints' viscous friction, which is known."""
-        self._dynamics = Pr2ArmDynamics(urdf, inertias)
-        self._observer = MomentumObserver(self._dynamics, _OBSERVER_HZ)
+        self._dynamics = dynamics
+        self._observer = MomentumObserver(dynamics, _OBSERVER_HZ)
         self._sensors = EffortSensors(rng, period_s)
         self._damping_nm_s = damping_nm_s
         self._period_s = period_s

@@ -7,6 +7,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from dialogue.conversation import Conversation, IllegalTransitionError, Phase
+from dialogue.evidence import Change, PutRight
+from dialogue.outlook import Next, Outlook, Sequel
 from dialogue.registry import load_scripts
 from dialogue.script import (
     Ask,
@@ -23,23 +25,45 @@ from tasks.resolution import Resolution
 
 SCRIPTS = load_scripts()
 
+FIRST = Outlook()
+AGAIN = Outlook(attempt=2, times=2, unchanged=2)
+THIRD = Outlook(attempt=3, failed=Sequel(Next.RUN_FAILS), times=3, unchanged=3)
+
 Call = Callable[[Conversation], list[Turn]]
 
 CALLS: dict[str, Call] = {
     "open": Conversation.open,
     "yes": lambda conversation: conversation.answer("yes"),
     "no": lambda conversation: conversation.answer("no"),
-    "seen": Conversation.help_seen,
+    "seen": lambda conversation: conversation.help_seen(Change.MOVED),
+    "seen as before": lambda conversation: conversation.help_seen(Change.NONE),
     "not seen": Conversation.help_not_seen,
-    "at place": lambda conversation: conversation.put_right(Expectation.AT_PLACE),
-    "in reach": lambda conversation: conversation.put_right(Expectation.IN_REACH),
-    "way clear": lambda conversation: conversation.put_right(Expectation.WAY_CLEAR),
+    "at place": lambda conversation: conversation.put_right(
+        PutRight(Expectation.AT_PLACE, Change.MOVED)
+    ),
+    "at place, nobody seen": lambda conversation: conversation.put_right(
+        PutRight(Expectation.AT_PLACE, Change.NONE)
+    ),
+    "in reach": lambda conversation: conversation.put_right(
+        PutRight(Expectation.IN_REACH, Change.MOVED)
+    ),
+    "in reach, nobody seen": lambda conversation: conversation.put_right(
+        PutRight(Expectation.IN_REACH, Change.NONE)
+    ),
+    "way clear": lambda conversation: conversation.put_right(
+        PutRight(Expectation.WAY_CLEAR, Change.MOVED)
+    ),
+    "way clear, nobody seen": lambda conversation: conversation.put_right(
+        PutRight(Expectation.WAY_CLEAR, Change.NONE)
+    ),
     "silence": Conversation.silence,
     "abort": Conversation.abort,
 }
 
 
-def conversation_about(kind: str) -> Conversation:
+def conversation_about(
+    kind: str, outlook: Outlook = FIRST, *, felt: bool = False, reason: str = ""
+) -> Conversation:
     issue = Issue(
         kind=kind,
         robot="pr2",
@@ -48,17 +72,23 @@ def conversation_about(kind: str) -> Conversation:
         object="pink_bar",
         place="pink_bar_place",
         step=5,
+        felt=felt,
+        reason=reason,
     )
-    return Conversation(SCRIPTS[kind], issue)
+    return Conversation(SCRIPTS[kind], issue, outlook)
 
 
-def walk(kind: str, *calls: str) -> list[Turn]:
+def walk(kind: str, *calls: str, outlook: Outlook = FIRST, felt: bool = False) -> list[Turn]:
     """All turns of a conversation that is opened and told these things."""
-    conversation = conversation_about(kind)
+    conversation = conversation_about(kind, outlook, felt=felt)
     turns = conversation.open()
     for call in calls:
         turns += CALLS[call](conversation)
     return turns
+
+
+FAILED_RETRY = Close(CloseReason.RESOLVED, Resolution.ROBOT_RETRY, False, failed=True)
+GOES_ON = Close(CloseReason.RESOLVED, Resolution.ROBOT_FINISH, False)
 
 
 def shape(turns: list[Turn]) -> str:
@@ -72,11 +102,18 @@ def shape(turns: list[Turn]) -> str:
     [
         (["yes", "seen"], Close(CloseReason.RESOLVED, Resolution.ROBOT_RETRY, True)),
         (["no", "yes", "seen"], Close(CloseReason.RESOLVED, Resolution.HUMAN_FINISH, True)),
-        (["no", "no"], Close(CloseReason.RESOLVED, Resolution.ROBOT_RETRY, False)),
+        (["no", "no"], Close(CloseReason.RESOLVED, Resolution.ROBOT_RETRY, False, failed=True)),
         (["at place"], Close(CloseReason.WITHDRAWN, Resolution.HUMAN_FINISH, True)),
         (["in reach"], Close(CloseReason.WITHDRAWN, Resolution.ROBOT_RETRY, True)),
-        (["silence"], Close(CloseReason.GAVE_UP, Resolution.ROBOT_RETRY, False)),
-        (["no", "silence"], Close(CloseReason.GAVE_UP, Resolution.ROBOT_RETRY, False)),
+        (["silence"], Close(CloseReason.GAVE_UP, Resolution.ROBOT_RETRY, False, failed=True)),
+        (["no", "silence"], Close(CloseReason.GAVE_UP, Resolution.ROBOT_RETRY, False, failed=True)),
+        (["yes", "seen as before"], FAILED_RETRY),
+        (["no", "yes", "seen as before"], GOES_ON),
+        (["at place, nobody seen"], Close(CloseReason.WITHDRAWN, Resolution.ROBOT_FINISH, False)),
+        (
+            ["in reach, nobody seen"],
+            Close(CloseReason.WITHDRAWN, Resolution.ROBOT_RETRY, False, failed=True),
+        ),
         (["abort"], Close(CloseReason.ABORTED, None, False)),
     ],
 )
@@ -91,8 +128,8 @@ def test_a_lost_part_is_put_back_or_placed_by_the_helper_or_tried_again_later(
     [
         (["yes", "seen"], Close(CloseReason.RESOLVED, Resolution.ROBOT_FINISH, True)),
         (["no", "yes", "seen"], Close(CloseReason.RESOLVED, Resolution.HUMAN_FINISH, True)),
-        (["no", "no"], Close(CloseReason.RESOLVED, Resolution.ROBOT_RETRY, False)),
-        (["silence"], Close(CloseReason.GAVE_UP, Resolution.ROBOT_RETRY, False)),
+        (["no", "no"], Close(CloseReason.RESOLVED, Resolution.ROBOT_RETRY, False, failed=True)),
+        (["silence"], Close(CloseReason.GAVE_UP, Resolution.ROBOT_RETRY, False, failed=True)),
     ],
 )
 @pytest.mark.parametrize("kind", ["unreachable", "missing", "blocked"])
@@ -128,19 +165,141 @@ def test_the_robot_goes_on_when_its_way_became_clear() -> None:
     assert walk("blocked", "way clear")[-1] == close
 
 
-def test_positioning_says_one_sentence_and_needs_no_answer() -> None:
-    turns = walk("positioning")
-    assert shape(turns) == "Say Close"
-    assert turns[-1] == Close(CloseReason.RESOLVED, Resolution.COLLAB_FINISH, True)
+def test_positioning_asks_and_only_a_yes_makes_it_work_of_both() -> None:
+    opened = walk("positioning")
+    assert shape(opened) == "Ask"
+    (ask,) = opened
+    assert isinstance(ask, Ask)
+    assert "Thank" not in ask.text
+    together = Close(CloseReason.RESOLVED, Resolution.COLLAB_FINISH, True)
+    alone = Close(CloseReason.RESOLVED, Resolution.ROBOT_FINISH, False)
+    assert walk("positioning", "yes")[-1] == together
+    assert walk("positioning", "no")[-1] == alone
+    assert walk("positioning", "silence")[-1] == alone
 
 
 def test_sentences_speak_of_objects_as_people_do() -> None:
     first = walk("dropped")[0]
     assert first == Ask(
-        text="I dropped the pink bar. Shall I try again?",
-        yes_effect="You put the pink bar back on the table; I pick it up later.",
-        no_effect="I ask whether you will place the pink bar yourself.",
+        text="I lost hold of the pink bar. Shall I try again?",
+        yes_effect="You put the pink bar back on the table, "
+        "and I try again (still attempt 1 of 3).",
+        no_effect="I ask whether you will place the pink bar yourself (attempt 1 of 3).",
+        timeout_effect="Attempt 1 of 3 has failed, and I try again (attempt 2 of 3).",
     )
+
+
+def test_a_question_says_what_the_robot_sensed() -> None:
+    said = "I closed my fingers on nothing where the pink_bar was"
+    (ask,) = conversation_about("missed", reason=said).open()
+    assert isinstance(ask, Ask)
+    assert ask.text == (
+        "I missed the pink bar. I closed my fingers on nothing where the pink bar was. "
+        "Shall I try again?"
+    )
+
+
+# --- Thanks, and who has helped ----------------------------------------------------------------
+
+
+def last_word(turns: list[Turn]) -> str:
+    said = turns[-2]
+    assert isinstance(said, Say)
+    return said.text
+
+
+@pytest.mark.parametrize("kind", ["missed", "dropped", "missing", "blocked", "unreachable"])
+@pytest.mark.parametrize("calls", [["yes"], ["no", "yes"]])
+def test_only_a_change_that_was_seen_is_thanked_for(kind: str, calls: list[str]) -> None:
+    changed, unchanged = walk(kind, *calls, "seen"), walk(kind, *calls, "seen as before")
+    assert last_word(changed).startswith("Thank you. ")
+    assert "thank" not in last_word(unchanged).lower()
+    closes = changed[-1], unchanged[-1]
+    assert [each.helped for each in closes if isinstance(each, Close)] == [True, False]
+
+
+def test_a_withdrawn_question_says_what_is_seen() -> None:
+    assert last_word(walk("dropped", "at place")) == (
+        "Thank you. I see the pink bar at its place now."
+    )
+    assert last_word(walk("dropped", "at place, nobody seen")) == (
+        "I see the pink bar at its place now. I go on."
+    )
+    assert last_word(walk("missing", "in reach, nobody seen")) == (
+        "I see the pink bar within my reach now. I go on."
+    )
+
+
+def test_what_was_felt_is_cleared_by_no_camera_alone() -> None:
+    assert conversation_about("blocked", felt=True).open() != walk("blocked")
+    conversation = conversation_about("blocked", felt=True)
+    conversation.open()
+    assert conversation.watched_for == ()
+    with pytest.raises(ValueError, match="way_clear"):
+        conversation.put_right(PutRight(Expectation.WAY_CLEAR, Change.CLEARED))
+
+
+def test_the_word_of_a_helper_and_a_look_let_the_robot_go_on_once() -> None:
+    calls = ("yes", "seen as before")
+    assert walk("blocked", *calls, felt=True)[-1] == GOES_ON
+    assert walk("blocked", *calls, felt=True, outlook=AGAIN)[-1] == FAILED_RETRY
+
+
+# --- The robot's own failures ------------------------------------------------------------------
+
+
+def test_a_robot_that_failed_too_often_offers_no_other_try() -> None:
+    (ask,) = walk("dropped", outlook=THIRD)
+    assert isinstance(ask, Ask)
+    assert ask.text == (
+        "I have now failed three times to hold the pink bar. Will you place the pink bar yourself?"
+    )
+    leave = walk("dropped", "no", outlook=THIRD)[-1]
+    assert isinstance(leave, Ask)
+    assert leave.text == "Shall I leave the pink bar out?"
+    assert leave.no_effect == "Attempt 3 of 3 has failed, and the task ends here, unfinished."
+    assert walk("dropped", "no", "yes", outlook=THIRD)[-1] == Close(
+        CloseReason.LEFT_OUT, None, False
+    )
+    later = walk("dropped", "no", "no", outlook=THIRD)
+    assert last_word(later) == "All right. The task ends here, unfinished."
+
+
+def test_the_first_time_nobody_is_asked_to_leave_it_out() -> None:
+    assert shape(walk("missed", "no", "no")) == "Ask Ask Say Close"
+    assert shape(walk("missed", "no", "no", outlook=AGAIN)) == "Ask Ask Ask"
+
+
+@pytest.mark.parametrize(
+    ("sequel", "words"),
+    [
+        (Sequel(), "I try again (attempt 2 of 3)"),
+        (Sequel(Next.OTHERS_FIRST, ("cup",)), "I go on with the cup first, then I try again"),
+        (Sequel(Next.INSTEAD, ("orange_top",)), "I take the orange top instead"),
+        (Sequel(Next.EITHER, ("a", "b")), "or I take the a or the b instead"),
+        (Sequel(Next.RUN_FAILS), "the task ends here, unfinished"),
+    ],
+)
+def test_the_last_no_says_what_follows(sequel: Sequel, words: str) -> None:
+    turns = walk("missed", "no", outlook=Outlook(failed=sequel, times=2))
+    leave = walk("missed", "no", "no", outlook=Outlook(failed=sequel, times=2))[-1]
+    assert isinstance(leave, Ask)
+    assert words in leave.no_effect
+    ask = turns[-1]
+    assert isinstance(ask, Ask)
+    assert words in ask.timeout_effect
+    last = last_word(walk("missed", "no", "no", "no", outlook=Outlook(failed=sequel, times=2)))
+    assert words[1:] in last
+
+
+def test_help_after_too_many_helped_tries_is_a_failed_attempt_that_says_so() -> None:
+    outlook = Outlook(helped_out=True, failed=Sequel(Next.RUN_FAILS))
+    turns = walk("missed", "in reach", outlook=outlook)
+    assert turns[-1] == Close(CloseReason.WITHDRAWN, Resolution.ROBOT_RETRY, True, failed=True)
+    assert last_word(turns).endswith("The task ends here, unfinished.")
+
+
+# --- Asking again ------------------------------------------------------------------------------
 
 
 def test_help_that_is_not_seen_is_asked_about_again_and_awaited_again() -> None:
@@ -161,12 +320,12 @@ def test_a_helper_who_no_longer_puts_it_back_is_asked_to_place_it() -> None:
 
 def test_a_helper_who_no_longer_places_it_leaves_it_to_a_later_try() -> None:
     turns = walk("missed", "no", "yes", "not seen", "no")
-    assert turns[-1] == Close(CloseReason.RESOLVED, Resolution.ROBOT_RETRY, False)
+    assert turns[-1] == FAILED_RETRY
 
 
 def test_the_robot_gives_up_on_help_that_never_comes() -> None:
     turns = walk("missed", "yes", "not seen", "yes", "not seen", "yes", "not seen")
-    assert turns[-1] == Close(CloseReason.GAVE_UP, Resolution.ROBOT_RETRY, False)
+    assert turns[-1] == Close(CloseReason.GAVE_UP, Resolution.ROBOT_RETRY, False, failed=True)
 
 
 def test_an_illegal_call_says_what_was_expected_and_what_came() -> None:
@@ -176,14 +335,14 @@ def test_an_illegal_call_says_what_was_expected_and_what_came() -> None:
         IllegalTransitionError,
         match="is asking: expected answer or put_right or silence or abort, but help_seen came",
     ):
-        conversation.help_seen()
+        conversation.help_seen(Change.MOVED)
 
 
 def test_what_the_script_does_not_watch_for_puts_nothing_right() -> None:
     conversation = conversation_about("missed")
     conversation.open()
     with pytest.raises(ValueError, match="way_clear"):
-        conversation.put_right(Expectation.WAY_CLEAR)
+        conversation.put_right(PutRight(Expectation.WAY_CLEAR, Change.CLEARED))
     assert conversation.phase is Phase.ASKING
 
 
@@ -199,13 +358,15 @@ def test_the_robot_watches_for_an_issue_put_right_only_while_it_asks() -> None:
 
 @given(
     kind=st.sampled_from(sorted(SCRIPTS)),
+    outlook=st.sampled_from([FIRST, AGAIN, THIRD]),
+    felt=st.booleans(),
     calls=st.lists(st.sampled_from(sorted(CALLS)), max_size=60),
 )
 @settings(deadline=None)
 def test_whatever_comes_legal_calls_are_told_apart_and_replay_gives_the_same(
-    kind: str, calls: list[str]
+    kind: str, outlook: Outlook, felt: bool, calls: list[str]
 ) -> None:
-    conversation = conversation_about(kind)
+    conversation = conversation_about(kind, outlook, felt=felt)
     taken: list[str] = []
     turns: list[Turn] = []
     for call in calls:
@@ -218,28 +379,32 @@ def test_whatever_comes_legal_calls_are_told_apart_and_replay_gives_the_same(
         else:
             taken.append(call)
 
-    again = conversation_about(kind)
+    again = conversation_about(kind, outlook, felt=felt)
     assert [turn for call in taken for turn in CALLS[call](again)] == turns
     closes = [turn for turn in turns if isinstance(turn, Close)]
     assert len(closes) == (conversation.phase is Phase.CLOSED)
 
 
-@given(kind=st.sampled_from(sorted(SCRIPTS)), data=st.data())
+@given(
+    kind=st.sampled_from(sorted(SCRIPTS)),
+    outlook=st.sampled_from([FIRST, AGAIN, THIRD]),
+    data=st.data(),
+)
 @settings(deadline=None)
 def test_every_conversation_closes_within_a_bounded_number_of_asks(
-    kind: str, data: st.DataObject
+    kind: str, outlook: Outlook, data: st.DataObject
 ) -> None:
-    conversation = conversation_about(kind)
+    conversation = conversation_about(kind, outlook)
     turns = conversation.open()
     legal = {
         Phase.ASKING: ["yes", "no"],
-        Phase.AWAITING_HELP: ["seen", "not seen"],
+        Phase.AWAITING_HELP: ["seen", "seen as before", "not seen"],
     }
     while conversation.phase is not Phase.CLOSED:
         call = data.draw(st.sampled_from(legal[conversation.phase]))
         turns += CALLS[call](conversation)
-        # Two offers of help, each asked about twice again.
-        assert sum(isinstance(turn, Ask) for turn in turns) <= 6
+        # Two offers of help, each asked about twice again, and whether to leave it out.
+        assert sum(isinstance(turn, Ask) for turn in turns) <= 7
     assert sum(isinstance(turn, Close) for turn in turns) == 1
     assert isinstance(turns[-1], Close)
     assert isinstance(turns[-2], Say)

@@ -3,6 +3,7 @@
 import pytest
 
 from dialogue.conversation import Conversation
+from dialogue.outlook import Outlook
 from dialogue.registry import load_scripts
 from dialogue.script import Ask, AskState, CloseState, Help, HelpState, Script
 from tasks.issue import Issue
@@ -23,6 +24,7 @@ def help_state(resolution: Resolution) -> HelpState:
         help=Help.PLACE,
         resolution=resolution,
         thanks="Thanks.",
+        unchanged="There it is.",
         not_seen="Still?",
         otherwise="later",
         otherwise_effect="Later.",
@@ -52,7 +54,7 @@ def test_what_closes_the_dialogue_or_moves_the_robot_is_final(
     ways = {"yes": "other", "no": "other", answer: "following"}
     opening = AskState(text="Well?", yes=ways["yes"], yes_effect="", no=ways["no"], no_effect="")
     states = {"opening": opening, "following": following, "other": QUESTION, "later": LATER}
-    ask = the_ask(Conversation(Script(opening="opening", states=states), ISSUE).open())
+    ask = the_ask(Conversation(Script(opening="opening", states=states), ISSUE, Outlook()).open())
     other = "no" if answer == "yes" else "yes"
     finals = {"yes": ask.yes_final, "no": ask.no_final}
     assert finals == {answer: final, other: False}
@@ -69,12 +71,12 @@ def test_what_closes_the_dialogue_or_moves_the_robot_is_final(
     ],
 )
 def test_first_questions_of_the_scripts(kind: str, yes_final: bool) -> None:
-    ask = the_ask(Conversation(load_scripts()[kind], ISSUE).open())
+    ask = the_ask(Conversation(load_scripts()[kind], ISSUE, Outlook()).open())
     assert (ask.yes_final, ask.no_final) == (yes_final, False)
 
 
 def test_refusing_a_promise_that_was_not_kept_is_final_if_nothing_is_asked_after_it() -> None:
-    conversation = Conversation(load_scripts()["missed"], ISSUE)
+    conversation = Conversation(load_scripts()["missed"], ISSUE, Outlook())
     conversation.open()
     conversation.answer("no")
     conversation.answer("yes")

@@ -3,6 +3,8 @@
 from collections.abc import Iterator
 
 from dialogue.conversation import Conversation, Phase
+from dialogue.evidence import Change
+from dialogue.outlook import Outlook
 from dialogue.registry import load_scripts
 from dialogue.script import Close
 from tasks.issue import Issue
@@ -22,11 +24,11 @@ ISSUES = [
 def resolution_of(kind: str, handled: str, answers: Iterator[str]) -> Resolution | None:
     """How the dialogue ends when help is seen as soon as it is promised."""
     issue = Issue(kind, "pr2", "/0", handled, handled, None, 5)
-    conversation = Conversation(load_scripts()[kind], issue)
+    conversation = Conversation(load_scripts()[kind], issue, Outlook())
     turns = conversation.open()
     while conversation.phase is not Phase.CLOSED:
         if conversation.phase is Phase.AWAITING_HELP:
-            turns += conversation.help_seen()
+            turns += conversation.help_seen(Change.APPEARED)
         else:
             turns += conversation.answer("yes" if next(answers) == "yes" else "no")
     close = turns[-1]

@@ -29,7 +29,7 @@ def ask(yes: str, no: str, text: str = "Shall I?") -> AskState:
 
 def awaiting(promised: Help, resolution: Resolution, otherwise: str) -> HelpState:
     return HelpState(
-        "Please do.", promised, resolution, "Thank you.", "Not yet?", otherwise, "I stop."
+        "Please do.", promised, resolution, "Thanks.", "So it is.", "Not yet?", otherwise, "I stop."
     )
 
 
@@ -78,7 +78,8 @@ def test_a_field_that_no_sentence_has_is_refused() -> None:
     states: dict[str, State] = {"first": CloseState("The {colour} one.", Resolution.ROBOT_RETRY)}
     assert problems_of(states) == [
         "'text' of state 'first' has the field {colour}; "
-        "there are only {name}, {object}, {place}, {robot}"
+        "there are only {again}, {attempt}, {go_on}, {later}, {name}, {object}, {place}, {robot}, "
+        "{times}, {why}"
     ]
 
 

@@ -3,13 +3,14 @@
 from collections.abc import Collection, Iterator
 
 from dialogue.conversation import Conversation, Phase
+from dialogue.outlook import Outlook
 from dialogue.script import Script
 from server.runtime.run_state import converse
 from tasks.issue import Issue
 
 Path = tuple[str, ...]
 
-CALLS = {Phase.ASKING: ("yes", "no"), Phase.AWAITING_HELP: ("seen", "not_seen")}
+CALLS = {Phase.ASKING: ("yes", "no"), Phase.AWAITING_HELP: ("seen:moved", "not_seen")}
 
 
 ALL_CALLS = tuple(call for calls in CALLS.values() for call in calls)
@@ -35,7 +36,7 @@ def _paths(script: Script, issue: Issue) -> Iterator[tuple[Path, set[tuple[str, 
     waiting: list[Path] = [()]
     while waiting:
         path = waiting.pop()
-        conversation = Conversation(script, issue)
+        conversation = Conversation(script, issue, Outlook())
         said = str(conversation.open())
         branches = set()
         for call in path:

@@ -10,7 +10,10 @@ import cv2
 import numpy as np
 from fake_runs import FakeRuns
 
+from dialogue.evidence import Change
+from dialogue.outlook import Outlook
 from dialogue.registry import load_scripts
+from dialogue.script import Ask
 from robots.link.messages import Detection
 from server.errors import ConflictError, LostRaceError
 from server.journal import events as ev
@@ -110,9 +113,12 @@ class PlayedDialogues(FakeRuns):
         played = self._played[dialogue]
         awaited = self.dialogue(dialogue).help
         assert awaited is not None, "no help is awaited"
-        event = ev.HelpVerified if fulfilled else ev.HelpNotSeen
-        seen = event(**_of(dialogue, played.raised), help=awaited.help)
-        await self._go_on(dialogue, "seen" if fulfilled else "not_seen", [seen])
+        of = _of(dialogue, played.raised)
+        if fulfilled:
+            verified = ev.HelpVerified(**of, help=awaited.help, change=Change.MOVED)
+            await self._go_on(dialogue, f"seen:{Change.MOVED}", [verified])
+        else:
+            await self._go_on(dialogue, "not_seen", [ev.HelpNotSeen(**of, help=awaited.help)])
 
     async def call(self, dialogue: UUID, call: str) -> None:
         """Anything else that moves a conversation on: `silence`, `put_right:...`, `abort`."""
@@ -122,7 +128,11 @@ class PlayedDialogues(FakeRuns):
         """Nobody answered in time: the same question with a new deadline."""
         played = self._played[dialogue]
         assert played.asked is not None, "nothing is asked"
-        await self._commit(dialogue, [played.make.repeat(played.asked, self._deadline(), None)])
+        script = self._scripts[played.raised.issue]
+        turns = rehearse(script, played.raised, played.calls, Outlook())
+        ask = next(each for each in turns if isinstance(each, Ask))
+        again = played.make.repeat(played.asked, ask, self._deadline(), None, ask.timeout_effect)
+        await self._commit(dialogue, [again])
 
     async def release_expired(self, dialogue: UUID, helper: str) -> None:
         """A helper's lease has run out."""
@@ -148,10 +158,11 @@ class PlayedDialogues(FakeRuns):
     ) -> Sequence[ev.Event]:
         played = self._played[dialogue]
         played.calls.append(call)
-        turns = rehearse(self._scripts[played.raised.issue], played.raised, played.calls)
+        turns = rehearse(self._scripts[played.raised.issue], played.raised, played.calls, Outlook())
         events = played.make.of_turns(
             turns,
             ask_deadline=self._deadline(),
+            if_silent="",
             to=None,
             help_until=self._deadline(),
             helper=played.helper,

@@ -11,6 +11,7 @@ from robots.link.messages import (
     ClipPicture,
     ClipTaken,
     CommandBody,
+    Detection,
     Finished,
     FinishedResult,
     Held,
@@ -34,6 +35,7 @@ from robots.link.messages import (
     StepStarted,
 )
 from server.journal.journal import Receipt
+from server.runtime.dialogue_looks import FIRST_LOOK_S
 from tasks.intervention import Act
 
 
@@ -49,10 +51,13 @@ class PretendRobot:
 
     A stubborn one runs into them also when it goes on after a hold.
     `patient`: it lets no time pass while a question is open, as live helpers take their time.
-    `films`: two pictures follow every issue. `thefts`: whenever one object has been placed, another
-    one (or itself) that was placed is gone, so often. `hidden_at_place`: what no look can judge.
-    `in_reach`: what is gone is not stolen but elsewhere on the table. `slow`: it is still at its
-    first start until it is interrupted.
+    `films`: two pictures follow every issue. What it misses, drops or looks for in vain is gone
+    until somebody brings it, and something is in its way from when it is blocked until somebody
+    clears it. `felt`: its issues were felt; no camera sees anything in its way then.
+    `thefts`: whenever one object has been placed, another one (or itself) that was placed is
+    stolen, so often; with `in_reach` it is only elsewhere on the table then. `hidden_at_place`:
+    what no look can judge. `returns`: once such an object is placed, all that was stolen is back at
+    its place. `slow`: it is still at its first start until it is interrupted.
     """
 
     name: str
@@ -72,13 +77,19 @@ class PretendRobot:
     commands: list[CommandBody] = field(default_factory=list)
     right: set[str] = field(default_factory=set)
     hidden: set[str] = field(default_factory=set)
+    lost: set[str] = field(default_factory=set)
+    placed: set[str] = field(default_factory=set)
+    obstructed: bool = False
+    felt: bool = False
     deaf: bool = False
     stubborn: bool = False
     patient: bool = False
     films: bool = False
     thefts: dict[str, list[str]] = field(default_factory=dict)
-    gone: set[str] = field(default_factory=set)
+    stolen: set[str] = field(default_factory=set)
+    finished: set[str] = field(default_factory=set)
     hidden_at_place: set[str] = field(default_factory=set)
+    returns: set[str] = field(default_factory=set)
     in_reach: bool = False
     slow: bool = False
 
@@ -180,25 +191,34 @@ class PretendRobots:
             case Intervene(intervention=deed, by=by):
                 if deed.act in (Act.PLACE, Act.PUT_BACK, Act.HAND_OVER):
                     robot.right.add(deed.object or "")
+                    robot.lost.discard(deed.object or "")
+                if deed.act is Act.PLACE:
+                    robot.placed.add(deed.object or "")
+                    robot.stolen.discard(deed.object or "")
+                if deed.act is Act.RELEASE:
+                    robot.obstructed = False
                 await self.report(robot, Intervened(intervention=deed, by=by, command=command))
 
     async def _work(self, robot: PretendRobot, start: Start, *, resumed: bool = False) -> None:
         part = str(start.parameters.get("object"))
         faults = robot.faults.get(part, [])
-        if start.was_done is not None and not resumed and part not in robot.gone:
+        if start.was_done is not None and not resumed and part not in robot.stolen:
             await self.report(robot, Finished(execution=start.execution, found_in_place=True))
             return
-        if part in robot.gone and part not in robot.right and not robot.in_reach:
+        if part in robot.stolen and part in robot.gone:
             await self._issue(robot, start, "undone" if start.was_done else "missing", 0)
             holding = {"execution": start.execution, "at": "neutral"}
             await self.report(robot, Holding.model_validate(holding))
             return
-        robot.gone.discard(part)
         for step in range(5 if resumed else 1, 9):
             due = [each for each in faults if each[1] == step and (robot.stubborn or not resumed)]
             if due and due[0][0] in robot.interrupting:
                 faults.remove(due[0])
-                robot.right.discard(part)
+                for known in (robot.right, robot.placed, robot.finished):
+                    known.discard(part)
+                if due[0][0] in ("missed", "dropped", "missing"):
+                    robot.lost.add(part)
+                robot.obstructed = due[0][0] == "blocked" and not robot.felt
                 await self._issue(robot, start, due[0][0], step)
                 at = "in_place" if due[0][0] in ("unreachable", "missing", "blocked") else "neutral"
                 holding = {"execution": start.execution, "at": at}
@@ -211,11 +231,14 @@ class PretendRobots:
             if due:
                 faults.remove(due[0])
                 await self._issue(robot, start, due[0][0], step)
+        robot.stolen.discard(part)
+        robot.finished.add(part)
+        if part in robot.returns:
+            robot.gone -= robot.stolen
+            robot.stolen.clear()
         thefts = robot.thefts.get(part, [])
         if thefts:
-            stolen = thefts.pop(0)
-            robot.gone.add(stolen)
-            robot.right.discard(stolen)
+            self._steal(robot, thefts.pop(0))
         await self.report(robot, Finished(execution=start.execution))
 
     async def _issue(self, robot: PretendRobot, start: Start, kind: str, step: int) -> None:
@@ -226,6 +249,7 @@ class PretendRobots:
                 issue=kind,
                 step=step,
                 interrupts=kind in robot.interrupting,
+                detection=Detection(camera="head", felt=robot.felt) if robot.felt else None,
             ),
         )
         if robot.films:
@@ -239,22 +263,34 @@ class PretendRobots:
     def _verdict(self, robot: PretendRobot, result: FinishedResult) -> str:
         if result.object in robot.hidden_at_place:
             return "hidden"
-        away = result.object in robot.gone and result.object not in robot.right
-        return "gone" if away else "there"
+        # A patient one would wait for ever for help that was given before it first looked.
+        helped = set() if robot.patient else robot.placed
+        there = result.object in robot.finished | helped
+        return "there" if there and result.object not in robot.stolen else "gone"
+
+    def _steal(self, robot: PretendRobot, part: str) -> None:
+        robot.stolen.add(part)
+        if not robot.in_reach:
+            robot.gone.add(part)
+        robot.right.discard(part)
+        robot.placed.discard(part)
 
     async def _look(self, robot: PretendRobot, command: str, look: Look) -> None:
         fulfilled = None
         if look.expect is not None:
-            fulfilled = (look.object or "") in robot.right or look.expect == "way_clear"
-            if not fulfilled and robot.patient and look.within_s > 0.0:
+            clear = look.expect == "way_clear" and not robot.obstructed
+            fulfilled = (look.object or "") in robot.right or clear
+            if not fulfilled and robot.patient and look.within_s > FIRST_LOOK_S:
                 return
             if not fulfilled:
                 # What is queued may be the deed that is being watched for.
                 robot.time += look.within_s
         seen = {
-            f"part_{i}": Sighting(x=0.4, y=0.01 * i, z=0.7, yaw=0, time=robot.time)
-            for i in range(100)
-            if f"part_{i}" not in robot.hidden
+            name: Sighting(
+                x=0.5 if name in robot.placed else 0.4, y=y, z=0.7, yaw=0, time=robot.time
+            )
+            for name, y in ((f"part_{i}", 0.01 * i) for i in range(100))
+            if name not in robot.hidden | robot.lost | (robot.gone - robot.right)
         }
         await self.report(
             robot,

@@ -79,7 +79,7 @@ class PretendService:
     journal: SqliteJournal
     robots: PretendRobots
     worlds: PretendWorlds
-    mails: list[ev.Escalated]
+    mails: list[ev.Escalated | ev.SuspectedFalseAlarm]
 
     async def run_to_end(self, **fields: Any) -> tuple[RunView, list[ev.Event]]:
         """Start a run with as-fast-as-possible defaults and wait for its end."""
@@ -110,10 +110,12 @@ async def pretend_service(
     robots.make = lambda name: PretendRobot(
         name, faults={part: list(each) for part, each in (faults or {}).items()}, **robot
     )
-    mails: list[ev.Escalated] = []
+    mails: list[ev.Escalated | ev.SuspectedFalseAlarm] = []
 
-    def send_mail(_: RunState, escalated: ev.Escalated, __: DialogueState) -> None:
-        mails.append(escalated)
+    def send_mail(
+        _: RunState, event: ev.Escalated | ev.SuspectedFalseAlarm, __: DialogueState
+    ) -> None:
+        mails.append(event)
 
     worlds = PretendWorlds(scene=scene)
     runtime = Runtime(

@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 from drawn_scene import HEAD_POSE, PARTS, TABLE_Z, DrawnScene, Resting
 
-from robots.body import CameraImage, Reach, ToolPose
+from robots.body import CameraImage, NoWay, Reach, ToolPose
 from robots.catalogue import Catalogue, Part
 from robots.grasp import grasp_of
 from robots.gripper import GripperModel, Slab
@@ -172,6 +172,10 @@ class ScriptedBody:
     def plan_path(self, waypoints) -> ScriptedPath | None:
         return None if self.unplannable else ScriptedPath(list(waypoints))
 
+    def plan_among(self, legs, _boxes) -> ScriptedPath | NoWay:
+        path = self.plan_path([leg.to for leg in legs])
+        return NoWay("finds no path") if path is None else path
+
     def plan_neutral(self) -> ScriptedPath:
         return ScriptedPath([NEUTRAL])
 
@@ -237,6 +241,12 @@ class ScriptedBody:
     def finger_hulls(self) -> list[np.ndarray]:
         """It has no fingers to be seen."""
         return []
+
+    def contact_force(self) -> np.ndarray:
+        """What it feels pushes against its motion."""
+        way = np.array(_position(self._to)) - _position(self._from)
+        length = np.linalg.norm(way)
+        return -self.force_n * (way / length if length > 0 else np.array([0.0, 0.0, 1.0]))
 
     def contact_force_n(self) -> float:
         return self.force_n

@@ -6,9 +6,11 @@ from uuid import UUID
 import pytest
 from console_in_browser import Stage
 from dialogue_paths import every_branch
+from played_dialogues import DETECTION
 from playwright.async_api import Page, expect
 
 from dialogue.conversation import Conversation
+from dialogue.outlook import Outlook
 from dialogue.registry import load_scripts
 from dialogue.script import Ask, AwaitHelp, Close, Say, Turn
 from server.runtime.run_state import converse
@@ -41,9 +43,18 @@ async def test_every_branch_of_a_dialogue(stage: Stage, kind: str, answer: Answe
     page = await stage.open_page()
     # Time passes as soon as the test says so.
     await page.clock.install()
-    issue = Issue(kind, "pr2", "/0", "yellow_bar", "yellow_bar", "yellow_bar_place", 5)
+    issue = Issue(
+        kind,
+        "pr2",
+        "/0",
+        "yellow_bar",
+        "yellow_bar",
+        "yellow_bar_place",
+        5,
+        reason=DETECTION.explanation,
+    )
     for path in every_branch(SCRIPTS[kind], issue):
-        conversation = Conversation(SCRIPTS[kind], issue)
+        conversation = Conversation(SCRIPTS[kind], issue, Outlook())
         dialogue = await stage.runs.open(stage.run, kind)
         turns = conversation.open()
         for call in path:
@@ -56,8 +67,8 @@ async def test_every_branch_of_a_dialogue(stage: Stage, kind: str, answer: Answe
 
 
 async def make(stage: Stage, page: Page, dialogue: UUID, call: str, answer: Answer) -> None:
-    if call in ("seen", "not_seen"):
-        await stage.runs.see(dialogue, fulfilled=call == "seen")
+    if call in ("seen:moved", "not_seen"):
+        await stage.runs.see(dialogue, fulfilled=call == "seen:moved")
         return
     prompt = stage.runs.dialogue(dialogue).prompt
     assert prompt is not None

@@ -34,7 +34,7 @@ async def test_answer_to_a_question_that_nobody_can_have_read_is_not_taken_and_t
     await page.clock.install(time=0)
     await page.clock.pause_at(60_000)
     dialogue = await stage.runs.open(stage.run, "dropped")
-    for question, answer in (("I dropped", "no"), ("Will you place the yellow bar", "yes")):
+    for question, answer in (("I lost hold", "no"), ("Will you place the yellow bar", "yes")):
         await expect(page.get_by_role("heading", name=question)).to_be_visible()
         await give(page, "yes")
         await expect(too_early).to_be_visible()
@@ -64,7 +64,7 @@ async def test_final_answer_can_be_undone(stage: Stage) -> None:
     await expect(page.get_by_role("button", name="Undo")).to_be_hidden()
     await page.locator(".answer.no").click()
     await page.clock.fast_forward(3_100)
-    await expect(page.get_by_text("I will try again later")).to_be_visible()
+    await expect(page.get_by_text("I try again (attempt 2 of 3)").first).to_be_visible()
     assert stage.runs.dialogue(dialogue).answered_by == "anna"
 
 
@@ -97,8 +97,8 @@ async def test_held_answer_is_dropped_when_somebody_else_answers(stage: Stage) -
 @pytest.mark.parametrize(
     ("call", "words"),
     [
-        ("put_right:in_reach", "the robot saw that it was put right"),
-        ("silence", "Closed without help"),
+        ("put_right:in_reach:appeared", "I see the yellow bar within my reach now"),
+        ("silence", "no help was seen"),
         ("abort", "the robot has stopped this task"),
     ],
 )
@@ -129,10 +129,10 @@ async def test_questions_queue_and_another_one_can_be_chosen(stage: Stage) -> No
     await stage.runs.open(stage.run, "dropped", "yellow_bar")
     await stage.runs.open(stage.run, "missed", "blue_leg")
     await expect(page).to_have_title("(2) Mend")
-    await expect(page.get_by_role("heading", name="I dropped the yellow bar")).to_be_visible()
+    await expect(page.get_by_role("heading", name="I lost hold of the yellow bar")).to_be_visible()
     await page.get_by_role("button", name="the blue leg is not in it").click()
     await expect(page.get_by_role("heading", name="I missed the blue leg")).to_be_visible()
-    await expect(page.get_by_role("heading", name="I dropped the yellow bar")).to_be_hidden()
+    await expect(page.get_by_role("heading", name="I lost hold of the yellow bar")).to_be_hidden()
 
 
 async def test_other_views_lead_to_the_question(stage: Stage) -> None:
@@ -140,7 +140,7 @@ async def test_other_views_lead_to_the_question(stage: Stage) -> None:
     await stage.runs.open(stage.run, "dropped")
     await expect(page.get_by_role("alert").filter(has_text="Shall I try again?")).to_be_attached()
     await page.get_by_role("link", name="Answer").click()
-    await expect(page.get_by_role("heading", name="I dropped the yellow bar")).to_be_visible()
+    await expect(page.get_by_role("heading", name="I lost hold of the yellow bar")).to_be_visible()
 
 
 async def test_keys_can_be_changed_and_switched_off(stage: Stage) -> None:
@@ -186,7 +186,7 @@ async def test_phone_shows_question_picture_and_answers_at_once(
 ) -> None:
     page = await stage.open_page(viewport={"width": width, "height": height})
     await stage.runs.open(stage.run, "dropped")
-    await expect(page.get_by_role("heading", name="I dropped")).to_be_in_viewport(ratio=1)
+    await expect(page.get_by_role("heading", name="I lost hold")).to_be_in_viewport(ratio=1)
     await expect(page.get_by_role("img", name="camera saw")).to_be_in_viewport(ratio=0.7)
     for answer in ("yes", "no"):
         button = page.locator(f".answer.{answer}")

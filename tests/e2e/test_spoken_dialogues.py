@@ -12,7 +12,7 @@ import pytest_asyncio
 from console_in_browser import TOKEN, Stage
 from dialogue_paths import every_branch
 from fake_microphone import launch_speaking
-from played_dialogues import PlayedDialogues
+from played_dialogues import DETECTION, PlayedDialogues
 from playwright.async_api import Browser, async_playwright, expect
 from scripted_ears import ToneVoice
 from service_under_test import serving
@@ -20,6 +20,7 @@ from spoken_console import SpokenConsole
 from test_question_dialogues import SCRIPTS, expect_shown
 
 from dialogue.conversation import Conversation
+from dialogue.outlook import Outlook
 from server.runtime.requests import RunRequest
 from server.runtime.run_state import RunStatus, converse
 from server.speech.abilities import SpeechAbilities
@@ -87,9 +88,18 @@ async def walk_every_branch(
 ) -> None:
     async with room, at_work(speech) as (stage, open_console):
         consoles = {answer: await open_console(persons, words) for answer, words in WORDS.items()}
-        issue = Issue(kind, "pr2", "/0", "yellow_bar", "yellow_bar", "yellow_bar_place", 5)
+        issue = Issue(
+            kind,
+            "pr2",
+            "/0",
+            "yellow_bar",
+            "yellow_bar",
+            "yellow_bar_place",
+            5,
+            reason=DETECTION.explanation,
+        )
         for path in every_branch(SCRIPTS[kind], issue, ("yes", "no")):
-            conversation = Conversation(SCRIPTS[kind], issue)
+            conversation = Conversation(SCRIPTS[kind], issue, Outlook())
             dialogue = await stage.runs.open(stage.run, kind)
             turns = conversation.open()
             for call in path:
@@ -104,8 +114,8 @@ async def walk_every_branch(
 
 
 async def take(stage: Stage, console: SpokenConsole, dialogue: UUID, call: str) -> None:
-    if call in ("seen", "not_seen"):
-        await stage.runs.see(dialogue, fulfilled=call == "seen")
+    if call in ("seen:moved", "not_seen"):
+        await stage.runs.see(dialogue, fulfilled=call == "seen:moved")
         return
     await console.speak(call)
     # A final answer is held back for a moment, which otherwise would pass by itself.

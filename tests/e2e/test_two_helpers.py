@@ -28,7 +28,7 @@ async def test_claimed_question_steps_behind_for_the_others(stage: Stage) -> Non
     await stage.runs.open(stage.run, "missed", "blue_leg")
     await anna.get_by_role("button", name="I am on it").click()
     await expect(bob.get_by_role("heading", name="I missed the blue leg")).to_be_visible()
-    await expect(anna.get_by_role("heading", name="I dropped the yellow bar")).to_be_visible()
+    await expect(anna.get_by_role("heading", name="I lost hold of the yellow bar")).to_be_visible()
     await expect(bob.get_by_role("button", name="anna is on it")).to_be_visible()
 
 

@@ -44,6 +44,6 @@ async def test_operators_are_written_to_and_the_run_gives_up_when_they_are_silen
     assert (escalated.channel, escalated.to) == ("mail", "ops@example.org")
     [received] = inbox.mails
     assert inbox.recipients == ["ops@example.org"]
-    assert "I dropped the pink bar. Shall I try again?" in received.get_content()
+    assert "I lost hold of the pink bar." in received.get_content()
     [closed] = [each for each in events if isinstance(each, ev.DialogueClosed)]
     assert closed.reason == "gave_up"

@@ -18,8 +18,16 @@ from server.journal.upgrades import (
 SAMPLES = sorted((Path(__file__).parent / "journals").glob("v*.sql"))
 
 ADDED_SINCE: dict[str, set[str]] = {
-    "v1": {"clip_recorded", "deadline_extended", "node_left_out", "node_returned", "node_undone"},
-    "v2": set(),
+    "v1": {
+        "clip_recorded",
+        "deadline_extended",
+        "first_look",
+        "node_left_out",
+        "node_returned",
+        "node_undone",
+        "suspected_false_alarm",
+    },
+    "v2": {"first_look", "suspected_false_alarm"},
 }
 """The types of events that came after a sample was written."""
 

@@ -31,6 +31,7 @@ describe("a detection on a picture", () => {
     expected: [79.5, 59.5],
     tolerance_px: 10,
     area_px: 314,
+    felt: false,
     explanation: "",
   };
 

@@ -7,7 +7,7 @@ script = Script(
     opening="steady",
     states={
         "steady": CloseState(
-            text="The {object} is slipping. Please steady it while I place it slowly. Thank you.",
+            text="The {object} is slipping. Please steady it while I place it slowly.",
             resolution=Resolution.COLLAB_FINISH,
         )
     },

@@ -1,12 +1,14 @@
 """Monitors, each with scripted views: when it speaks, when it is silent, what it says."""
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
 from drawn_scene import PARTS, TABLE_Z, DrawnScene
 from pydantic import ValidationError
 
+from robots.behaviors.contact import Contact
 from robots.behaviors.phase import Phase
 from robots.body import Reach
 from robots.grip import GripReading, GripState
@@ -152,13 +154,24 @@ def test_positioning_speaks_of_what_needs_help() -> None:
     assert Positioning.create({}).check(replace(VIEW, step=5, needs_help=True)) is not None
 
 
-def test_blocked_counts_cycles_across_checks() -> None:
-    monitor = Blocked.create({"limit_n": 10.0, "cycles": 3})
-    assert monitor.check(replace(VIEW, step=5, contact_forces_n=(15.0, 15.0))) is None
-    assert monitor.check(replace(VIEW, step=5, contact_forces_n=(5.0, 15.0, 15.0))) is None
-    detection = monitor.check(replace(VIEW, step=5, contact_forces_n=(17.0,)))
+def test_blocked_says_what_was_felt_and_how_often() -> None:
+    monitor = Blocked.create({})
+    assert monitor.check(replace(VIEW, step=5, contact_forces_n=(300.0,) * 10)) is None
+    detection = monitor.check(replace(VIEW, step=5, contact=Contact(17.2, 3)))
     assert detection is not None
-    assert "17 N" in detection.explanation
+    assert detection.explanation == "17 N push against the arm, felt in 3 tries, each gentler"
+
+
+def test_blocked_tries_more_gently_each_time() -> None:
+    tries = Blocked.create({}).tries
+    assert len(tries) == 3
+    for earlier, later in pairwise(tries):
+        assert later.limit_n < earlier.limit_n
+        assert later.speed < earlier.speed
+    with pytest.raises(ValidationError, match="gentler"):
+        Blocked.create({"limits_n": [10.0, 20.0], "speeds": [1.0, 0.5]})
+    with pytest.raises(ValidationError, match="as many speeds"):
+        Blocked.create({"limits_n": [10.0], "speeds": [1.0, 0.5]})
 
 
 def test_blocked_heeds_the_path_check_before_the_first_step_only() -> None:
@@ -171,7 +184,7 @@ def test_blocked_heeds_the_path_check_before_the_first_step_only() -> None:
 
 
 def test_wrong_parameters_are_refused() -> None:
-    with pytest.raises(ValidationError, match="limit_n"):
-        Blocked.create({"limit_n": -1.0})
+    with pytest.raises(ValidationError, match="limits_n"):
+        Blocked.create({"limits_n": [-1.0]})
     with pytest.raises(ValidationError, match="colour"):
         Missing.create({"colour": "pink"})

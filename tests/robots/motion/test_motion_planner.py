@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from small_arm import small_arm
 
-from robots.body import ToolPose
+from robots.body import NoWay, ToolPose
 from robots.motion.kinematics import KinematicChain
 from robots.motion.planner import JointPath, PathPlanner, pose_matrix
 
@@ -29,7 +29,7 @@ def path(chain: KinematicChain) -> JointPath:
     found = PathPlanner(chain, START).plan(
         START, [ABOVE, BELOW, ABOVE, ASIDE], np.random.default_rng(0)
     )
-    assert found is not None
+    assert isinstance(found, JointPath)
     return found
 
 
@@ -72,7 +72,9 @@ def test_a_vertical_way_is_straight(chain: KinematicChain, path: JointPath) -> N
 def test_one_waypoint_out_of_reach_makes_the_whole_path_impossible(chain: KinematicChain) -> None:
     planner = PathPlanner(chain, START)
     too_far = ToolPose(1.6, 0.0, 0.3, 0.0)
-    assert planner.plan(START, [ABOVE, too_far], np.random.default_rng(0)) is None
+    found = planner.plan(START, [ABOVE, too_far], np.random.default_rng(0))
+    assert isinstance(found, NoWay)
+    assert "does not reach" in found.reason
 
 
 def test_the_same_generator_gives_the_same_path(chain: KinematicChain) -> None:
@@ -80,8 +82,8 @@ def test_the_same_generator_gives_the_same_path(chain: KinematicChain) -> None:
     one, other = (
         planner.plan(START, [ABOVE, BELOW, ASIDE], np.random.default_rng(4)) for _ in range(2)
     )
-    assert one is not None
-    assert other is not None
+    assert isinstance(one, JointPath)
+    assert isinstance(other, JointPath)
     for way, same in zip(one.ways, other.ways, strict=True):
         assert np.array_equal(way.curve.end, same.curve.end)
 

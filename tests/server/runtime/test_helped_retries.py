@@ -20,8 +20,10 @@ LEAVES = [{"behavior": "pick_and_place", "object": part, "place": spot} for part
 FOR_EVER = 100
 
 
-async def run_with(goal: str, fault: tuple[str, int], most: int) -> tuple[RunView, list[ev.Event]]:
-    """A run in which one fault comes again and again, and every help is given."""
+async def run_with(
+    goal: str, fault: tuple[str, int], most: int, answers: list[str]
+) -> tuple[RunView, list[ev.Event]]:
+    """A run in which one fault comes again and again, and every promise is kept."""
     async with pretend_service(
         definition_of({goal: LEAVES}),
         {"part_1": [fault] * FOR_EVER},
@@ -29,51 +31,55 @@ async def run_with(goal: str, fault: tuple[str, int], most: int) -> tuple[RunVie
         settings=RunSettings(max_helped_retries=most),
         stubborn=True,
     ) as service:
-        view, events = await service.run_to_end(answers=["yes"] * FOR_EVER)
+        view, events = await service.run_to_end(answers=answers)
     assert audit(events, {node.node: node.kind for node in view.nodes}) == []
     return view, events
 
 
-def helped(events: list[ev.Event]) -> list[Any]:
-    return [each for each in events if isinstance(each, ev.Resolved) and each.helped]
+def of_type(events: list[ev.Event], kind: type[Any]) -> list[Any]:
+    return [each for each in events if isinstance(each, kind)]
+
+
+def asked(events: list[ev.Event]) -> list[str]:
+    return [each.text for each in of_type(events, ev.Prompt) if each.kind == "ask"]
 
 
 @pytest.mark.parametrize("most", [0, 1, 5])
 @pytest.mark.parametrize("fault", [("missed", 4), ("dropped", 5)])
-async def test_a_leaf_that_fails_after_every_help_gives_up(
+async def test_after_so_many_helped_tries_the_helper_is_asked_to_place_it(
     fault: tuple[str, int], most: int
 ) -> None:
-    view, events = await run_with("then", fault, most)
+    view, events = await run_with("then", fault, most, ["yes"] * FOR_EVER)
+    assert view.status is RunStatus.FINISHED
+    resolutions = [each.resolution for each in of_type(events, ev.Resolved) if each.helped]
+    assert resolutions == [*[Resolution.ROBOT_RETRY] * most, Resolution.HUMAN_FINISH]
+    assert "I have now failed" in asked(events)[-1]
+    assert not [each for each in of_type(events, ev.NodeReset) if each.failed_attempt]
+
+
+async def test_a_helper_who_does_not_place_it_either_lets_the_attempts_fail() -> None:
+    most, refusals = 2, ["no", "no"]
+    answers = ["yes"] * most + refusals * 10
+    view, events = await run_with("then", ("missed", 4), most, answers)
     assert view.status is RunStatus.FAILED
     assert view.result is not None
-    assert view.result.reason == (
-        f"'part_1' could not be done: it failed again after {most} helped retries"
-    )
-    assert view.result.node == "/0"
-    assert {each.resolution for each in helped(events)} == {Resolution.ROBOT_RETRY}
-    assert len(helped(events)) == most + 1
-    assert sum(isinstance(each, ev.NodeStarted) for each in events) == most + 1
+    assert view.result.reason == "'part_1' could not be done: it failed 3 times"
+    failed = [each for each in of_type(events, ev.NodeReset) if each.failed_attempt]
+    assert len(failed) == 3
+    assert len(of_type(events, ev.NodeStarted)) == most + 3
     assert find_untruths(events, {}) == []
 
 
-async def test_a_robot_that_goes_on_after_every_help_gives_up_as_well() -> None:
-    view, events = await run_with("then", ("blocked", 6), 3)
-    assert {each.resolution for each in helped(events)} == {Resolution.ROBOT_FINISH}
-    assert view.result is not None
-    assert "it failed again after 3 helped retries" in view.result.reason
-    assert len(helped(events)) == 4
+async def test_a_robot_that_goes_on_after_every_help_stops_offering_it_as_well() -> None:
+    view, events = await run_with("then", ("blocked", 6), 3, ["yes"] * FOR_EVER)
+    assert view.status is RunStatus.FINISHED
+    resolutions = [each.resolution for each in of_type(events, ev.Resolved) if each.helped]
+    assert resolutions == [*[Resolution.ROBOT_FINISH] * 3, Resolution.HUMAN_FINISH]
 
 
 async def test_the_other_alternative_is_taken_instead() -> None:
-    view, events = await run_with("or", ("missed", 4), 2)
+    view, events = await run_with("or", ("missed", 4), 0, ["no"] * FOR_EVER)
     assert view.status is RunStatus.FINISHED
-    [abandoned] = [each for each in events if isinstance(each, ev.NodeAbandoned)]
-    assert abandoned.node == abandoned.leaf == "/0"
-    assert abandoned.reason == "it failed again after 2 helped retries"
-    assert [each.node for each in events if isinstance(each, ev.NodeDone)] == ["/1"]
-
-
-async def test_a_reason_that_counts_too_many_helped_retries_is_untrue() -> None:
-    _, events = await run_with("then", ("missed", 4), 2)
-    said = "'part_1' could not be done: it failed again after 3 helped retries"
-    assert find_untruths([*events[:-1], events[-1].model_copy(update={"reason": said})], {}) != []
+    assert [each.node for each in of_type(events, ev.NodeDone)] == ["/1"]
+    last = [each.text for each in of_type(events, ev.Prompt) if each.kind == "say"][-1]
+    assert last == "All right. I take the part 2 instead."

@@ -70,7 +70,8 @@ async def test_a_task_without_faults_is_done_in_order() -> None:
         ("unreachable", ["no", "yes"], Resolution.HUMAN_FINISH, "human"),
         ("missing", ["yes"], Resolution.ROBOT_FINISH, "robot"),
         ("blocked", ["yes"], Resolution.ROBOT_FINISH, "robot"),
-        ("positioning", [], Resolution.COLLAB_FINISH, "both"),
+        ("positioning", ["yes"], Resolution.COLLAB_FINISH, "both"),
+        ("positioning", ["no"], Resolution.ROBOT_FINISH, "robot"),
     ],
 )
 async def test_an_issue_is_resolved_as_it_was_answered(
@@ -190,9 +191,9 @@ HELD = {"part_1": [("missed", 4)]}
 @pytest.fixture
 def deaf_watch(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let no simulated time pass while a question is open: live helpers take their time."""
-    from server.runtime.dialogue_driver import DialogueDriver
+    from server.runtime.dialogue_looks import DialogueLooks
 
-    monkeypatch.setattr(DialogueDriver, "_let_time_pass", lambda *_: None)
+    monkeypatch.setattr(DialogueLooks, "let_time_pass", lambda *_: None)
 
 
 @pytest.mark.usefixtures("deaf_watch")

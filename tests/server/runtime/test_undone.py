@@ -141,10 +141,11 @@ async def test_what_is_hidden_is_believed_to_be_where_it_was_put() -> None:
 async def test_what_another_robot_builds_on_it_is_cut_short() -> None:
     tree = {"then": [LEAVES[0], {"and": LEAVES[1:4]}]}
     async with pretend_service(definition_of(tree), scene=SCENE) as service:
-        gone: set[str] = set()
+        stolen: set[str] = set()
+        shared: dict[str, Any] = {"stolen": stolen, "finished": set(), "in_reach": True}
         make = {
-            "fast": PretendRobot("fast", gone=gone, thefts={"part_3": ["part_1"]}, in_reach=True),
-            "slow": PretendRobot("slow", gone=gone, slow=True, in_reach=True),
+            "fast": PretendRobot("fast", thefts={"part_3": ["part_1"]}, **shared),
+            "slow": PretendRobot("slow", slow=True, **shared),
         }
         service.robots.make = lambda name: make[name]
         service.robots.robots.update(make)
@@ -158,6 +159,81 @@ async def test_what_another_robot_builds_on_it_is_cut_short() -> None:
     assert [(each.robot, each.reason, each.failed_attempt) for each in cut] == [
         ("slow", "what it comes after is no longer done", False)
     ]
+
+
+async def test_what_a_helper_leaves_out_is_told_as_missing_with_who_said_so() -> None:
+    tree = {"then": LEAVES[:2]}
+    answers = ["no", "no", "yes"]
+    view, events = await run_with(tree, {"part_2": ["part_1"]}, answers=answers, max_attempts=1)
+    assert view.status is RunStatus.FINISHED
+    assert view.result is not None
+    assert view.result.reason == "the task is done without part_1, as script said"
+    [missing] = view.result.missing
+    assert (missing.object, missing.place, missing.left_out_by) == ("part_1", "spot_1", "script")
+    assert story(events)[-2:] == in_turn(2)
+    [left_out] = [each for each in events if isinstance(each, ev.NodeLeftOut)]
+    assert (left_out.node, left_out.helper) == ("/0", "script")
+
+
+async def test_what_was_left_out_and_comes_back_counts_as_there() -> None:
+    tree = {"then": LEAVES[:2]}
+    async with pretend_service(
+        definition_of(tree), scene=SCENE, thefts={"part_1": ["part_1"]}
+    ) as service:
+        robots: list[PretendRobot] = []
+
+        def make(name: str) -> PretendRobot:
+            robots.append(PretendRobot(name, thefts={"part_1": ["part_1"]}, returns={"part_2"}))
+            return robots[-1]
+
+        service.robots.make = make
+        view, events = await service.run_to_end(answers=["no", "no", "yes"], max_attempts=1)
+    assert audit(events, {node.node: node.kind for node in view.nodes}) == []
+    assert view.status is RunStatus.FINISHED
+    assert view.result is not None
+    assert (view.result.reason, view.result.missing) == ("the task is done", [])
+    assert [each.node for each in events if isinstance(each, ev.NodeReturned)] == ["/0"]
+
+
+# --- What the audit finds -----------------------------------------------------------------------
+
+
+async def broken(tree: Any, thefts: dict[str, list[str]], change: Any) -> list[str]:
+    """What the audit says of a run whose events were tampered with."""
+    view, events = await run_with(tree, thefts, answers=["yes"])
+    tampered = [each for event in events for each in change(event)]
+    return audit(tampered, {node.node: node.kind for node in view.nodes})
+
+
+async def test_the_audit_finds_what_was_built_on_something_gone() -> None:
+    def forget_what_follows(event: ev.Event) -> list[ev.Event]:
+        follows = isinstance(event, ev.NodeUndone) and event.because_of is not None
+        return [] if follows else [event]
+
+    found = await broken({"then": LEAVES[:2]}, {"part_2": ["part_1"]}, forget_what_follows)
+    assert any("takes back /0 before /1, which comes after it" in each for each in found)
+
+
+async def test_the_audit_finds_what_was_taken_back_for_no_reason() -> None:
+    def blame(event: ev.Event) -> list[ev.Event]:
+        gone = isinstance(event, ev.NodeUndone) and event.because_of is None
+        return [event.model_copy(update={"because_of": "/1"})] if gone else [event]
+
+    found = await broken({"and": LEAVES[:2]}, {"part_2": ["part_1"]}, blame)
+    assert any("takes back /0, which needs no /1" in each for each in found)
+
+
+async def test_the_audit_finds_a_missing_part_that_nobody_left_out() -> None:
+    part = ev.MissingPart(
+        node="/0", name="part_1", object="part_1", place="spot_1", left_out_by="ann"
+    )
+
+    def claim(event: ev.Event) -> list[ev.Event]:
+        finished = isinstance(event, ev.RunFinished)
+        return [event.model_copy(update={"missing": [part]})] if finished else [event]
+
+    found = await broken({"and": LEAVES[:2]}, {}, claim)
+    assert any("finishes without /0, which nobody left out" in each for each in found)
 
 
 # --- Everything at once -----------------------------------------------------------------------
@@ -228,7 +304,7 @@ def test_every_run_ends_and_finishes_only_with_everything_there(
                 service.run_to_end(answers=said, seed=seed), timeout=60
             )
             [robot] = service.robots.robots.values()
-            return view, events, robot.gone - robot.right
+            return view, events, set(robot.stolen)
 
     view, events, gone = asyncio.run(run())
     assert audit(events, {node.node: node.kind for node in view.nodes}) == []

@@ -105,4 +105,4 @@ def test_a_snapshot_of_another_scene_is_refused(world: TabletopWorld) -> None:
 
 def test_a_snapshot_of_another_version_is_refused(world: TabletopWorld) -> None:
     with pytest.raises(ValueError, match="version"):
-        world.restore({**world.snapshot(), "version": 2})
+        world.restore({**world.snapshot(), "version": 3})

@@ -143,7 +143,7 @@ def test_the_robot_declares_the_range_that_it_grasps_in(scene: Scene) -> None:
     agent = adapter.create_agent(WorldSetup(robot="r1", scene=scene, seed=0, speed=None))
     reach = agent.hello("boot").reach
     assert math.dist((reach.x, reach.y), (-0.05, -0.188)) < 1e-6
-    assert (reach.min_m, reach.max_m) == (0.40, 0.79)
+    assert (reach.min_m, reach.max_m) == (0.30, 0.81)
 
 
 def test_a_wrong_option_stops_the_robot_from_being_made(scene: Scene) -> None:

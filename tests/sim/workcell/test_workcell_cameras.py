@@ -75,7 +75,7 @@ def test_the_forearm_camera_sees_what_the_gripper_holds(worlds: dict[str, Workce
 
 @pytest.mark.parametrize("renderer", ["bullet", "fast"])
 def test_unprojected_pixels_lie_on_the_parts_surface(scene: Scene, renderer: str) -> None:
-    world = WorkcellWorld(scene, 5, read_options({"renderer": renderer}))
+    world = WorkcellWorld(scene, 5, read_options({"renderer": renderer, "depth_noise": 0.0}))
     image, rendering = world.head.capture_with_bodies()
     for name in ("leg", "bar"):
         part = world.parts[name]

@@ -59,9 +59,13 @@ def test_grasping_and_carrying_feels_like_no_contact(hands: Hands) -> None:
     path = hands.plan(ToolPose(pick.x, pick.y, pick.z + 0.14, pick.yaw), pick)
     hands.follow(path, 0, 1.0, feel)
     hands.follow(path, 1, 0.5, feel)
+    assert max(forces) < 5.0
     hands.body.close_gripper()
-    hands.settle(feel)
+    hands.settle()
     assert hands.world.held == "leg"
+    hands.follow(hands.plan(ToolPose(pick.x, pick.y, pick.z + 0.1, pick.yaw)), 0, 0.5)
+    forces.clear()
+    hands.follow(hands.plan(ToolPose(pick.x, pick.y + 0.1, pick.z + 0.1, pick.yaw)), 0, 0.75, feel)
     assert max(forces) < 10.0
 
 

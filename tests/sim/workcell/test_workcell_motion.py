@@ -45,14 +45,19 @@ def test_what_is_too_far_away_has_no_path(hands: Hands) -> None:
     assert hands.body.plan_path([HIGH, ToolPose(1.1, 0.2, TABLE_M + 0.1, 0.0)]) is None
 
 
-def test_the_graspable_range_can_be_grasped(hands: Hands) -> None:
+@pytest.mark.parametrize(("distance_m", "found"), [(0.40, True), (0.74, True), (0.82, False)])
+def test_the_arm_grasps_in_a_ring_around_its_shoulder(
+    hands: Hands, distance_m: float, found: bool
+) -> None:
     reach = hands.body.reach
+    assert (reach.min_m <= distance_m <= reach.max_m) is found
     for angle in (-0.5, 0.0, 0.35):
-        for distance in (reach.min_m + 0.01, reach.max_m - 0.01):
-            x = reach.origin[0] + distance * math.cos(angle)
-            y = reach.origin[1] + distance * math.sin(angle)
-            up, down = (ToolPose(x, y, TABLE_M + z, 0.0) for z in (0.195, 0.055))
-            assert hands.body.plan_path([up, down, up]) is not None, (angle, distance)
+        for yaw in (-1.2, 0.0, 1.2):
+            x = reach.origin[0] + distance_m * math.cos(angle)
+            y = reach.origin[1] + distance_m * math.sin(angle)
+            up, down = (ToolPose(x, y, TABLE_M + z, yaw) for z in (0.16, 0.025))
+            path = hands.body.plan_path([up, down, up])
+            assert (path is not None) is found, (angle, distance_m, yaw)
 
 
 def test_the_arm_stops_within_one_control_cycle(hands: Hands) -> None:

@@ -55,6 +55,7 @@ export function Answers({ question, arming: { armed, tooEarly }, onAnswer }: Ans
           </div>
         )}
       </div>
+      {prompt.timeout_effect !== "" && <p class="answer-timeout">Without an answer: {prompt.timeout_effect}</p>}
       <p class="answering-note" role="status">
         {waiting !== null && <span class="unseen">Your {WORDS[waiting.answer]} is sent in 3 seconds. Escape takes it back.</span>}
         {offline && "No connection to the service. You can answer as soon as it is back."}

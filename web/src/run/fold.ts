@@ -119,13 +119,13 @@ function applied(state: RunState, event: Event): RunState {
     case "node_done":
     case "node_left_out":
       return endExecution(withLeaf(state, event.node, (leaf) => ({ ...leaf, status: "done", owner: null })), event.node);
+    case "node_undone":
+      return withLeaf(state, event.node, (leaf) => ({ ...leaf, status: "idle", owner: null }));
     case "node_reset": {
       const failed = event.failed_attempt ? 1 : 0;
       const put = (leaf: LeafState): LeafState => ({ status: "idle", owner: null, attempts: leaf.attempts + failed });
       return endExecution(withLeaf(state, event.node, put), event.node);
     }
-    case "node_undone":
-      return withLeaf(state, event.node, (leaf) => ({ ...leaf, status: "idle", owner: null }));
     case "node_abandoned":
       return { ...state, abandoned: new Set(state.abandoned).add(indexOf(state, event.node)) };
     case "run_paused":

@@ -1,5 +1,5 @@
 // The transcript of a run: each event as the lines that a person reads.
-import type { Act, CloseReason, Event, Help, Intervention, MissingPart, NodeStarted, Resolution } from "../wire/types";
+import type { Act, Change, CloseReason, Event, Help, Intervention, MissingPart, NodeStarted, Resolution } from "../wire/types";
 import { plain } from "../tree/words";
 
 /** What kind of news a line brings; each has its own look. */
@@ -55,12 +55,26 @@ const RESOLUTIONS: Readonly<Record<Resolution, string>> = {
 };
 
 const CLOSINGS: Readonly<Partial<Record<CloseReason, string>>> = {
-  withdrawn: "the question is withdrawn: it was put right",
-  gave_up: "the question is given up: nobody helped",
+  withdrawn: "the question is withdrawn: by what the robot sees it is put right",
+  gave_up: "the question is given up: no help was seen",
   aborted: "the question lapses: it no longer matters",
 };
 
-const DOERS = { robot: " by the robot", human: " by the human", both: " by robot and human together" } as const;
+const DOERS = {
+  robot: " by the robot",
+  human: " by the human",
+  both: " by robot and human together",
+  found: ": the robot found it in place",
+} as const;
+
+const CHANGES: Readonly<Record<Change, string>> = {
+  unknown: "",
+  none: ", as it was before",
+  appeared: ": it has come back",
+  moved: ": it has been moved",
+  handed_over: "",
+  cleared: "",
+};
 
 /** What a person does, as the end of a sentence that begins with who it is. */
 export function deed(intervention: Intervention): string {
@@ -119,6 +133,14 @@ export function linesOf(event: Event): Line[] {
       return line("done", `sees ${plain(event.name)}, which was left out, at its place.`, event.robot);
     case "node_abandoned":
       return line("setback", `The alternative ${plain(event.name)} is abandoned: ${event.reason}.`);
+    case "suspected_false_alarm": {
+      const told = event.told.length > 0 ? `; a mail goes to ${event.told.join(", ")}` : "";
+      const what = `${plain(event.issue)} ${plain(event.object ?? event.name)}`;
+      return line(
+        "setback",
+        `The robot may be wrong: ${what} ${event.times} times on end, and nothing was seen to change${told}.`,
+      );
+    }
     case "issue_raised": {
       const where = event.step > 0 ? `in step ${event.step}` : "before the first step";
       return line("fault", `notices: ${plain(event.issue)}, ${plain(event.object ?? event.name)}, ${where}.`, event.robot);
@@ -146,7 +168,7 @@ export function linesOf(event: Event): Line[] {
     case "help_awaited":
       return line("watched", `looks for ${promised(event)} until ${event.until.toFixed(1)} s.`, event.robot);
     case "help_verified":
-      return line("watched", `sees ${promised(event)}.`, event.robot);
+      return line("watched", `sees ${promised(event)}${CHANGES[event.change]}.`, event.robot);
     case "help_not_seen":
       return line("setback", `does not see ${promised(event)}.`, event.robot);
     case "resolved":
@@ -182,10 +204,6 @@ export function finishedWords(missing: readonly MissingPart[]): string {
   return parts.length === 0 ? "the task is done" : `the task is done ${enumerated(parts)}`;
 }
 
-function asSaid(by: string | null): string {
-  return by === null ? "" : `, as ${by} said`;
-}
-
 function enumerated(words: readonly string[]): string {
   return [words.slice(0, -1).join(", "), ...words.slice(-1)].filter((each) => each !== "").join(" and ");
 }
@@ -205,6 +223,10 @@ function comparison(event: NodeStarted): string {
   const others = event.candidates.length - 1;
   if (others < 1) return "";
   return `, chosen among ${event.candidates.length}`;
+}
+
+function asSaid(by: string | null): string {
+  return by === null ? "" : `, as ${by} said`;
 }
 
 function promised(event: { help: Help; object: string | null; name: string }): string {

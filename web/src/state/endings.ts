@@ -48,9 +48,11 @@ export function closing(reason: CloseReason, statement: string | null): string {
     case "resolved":
       return `Settled.${said}`;
     case "withdrawn":
-      return "No longer needed: the robot saw that it was put right.";
+      return `No longer needed, by what the robot sees.${said}`;
     case "gave_up":
-      return "Closed without help: the robot will try again later.";
+      return `Closed: no help was seen.${said}`;
+    case "left_out":
+      return `Settled.${said}`;
     case "aborted":
       return "No longer needed: the robot has stopped this task.";
   }

@@ -1,0 +1,103 @@
+"""What puts an issue right: the rule by which what is seen counts, and when a person is thanked.
+
+The robot asks, and looks at once (the first look). A later look puts the issue right only if
+
+- something that the script watches for is so now and was not so at the first look, or
+- it is so now, and the object was seen to move since.
+
+A state that was already so when the question was put tells nothing: a part that the robot has only
+failed to hold is within its reach all the time. What the issue itself says not to be so (a missing
+part within reach, a seen obstruction gone) is new even if it is so at the first look; but then the
+robot may well have been wrong before, so that nobody is thanked for it. What was felt is never put
+right by a camera: it takes a person's word and a look.
+
+A person has helped if a change was seen that only a person can have made: the object appeared,
+moved, or came between the fingers, or what was in the way is gone. A promise alone is not help, nor
+is a look that sees no more than the first one did.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+
+from dialogue.script import Expectation
+
+MOVED_M = 0.02
+"""An object that is seen this far from where it was has been moved; cameras err by less."""
+
+Point = tuple[float, float, float]
+
+
+class Change(StrEnum):
+    """What was seen to change since the question was put."""
+
+    UNKNOWN = "unknown"
+    """Nobody has looked before, so that nothing can be compared."""
+    NONE = "none"
+    APPEARED = "appeared"
+    """The object was not to be seen, and now is."""
+    MOVED = "moved"
+    HANDED_OVER = "handed_over"
+    """The object came between the fingers."""
+    CLEARED = "cleared"
+    """What was in the way is gone."""
+
+    @property
+    def by_a_person(self) -> bool:
+        """Whether only a person can have made it."""
+        return self not in (Change.UNKNOWN, Change.NONE)
+
+
+@dataclass(frozen=True, slots=True)
+class Look:
+    """What one look saw: what is so of what matters, and where the object is (None: unseen)."""
+
+    fulfilled: frozenset[Expectation]
+    position: Point | None
+
+
+@dataclass(frozen=True, slots=True)
+class PutRight:
+    """The issue is put right: by what is so now, and what was seen to change."""
+
+    seen: Expectation
+    change: Change
+
+
+def change_between(first: Look | None, now: Look) -> Change:
+    """What a look sees changed since the first one."""
+    if first is None:
+        return Change.UNKNOWN
+    if Expectation.WAY_CLEAR in now.fulfilled - first.fulfilled:
+        return Change.CLEARED
+    if now.position is None:
+        return Change.NONE
+    if first.position is None:
+        return Change.APPEARED
+    return Change.MOVED if has_moved(first.position, now.position) else Change.NONE
+
+
+def put_right(watched: Sequence[Expectation], first: Look, now: Look) -> PutRight | None:
+    """What has put an issue right since the first look; `watched`: the most telling first."""
+    change = change_between(first, now)
+    moved = change in (Change.APPEARED, Change.MOVED)
+    for each in watched:
+        if each in now.fulfilled and (moved or each not in first.fulfilled):
+            return PutRight(each, change)
+    return None
+
+
+def contradiction(
+    watched: Sequence[Expectation], denied: frozenset[Expectation], first: Look
+) -> PutRight | None:
+    """What the first look saw that the issue itself denies: the robot may have been wrong."""
+    for each in watched:
+        if each in denied & first.fulfilled:
+            return PutRight(each, Change.NONE)
+    return None
+
+
+def has_moved(before: Point, now: Point) -> bool:
+    """Whether an object is seen elsewhere than it was."""
+    return math.dist(before, now) > MOVED_M

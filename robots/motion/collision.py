@@ -1,0 +1,117 @@
+"""Where an arm would touch what stands around it: convex hulls of its links against boxes.
+
+Pinocchio places the links, coal tests the pairs.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import coal
+import numpy as np
+import pinocchio as pin
+
+from robots.body import HeldBox
+from robots.motion.kinematics import Joints
+from robots.vision.seen_box import SeenBox
+
+
+@dataclass(frozen=True, slots=True)
+class Hand:
+    """How the gripper is on a way: the angles of its joints, and what it holds."""
+
+    angles_rad: Mapping[str, float]
+    held: Sequence[HeldBox] = ()
+
+
+@dataclass(slots=True)
+class _Pairs:
+    """A geometry model with what one hand could touch, and whose box each pair is about."""
+
+    model: Any
+    data: Any
+    boxes: list[SeenBox] = field(default_factory=list)
+
+
+class CollisionModel:
+    """The links of one arm that have a shape for collisions, as convex hulls."""
+
+    def __init__(self, urdf: Path, joints: Sequence[str], tool_frame: str) -> None:
+        """`joints` are those of the arm, in the order of its joint angles."""
+        self._model = pin.buildModelFromUrdf(str(urdf))
+        self._data = self._model.createData()
+        self._links = pin.buildGeomFromUrdf(
+            self._model, str(urdf), pin.GeometryType.COLLISION, package_dirs=[str(urdf.parent)]
+        )
+        for link in self._links.geometryObjects:
+            link.geometry.buildConvexRepresentation(False)
+            link.geometry = link.geometry.convex
+        self._joints = list(joints)
+        self._tool = self._model.frames[self._model.getFrameId(tool_frame)]
+
+    def among(self, boxes: Sequence[SeenBox], hand: Hand, margin_m: float) -> "Surrounded":
+        """The arm with its gripper so, amid boxes from which it keeps `margin_m` away."""
+        geometry = self._links.copy()
+        moving = list(range(len(geometry.geometryObjects)))
+        for number, held in enumerate(hand.held):
+            placement = self._tool.placement * pin.SE3(held.in_tool)
+            shape = coal.Box(*held.size)
+            thing = pin.GeometryObject(f"held {number}", self._tool.parentJoint, placement, shape)
+            moving.append(geometry.addGeometryObject(thing))
+        pairs = _Pairs(geometry, None)
+        for number, box in enumerate(boxes):
+            thing = pin.GeometryObject(f"box {number}", 0, _placement(box), coal.Box(*box.size))
+            index = geometry.addGeometryObject(thing)
+            for link in moving:
+                geometry.addCollisionPair(pin.CollisionPair(link, index))
+                pairs.boxes.append(box)
+        pairs.data = pin.GeometryData(geometry)
+        for request in pairs.data.collisionRequests:
+            request.security_margin = margin_m
+        return Surrounded(self, pairs, hand)
+
+    def configuration(self, joints: Joints, hand: Hand) -> Any:
+        """All joints as pinocchio counts them: unlimited ones by cosine and sine."""
+        angles = dict(zip(self._joints, joints, strict=True)) | dict(hand.angles_rad)
+        whole = pin.neutral(self._model)
+        for name, angle in angles.items():
+            joint = self._model.joints[self._model.getJointId(name)]
+            if joint.nq == 1:
+                whole[joint.idx_q] = angle
+            else:
+                whole[joint.idx_q : joint.idx_q + 2] = np.cos(angle), np.sin(angle)
+        return whole
+
+    def first_hit(self, pairs: _Pairs, whole: Any) -> SeenBox | None:
+        """The first box that anything touches."""
+        touched = pin.computeCollisions(
+            self._model, self._data, pairs.model, pairs.data, whole, True
+        )
+        if not touched:
+            return None
+        for result, box in zip(pairs.data.collisionResults, pairs.boxes, strict=True):
+            if result.isCollision():
+                return box
+        return None
+
+
+@dataclass(frozen=True, slots=True)
+class Surrounded:
+    """An arm amid boxes."""
+
+    arm: CollisionModel
+    _pairs: _Pairs
+    _hand: Hand
+
+    def hit(self, joints: Joints) -> SeenBox | None:
+        """What the arm touches at these joint angles; None if nothing."""
+        if not self._pairs.boxes:
+            return None
+        return self.arm.first_hit(self._pairs, self.arm.configuration(joints, self._hand))
+
+
+def _placement(box: SeenBox) -> Any:
+    x, y, z = box.x, box.y, box.bottom_z + box.size[2] / 2
+    turn = pin.utils.rotate("z", box.yaw)
+    return pin.SE3(turn, np.array([x, y, z]))

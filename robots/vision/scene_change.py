@@ -1,0 +1,83 @@
+"""Whether anything has changed between two pictures of a camera that stands still.
+
+Frame differencing against a reference picture, with the threshold from the pictures' own noise
+(Rosin & Ioannidis 2003, "Evaluation of global image thresholding for change detection", section
+2.3: noise modelling by the median of the differences).
+"""
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from robots.body import CameraImage
+
+Picture = NDArray[np.float32]
+
+_WINDOW = (3, 3)
+_NEIGHBORS = np.ones((3, 3), np.uint8)
+_SPARSE = 4
+"""The noise is measured in each fourth row and column."""
+_SIGMAS = 7.0
+_MAD_TO_SIGMA = 1.4826
+_LEAST_GREY = 8.0
+_LEAST_DEPTH_M = 0.008
+"""Smaller differences are those of light and of depth at edges, not of something that moved."""
+_DARKEST, _BRIGHTEST = 8.0, 247.0
+_FEWEST_PX = 6
+_LEAST_SHARE = 5e-5
+"""A patch that covers less of the picture is noise, or too small for a part."""
+
+
+def shows_change(before: CameraImage, now: CameraImage) -> bool:
+    """Whether the later picture shows anything that the earlier one did not."""
+    if before is now:
+        return False
+    if before.bgr.shape != now.bgr.shape or not np.allclose(before.pose, now.pose, atol=1e-6):
+        return True
+    if _equal(before, now):
+        return False
+    return _differ(*_equally_exposed(before, now), _LEAST_GREY) or (
+        before.depth_m is not None
+        and now.depth_m is not None
+        and _differ(before.depth_m, now.depth_m, _LEAST_DEPTH_M)
+    )
+
+
+def _equal(before: CameraImage, now: CameraImage) -> bool:
+    if not np.array_equal(before.bgr, now.bgr):
+        return False
+    if before.depth_m is None or now.depth_m is None:
+        return before.depth_m is now.depth_m
+    return np.array_equal(before.depth_m, now.depth_m, equal_nan=True)
+
+
+def _equally_exposed(before: CameraImage, now: CameraImage) -> tuple[Picture, Picture]:
+    """Both pictures at the later one's exposure; NaN where either is over- or underexposed."""
+    pictures = [each.bgr.astype(np.float32) for each in (before, now)]
+    for each in pictures:
+        each[(each < _DARKEST) | (each > _BRIGHTEST)] = np.nan
+    ratios = (pictures[1] / pictures[0])[::_SPARSE, ::_SPARSE]
+    known = ratios[np.isfinite(ratios)]
+    gain = np.float32(np.median(known)) if known.size else np.float32(1.0)
+    return np.asarray(pictures[0] * gain), pictures[1]
+
+
+def _differ(before: Picture, now: Picture, least: float) -> bool:
+    """Whether a patch differs by more than noise and by more than `least`."""
+    # What is missing in either picture says nothing.
+    known_before = np.nan_to_num(np.where(np.isnan(before), now, before))
+    known_now = np.where(np.isnan(now), known_before, now)
+    smooth_before, smooth_now = cv2.blur(known_before, _WINDOW), cv2.blur(known_now, _WINDOW)
+    # At an edge any value between those of its two sides may come.
+    highest, lowest = cv2.dilate(smooth_before, _NEIGHBORS), cv2.erode(smooth_before, _NEIGHBORS)
+    beyond = np.maximum(smooth_now - highest, lowest - smooth_now)
+    noise = np.abs(smooth_now - smooth_before)[::_SPARSE, ::_SPARSE]
+    sigma = _MAD_TO_SIGMA * float(np.median(noise))
+    changed = np.asarray(beyond > max(_SIGMAS * sigma, least)).astype(np.uint8)
+    if changed.ndim == 3:
+        changed = changed.max(axis=2)
+    fewest_px = max(_FEWEST_PX, _LEAST_SHARE * changed.size)
+    if int(changed.sum()) < fewest_px:
+        return False
+    _, _, stats, _ = cv2.connectedComponentsWithStats(changed)
+    return bool(stats[1:, cv2.CC_STAT_AREA].max() >= fewest_px)

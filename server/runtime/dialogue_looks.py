@@ -1,0 +1,224 @@
+"""What the robot looks for while a dialogue is open, and what each look is compared with."""
+
+from uuid import UUID
+
+from dialogue.evidence import (
+    Change,
+    Look,
+    Point,
+    PutRight,
+    change_between,
+    contradiction,
+    has_moved,
+    put_right,
+)
+from dialogue.script import Expectation, Help
+from robots.link.messages import FinishedResult
+from server.journal import events as ev
+from server.runtime.context import RunContext
+from server.runtime.robot_side import Doing, Purpose, RobotSide
+from server.runtime.run_state import EXPECTED, DialogueState
+
+FIRST_LOOK_S = 1.0
+"""So long the first look may take to see whether an object rests within reach."""
+
+WATCH_PERIOD_S = 2.0
+"""How often the robot looks whether what was right when it asked has changed."""
+
+HELP_TAKES_S = 10.0
+"""So long a helper is given where a look could not tell help that is still to come from none."""
+
+
+class DialogueLooks:
+    """The looks of one run's dialogues. `rate`: how fast the clock may run meanwhile."""
+
+    def __init__(self, context: RunContext, rate: float | None) -> None:
+        self._context = context
+        self._rate = rate
+        self._compared_with: dict[UUID, Look] = {}
+        self._next_watch: dict[UUID, float] = {}
+
+    # --- Which look is next -------------------------------------------------------------------
+
+    def let_time_pass(self, dialogue: DialogueState, side: RobotSide, due: float) -> None:
+        """Until somebody answers, see whether it is put right; let a simulated clock run."""
+        if dialogue.raised.interrupts:
+            if dialogue.first_look is None:
+                self._look_first(dialogue, side)
+                return
+            watched = self._expected(dialogue)
+            if watched is not None:
+                self._watch(dialogue, side, watched, due)
+                return
+        self._hold(side, due)
+
+    def watch_for_help(
+        self, dialogue: DialogueState, awaiting: ev.HelpAwaited, side: RobotSide
+    ) -> None:
+        """Look for promised help, once what was so before has been seen."""
+        if dialogue.first_look is None:
+            looking = side.doing is Doing.LOOKING and side.purpose is Purpose.BASELINE
+            if not looking and (side.free or side.interruptible):
+                self._look_first(dialogue, side)
+            return
+        if not (side.free or side.interruptible):
+            return
+        begin = self.help_looked_for_from(dialogue, awaiting)
+        if self._context.clock.now() < begin:
+            if side.free:
+                self._hold(side, begin)
+            return
+        side.look(
+            Purpose.HELP,
+            object=dialogue.raised.object,
+            place=dialogue.raised.place,
+            expect=EXPECTED[awaiting.help],
+            within_s=max(0.0, awaiting.until - self._context.clock.now()),
+            rate=self._rate,
+            finished=_result_of(dialogue),
+        )
+
+    def help_looked_for_from(self, dialogue: DialogueState, awaiting: ev.HelpAwaited) -> float:
+        """From when (run's clock) promised help is looked for.
+
+        What is as promised already, or was only felt, gives the helper time to do it first.
+        """
+        if awaiting.help is Help.HAND_OVER:
+            return awaiting.time
+        felt = dialogue.raised.detection is not None and dialogue.raised.detection.felt
+        base = self._base(dialogue)
+        already = base is not None and EXPECTED[awaiting.help] in map(str, base.fulfilled)
+        if already or (felt and awaiting.help is Help.CLEAR_WAY):
+            return min(awaiting.time + HELP_TAKES_S, awaiting.until)
+        return awaiting.time
+
+    def next_watch(self, dialogue: DialogueState) -> float | None:
+        """When (run's clock) the robot is to look again."""
+        if dialogue.awaiting is not None:
+            return self.help_looked_for_from(dialogue, dialogue.awaiting)
+        return self._next_watch.get(dialogue.id)
+
+    def _look_first(self, dialogue: DialogueState, side: RobotSide) -> None:
+        expect = self._expected(dialogue)
+        within_s = FIRST_LOOK_S if expect is Expectation.IN_REACH else 0.0
+        self._look(dialogue, side, Purpose.BASELINE, expect, within_s)
+
+    def _watch(
+        self, dialogue: DialogueState, side: RobotSide, watched: Expectation, due: float
+    ) -> None:
+        now = self._context.clock.now()
+        base = self._base(dialogue)
+        if base is None or watched not in base.fulfilled:
+            self._look(dialogue, side, Purpose.WATCH, watched, max(0.0, due - now))
+            return
+        begin = self._next_watch.setdefault(dialogue.id, now + WATCH_PERIOD_S)
+        if now + 1e-6 < begin:
+            self._hold(side, min(due, begin))
+            return
+        self._next_watch[dialogue.id] = now + WATCH_PERIOD_S
+        self._look(dialogue, side, Purpose.WATCH, None, 0.0)
+
+    def _look(
+        self,
+        dialogue: DialogueState,
+        side: RobotSide,
+        purpose: Purpose,
+        expect: Expectation | None,
+        within_s: float,
+    ) -> None:
+        result = _result_of(dialogue)
+        if expect is None:
+            side.look(purpose, rate=self._rate, finished=result)
+            return
+        side.look(
+            purpose,
+            object=dialogue.raised.object,
+            place=dialogue.raised.place,
+            expect=str(expect),
+            within_s=within_s,
+            rate=self._rate,
+            finished=result,
+        )
+
+    def _hold(self, side: RobotSide, until: float) -> None:
+        if side.hello is not None and side.hello.simulated:
+            side.hold(self._context.clock.to_robot(until), self._rate)
+
+    def _expected(self, dialogue: DialogueState) -> Expectation | None:
+        """What a look is asked to wait for; where an object is, every look tells."""
+        watched = dialogue.conversation.watched_for
+        named = dialogue.raised.object is not None
+        if Expectation.IN_REACH in watched and named:
+            return Expectation.IN_REACH
+        if Expectation.WAY_CLEAR in watched:
+            return Expectation.WAY_CLEAR
+        if Expectation.AT_PLACE in watched and named and dialogue.raised.place is not None:
+            return Expectation.AT_PLACE
+        return None
+
+    # --- What a look saw ----------------------------------------------------------------------
+
+    def first_look(self, dialogue: DialogueState, side: RobotSide, fulfilled: bool) -> Look:
+        """What the first look saw: everything later is compared with it."""
+        return self._seen(dialogue, side, self._expected(dialogue) if fulfilled else None)
+
+    def contradicted(self, dialogue: DialogueState, first: Look) -> PutRight | None:
+        """What the first look saw of that which the issue itself says not to be so."""
+        conversation = dialogue.conversation
+        return contradiction(conversation.watched_for, conversation.denied, first)
+
+    def put_right(
+        self, dialogue: DialogueState, side: RobotSide, fulfilled: bool
+    ) -> PutRight | None:
+        """Whether a look saw the issue put right since the question was put."""
+        base = self._base(dialogue)
+        if base is None:
+            return None
+        now = self._seen(dialogue, side, self._expected(dialogue) if fulfilled else None)
+        found = put_right(dialogue.conversation.watched_for, base, now)
+        if found is None and not now.fulfilled and _is_elsewhere(base.position, now.position):
+            # What was right is so no more: from here on it can be put right again.
+            self._compared_with[dialogue.id] = now
+        return found
+
+    def change_seen(self, dialogue: DialogueState, side: RobotSide, helped_with: Help) -> Change:
+        """What a look that saw the promised help saw to change."""
+        if helped_with is Help.HAND_OVER:
+            return Change.HANDED_OVER
+        seen = Expectation(EXPECTED[helped_with])
+        return change_between(self._base(dialogue), self._seen(dialogue, side, seen))
+
+    def _base(self, dialogue: DialogueState) -> Look | None:
+        if dialogue.id in self._compared_with:
+            return self._compared_with[dialogue.id]
+        first = dialogue.first_look
+        return None if first is None else Look(frozenset(first.fulfilled), first.position)
+
+    def _seen(self, dialogue: DialogueState, side: RobotSide, expected: Expectation | None) -> Look:
+        fulfilled = set() if expected is None else {expected}
+        if self._is_at_place(dialogue, side):
+            fulfilled.add(Expectation.AT_PLACE)
+        return Look(frozenset(fulfilled), seen_at(side, dialogue.raised.object))
+
+    def _is_at_place(self, dialogue: DialogueState, side: RobotSide) -> bool:
+        return any(each in side.there for each in _result_of(dialogue))
+
+
+def _result_of(dialogue: DialogueState) -> list[FinishedResult]:
+    """What there is to see once the leaf is done, if it has an object and a place."""
+    handled, place = dialogue.raised.object, dialogue.raised.place
+    if handled is None or place is None:
+        return []
+    return [FinishedResult(object=handled, place=place)]
+
+
+def seen_at(side: RobotSide, name: str | None) -> Point | None:
+    """Where a robot's last look saw an object, None if it did not."""
+    seen = side.seen.get(name or "")
+    return None if seen is None else (seen.x, seen.y, seen.z)
+
+
+def _is_elsewhere(before: Point | None, now: Point | None) -> bool:
+    if before is None or now is None:
+        return before is not now
+    return has_moved(before, now)

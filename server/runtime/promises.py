@@ -1,0 +1,46 @@
+"""The simulated person who keeps, more or less, what was promised in a dialogue."""
+
+import numpy as np
+
+from server.journal import events as ev
+from server.runtime.context import RunContext
+from server.runtime.robot_side import RobotSide
+from server.runtime.run_state import DialogueState
+from sim.interventions import HELPER
+from sim.person import Promise, deed
+from tasks.scenario import Person
+
+
+class Promises:
+    """The promises of one run; `person` is None where nobody is simulated."""
+
+    def __init__(self, context: RunContext, person: Person | None) -> None:
+        self._context = context
+        self._person = person
+        self._sent: set[str] = set()
+
+    def forget(self) -> None:
+        """The world was rebuilt: what a person was about to do has to be asked for again."""
+        self._sent.clear()
+
+    def have_kept(self, dialogue: DialogueState, awaiting: ev.HelpAwaited, side: RobotSide) -> None:
+        """Let the simulated person keep a promise, as reliably as they are; once."""
+        state, command = self._context.state, f"{dialogue.id}:{dialogue.helps}"
+        known = command in self._sent or command in state.intervened
+        if self._person is None or not self._person.acts or known:
+            return
+        self._sent.add(command)
+        rng = np.random.default_rng([state.started.seed, state.helps])
+        raised = dialogue.raised
+        promise = Promise(str(awaiting.help), raised.object, raised.place)
+        finished = {
+            state.tree.leaf_definition(leaf).object
+            for leaf in state.tree.leaves
+            if state.tree.done(leaf)
+        }
+        # Nobody takes for the promised object what stands finished at its place.
+        others = [name for name in state.scene.objects if name not in {raised.object, *finished}]
+        done = deed(promise, self._person, state.scene, others, rng)
+        if done is not None:
+            at = self._context.clock.to_robot(awaiting.time + done.delay_s)
+            side.intervene(command, done.intervention, HELPER, at)

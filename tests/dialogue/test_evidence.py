@@ -1,0 +1,91 @@
+"""What is seen puts an issue right only if it has come to be so since the question was put."""
+
+from collections.abc import Sequence
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from dialogue.evidence import (
+    MOVED_M,
+    Change,
+    Look,
+    PutRight,
+    change_between,
+    contradiction,
+    put_right,
+)
+from dialogue.script import Expectation
+
+LOST = (Expectation.AT_PLACE, Expectation.IN_REACH)
+HERE, THERE = (0.5, 0.1, 0.7), (0.5, 0.3, 0.7)
+
+
+def look(*fulfilled: Expectation, at: tuple[float, float, float] | None = HERE) -> Look:
+    return Look(frozenset(fulfilled), at)
+
+
+def test_a_part_that_never_left_puts_nothing_right() -> None:
+    seen = look(Expectation.IN_REACH)
+    assert put_right(LOST, seen, seen) is None
+    assert change_between(seen, seen) is Change.NONE
+
+
+def test_a_part_that_came_back_does() -> None:
+    first, now = look(at=None), look(Expectation.IN_REACH)
+    assert put_right(LOST, first, now) == PutRight(Expectation.IN_REACH, Change.APPEARED)
+
+
+def test_a_part_that_was_moved_does_though_it_was_within_reach_before() -> None:
+    first, now = look(Expectation.IN_REACH), look(Expectation.IN_REACH, at=THERE)
+    assert put_right(LOST, first, now) == PutRight(Expectation.IN_REACH, Change.MOVED)
+
+
+def test_at_its_place_tells_more_than_within_reach() -> None:
+    first = look(Expectation.IN_REACH)
+    now = look(Expectation.IN_REACH, Expectation.AT_PLACE, at=THERE)
+    assert put_right(LOST, first, now) == PutRight(Expectation.AT_PLACE, Change.MOVED)
+
+
+def test_a_way_that_was_seen_to_become_clear_does() -> None:
+    watched = (Expectation.WAY_CLEAR,)
+    found = put_right(watched, look(), look(Expectation.WAY_CLEAR))
+    assert found == PutRight(Expectation.WAY_CLEAR, Change.CLEARED)
+
+
+def test_a_first_look_that_contradicts_the_issue_thanks_nobody() -> None:
+    first = look(Expectation.IN_REACH)
+    assert contradiction(LOST, frozenset(LOST), first) == PutRight(
+        Expectation.IN_REACH, Change.NONE
+    )
+    assert contradiction(LOST, frozenset(), first) is None
+    assert not Change.NONE.by_a_person
+
+
+def test_where_nobody_looked_before_nothing_can_have_changed() -> None:
+    assert change_between(None, look()) is Change.UNKNOWN
+    assert not Change.UNKNOWN.by_a_person
+
+
+positions = st.none() | st.tuples(*[st.floats(-1.0, 1.0)] * 3)
+looks = st.builds(Look, st.frozensets(st.sampled_from(Expectation)), positions)
+watched_for = st.lists(st.sampled_from(Expectation), unique=True)
+
+
+@given(watched=watched_for, seen=looks, shift=st.floats(0.0, MOVED_M / 2))
+def test_a_state_that_was_already_so_never_counts(
+    watched: Sequence[Expectation], seen: Look, shift: float
+) -> None:
+    at = seen.position
+    shaken = Look(seen.fulfilled, at and (at[0] + shift, at[1], at[2]))
+    assert put_right(watched, seen, shaken) is None
+
+
+@given(watched=watched_for, first=looks, now=looks)
+def test_what_puts_it_right_is_so_now_and_is_new(
+    watched: Sequence[Expectation], first: Look, now: Look
+) -> None:
+    found = put_right(watched, first, now)
+    if found is not None:
+        assert found.seen in watched
+        assert found.seen in now.fulfilled
+        assert found.change.by_a_person or found.seen not in first.fulfilled

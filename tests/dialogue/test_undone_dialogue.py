@@ -1,0 +1,65 @@
+"""The dialogue about what is not at its place: three ways out, and none that is not offered."""
+
+import pytest
+
+from dialogue.conversation import Conversation, Phase
+from dialogue.evidence import Change
+from dialogue.outlook import Next, Outlook, Sequel
+from dialogue.registry import load_scripts
+from dialogue.script import Ask, Close, CloseReason, Say, Turn
+from tasks.issue import Issue
+from tasks.resolution import Resolution
+
+LAST_CHANCE = Outlook(attempt=3, attempts=3, failed=Sequel(Next.RUN_FAILS))
+
+
+def about(*, interrupts: bool = True, outlook: Outlook | None = None) -> Conversation:
+    issue = Issue("undone", "pr2", "/0", "pink_bar", "pink_bar", "left", 0, interrupts=interrupts)
+    return Conversation(load_scripts()["undone"], issue, outlook or Outlook())
+
+
+def closing(turns: list[Turn]) -> Close:
+    close = turns[-1]
+    assert isinstance(close, Close)
+    return close
+
+
+def test_it_is_placed_again_once_it_is_brought() -> None:
+    conversation = about()
+    [ask] = conversation.open()
+    assert isinstance(ask, Ask)
+    assert ask.text == "The pink bar is not at its place. Shall I place it again?"
+    conversation.answer("yes")
+    close = closing(conversation.help_seen(Change.APPEARED))
+    assert (close.resolution, close.helped) == (Resolution.ROBOT_FINISH, True)
+
+
+def test_a_helper_may_put_it_back_at_its_place() -> None:
+    conversation = about()
+    conversation.open()
+    conversation.answer("no")
+    conversation.answer("yes")
+    close = closing(conversation.help_seen(Change.APPEARED))
+    assert (close.resolution, close.helped) == (Resolution.HUMAN_FINISH, True)
+
+
+def test_a_helper_may_have_it_left_out() -> None:
+    conversation = about(outlook=LAST_CHANCE)
+    conversation.open()
+    conversation.answer("no")
+    [leave] = conversation.answer("no")
+    assert isinstance(leave, Ask)
+    assert leave.text == "Shall I leave the pink bar out?"
+    close = closing(conversation.answer("yes"))
+    assert (close.reason, close.resolution) == (CloseReason.LEFT_OUT, None)
+
+
+@pytest.mark.parametrize("outlook", [Outlook(), LAST_CHANCE])
+def test_where_the_robot_goes_on_by_itself_it_only_says_so(outlook: Outlook) -> None:
+    conversation = about(interrupts=False, outlook=outlook)
+    said, close = conversation.open()
+    assert isinstance(said, Say)
+    assert said.text.startswith("The pink bar is not at its place. I place it again.")
+    assert isinstance(close, Close)
+    assert (close.resolution, close.helped) == (Resolution.ROBOT_FINISH, False)
+    assert conversation.phase is Phase.CLOSED

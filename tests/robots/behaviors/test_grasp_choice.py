@@ -1,0 +1,110 @@
+"""Before the first step a grasp is chosen for which there is room, and refused in words if none."""
+
+from dataclasses import replace
+
+import pytest
+from robot_bench import RobotBench
+from scripted_body import GRIPPER, STARTS, ScriptedBody
+
+from robots.behaviors.behavior import Move, SetGripper, Step
+from robots.behaviors.grasp_choice import clear_z, crowded, others
+from robots.behaviors.legs import held_boxes, legs_of
+from robots.behaviors.phase import Phase
+from robots.body import ToolPose
+from robots.catalogue import Part
+from robots.grasp import grasp_of
+from robots.gripper import GripperModel
+from robots.link.messages import IssueDetected, Location, Look, Looked
+from robots.vision.seen_box import SeenBox
+
+PLATE = Part("plate", (0.10, 0.10, 0.012), knob=(0.03, 0.03, 0.04))
+PART = Part("part", (0.03, 0.05, 0.05))
+PICK, PLACE = ToolPose(0.5, -0.4, 0.725, 0.0), ToolPose(0.5, 0.0, 0.725, 0.0)
+STEPS = (
+    Step("pick", Move(PICK, 1.0, 0.05), Phase.APPROACH),
+    Step("close", SetGripper("closed"), Phase.GRASP),
+    Step("place", Move(PLACE, 1.0), Phase.PLACE),
+    Step("open", SetGripper("open", 0.05), Phase.RELEASE),
+    Step("leave", Move(PICK, 1.0, 0.05), Phase.RETREAT),
+)
+
+
+def box(x: float, y: float, height_m: float = 0.05, name: str | None = "other") -> SeenBox:
+    return SeenBox(x, y, 0.0, (0.03, 0.03, height_m), 0.7, name, complete=True)
+
+
+class NarrowBody(ScriptedBody):
+    """Its gripper takes hardly anything."""
+
+    @property
+    def gripper(self) -> GripperModel:
+        return replace(GRIPPER, max_width_m=0.02)
+
+
+def test_a_part_wider_than_the_gripper_is_never_taken() -> None:
+    bench = RobotBench(body=NarrowBody(STARTS))
+    bench.start("pink_bar")
+    bench.run()
+    (issue,) = bench.of(IssueDetected)
+    assert (issue.issue, issue.step) == ("unreachable", 0)
+    assert issue.detection is not None
+    assert issue.detection.explanation == (
+        "pink_bar is 30 mm wide at its narrower side; this gripper takes 10 to 20 mm"
+    )
+
+
+def test_a_part_wider_than_the_gripper_is_not_taken_from_a_person_either() -> None:
+    bench = RobotBench(body=NarrowBody(STARTS))
+    bench.send(Look(expect="in_gripper", object="pink_bar", within_s=5.0))
+    bench.run()
+    assert bench.of(Looked)[-1].fulfilled is False
+
+
+@pytest.mark.parametrize(
+    ("at", "says"),
+    [
+        ((PICK.x + 0.04, PICK.y), "other leaves no room for the fingers to grasp it"),
+        ((PLACE.x - 0.04, PLACE.y), "other leaves no room for the fingers at its place"),
+        ((PICK.x, PICK.y + 0.04), None),
+        ((0.7, 0.2), None),
+    ],
+)
+def test_room_is_needed_where_the_fingers_close_and_open(
+    at: tuple[float, float], says: str | None
+) -> None:
+    assert crowded(STEPS, GRIPPER, [box(*at)]) == says
+
+
+def test_what_is_carried_is_part_of_the_legs_between_closing_and_opening() -> None:
+    grasp = grasp_of(PART, GRIPPER)
+    legs = legs_of(STEPS, PART, grasp, GRIPPER, carrying=False)
+    assert [(len(leg.held), leg.opening_m) for leg in legs] == [
+        (0, 0.05),
+        (1, grasp.width_m),
+        (0, 0.05),
+    ]
+    carried = legs_of(STEPS[2:], PART, grasp, GRIPPER, carrying=True)
+    assert [len(leg.held) for leg in carried] == [1, 0]
+
+
+def test_a_held_part_hangs_where_it_was_grasped() -> None:
+    grasp = grasp_of(PLATE, GRIPPER)
+    plate, knob = held_boxes(PLATE, grasp)
+    # The tool frame's x points down.
+    assert plate.in_tool[0, 3] == pytest.approx(grasp.height_m - 0.006)
+    assert knob.in_tool[0, 3] == pytest.approx(grasp.height_m - 0.032)
+    assert all(small < big for small, big in zip(plate.size, PLATE.size, strict=True))
+
+
+def test_a_plate_with_a_knob_is_as_high_as_its_knob_only_there() -> None:
+    seen = SeenBox(0.5, 0.0, 0.3, (0.10, 0.10, 0.052), 0.7, "plate", complete=True)
+    plate, knob = others(PART, [seen, box(0.6, 0.2, name="part")], {"plate": PLATE, "part": PART})
+    assert (plate.top_z, knob.bottom_z) == (pytest.approx(0.712), pytest.approx(0.712))
+    assert (knob.size, knob.yaw) == (PLATE.knob, 0.3)
+
+
+def test_only_what_stands_on_the_way_is_passed_over() -> None:
+    found, target = Location(x=0.5, y=-0.5), Location(x=0.5, y=0.1)
+    on_the_way, aside = box(0.55, -0.2, 0.2), box(0.9, -0.2, 0.3)
+    assert clear_z(found, target, 0.7, [aside]) < 0.75
+    assert clear_z(found, target, 0.7, [aside, on_the_way]) > on_the_way.top_z

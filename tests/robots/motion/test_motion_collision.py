@@ -1,0 +1,98 @@
+"""Collisions of an arm with boxes, and paths that keep away from them."""
+
+import math
+
+import numpy as np
+import pytest
+
+from robots.body import HeldBox, NoWay, ToolPose
+from robots.motion.collision import CollisionModel, Hand
+from robots.motion.kinematics import KinematicChain
+from robots.motion.obstacles import PathObstacles, samples
+from robots.motion.planner import JointPath, PathPlanner
+from robots.vision.seen_box import SeenBox
+from sim.workcell.gripper import finger_angle_rad
+from sim.workcell.robot_model import (
+    ARM_JOINTS,
+    FINGER_JOINTS,
+    NEUTRAL_RAD,
+    PREFERRED_RAD,
+    TOOL_FRAME,
+    robot_urdf,
+)
+
+START = np.array(NEUTRAL_RAD)
+PICK, PLACE = ToolPose(0.5, -0.45, 0.75, 0.0), ToolPose(0.55, 0.0, 0.75, 0.0)
+LIFT_M = 0.10
+
+
+@pytest.fixture(scope="module")
+def chain() -> KinematicChain:
+    return KinematicChain(robot_urdf(), TOOL_FRAME, ARM_JOINTS)
+
+
+@pytest.fixture(scope="module")
+def arm() -> CollisionModel:
+    return CollisionModel(robot_urdf(), ARM_JOINTS, TOOL_FRAME)
+
+
+def hand(opening_m: float, *held: HeldBox) -> Hand:
+    return Hand(dict.fromkeys(FINGER_JOINTS, finger_angle_rad(opening_m)), held)
+
+
+def box(x: float, y: float, size: tuple[float, float, float], name: str = "box") -> SeenBox:
+    return SeenBox(x, y, 0.0, size, 0.7, name, complete=True)
+
+
+def over(pose: ToolPose) -> ToolPose:
+    return ToolPose(pose.x, pose.y, pose.z + LIFT_M, pose.yaw)
+
+
+def plan(arm: CollisionModel, chain: KinematicChain, *boxes: SeenBox) -> JointPath | NoWay:
+    waypoints = [over(PICK), PICK, over(PICK), over(PLACE), PLACE]
+    obstacles = PathObstacles.around(arm, boxes, [hand(0.04)] * len(waypoints), START)
+    planner = PathPlanner(chain, np.array(PREFERRED_RAD))
+    return planner.plan(START, waypoints, np.random.default_rng(0), obstacles)
+
+
+def test_what_the_fingers_go_around_is_not_touched_until_they_close(
+    arm: CollisionModel, chain: KinematicChain
+) -> None:
+    path = plan(arm, chain)
+    assert isinstance(path, JointPath)
+    at_pick = path.ways[1].curve.end
+    between = box(PICK.x, PICK.y, (0.03, 0.05, 0.06))
+    assert arm.among([between], hand(0.04), 0.0).hit(at_pick) is None
+    assert arm.among([between], hand(0.02), 0.0).hit(at_pick) == between
+    aside = box(PICK.x + 0.04, PICK.y, (0.03, 0.05, 0.06))
+    assert arm.among([between, aside], hand(0.04), 0.0).hit(at_pick) == aside
+
+
+def test_what_is_held_is_part_of_the_arm(arm: CollisionModel, chain: KinematicChain) -> None:
+    path = plan(arm, chain)
+    assert isinstance(path, JointPath)
+    above = path.ways[0].curve.end
+    below = box(PICK.x, PICK.y, (0.05, 0.05, 0.08))
+    long = HeldBox((0.1, 0.02, 0.02), np.eye(4))
+    assert arm.among([below], hand(0.02), 0.0).hit(above) is None
+    hanging = HeldBox((0.16, 0.02, 0.02), np.eye(4))
+    assert arm.among([below], hand(0.02, long), 0.0).hit(above) is None
+    assert arm.among([below], hand(0.02, hanging), 0.0).hit(above) == below
+
+
+def test_a_path_goes_around_or_over_what_stands_there(
+    arm: CollisionModel, chain: KinematicChain
+) -> None:
+    posts = [
+        box(0.55 - 0.15 * math.cos(a), -0.22 + 0.1 * math.sin(a), (0.04, 0.04, 0.12))
+        for a in np.linspace(0.0, 3.0, 4)
+    ]
+    path = plan(arm, chain, *posts)
+    assert isinstance(path, JointPath)
+    around = arm.among(posts, hand(0.04), 0.0)
+    assert all(around.hit(joints) is None for way in path.ways for joints in samples(way.curve))
+
+
+def test_what_no_path_keeps_away_from_is_named(arm: CollisionModel, chain: KinematicChain) -> None:
+    found = plan(arm, chain, box(PLACE.x, PLACE.y, (0.1, 0.1, 0.2), "vase"))
+    assert found == NoWay("would touch vase on the way")

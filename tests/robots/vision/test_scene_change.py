@@ -1,0 +1,56 @@
+"""A change is what noise and light do not explain."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from robots.body import CameraImage
+from robots.vision.scene_change import shows_change
+
+NOISE = 3.0
+DEPTH_NOISE_M = 0.002
+
+
+def picture(seed: int, gain: float = 1.0, box: tuple[int, int] | None = (60, 40)) -> CameraImage:
+    """A table with a box of 10 x 10 pixels, 30 mm high."""
+    rng = np.random.default_rng(seed)
+    bgr = np.full((120, 160, 3), 150.0)
+    depth = np.full((120, 160), 1.0)
+    if box is not None:
+        u, v = box
+        bgr[v : v + 10, u : u + 10] = (40.0, 60.0, 200.0)
+        depth[v : v + 10, u : u + 10] = 0.97
+    bgr = np.clip(bgr * gain + rng.normal(0.0, NOISE, bgr.shape), 0.0, 255.0)
+    depth += rng.normal(0.0, DEPTH_NOISE_M, depth.shape)
+    depth[rng.random(depth.shape) < 0.02] = np.nan
+    return CameraImage(
+        bgr.astype(np.uint8), depth.astype(np.float32), np.eye(4), 200.0, (80.0, 60.0), float(seed)
+    )
+
+
+@pytest.mark.parametrize("seed", range(1, 11))
+def test_noise_and_exposure_are_no_change(seed: int) -> None:
+    assert not shows_change(picture(0), picture(seed, gain=1.0 + 0.04 * (seed % 3 - 1)))
+
+
+@pytest.mark.parametrize("box", [(75, 40), (62, 43), None])
+def test_what_moved_or_went_is_a_change(box: tuple[int, int] | None) -> None:
+    assert shows_change(picture(0), picture(1, box=box))
+
+
+def test_what_has_the_tables_colour_is_seen_by_its_depth() -> None:
+    grey = [replace(each, bgr=np.full_like(each.bgr, 150)) for each in (picture(0), picture(1))]
+    gone = replace(picture(2, box=None), bgr=grey[0].bgr)
+    assert not shows_change(*grey)
+    assert shows_change(grey[0], gone)
+
+
+def test_another_place_of_the_camera_is_a_change() -> None:
+    moved = np.eye(4)
+    moved[0, 3] = 0.01
+    assert shows_change(picture(0), replace(picture(0), pose=moved))
+
+
+def test_the_same_picture_is_no_change() -> None:
+    assert not shows_change(picture(0), replace(picture(0), time=9.0))

@@ -1,0 +1,216 @@
+"""What a robot makes of noisy pictures: every part by its name, equal ones kept apart."""
+
+import itertools
+import math
+from collections.abc import Mapping
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from robots.catalogue import Catalogue
+from robots.link.messages import Location
+from robots.senses import Senses
+from robots.vision.presence import Presence
+from sim.tabletop.colors import learn_colors
+from sim.tabletop.world import TabletopOptions, TabletopWorld
+from tasks.intervention import Act, Intervention
+from tasks.scene import Pose, Scene, SceneObject
+from tasks.scene_file import built_in_scene
+
+NOISY = TabletopOptions(camera_noise=4.0, light=1.0, depth_noise=1.0)
+BOLT = SceneObject(color=(0.2, 0.5, 0.8), size=(0.024, 0.04, 0.03), pose=Pose(x=0.5, y=0.0))
+
+
+def scene_of(objects: Mapping[str, SceneObject]) -> Scene:
+    return Scene(name="seen", objects=dict(objects), places={})
+
+
+def at(x: float, y: float, yaw: float = 0.0, z: float | None = None, **changes) -> SceneObject:
+    pose = Pose(x=x, y=y, z=z, yaw=yaw)
+    return BOLT.model_copy(update={"pose": pose, **changes})
+
+
+class Watcher:
+    """A world and the senses of its robot."""
+
+    def __init__(self, scene: Scene, seed: int = 1, options: TabletopOptions = NOISY) -> None:
+        self.world = TabletopWorld(scene, seed, options)
+        self.catalogue = Catalogue.from_scene(scene)
+        self.senses = Senses(self.world.body, learn_colors(scene, options), self.catalogue)
+
+    def seen(self) -> dict[str, tuple[float, float]]:
+        sightings = self.senses.sight_all(self.senses.look())
+        return {name: (each.x, each.y) for name, each in sightings.items()}
+
+    def do(self, act: Act, name: str, **more) -> None:
+        assert self.world.intervene(Intervention(act=act, object=name, **more)) == ""
+
+    def presence(self, name: str, x: float, y: float, z: float | None = None) -> Presence:
+        part = self.catalogue.parts[name]
+        return self.senses.presence(self.senses.look(), part, Location(x=x, y=y, z=z))
+
+
+def near(one: tuple[float, float], other: tuple[float, float], within_m: float = 0.004) -> bool:
+    return math.dist(one, other) < within_m
+
+
+@pytest.mark.parametrize("name", ["eket", "tea_table", "workshop"])
+def test_every_part_of_the_shipped_scenes_is_seen_where_it_is(name: str) -> None:
+    watcher = Watcher(built_in_scene(name))
+    seen = watcher.seen()
+    for part in watcher.catalogue.parts:
+        truth = watcher.world.pose_of(part)
+        assert truth is not None
+        assert near(seen[part], (truth.x, truth.y)), part
+    assert all(box.name is not None for box in watcher.senses.seen_boxes(watcher.senses.look()))
+
+
+def test_equal_parts_start_with_the_names_that_the_scene_gives_them() -> None:
+    spots = {f"bolt_{i}{j}": (0.42 + 0.05 * i, -0.5 + 0.06 * j) for i in range(5) for j in range(5)}
+    watcher = Watcher(scene_of({name: at(*spot) for name, spot in spots.items()}))
+    seen = watcher.seen()
+    assert all(near(seen[name], spot) for name, spot in spots.items())
+
+
+def test_a_stolen_equal_is_the_one_that_is_missing_and_comes_back_as_itself() -> None:
+    spots = {f"bolt_{i}": (0.42 + 0.05 * i, -0.3) for i in range(5)}
+    watcher = Watcher(scene_of({name: at(*spot) for name, spot in spots.items()}))
+    watcher.seen()
+    watcher.do(Act.STEAL, "bolt_2")
+    assert set(watcher.seen()) == set(spots) - {"bolt_2"}
+    watcher.do(Act.MOVE, "bolt_2", to=Pose(x=0.6, y=0.1))
+    seen = watcher.seen()
+    assert near(seen.pop("bolt_2"), (0.6, 0.1))
+    assert all(near(where, spots[name]) for name, where in seen.items())
+
+
+@settings(max_examples=15, deadline=None)
+@given(
+    moves=st.lists(st.tuples(st.integers(0, 4), st.integers(0, 11)), min_size=1, max_size=6),
+    seed=st.integers(0, 1000),
+)
+def test_names_stay_with_equal_parts_that_are_moved_one_by_one(moves, seed: int) -> None:
+    free = [(0.42 + 0.06 * i, -0.45 + 0.08 * j) for i in range(4) for j in range(4)]
+    spots = dict(zip((f"bolt_{i}" for i in range(4)), free, strict=False))
+    del free[:4]
+    watcher = Watcher(scene_of({name: at(*spot) for name, spot in spots.items()}), seed)
+    watcher.seen()
+    for number, to in moves:
+        name = f"bolt_{number % 4}"
+        spot = free[to % len(free)]
+        free.append(spots[name])
+        free.remove(spot)
+        spots[name] = spot
+        watcher.do(Act.MOVE, name, to=Pose(x=spot[0], y=spot[1]))
+        seen = watcher.seen()
+        assert all(near(seen[each], where) for each, where in spots.items())
+
+
+@pytest.mark.parametrize("yaw", [0.0, 0.6, -1.2])
+def test_equal_boxes_a_finger_apart_are_told_apart(yaw: float) -> None:
+    gap_m = 0.008
+    along, aside = BOLT.size[0] + gap_m, BOLT.size[1] + gap_m
+    cos, sin = math.cos(yaw), math.sin(yaw)
+    spots = {
+        f"bolt_{i}{j}": (
+            0.5 + cos * i * along - sin * j * aside,
+            -0.2 + sin * i * along + cos * j * aside,
+        )
+        for i, j in itertools.product(range(3), range(3))
+    }
+    watcher = Watcher(scene_of({name: at(*spot, yaw=yaw) for name, spot in spots.items()}))
+    seen = watcher.seen()
+    assert all(near(seen[name], spot) for name, spot in spots.items())
+
+
+def test_parts_of_one_color_are_told_apart_by_size() -> None:
+    sizes = {"s": (0.02, 0.03, 0.03), "m": (0.03, 0.04, 0.03), "l": (0.03, 0.04, 0.045)}
+    objects = {
+        name: at(0.45 + 0.07 * i, -0.3 + 0.05 * i, 0.3 * i, size=size)
+        for i, (name, size) in enumerate(sizes.items())
+    }
+    watcher = Watcher(scene_of(objects))
+    seen = watcher.seen()
+    assert all(near(seen[name], (each.pose.x, each.pose.y)) for name, each in objects.items())
+
+
+@pytest.mark.parametrize("color", [(0.72, 0.70, 0.68), (0.2, 0.2, 0.2), (0.9, 0.9, 0.9)])
+def test_a_grey_part_is_seen_by_its_depth(color) -> None:
+    watcher = Watcher(scene_of({"grey": at(0.5, -0.2, 0.4, color=color), "blue": at(0.6, 0.0)}))
+    seen = watcher.seen()
+    assert near(seen["grey"], (0.5, -0.2))
+    assert near(seen["blue"], (0.6, 0.0))
+
+
+def test_a_tower_of_equal_parts_is_seen_from_the_top() -> None:
+    table_z = 0.70
+    parts = {
+        "low": at(0.5, -0.2, size=(0.06, 0.08, 0.03)),
+        "high": at(0.5, -0.2, 0.5, table_z + 0.03, size=(0.03, 0.04, 0.03)),
+    }
+    watcher = Watcher(scene_of(parts))
+    sightings = watcher.senses.sight_all(watcher.senses.look())
+    assert sightings["high"].z == pytest.approx(table_z + 0.03, abs=0.002)
+    assert sightings["low"].z == pytest.approx(table_z, abs=0.002)
+    assert near((sightings["low"].x, sightings["low"].y), (0.5, -0.2))
+
+
+def test_something_unknown_is_a_box_without_a_name() -> None:
+    scene = scene_of({"known": at(0.5, -0.2), "stranger": at(0.6, 0.0, size=(0.05, 0.09, 0.06))})
+    watcher = Watcher(scene)
+    known = {"known": watcher.catalogue.parts["known"]}
+    senses = Senses(
+        watcher.world.body,
+        learn_colors(scene, NOISY),
+        Catalogue(known, {}, scene.table, watcher.catalogue.starts),
+    )
+    (stranger,) = [box for box in senses.seen_boxes(senses.look()) if box.name is None]
+    assert near((stranger.x, stranger.y), (0.6, 0.0))
+    assert sorted(stranger.size) == pytest.approx([0.05, 0.06, 0.09], abs=0.003)
+
+
+def test_presence_tells_there_gone_and_hidden() -> None:
+    watcher = Watcher(
+        scene_of(
+            {
+                "part": at(0.6, 0.0),
+                "equal": at(0.45, -0.4),
+                "other": at(0.45, -0.3, size=(0.05, 0.05, 0.05), color=(0.8, 0.2, 0.1)),
+                "wall": at(0.45, 0.2, size=(0.03, 0.2, 0.3), color=(0.1, 0.7, 0.2)),
+            }
+        )
+    )
+    assert watcher.presence("part", 0.6, 0.0) is Presence.THERE
+    assert watcher.presence("equal", 0.6, 0.0) is Presence.THERE
+    watcher.do(Act.MOVE, "wall", to=Pose(x=0.5, y=0.0))
+    assert watcher.presence("part", 0.6, 0.0) is Presence.HIDDEN
+    watcher.do(Act.MOVE, "wall", to=Pose(x=0.45, y=0.25))
+    watcher.do(Act.STEAL, "part")
+    assert watcher.presence("part", 0.6, 0.0) is Presence.GONE
+    watcher.do(Act.MOVE, "other", to=Pose(x=0.6, y=0.0))
+    assert watcher.presence("part", 0.6, 0.0) is Presence.GONE
+    watcher.do(Act.MOVE, "other", to=Pose(x=0.45, y=-0.3))
+    watcher.do(Act.MOVE, "equal", to=Pose(x=0.6, y=0.0))
+    assert watcher.presence("part", 0.6, 0.0) is Presence.THERE
+
+
+@settings(max_examples=20, deadline=None)
+@given(
+    x=st.floats(0.42, 0.68),
+    y=st.floats(-0.55, 0.15),
+    yaw=st.floats(-1.5, 1.5),
+    size=st.tuples(st.floats(0.015, 0.11), st.floats(0.015, 0.06), st.floats(0.012, 0.09)),
+    seed=st.integers(0, 1000),
+)
+def test_a_part_alone_is_there_where_it_is_and_gone_where_it_is_not(
+    x: float, y: float, yaw: float, size: tuple[float, float, float], seed: int
+) -> None:
+    size = tuple(float(np.round(side, 3)) for side in size)
+    watcher = Watcher(scene_of({"part": at(x, y, yaw, size=size)}), seed)
+    assert watcher.presence("part", x, y) is Presence.THERE
+    elsewhere = -0.55 if y > -0.2 else 0.15
+    assert watcher.presence("part", x, elsewhere) is Presence.GONE
+    watcher.do(Act.STEAL, "part")
+    assert watcher.presence("part", x, y) is Presence.GONE
