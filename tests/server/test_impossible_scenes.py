@@ -195,7 +195,6 @@ def test_what_the_workcells_arm_does_not_reach_is_told_so(
     assert any("the arm does not reach" in each for each in told(document, tree, "workcell"))
 
 
-@pytest.mark.xfail(strict=True, reason="worlds do not tell yet what cameras cannot tell apart")
 @pytest.mark.parametrize("world", WORLDS)
 @pytest.mark.parametrize(("document", "tree", "sentence"), [
     pytest.param(*case[1:], id=case[0]) for case in UNSEEN
