@@ -40,7 +40,7 @@ class CueModel:
     closed_sd_m: float = 0.001
     moving_share: float = 0.4
     impossible_per_m: float = 1e-3
-    presses_on_something: float = 0.999
+    presses_on_something: float = 0.9999
     presses_on_nothing: float = 0.3
 
     def log_ratio(self, reading: HandReading, width_m: float, gripper: GripperModel) -> float:

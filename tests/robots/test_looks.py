@@ -2,6 +2,7 @@
 
 import math
 
+import numpy as np
 import pytest
 from drawn_scene import Resting
 from robot_bench import RobotBench
@@ -166,6 +167,31 @@ def test_the_wrong_object_is_not_taken() -> None:
     bench.look(expect="in_gripper", object="pink_bar", within_s=5.0)
     assert looked(bench).fulfilled is False
     assert bench.body.in_hand is None
+
+
+def hide_the_hand(bench: RobotBench) -> None:
+    """Let a piece of the gripper hide from the forearm camera all that is between the fingers."""
+    corners = [(x, y, z) for x in (-0.2, -0.1) for y in (-0.2, 0.2) for z in (-0.2, 0.2)]
+    bench.body.finger_hulls = lambda: [np.array(corners)]  # type: ignore[method-assign]
+
+
+def test_a_part_that_the_fingers_hide_is_taken_by_closing_and_feeling() -> None:
+    bench = RobotBench()
+    hold_with_issue(bench)
+    hide_the_hand(bench)
+    bench.body.hold_out("pink_bar")
+    bench.look(expect="in_gripper", object="pink_bar", within_s=20.0)
+    assert looked(bench).fulfilled is True
+    assert bench.body.in_hand is not None
+
+
+def test_fingers_that_close_and_feel_nothing_open_again() -> None:
+    bench = RobotBench()
+    hold_with_issue(bench)
+    hide_the_hand(bench)
+    bench.look(expect="in_gripper", object="pink_bar", within_s=9.0)
+    assert looked(bench).fulfilled is False
+    assert bench.body.gripper_opening_m() > 0.05
 
 
 def test_the_way_is_clear_once_nothing_pushes_or_stands_in_it() -> None:
