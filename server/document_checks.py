@@ -19,7 +19,7 @@ from tasks.definition import BehaviorNode, TaskTreeDefinition
 from tasks.library import NotInLibraryError
 from tasks.problem import InvalidFileError, Problem
 from tasks.scenario import Scenario
-from tasks.scenario_file import check_scenario_text, moved_scene, scene_problems
+from tasks.scenario_file import check_scenario_text, scene_problems
 from tasks.scene import Scene
 from tasks.scene_file import ReadScene, check_scene_text, read_scene_text
 from tasks.scene_problem import SceneProblem
@@ -173,21 +173,11 @@ class ScenarioChecker(_Checker):
 
     def check(self, text: str, uploaded: Uploaded) -> CheckedDocument:
         scenario, task = self._read(text, uploaded)
-        return self._checked(scenario, task, ())
+        return self._checked(scenario, task)
 
     def try_in_worlds(self, text: str, uploaded: Uploaded) -> CheckedDocument:
-        scenario, task = self._read(text, uploaded)
-        if task.scene is None:
-            return self._checked(scenario, task, ())
-        moved = moved_scene(task.scene, scenario)
-        fits = [
-            WorldFit(
-                world=world,
-                problems=[_mistake_of_leaf(each, task.definition) for each in problems],
-            )
-            for world, problems in self._worlds.try_tree(moved, task.definition).items()
-        ]
-        return self._checked(scenario, task, self._refuse_unfit(fits))
+        """As `check`: what a scenario does to a scene need not suit any robot."""
+        return self.check(text, uploaded)
 
     def _read(self, text: str, uploaded: Uploaded) -> tuple[Scenario, CheckedTask]:
         finder = Finder(self._fixed, uploaded)
@@ -210,15 +200,11 @@ class ScenarioChecker(_Checker):
         ]
         return WrongDocumentError(self._what(), mistakes)
 
-    def _checked(
-        self, scenario: Scenario, task: CheckedTask, fits: Sequence[WorldFit]
-    ) -> CheckedDocument:
+    def _checked(self, scenario: Scenario, task: CheckedTask) -> CheckedDocument:
         uses = {(DocumentKind.TREE, scenario.tree)}
         if task.definition.scene:
             uses.add((DocumentKind.SCENE, task.definition.scene))
-        return CheckedDocument(
-            scenario.name, scenario.model_dump(mode="json"), frozenset(uses), fits
-        )
+        return CheckedDocument(scenario.name, scenario.model_dump(mode="json"), frozenset(uses))
 
 
 def _mistakes(problems: Iterable[Problem], text: str) -> list[DocumentMistake]:

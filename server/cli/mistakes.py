@@ -12,7 +12,7 @@ from server.cli.task_files import (
 from server.scene_checks import WorldChecks
 from tasks.library import NotInLibraryError
 from tasks.problem import InvalidFileError, Problem
-from tasks.scenario_file import check_scenario_file, moved_scene, scene_problems
+from tasks.scenario_file import check_scenario_file, scene_problems
 from tasks.scene_file import read_scene_file
 from tasks.scene_problem import SceneProblem
 
@@ -42,7 +42,7 @@ def scene_mistakes(path: Path, worlds: WorldChecks) -> list[str]:
     return _in_scene(worlds.try_scene(found.read.scene), found)
 
 
-def scenario_mistakes(path: Path, worlds: WorldChecks) -> list[str]:
+def scenario_mistakes(path: Path, worlds: WorldChecks) -> list[str]:  # noqa: ARG001
     """Every mistake of a scenario file, also what it expects of its tree and does not get."""
     try:
         scenario = check_scenario_file(path)
@@ -51,17 +51,8 @@ def scenario_mistakes(path: Path, worlds: WorldChecks) -> list[str]:
         return str(error).splitlines()
     except NotInLibraryError as error:
         return [f"{path}: tree: {error}"]
-    if task.scene is None:
-        return []
-    mistakes = [f"{path}: {each}" for each in scene_problems(scenario, task.scene)]
-    if mistakes or not scenario.scene:
-        return mistakes
-    problems = worlds.try_tree(moved_scene(task.scene, scenario), task.definition)
-    return [
-        f"{path}: in the world '{world}': {problem.message}"
-        for world, found in problems.items()
-        for problem in found
-    ]
+    problems = scene_problems(scenario, task.scene) if task.scene else []
+    return [f"{path}: {each}" for each in problems]
 
 
 def delivery_mistakes(path: Path, worlds: WorldChecks) -> list[str]:  # noqa: ARG001

@@ -49,11 +49,10 @@ class NewRuns:
                 )
             self._worlds.check(request.world)
             scene = tree.scene or self._worlds.lay_out(request.world, tree, request.seed)
-        if request.world != LIVE:
+            # Before the scenario has its way: out of reach is what it may put things to.
             refuse = self._worlds.refuse_impossible
             await asyncio.to_thread(refuse, request.world, scene, tree)
         if scenario is not None:
-            # Only now: what a scenario moves out of reach is what the run is to go wrong by.
             scene = _moved(scene, scenario)
         run = uuid4()
         return ev.RunStarted(

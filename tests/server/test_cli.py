@@ -585,3 +585,109 @@ def test_serve_says_where_it_listens_and_stops_when_told(
         _, err = process.communicate(timeout=60)
     assert process.returncode == 0
     assert "Traceback" not in err
+
+
+# --- scenes and scenarios of one's own -----------------------------------------------------------
+
+
+EXAMPLES = Path(__file__).parents[2] / "examples" / "tasks"
+
+
+@pytest.mark.parametrize("file", sorted(EXAMPLES.rglob("*.yaml")), ids=lambda file: file.name)
+def test_the_examples_are_without_mistakes(mend: Mend, file: Path) -> None:
+    outcome = mend("check", str(file))
+    assert (outcome.code, outcome.err) == (0, "")
+
+
+def test_scenes_are_listed(mend: Mend) -> None:
+    rows = [line.split("\t") for line in mend("scenes").out.splitlines()]
+    assert ["eket", "6", "6"] in rows
+
+
+def test_a_scene_and_a_scenario_may_be_files(
+    mend: Mend, service: Callable[..., RecordedService]
+) -> None:
+    recorded = service()
+    scene, scenario = EXAMPLES / "scenes/small_flat.yaml", EXAMPLES / "clumsy_evening.yaml"
+    task = EXAMPLES / "shelf.yaml"
+    assert mend("run", str(task), "--scene", str(scene), "--scenario", str(scenario)).code == 0
+    (request,) = recorded.requests
+    assert (request.tree, request.scene, request.scenario) == (
+        "shelf",
+        "small_flat",
+        "clumsy_evening",
+    )
+    assert request.answers == ["yes"] * 6
+    assert recorded.given[0].texts == {
+        DocumentKind.TREE: {"shelf": task.read_text()},
+        DocumentKind.SCENE: {"small_flat": scene.read_text()},
+        DocumentKind.SCENARIO: {"clumsy_evening": scenario.read_text()},
+    }
+
+
+def test_a_scene_may_be_named(mend: Mend, service: Callable[..., RecordedService]) -> None:
+    recorded = service()
+    assert mend("run", "eket", "--scene", "eket").code == 0
+    assert mend("run", str(EXAMPLES / "shelf.yaml"), "--scene", "small_flat").code == 0
+    assert [each.scene for each in recorded.requests] == ["eket", "small_flat"]
+
+
+@pytest.mark.parametrize(
+    ("option", "value", "sentence"),
+    [
+        ("--scene", "nowhere", "there is no scene 'nowhere' in the library"),
+        ("--scene", "no_such.yaml", "no_such.yaml: the file cannot be read"),
+        ("--scenario", "nothing", "there is no scenario 'nothing' in the library"),
+        ("--scenario", "no_such.yaml", "no_such.yaml: the file cannot be read"),
+    ],
+)
+def test_a_scene_or_scenario_that_is_not_there_is_told(
+    mend: Mend, service: Callable[..., RecordedService], option: str, value: str, sentence: str
+) -> None:
+    recorded = service()
+    outcome = mend("run", "eket", option, value)
+    assert outcome.code == 2
+    assert sentence in outcome.err
+    assert not recorded.requests
+
+
+def test_what_a_robot_cannot_do_is_told_with_world_file_and_line(
+    mend: Mend, tmp_path: Path
+) -> None:
+    task = write_file(tmp_path, TASK)
+    scene = tmp_path / "scenes" / "bench.yaml"
+    scene.write_text(SCENE.replace("[0.05, 0.05, 0.08]", "[0.09, 0.09, 0.08]"))
+    for file in (task, scene):
+        outcome = mend("check", str(file), "--world", "tabletop")
+        assert outcome.code == 1
+        assert f"{scene}:3: in the world 'tabletop': " in outcome.err
+        assert "takes 10 to 78 mm" in outcome.err
+    assert mend("check", str(task), "--world", "mars").code == 2
+
+
+def test_a_run_that_the_robot_cannot_do_is_refused(data_dir: Path, tmp_path: Path) -> None:
+    task = write_file(tmp_path, TASK)
+    scene = tmp_path / "scenes" / "bench.yaml"
+    scene.write_text(SCENE.replace("[0.05, 0.05, 0.08]", "[0.09, 0.09, 0.08]"))
+    with begin(data_dir, "run", str(task), "--world", "tabletop", "--json") as process:
+        out, err = process.communicate(timeout=120)
+    assert (process.returncode, out) == (2, "")
+    assert "cannot do the tree 'just_one' in the scene 'bench'" in err
+    assert "takes 10 to 78 mm" in err
+
+
+@pytest.mark.slow
+def test_a_random_scene_is_printed_with_its_tree_and_can_be_run(
+    mend: Mend, data_dir: Path, tmp_path: Path
+) -> None:
+    words = ("scene", "random", "--seed", "5", "--parts", "4", "--world", "tabletop")
+    scene, tree = tmp_path / "scenes" / "random_5.yaml", tmp_path / "random_5.yaml"
+    scene.parent.mkdir()
+    scene.write_text(mend(*words).out)
+    tree.write_text(mend(*words, "--tree").out)
+    assert mend("check", str(scene), "--world", "tabletop").code == 0
+    assert mend("check", str(tree), "--world", "tabletop").code == 0
+    run = ("run", str(tree), "--world", "tabletop", "--speed", "max", "--answers", "none")
+    with begin(data_dir, *run) as process:
+        out, err = process.communicate(timeout=120)
+    assert (process.returncode, err) == (0, ""), out

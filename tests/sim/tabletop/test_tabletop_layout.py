@@ -7,8 +7,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from robots.body import ToolPose
+from sim.tabletop.adapter import adapter
 from sim.tabletop.layout import MOST_OBJECTS, LayoutError, distinct_colors, lay_out
 from sim.tabletop.world import TabletopWorld
+from tasks.definition import BehaviorNode
 
 
 @given(
@@ -71,3 +73,18 @@ def test_every_object_is_seen_by_the_head_camera_even_in_the_fullest_scene() -> 
     _, ids = world.head.capture_with_ids()
     counts = np.bincount(ids[(ids >= 0) & (ids < MOST_OBJECTS)], minlength=MOST_OBJECTS)
     assert counts.min() >= 30
+
+
+@pytest.mark.parametrize("count", [1, 2, 7, 20, MOST_OBJECTS])
+def test_what_is_laid_out_can_be_done(count: int) -> None:
+    names = [(f"part_{number}", f"spot_{number}") for number in range(count)]
+    leaves = [
+        BehaviorNode(
+            parent=0,
+            name=name,
+            behavior="pick_and_place",
+            parameters={"object": name, "place": place},
+        )
+        for name, place in names
+    ]
+    assert adapter.check_scene(lay_out(names, seed=count), leaves) == []
