@@ -131,7 +131,7 @@ class Cell:
         name, place = self.task
         match issue.issue:
             case "missed" | "dropped":
-                return self.world.held not in self._alike[name]
+                return not self._holds(name)
             case "missing":
                 return bool(self.world.parts[name].stolen)
             case "unreachable":
@@ -142,6 +142,13 @@ class Cell:
                 return min(self.distance_m(each, place) for each in self._alike[name]) > THERE_M
             case _:
                 return False
+
+    def _holds(self, name: str) -> bool:
+        """Whether the fingers are around such a part, and do not only touch it."""
+        part = self.scene.objects[name]
+        width_m = min((part.knob or part.size)[:2])
+        around = self.world.body.gripper_opening_m() > width_m / 2
+        return around and self.world.held in self._alike[name]
 
     def distance_m(self, name: str, place: str) -> float:
         """How far a part is from a place; infinite if it is not at its height."""

@@ -90,7 +90,8 @@ def grasps_of(part: Part, gripper: GripperModel) -> list[Grasp]:
 
 def least_height_m(gripper: GripperModel) -> float:
     """How high a part, or a knob, has to be at least."""
-    return gripper.overlap_m + gripper.pad_above_tip_m + TIP_CLEARANCE_M
+    fitting_m = gripper.overlap_m + gripper.pad_above_tip_m + TIP_CLEARANCE_M
+    return max(gripper.min_height_m, fitting_m)
 
 
 def _heights(

@@ -38,6 +38,9 @@ class ToolBox:
 class GripperModel:
     """Lengths in metres; the tool point is in the middle between the fingers.
 
+    It takes parts and knobs from `min_width_m` to `max_width_m` wide and at least `min_height_m`
+    high: smaller ones turn over or slip away between the closing fingers.
+
     Closed on something the fingers press with `grip_force_n`. Closed, the tips reach `tip_reach_m`
     below the tool point. The fingers stay parallel on links of `link_m` whose far joints lie
     `link_offset_m` outward, so that opening raises the tips; of fingers that slide, the links have
@@ -48,6 +51,7 @@ class GripperModel:
 
     min_width_m: float
     max_width_m: float
+    min_height_m: float
     max_opening_m: float
     max_mass_kg: float
     grip_force_n: float

@@ -22,13 +22,13 @@ class DrawnSizes:
 
     width_m: tuple[float, float] = (PR2_GRIPPER.min_width_m, PR2_GRIPPER.max_width_m)
     length_m: tuple[float, float] = (PR2_GRIPPER.min_width_m, 0.200)
-    height_m: tuple[float, float] = (0.012, 0.120)
+    height_m: tuple[float, float] = (PR2_GRIPPER.min_height_m, 0.120)
     slenderness: float = 4.0
     """A part is at most so many times as high as it is wide: higher ones fall over."""
     plate_side_m: tuple[float, float] = (0.050, 0.200)
     plate_height_m: tuple[float, float] = (0.008, 0.030)
     knob_width_m: tuple[float, float] = (PR2_GRIPPER.min_width_m, 0.048)
-    knob_height_m: tuple[float, float] = (0.012, 0.060)
+    knob_height_m: tuple[float, float] = (PR2_GRIPPER.min_height_m, 0.060)
     density_kg_m3: tuple[float, float] = (300.0, 900.0)
     mass_kg: tuple[float, float] = (0.01, PR2_GRIPPER.max_mass_kg)
 

@@ -18,8 +18,9 @@ GRIPPER_S = 0.5
 """How long the fingers take from fully open to closed."""
 
 GRIPPER = GripperModel(
-    min_width_m=0.010,
+    min_width_m=0.012,
     max_width_m=0.078,
+    min_height_m=0.020,
     max_opening_m=0.090,
     max_mass_kg=0.5,
     grip_force_n=33.0,

@@ -31,8 +31,9 @@ def finger_angle_rad(opening_m: float) -> float:
 
 
 PR2_GRIPPER = GripperModel(
-    min_width_m=0.010,
+    min_width_m=0.012,
     max_width_m=0.078,
+    min_height_m=0.020,
     max_opening_m=2 * inner_side_m(FINGERS_OPEN_RAD),
     max_mass_kg=0.5,
     grip_force_n=33.0,

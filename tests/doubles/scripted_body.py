@@ -24,6 +24,7 @@ GRIPPER_CYCLES = 12
 GRIPPER = GripperModel(
     min_width_m=0.010,
     max_width_m=0.075,
+    min_height_m=0.012,
     max_opening_m=0.085,
     max_mass_kg=0.5,
     grip_force_n=30.0,

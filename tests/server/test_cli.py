@@ -661,7 +661,7 @@ def test_what_a_robot_cannot_do_is_told_with_world_file_and_line(
         outcome = mend("check", str(file), "--world", "tabletop")
         assert outcome.code == 1
         assert f"{scene}:3: in the world 'tabletop': " in outcome.err
-        assert "takes 10 to 78 mm" in outcome.err
+        assert "takes 12 to 78 mm" in outcome.err
     assert mend("check", str(task), "--world", "mars").code == 2
 
 
@@ -673,7 +673,7 @@ def test_a_run_that_the_robot_cannot_do_is_refused(data_dir: Path, tmp_path: Pat
         out, err = process.communicate(timeout=120)
     assert (process.returncode, out) == (2, "")
     assert "cannot do the tree 'just_one' in the scene 'bench'" in err
-    assert "takes 10 to 78 mm" in err
+    assert "takes 12 to 78 mm" in err
 
 
 @pytest.mark.slow

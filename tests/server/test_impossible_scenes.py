@@ -86,8 +86,8 @@ def equal(name: str, x: float, y: float, **changes: Any) -> dict[str, Any]:
 
 IMPOSSIBLE = [
     # What the gripper cannot take.
-    ("too wide", changed(cup__size=[0.09, 0.09, 0.06]), ALL, "takes 10 to 78 mm"),
-    ("too narrow", changed(cup__size=[0.006, 0.008, 0.06]), ALL, "takes 10 to 78 mm"),
+    ("too wide", changed(cup__size=[0.09, 0.09, 0.06]), ALL, "takes 12 to 78 mm"),
+    ("too narrow", changed(cup__size=[0.006, 0.008, 0.06]), ALL, "takes 12 to 78 mm"),
     ("too low", changed(cup__size=[0.05, 0.05, 0.008]), ALL, "it has to be at least"),
     ("too heavy", changed(cup__mass_kg=3.0), ALL, "weighs 3.00 kg"),
     ("knob too wide", changed(lid__knob=[0.085, 0.09, 0.03]), ALL, "the knob of lid"),

@@ -182,9 +182,9 @@ def test_scatter_needs_its_room_too() -> None:
     x=st.floats(0.44, 0.60),
     y=st.floats(-0.5, -0.3),
     yaw=st.floats(-3.1, 3.1),
-    width=st.floats(0.010, 0.078),
-    length=st.floats(0.010, 0.15),
-    height=st.floats(0.013, 0.12),
+    width=st.floats(0.012, 0.078),
+    length=st.floats(0.012, 0.15),
+    height=st.floats(0.020, 0.12),
 )
 def test_every_part_within_the_limits_that_stands_alone_is_possible(
     x: float, y: float, yaw: float, width: float, length: float, height: float
