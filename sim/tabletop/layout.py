@@ -14,7 +14,8 @@ MOST_OBJECTS = 64
 _HUES = 16
 _SATURATIONS = (1.0, 0.8, 0.6, 0.4)
 _VALUE = 0.9
-_SIZE = (0.075, 0.050, 0.050)
+_SIZES = ((0.075, 0.050, 0.050), (0.068, 0.050, 0.050))
+"""Neighbours in colour differ in size as well, so that cameras with noise tell them apart."""
 _CELL_M = 0.105
 _NEAR_EDGE_M = 0.35
 _MIDDLE_Y_M = -0.19
@@ -52,11 +53,11 @@ def lay_out(names: Iterable[tuple[str, str | None]], seed: int) -> Scene:
         objects={
             name: SceneObject(
                 color=color,
-                size=_SIZE,
+                size=_SIZES[number % len(_SIZES)],
                 pose=grid.pose(int(cell), right=True, yaw=float(turn)),
             )
-            for name, color, cell, turn in zip(
-                objects, distinct_colors(len(objects)), starts, turns, strict=False
+            for number, (name, color, cell, turn) in enumerate(
+                zip(objects, distinct_colors(len(objects)), starts, turns, strict=False)
             )
         },
         places={

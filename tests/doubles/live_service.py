@@ -25,7 +25,7 @@ class OneTree:
 
     tree: LoadedTree
 
-    async def load(self, name: str) -> LoadedTree:  # noqa: ARG002
+    async def load(self, name: str, scene: str | None = None) -> LoadedTree:  # noqa: ARG002
         return self.tree
 
 

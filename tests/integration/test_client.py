@@ -45,10 +45,10 @@ async def test_trees_are_kept_and_deleted(client: MendClient) -> None:
     assert kept.model_dump() == tree.model_dump(exclude={"worlds"})
     assert [each.name for each in await client.trees()] == ["eket", "mine", "tea_table"]
     await client.delete_tree("mine")
-    with pytest.raises(RefusedError, match="no tree 'mine'") as refused:
+    with pytest.raises(RefusedError, match="there is no task tree 'mine'") as refused:
         await client.tree("mine")
     assert refused.value.problem.status == 404
-    assert [each.name for each in await client.scenarios()] == ["eket_paper"]
+    assert "eket_paper" in [each.name for each in await client.scenarios()]
 
 
 async def test_run_from_start_to_end(client: MendClient) -> None:
