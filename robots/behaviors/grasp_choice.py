@@ -1,8 +1,7 @@
 """Which of its grasps an object can be taken and placed by, and over what it has to be lifted."""
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Iterator, Sequence
 from itertools import product
 
 import numpy as np
@@ -12,7 +11,7 @@ from robots.arm import Arm
 from robots.behaviors.assignment import Assignment, Findings
 from robots.behaviors.behavior import Move, SetGripper, Situation, Step
 from robots.body import ToolPose
-from robots.catalogue import Part, Size
+from robots.catalogue import Part
 from robots.clearance import in_the_way
 from robots.grasp import Grasp, grasps_of
 from robots.gripper import GripperModel
@@ -59,24 +58,9 @@ def ways_to_grasp(
         )
 
 
-def others(part: Part | None, boxes: Sequence[SeenBox], parts: Mapping[str, Part]) -> list[SeenBox]:
-    """What is seen but the part itself; known `parts` with a knob are two boxes each."""
-    found = []
-    for box in boxes:
-        if part is not None and box.name == part.name:
-            continue
-        known = parts.get(box.name or "")
-        found += [box] if known is None or known.knob is None else _plate_and_knob(box, known.knob)
-    return found
-
-
-def _plate_and_knob(box: SeenBox, knob: Size) -> list[SeenBox]:
-    length, width, height_m = box.size
-    plate_m = height_m - knob[2]
-    if plate_m <= 0.0:
-        return [box]
-    plate = replace(box, size=(length, width, plate_m))
-    return [plate, replace(box, size=knob, bottom_z=box.bottom_z + plate_m)]
+def others(part: Part | None, boxes: Sequence[SeenBox]) -> list[SeenBox]:
+    """What is seen but the part itself."""
+    return [box for box in boxes if part is None or box.name != part.name]
 
 
 def crowded(steps: Sequence[Step], gripper: GripperModel, boxes: Sequence[SeenBox]) -> str | None:

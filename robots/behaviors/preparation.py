@@ -77,7 +77,7 @@ def make_plan(assignment: Assignment, arm: Arm, senses: Senses, findings: Findin
     if part is not None and findings.sighting is None and not findings.carrying:
         return None
     seen = senses.seen_boxes(findings.image or senses.look())
-    boxes = others(part, seen, senses.catalogue.parts)
+    boxes = others(part, seen)
     try:
         ways = list(ways_to_grasp(assignment, arm, senses, findings, boxes))
     except UngraspableError as error:

@@ -50,7 +50,7 @@ def _way_down(
 ) -> ArmPath | None:
     """The path to the best spot that the arm can put something down at."""
     table = senses.catalogue.table
-    boxes = others(part, senses.seen_boxes(senses.look()), senses.catalogue.parts)
+    boxes = others(part, senses.seen_boxes(senses.look()))
     spots = [] if picked_at is None else [picked_at]
     here = arm.tool_pose()
     if here is not None:

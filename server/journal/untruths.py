@@ -11,7 +11,6 @@ from dataclasses import dataclass
 
 from server.journal import events as ev
 from tasks.definition import BehaviorNode, TaskTreeDefinition
-from tasks.resolution import Resolution
 from tasks.scene import Place, Scene
 
 
@@ -181,25 +180,13 @@ def _untrue_reason(
         isinstance(each, ev.NodeReset) and each.node == end.node and each.failed_attempt
         for each in events
     )
-    given_up = f"it failed {most} times" in end.reason and failed >= most
-    if not given_up and not _was_helped_in_vain(events, end) and not _was_gone(events, end):
+    said = "it failed once" if most == 1 else f"it failed {most} times"
+    given_up = said in end.reason and failed >= most
+    if not given_up and not _was_gone(events, end):
         wrong.append(f"it says '{end.reason}', but {failed} attempts at '{end.node}' failed")
     if way_out := _way_out(started, events, end.node):
         wrong.append(f"it failed because of '{end.node}', but could have abandoned '{way_out}'")
     return wrong
-
-
-def _was_helped_in_vain(events: Sequence[ev.Event], end: ev.RunFailed) -> bool:
-    """Whether it says that a leaf failed after so many helped retries, and that is so."""
-    said = re.search(r"it failed again after (\d+) helped retries", end.reason)
-    helped = sum(
-        isinstance(each, ev.Resolved)
-        and each.node == end.node
-        and each.helped
-        and each.resolution in (Resolution.ROBOT_RETRY, Resolution.ROBOT_FINISH)
-        for each in events
-    )
-    return said is not None and helped > int(said[1])
 
 
 def _was_gone(events: Sequence[ev.Event], end: ev.RunFailed) -> bool:

@@ -37,7 +37,8 @@ class GivingUp:
 
     def _failed_too_often(self) -> list[tuple[int, str]]:
         state = self._context.state
-        reason = f"it failed {state.request.max_attempts} times"
+        most = state.request.max_attempts
+        reason = "it failed once" if most == 1 else f"it failed {most} times"
         return [(leaf, reason) for leaf in sorted(state.exhausted) if state.tree.eligible(leaf)]
 
     def _gone_too_often(self) -> list[tuple[int, str]]:

@@ -87,7 +87,7 @@ async def test_what_is_stolen_while_it_is_placed_is_never_called_done(
     view, events = await build(tmp_path, thefts, answers="none", max_attempts=1)
     assert view.status is RunStatus.FAILED
     assert view.result is not None
-    assert view.result.reason == "'pink_bar' could not be done: it failed 1 times"
+    assert view.result.reason == "'pink_bar' could not be done: it failed once"
     assert not [e for e in events if isinstance(e, ev.NodeDone) and e.name == "pink_bar"]
     assert {part for _, part in raised(events)} == {"pink_bar"}
 
@@ -98,7 +98,7 @@ async def test_with_nobody_there_a_stolen_part_ends_the_run_with_its_name(tmp_pa
     view, events = await build(tmp_path, thefts, answers="none", max_attempts=1)
     assert view.status is RunStatus.FAILED
     assert view.result is not None
-    assert view.result.reason == "'pink_bar' could not be done: it failed 1 times"
+    assert view.result.reason == "'pink_bar' could not be done: it failed once"
     assert undone(events) == ["pink_bar"]
 
 
