@@ -97,7 +97,7 @@ def test_a_held_part_hangs_where_it_was_grasped() -> None:
 
 
 def test_the_part_itself_is_not_in_its_own_way() -> None:
-    seen = [box(0.5, 0.0, name="plate"), box(0.6, 0.2, name="part"), box(0.4, 0.1)]
+    seen = [box(0.5, 0.0, name="plate"), box(0.6, 0.2, name="part"), box(0.4, 0.1, name=None)]
     assert [each.name for each in others(PART, seen)] == ["plate", None]
 
 
