@@ -15,7 +15,7 @@ async def test_a_shipped_task_is_done_on_the_tabletop(task: str) -> None:
 
 
 THIN_PARTS = pytest.mark.skip(
-    reason="one in some thirty of its thin parts slips from a shallow grasp and needs a helper"
+    reason="of its parts, 12 and 14 mm wide, some slip from the fingers and topple in a run"
 )
 """What the workcell's arm does not do without help every time."""
 
