@@ -18,6 +18,7 @@ from server.dialogues.escalation import (
 )
 from server.errors import ConflictError, LostRaceError, NotFoundError
 from server.journal import events as ev
+from server.runtime.clock import has_come
 from server.runtime.context import RunContext
 from server.runtime.dialogue_events import DialogueEvents
 from server.runtime.dialogue_looks import DialogueLooks, seen_at
@@ -26,9 +27,6 @@ from server.runtime.promises import Promises
 from server.runtime.robot_side import Purpose, RobotSide
 from server.runtime.run_state import MOST_EXTENSIONS, DialogueState, rehearse
 from tasks.scenario import Person
-
-TOLERANCE_S = 1e-6
-"""Two moments of the run's clock closer than this are the same."""
 
 SendMail = Callable[[ev.Escalated | ev.SuspectedFalseAlarm, DialogueState], None]
 """Writes to the operators: about a question that nobody answered, or a suspected false alarm."""
@@ -81,13 +79,13 @@ class DialogueDriver:
         ask = dialogue.open_ask
         if ask is None:
             return False
-        now = self._context.clock.now() + TOLERANCE_S
+        clock = self._context.clock
         scripted = self._scripted(dialogue, ask)
-        if scripted is not None and now >= scripted[1]:
+        if scripted is not None and has_come(clock, scripted[1]):
             await self._take_answer(dialogue, ask, scripted[0], "script", side)
             return True
         assert ask.deadline is not None, "every question has a deadline"
-        if now >= ask.deadline:
+        if has_come(clock, ask.deadline):
             await self._nobody_answered(dialogue, ask, side)
             return True
         if side.free:
@@ -347,7 +345,7 @@ class DialogueDriver:
             change = self._looks.change_seen(dialogue, side, awaiting.help)
             verified = make.help_verified(awaiting, change)
             await self._converse(dialogue, f"seen:{change}", [verified], side, dialogue.helper)
-        elif self._context.clock.now() + TOLERANCE_S >= awaiting.until:
+        elif has_come(self._context.clock, awaiting.until):
             await self._converse(dialogue, "not_seen", [make.help_not_seen(awaiting)], side)
 
     @property
