@@ -117,7 +117,7 @@ async def run_once(world: str, kind: str, seed: int, *, show: bool = False) -> O
     helper = HELPERS[kind]
     answering.DEFAULT_DELAY_S = helper.delay_s
     drawn = draw(world, seed, min(MOST_LEAVES[world], 8))
-    settings = Settings(port=0, journal=Path(IN_MEMORY), log_level="error")
+    settings = Settings(port=0, journal=Path(IN_MEMORY), log_level="error", speech_voice="none")
     request = RunRequest(
         tree="random",
         world=world,

@@ -181,7 +181,7 @@ async def run_once(
 
     answers = KINDS[seed % len(KINDS)]
     drawn = draw(world, seed, most_leaves or MOST_LEAVES[world])
-    settings = Settings(port=0, journal=Path(IN_MEMORY), log_level="error")
+    settings = Settings(port=0, journal=Path(IN_MEMORY), log_level="error", speech_voice="none")
     began = time.perf_counter()
     async with open_service(settings) as service:
         if drawn.scene is not None:

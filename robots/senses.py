@@ -1,7 +1,8 @@
 """What one robot perceives: its cameras' pictures, and what they show."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +24,7 @@ from robots.vision.obstruction import (
     find_obstruction,
     near,
 )
-from robots.vision.occupancy import Fit, find_occupant, room_above, room_at_place
+from robots.vision.occupancy import Fit, Room, find_occupant, room_above, room_at_place
 from robots.vision.presence import Presence, judge_presence
 from robots.vision.projection import Points
 from robots.vision.scene_change import shows_change
@@ -46,12 +47,14 @@ _BELOW_TOOL_M = 0.03
 class _Seen:
     """A head picture, and what was understood of it, by what else was looked for.
 
-    It was taken while `held` was in the gripper.
+    It was taken while `held` was in the gripper. `in_the_way` is what was found on ways and in
+    rooms.
     """
 
     image: CameraImage
     held: str | None
     views: dict[Part | None, TableView | None] = field(default_factory=dict)
+    in_the_way: dict[tuple[ToolPose, ...] | Room, Obstruction | None] = field(default_factory=dict)
 
 
 class Senses:
@@ -190,7 +193,10 @@ class Senses:
         view = self._understand(image)
         if view is None:
             return None
-        return find_obstruction(view, corridor(waypoints), self._clearance)
+        return self._in_the_way(
+            tuple(waypoints),
+            partial(find_obstruction, view, corridor(waypoints), self._clearance),
+        )
 
     def occupant(
         self,
@@ -208,8 +214,21 @@ class Senses:
             rooms.append(room_above(part, sighting))
         if target is not None:
             rooms.append(room_at_place(part, target, self.catalogue.height_of(target)))
-        found = (find_occupant(view, room, self._fit) for room in rooms)
+        found = (
+            self._in_the_way(room, partial(find_occupant, view, room, self._fit)) for room in rooms
+        )
         return next((each for each in found if each is not None), None)
+
+    def _in_the_way(
+        self, where: tuple[ToolPose, ...] | Room, find: Callable[[], Obstruction | None]
+    ) -> Obstruction | None:
+        """What was found in a picture once is not searched for again while nothing changes."""
+        if self._seen is None:
+            return find()
+        known = self._seen.in_the_way
+        if where not in known:
+            known[where] = find()
+        return known[where]
 
     def _understand(self, image: CameraImage, stranger: Part | None = None) -> TableView | None:
         """What a head picture shows; `stranger` is looked for besides the catalogue's parts."""
