@@ -80,7 +80,7 @@ class DialogueDriver:
         if ask is None:
             return False
         clock = self._context.clock
-        scripted = self._scripted(dialogue, ask)
+        scripted = self._scripted(dialogue)
         if scripted is not None and has_come(clock, scripted[1]):
             await self._take_answer(dialogue, ask, scripted[0], "script", side)
             return True
@@ -98,7 +98,7 @@ class DialogueDriver:
         dues = []
         for dialogue in self._context.state.open_dialogues:
             if (ask := dialogue.open_ask) is not None and ask.deadline is not None:
-                scripted = self._scripted(dialogue, ask)
+                scripted = self._scripted(dialogue)
                 dues.append(min(ask.deadline, scripted[1]) if scripted else ask.deadline)
             if (look := self._looks.next_watch(dialogue)) is not None:
                 dues.append(look)
@@ -201,14 +201,19 @@ class DialogueDriver:
     def _make(self, dialogue: DialogueState) -> DialogueEvents:
         return DialogueEvents(self._context.stamp, dialogue.id, dialogue.raised)
 
-    def _scripted(
-        self, dialogue: DialogueState, ask: ev.Prompt
-    ) -> tuple[Literal["yes", "no"], float] | None:
-        """The scripted answer to the open question and when it is due."""
+    def _scripted(self, dialogue: DialogueState) -> tuple[Literal["yes", "no"], float] | None:
+        """The scripted answer to the open question and when it is due.
+
+        Who takes longer than the deadline answers while the question is put again.
+        """
         if self._answers.live:
             return None
-        scripted = self._answers.next_answer(dialogue.ask_number)
-        return None if scripted.answer is None else (scripted.answer, ask.time + scripted.delay_s)
+        due = []
+        for number, put_at in dialogue.put_at.items():
+            scripted = self._answers.next_answer(number)
+            if scripted.answer is not None:
+                due.append((scripted.answer, put_at + scripted.delay_s))
+        return min(due, key=lambda each: each[1], default=None)
 
     async def _take_answer(
         self,

@@ -65,7 +65,8 @@ class DialogueState:
     resolved: ev.Resolved | None = None
     closed: CloseReason | None = None
     helps: int = 0
-    ask_number: int = 0
+    put_at: dict[int, float] = field(default_factory=dict)
+    """When (run's clock) the latest question was put, and each time again, by the ask's number."""
     asked_for_s: float | None = None
     """How long the open question waited for an answer when it was put."""
     first_look: ev.FirstLook | None = None
@@ -278,8 +279,9 @@ class RunState:
         dialogue.prompt = dialogue.prompts[event.prompt] = event
         if event.kind == "ask":
             self.asks += 1
-            dialogue.ask_number = self.asks
             dialogue.asked = event
+            before = dialogue.put_at if event.version > 1 else {}
+            dialogue.put_at = before | {self.asks: event.time}
             dialogue.asked_for_s = None if event.deadline is None else event.deadline - event.time
             dialogue.awaiting = None
 
