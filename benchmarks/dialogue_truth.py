@@ -22,7 +22,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from dialogue_judge import DialogueJudge, Moment, Untruth
+from dialogue_judge import DialogueJudge, Untruth
+from dialogue_record import Moment
 from random_scenarios import MOST_LEAVES, draw, where_parts_rest
 
 from server.composition import open_service

@@ -54,7 +54,7 @@ def _untrue_missing(
     end: ev.RunFinished,
     resting: Mapping[str, Rest | None],
 ) -> list[str]:
-    leaves = _leaves(started)
+    leaves = leaves_of(started)
     scene = Scene.model_validate(started.scene, strict=False)
     told = {each.node for each in end.missing}
     blocked = _somebody_stands_there(events)
@@ -102,7 +102,7 @@ def _done_at_the_end(events: Sequence[ev.Event]) -> list[ev.NodeDone | ev.NodeLe
 
 def _started_last(events: Sequence[ev.Event]) -> set[str]:
     """Of the leaves that handle one object in turn, those that were started last."""
-    leaves = _leaves(_start_of(events))
+    leaves = leaves_of(_start_of(events))
     started = [each.node for each in events if isinstance(each, ev.NodeStarted)]
     return set({leaves[node].object or node: node for node in started}.values())
 
@@ -172,7 +172,7 @@ def _untrue_reason(
     if end.node is None:
         lost = any(isinstance(each, ev.RobotLost) for each in events)
         return [] if lost else [f"it failed because {end.reason}, but no robot was lost"]
-    if end.node not in _leaves(started):
+    if end.node not in leaves_of(started):
         return [f"it failed because of '{end.node}', which is no leaf"]
     wrong = []
     most = int(started.options.get("max_attempts", 3))
@@ -221,7 +221,8 @@ def _way_out(started: ev.RunStarted, events: Sequence[ev.Event], node: str) -> s
     return None
 
 
-def _leaves(started: ev.RunStarted) -> dict[str, BehaviorNode]:
+def leaves_of(started: ev.RunStarted) -> dict[str, BehaviorNode]:
+    """Every leaf by its path."""
     definition = TaskTreeDefinition.model_validate(started.tree)
     pairs = zip(_paths(definition), definition.nodes, strict=True)
     return {path: each for path, each in pairs if isinstance(each, BehaviorNode)}
