@@ -42,23 +42,29 @@ def _somewhere(record: RunRecord, index: int, event: ev.Prompt, _: re.Match[str]
 
 
 def _nowhere(record: RunRecord, _: int, event: ev.Prompt, __: re.Match[str]) -> str | None:
-    moment = record.at_issue(event.node)
+    index = record.raised_at(event.node)
+    moment = record.moment(index)
     gone = moment.resting.get(event.object or "") is None
-    hidden = moment.blocked
+    hidden = moment.blocked or record.buried(index, event.object)
     return None if gone or hidden else "it lies on the table"
 
 
 def _not_held(record: RunRecord, _: int, event: ev.Prompt, __: re.Match[str]) -> str | None:
-    return "the fingers hold it" if record.at_issue(event.node).held == event.object else None
+    return (
+        "the fingers hold it" if record.holds(record.at_issue(event.node), event.object) else None
+    )
 
 
 def _held(record: RunRecord, index: int, event: ev.Prompt, _: re.Match[str]) -> str | None:
-    return None if record.moment(index).held == event.object else "the fingers do not hold it"
+    return (
+        None if record.holds(record.moment(index), event.object) else "the fingers do not hold it"
+    )
 
 
 def _in_the_way(record: RunRecord, _: int, event: ev.Prompt, __: re.Match[str]) -> str | None:
     there = record.at_issue(event.node).blocked or record.crowded(event.node, event.object)
-    return None if there else "nothing is in its way"
+    covered = record.buried(record.raised_at(event.node), event.object)
+    return None if there or covered else "nothing is in its way"
 
 
 def _held_up(record: RunRecord, _: int, event: ev.Prompt, __: re.Match[str]) -> str | None:
@@ -68,7 +74,7 @@ def _held_up(record: RunRecord, _: int, event: ev.Prompt, __: re.Match[str]) -> 
 
 
 def _not_held_yet(record: RunRecord, index: int, event: ev.Prompt, _: re.Match[str]) -> str | None:
-    return "the fingers hold it" if record.moment(index).held == event.object else None
+    return "the fingers hold it" if record.holds(record.moment(index), event.object) else None
 
 
 def _not_on_table(record: RunRecord, index: int, event: ev.Prompt, _: re.Match[str]) -> str | None:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from server.journal import events as ev
-from server.journal.untruths import Rest, leaves_of
+from server.journal.untruths import Rest, equals_of, leaves_of
 from tasks.scene import Scene
 
 NEAR_M = 0.06
@@ -60,24 +60,45 @@ class RunRecord:
 
     def offset(self, index: int, node: str, name: str | None) -> tuple[float, float]:
         """How far a part is from its place (in the plane, in height), infinite if it is gone."""
-        rest, place = self._moments[index].resting.get(name or ""), self._place(node)
-        if rest is None or place is None or self._moments[index].held == name:
+        place = self._place(node)
+        if place is None:
             return math.inf, math.inf
         pose = self._scene.places[place].pose
         height_m = self._scene.table.height if pose.z is None else pose.z
-        return math.hypot(rest.x - pose.x, rest.y - pose.y), abs(rest.z - height_m)
+        offsets = [
+            (math.hypot(rest.x - pose.x, rest.y - pose.y), abs(rest.z - height_m))
+            for rest in self._lying(index, name)
+        ]
+        return min(offsets, key=max, default=(math.inf, math.inf))
 
     def rests(self, index: int, name: str | None) -> bool:
         """Whether a part lies anywhere."""
+        return bool(self._lying(index, name))
+
+    def equals(self, name: str | None) -> set[str]:
+        """The parts that nobody can tell from one, itself among them."""
+        return equals_of(name, self._scene) if name in self._scene.objects else set()
+
+    def holds(self, moment: Moment, name: str | None) -> bool:
+        """Whether the fingers hold a part."""
+        return moment.held is not None and moment.held in self.equals(name)
+
+    def _lying(self, index: int, name: str | None) -> list[Rest]:
+        """Where a part, and each that is just like it, lies."""
         moment = self._moments[index]
-        return moment.resting.get(name or "") is not None and moment.held != name
+        lying = (moment.resting.get(each) for each in self.equals(name) if each != moment.held)
+        return [each for each in lying if each is not None]
 
     def moment(self, index: int) -> Moment:
         return self._moments[index]
 
+    def raised_at(self, node: str) -> int:
+        """The event with which the issue of a leaf was raised last."""
+        return self.events.index(self._raised[node])
+
     def at_issue(self, node: str) -> Moment:
         """The world when the issue of a leaf was raised last."""
-        return self._moments[self.events.index(self._raised[node])]
+        return self._moments[self.raised_at(node)]
 
     def buried(self, index: int, name: str | None) -> bool:
         """Whether another part lies over one, and may hide it."""
@@ -96,7 +117,7 @@ class RunRecord:
     def lay_for_s(self, index: int, name: str | None) -> float:
         """For how long a part has lain where it lies, upright; 0 if it does not."""
         rest = self._moments[index].resting.get(name or "")
-        if not self.rests(index, name) or rest is None or rest.lean_rad > LEANS_RAD:
+        if rest is None or rest.lean_rad > LEANS_RAD or self._moments[index].held == name:
             return 0.0
         since = index
         while since > 0 and self._moments[since - 1].resting.get(name or "") == rest:

@@ -25,7 +25,7 @@ from robots.vision.obstruction import (
     near,
 )
 from robots.vision.occupancy import Fit, Room, find_occupant, room_above, room_at_place
-from robots.vision.presence import Presence, judge_presence
+from robots.vision.presence import Presence, is_at, judge_presence
 from robots.vision.projection import Points
 from robots.vision.scene_change import shows_change
 from robots.vision.seen_box import SeenBox
@@ -43,6 +43,10 @@ _BELOW_TOOL_M = 0.03
 """So far the fingers, or what they hold, may reach below the tool point."""
 
 
+_Way = tuple[tuple[ToolPose, ...], str | None]
+"""Waypoints of the tool point, and the name of the part that is to be taken there."""
+
+
 @dataclass(slots=True)
 class _Seen:
     """A head picture, and what was understood of it, by what else was looked for.
@@ -54,7 +58,7 @@ class _Seen:
     image: CameraImage
     held: str | None
     views: dict[Part | None, TableView | None] = field(default_factory=dict)
-    in_the_way: dict[tuple[ToolPose, ...] | Room, Obstruction | None] = field(default_factory=dict)
+    in_the_way: dict[_Way | Room, Obstruction | None] = field(default_factory=dict)
 
 
 class Senses:
@@ -129,6 +133,17 @@ class Senses:
             view, part, self._equals_of(part), target, self.catalogue.height_of(target)
         )
 
+    def recognize_at(self, image: CameraImage, part: Part, target: Location) -> bool:
+        """Whether a part, or one that looks the same, stands at a place; then that is the part."""
+        if self.presence(image, part, target) is not Presence.THERE:
+            return False
+        view = self._understand(image)
+        sighting = None if view is None else view.sightings.get(part.name)
+        if sighting is None or not is_at(sighting, target, self.catalogue.height_of(target)):
+            self._last_seen.note(part.name, target.x, target.y)
+            self._seen = None
+        return True
+
     def gripper(self) -> Position:
         """Where the tool point is."""
         x, y, z = (float(each) for each in self._body.tool_pose()[:3, 3])
@@ -188,14 +203,20 @@ class Senses:
             and name in (None, self.grip.part.name)
         )
 
-    def obstruction(self, image: CameraImage, waypoints: Sequence[ToolPose]) -> Obstruction | None:
-        """What stands in the way through `waypoints` that is no known part."""
+    def obstruction(
+        self, image: CameraImage, waypoints: Sequence[ToolPose], taking: Part | None = None
+    ) -> Obstruction | None:
+        """What stands in the way through `waypoints` that is no known part.
+
+        It is no matter what the part that is to be taken stands on.
+        """
         view = self._understand(image)
         if view is None:
             return None
+        name = None if taking is None else taking.name
         return self._in_the_way(
-            tuple(waypoints),
-            partial(find_obstruction, view, corridor(waypoints), self._clearance),
+            (tuple(waypoints), name),
+            partial(find_obstruction, view, corridor(waypoints), self._clearance, name),
         )
 
     def occupant(
@@ -220,7 +241,7 @@ class Senses:
         return next((each for each in found if each is not None), None)
 
     def _in_the_way(
-        self, where: tuple[ToolPose, ...] | Room, find: Callable[[], Obstruction | None]
+        self, where: _Way | Room, find: Callable[[], Obstruction | None]
     ) -> Obstruction | None:
         """What was found in a picture once is not searched for again while nothing changes."""
         if self._seen is None:

@@ -64,7 +64,7 @@ def _untrue_missing(
         leaf = leaves[done.node]
         if leaf.object is None or leaf.place is None or done.node not in started_last:
             continue
-        rest = resting[leaf.object]
+        rest = _nearest_equal(leaf.object, resting, scene, scene.places[leaf.place])
         aside_m, above_m = _offset(rest, scene, scene.places[leaf.place])
         level = rest is not None and rest.lean_rad <= LEVEL_RAD
         there = level and aside_m <= AT_PLACE_M and above_m <= AT_PLACE_M
@@ -111,6 +111,24 @@ def _start_of(events: Sequence[ev.Event]) -> ev.RunStarted:
     started = events[0]
     assert isinstance(started, ev.RunStarted), "a run begins with run_started"
     return started
+
+
+def equals_of(name: str, scene: Scene) -> set[str]:
+    """The objects that nobody can tell from one, itself among them: any of them will do."""
+    own = scene.objects[name]
+    return {
+        other
+        for other, each in scene.objects.items()
+        if (each.size, each.knob, each.color) == (own.size, own.knob, own.color)
+    }
+
+
+def _nearest_equal(
+    name: str, resting: Mapping[str, Rest | None], scene: Scene, place: Place
+) -> Rest | None:
+    """Of an object and its equals, the one nearest to a place."""
+    rests = (resting.get(each) for each in equals_of(name, scene))
+    return min(rests, key=lambda each: math.hypot(*_offset(each, scene, place)))
 
 
 def _offset(rest: Rest | None, scene: Scene, place: Place) -> tuple[float, float]:

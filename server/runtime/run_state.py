@@ -183,6 +183,8 @@ class RunState:
         self.times_gone: Counter[int] = Counter()
         """How often a leaf was done and its object then gone."""
         self.left_out: dict[int, ev.NodeLeftOut] = {}
+        self.to_leave_out: dict[int, ev.NodeLeftOut] = {}
+        """Leaves that were left out and taken back since: nobody is asked about them again."""
         """Leaves that count as done though their object is missing, as a helper said."""
         self.last_handled: dict[str, int] = {}
         """Which leaf was started last for an object: the one that says where it is to be."""
@@ -375,6 +377,7 @@ class RunState:
     def _finish(self, leaf: int) -> None:
         self.tree.finish(leaf)
         self.taken_back.pop(leaf, None)
+        self.to_leave_out.pop(leaf, None)
         self._end_execution(leaf)
 
     @_apply.register
@@ -385,7 +388,8 @@ class RunState:
     def _(self, event: ev.NodeUndone) -> None:
         leaf = self.tree.index_of(event.node)
         self.tree.take_back(leaf)
-        self.left_out.pop(leaf, None)
+        if leaf in self.left_out:
+            self.to_leave_out[leaf] = self.left_out.pop(leaf)
         self.taken_back[leaf] = event
         self.times_gone[leaf] += event.because_of is None
 

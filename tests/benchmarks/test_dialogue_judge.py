@@ -284,3 +284,14 @@ def test_only_what_is_said_first_is_counted_as_a_sentence() -> None:
     judge = DialogueJudge([*run.events, again], [*run.moments, run.world])
     assert judge.judge() == []
     assert judge.sentences == 1
+
+
+def test_of_parts_that_nobody_can_tell_apart_any_will_do() -> None:
+    text = "I see the part 1 at its place now."
+    there = replace(GONE, resting={"part_1": None, "part_2": place_of("part_1")})
+    run = told(there)
+    assert len(replace_events(run).say(text).wrong()) == 1
+    alike = dict.fromkeys(SCENE.objects, SCENE.objects["part_1"])
+    scene = SCENE.model_copy(update={"objects": alike}).model_dump(mode="json")
+    run.events[0] = run.events[0].model_copy(update={"scene": scene})
+    assert run.say(text).wrong() == []
