@@ -8,7 +8,8 @@ scenes (tabletop) or over the EKET base (workcell); with random interventions, a
 answer at random, never, or always yes. Every run's events are audited, and its end is compared with
 its events and with where the simulated world's parts really are. The exit code is 1 if any run
 broke a constraint, hung or told an untruth, or if one with a willing helper did not finish.
-`--replay` prints one run's events.
+`--replay` prints one run's events. Tables of up to 60 parts are worked off here only; the tests
+take six runs of up to 12.
 """
 
 # ruff: noqa: T201

@@ -39,14 +39,15 @@ class Pr2ArmDynamics:
         locked = [whole.getJointId(name) for name in FINGER_JOINTS]
         self._model = pin.buildReducedModel(whole, locked, fixed)
         self._data = self._model.createData()
+        self._upper = np.triu(np.ones((self._model.nv, self._model.nv), bool))
         self._tool = self._model.getFrameId(TOOL_FRAME)
         joints = [self._model.joints[self._model.getJointId(name)] for name in ARM_JOINTS]
         self._places: Sequence[tuple[int, int]] = [(each.idx_q, each.nq) for each in joints]
 
     def momentum(self, angles: Vector, velocities: Vector) -> Vector:
         mass = pin.crba(self._model, self._data, self._configuration(angles))
-        upper = np.triu(mass)
-        return np.asarray((upper + np.triu(mass, 1).T) @ velocities)
+        # Only the upper triangle of the symmetric matrix is computed.
+        return np.asarray(np.where(self._upper, mass, mass.T) @ velocities)
 
     def momentum_drift(self, angles: Vector, velocities: Vector) -> Vector:
         q = self._configuration(angles)

@@ -29,20 +29,28 @@ class Touch:
         self._damping_nm_s = damping_nm_s
         self._period_s = period_s
         self._angles: Vector = np.zeros(len(ARM_NOISE_NM))
+        self._force: Vector | None = None
 
     def feel(self, angles: Vector, velocities: Vector, torques_nm: Vector) -> None:
         """Take one cycle's joint angles, velocities and motor torques into account."""
         measured = self._sensors.read(torques_nm) - self._damping_nm_s * velocities
         self._observer.update(angles, velocities, measured, self._period_s)
         self._angles = angles
+        self._force = None
 
     def reset(self) -> None:
         """The arm is somewhere else at once."""
         self._observer.reset()
+        self._force = None
 
     @property
     def force(self) -> Vector:
         """The external force (3, N, base frame) at the tool point."""
+        if self._force is None:
+            self._force = self._measured_force()
+        return self._force
+
+    def _measured_force(self) -> Vector:
         residual = self._observer.residual
         if not residual.size:
             return np.zeros(3)

@@ -12,7 +12,7 @@ from tasks.intervention import Intervention
 from tasks.scenario import Person
 
 STEAL = Intervention.model_validate({"act": "steal", "object": "green_leg"})
-PATIENCE_MS = 30_000
+PATIENCE_MS = 60_000
 
 
 async def ask(service: Service, world: str = "tabletop") -> UUID:

@@ -47,7 +47,7 @@ class RecordingSink:
             self.changed.notify_all()
 
     async def wait_until(self, condition: Callable[[], bool]) -> None:
-        async with asyncio.timeout(30), self.changed:
+        async with asyncio.timeout(60), self.changed:
             await self.changed.wait_for(condition)
 
     def types(self) -> list[str]:

@@ -18,7 +18,7 @@ SHOWN = """() => JSON.stringify([...document.querySelectorAll('[role=treeitem]')
 })))"""
 """A JavaScript function that tells what the page's tree shows."""
 
-WAIT_MS = 20_000
+WAIT_MS = 60_000
 
 
 def node_state(view: NodeView, talked_about: set[str]) -> str:

@@ -11,32 +11,17 @@ from drawn_scene import HEAD_POSE, PARTS, TABLE_Z, DrawnScene, Resting
 from robots.body import CameraImage, NoWay, Reach, ToolPose
 from robots.catalogue import Catalogue, Part
 from robots.grasp import grasp_of
-from robots.gripper import GripperModel, Slab
+from robots.gripper import GripperModel
 from robots.link.messages import Location
 from robots.vision.color_model import ColorModel, Sample
 from robots.vision.table_view import TableView, view_table
+from sim.tabletop.arm import GRIPPER
 from tasks.scene import Table
 
 NEUTRAL = ToolPose(0.30, -0.85, 1.05, 0.0)
 HAND_OVER = ToolPose(0.45, -0.20, 1.00, 0.0)
 CYCLE_S = 1 / 60
 GRIPPER_CYCLES = 12
-GRIPPER = GripperModel(
-    min_width_m=0.010,
-    max_width_m=0.075,
-    min_height_m=0.012,
-    max_opening_m=0.085,
-    max_mass_kg=0.5,
-    grip_force_n=30.0,
-    tip_reach_m=0.010,
-    pad_above_tip_m=0.0,
-    overlap_m=0.007,
-    deepest_m=0.025,
-    link_m=0.0,
-    link_offset_m=0.0,
-    fingers=(Slab(0.0, 0.010, 0.020),),
-    palm=(Slab(0.090, 0.100, 0.050),),
-)
 
 
 @dataclass

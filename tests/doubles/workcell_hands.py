@@ -48,9 +48,9 @@ class Hands:
         assert path is not None
         return path
 
-    def pick(self, name: str) -> None:
-        """Take a part and lift it."""
-        pick = self._tool_pose(name, self.world.parts[name].pose(), 0.0)
+    def pick(self, name: str, seen: PartPose | None = None) -> None:
+        """Take a part from where it is, or is seen, and lift it."""
+        pick = self._tool_pose(name, seen or self.world.parts[name].pose(), 0.0)
         path = self.plan(above(pick), pick, above(pick))
         self.follow(path, 0, 1.0)
         self.follow(path, 1, 0.5)

@@ -1,7 +1,8 @@
 """Every view for everybody: axe, WCAG 2.2 A and AA, and where the focus is."""
 
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import pytest
 from console_in_browser import OpenPage, settle
@@ -13,8 +14,13 @@ from server.composition import Service
 # One event loop for all tests of the console, and so one browser.
 pytestmark = pytest.mark.asyncio(loop_scope="session")
 
+Theme = Literal["light", "dark"]
+
 AXE = Path(__file__).parents[2] / "web/node_modules/axe-core/axe.min.js"
-LEVELS = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa"]
+WCAG = {"type": "tag", "values": ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa"]}
+# A theme changes colours and nothing else: of the second one, only they are looked at.
+COLORS = {"type": "rule", "values": ["color-contrast", "link-in-text-block"]}
+RULES: Mapping[Theme, Mapping[str, Any]] = {"light": WCAG, "dark": COLORS}
 PHONE = ViewportSize(width=360, height=640)
 # Tall: all of a page is looked at, and not only what the chance of scrolling shows of it.
 SIZES = [PHONE, ViewportSize(width=360, height=3000), ViewportSize(width=1440, height=3000)]
@@ -32,13 +38,11 @@ FOCUSED = """() => {
     return { name, seen: spots.some(mine) };
 }"""
 
-VIEWS = pytest.mark.parametrize("situation", SITUATIONS.values(), ids=SITUATIONS)
 
-
-async def violations(page: Page) -> list[str]:
+async def violations(page: Page, only: Mapping[str, Any]) -> list[str]:
     """What axe finds against WCAG on a page as it is shown now."""
     found: list[dict[str, Any]] = await page.evaluate(
-        "async (levels) => (await axe.run({runOnly: levels})).violations", LEVELS
+        "async (only) => (await axe.run({runOnly: only})).violations", only
     )
     return [
         f"{each['id']}: {node['target']} {node['failureSummary']}"
@@ -47,20 +51,36 @@ async def violations(page: Page) -> list[str]:
     ]
 
 
-@VIEWS
-@pytest.mark.parametrize("theme", ["light", "dark"])
+@pytest.mark.parametrize("situation", SITUATIONS.values(), ids=SITUATIONS)
 async def test_axe_finds_nothing(
-    service: Service, open_page: OpenPage, situation: Situation, theme: str
+    service: Service, open_page: OpenPage, situation: Situation
 ) -> None:
     async def opened(path: str) -> Page:
-        return await open_page(path, viewport=SIZES[0], color_scheme=theme, bypass_csp=True)
+        return await open_page(path, viewport=SIZES[0], color_scheme="light", bypass_csp=True)
 
     page = await situation(service, opened)
     await page.add_script_tag(path=AXE)
     for size in SIZES:
         await page.set_viewport_size(size)
+        for theme, only in RULES.items():
+            await page.emulate_media(color_scheme=theme)
+            await settle(page)
+            assert await violations(page, only) == [], f"{size}, {theme}"
+
+
+async def test_axe_finds_what_is_too_pale_in_one_theme_alone(open_page: OpenPage) -> None:
+    page = await open_page("/settings", color_scheme="light", bypass_csp=True)
+    await page.add_script_tag(path=AXE)
+    await page.add_style_tag(
+        content="@media (prefers-color-scheme: dark) { h1 { color: #222; background: #111 } }"
+    )
+    found = {}
+    for theme, only in RULES.items():
+        await page.emulate_media(color_scheme=theme)
         await settle(page)
-        assert await violations(page) == [], size
+        found[theme] = await violations(page, only)
+    assert found["light"] == []
+    assert [each.split(":")[0] for each in found["dark"]] == ["color-contrast"]
 
 
 @pytest.mark.parametrize("situation", [open_question, live_run])

@@ -15,7 +15,7 @@ async def test_question_survives_a_lost_connection(stage: Stage) -> None:
     await expect(page.get_by_text("No connection to the service.")).to_be_visible()
     await expect(page.locator(".answer.yes")).to_be_disabled()
     await page.context.set_offline(False)
-    await expect(page.get_by_text("No connection to the service.")).to_be_hidden(timeout=20_000)
+    await expect(page.get_by_text("No connection to the service.")).to_be_hidden(timeout=60_000)
     await page.locator(".answer.yes").click()
     await expect(page.get_by_text("There is nothing to press")).to_be_visible()
     assert stage.runs.dialogue(dialogue).answered_by == "anna"
@@ -32,7 +32,7 @@ async def test_what_happened_meanwhile_is_there_afterwards(stage: Stage) -> None
     await stage.runs.answer(dialogue, prompt.prompt, "no", "bob")
     await page.context.set_offline(False)
     heading = page.get_by_role("heading", name="Will you place the yellow bar")
-    await expect(heading).to_be_visible(timeout=20_000)
+    await expect(heading).to_be_visible(timeout=60_000)
     await expect(page.locator(".answer.no")).to_be_enabled()
 
 
@@ -45,5 +45,5 @@ async def test_closed_meanwhile_is_said(stage: Stage) -> None:
     await stage.runs.call(dialogue, "put_right:in_reach:appeared")
     await page.context.set_offline(False)
     told = page.get_by_text("No longer needed, by what the robot sees")
-    await expect(told).to_be_visible(timeout=20_000)
+    await expect(told).to_be_visible(timeout=60_000)
     await expect(page.locator(".answer")).to_have_count(0)

@@ -23,7 +23,7 @@ async def test_question_is_shown_and_answered_with_a_button(
     await service.runtime.intervene(
         run.id, Intervention.model_validate({"act": "steal", "object": "green_leg"})
     )
-    await expect(page.get_by_role("heading", level=2)).to_contain_text("green leg", timeout=20_000)
+    await expect(page.get_by_role("heading", level=2)).to_contain_text("green leg", timeout=60_000)
     await page.get_by_role("button", name="YES").click()
     await expect(page.get_by_role("heading", level=2)).to_be_hidden()
 
@@ -49,7 +49,7 @@ async def test_fault_of_a_robot_is_told_in_plain_words_with_its_picture(
             if event["type"] == "step_started" and (event["name"], event["step"]) == (part, step):
                 await service.runtime.intervene(run.id, steal)
                 break
-    await expect(page.get_by_text(words)).to_be_visible(timeout=30_000)
+    await expect(page.get_by_text(words)).to_be_visible(timeout=60_000)
     await expect(page.get_by_role("img", name="forearm camera")).to_be_visible()
     await expect(page.locator(".overlay .expected")).to_be_visible()
     await expect(page.get_by_role("tree")).to_contain_text("pink bar")

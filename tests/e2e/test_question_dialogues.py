@@ -1,11 +1,11 @@
-"""Every branch of every dialogue, taken in a real browser by button and by key."""
+"""Every branch of every dialogue by button, and every kind of answer by key, in a real browser."""
 
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Sequence
 from uuid import UUID
 
 import pytest
 from console_in_browser import Stage
-from dialogue_paths import every_branch
+from dialogue_paths import Path, every_branch, every_kind_of_answer
 from played_dialogues import DETECTION
 from playwright.async_api import Page, expect
 
@@ -37,24 +37,22 @@ async def by_key(page: Page, answer: str) -> None:
     await page.keyboard.press(answer[0])
 
 
-@pytest.mark.parametrize("answer", [by_button, by_key], ids=["button", "key"])
 @pytest.mark.parametrize("kind", sorted(SCRIPTS))
-async def test_every_branch_of_a_dialogue(stage: Stage, kind: str, answer: Answer) -> None:
+async def test_every_branch_of_a_dialogue(stage: Stage, kind: str) -> None:
+    paths = every_branch(SCRIPTS[kind], issue_of(kind))
+    await walk(stage, [(kind, path) for path in paths], by_button)
+
+
+async def test_every_kind_of_answer_is_given_by_key(stage: Stage) -> None:
+    await walk(stage, every_kind_of_answer(SCRIPTS, issue_of("dropped")), by_key)
+
+
+async def walk(stage: Stage, paths: Sequence[tuple[str, Path]], answer: Answer) -> None:
     page = await stage.open_page()
     # Time passes as soon as the test says so.
     await page.clock.install()
-    issue = Issue(
-        kind,
-        "pr2",
-        "/0",
-        "yellow_bar",
-        "yellow_bar",
-        "yellow_bar_place",
-        5,
-        reason=DETECTION.explanation,
-    )
-    for path in every_branch(SCRIPTS[kind], issue):
-        conversation = Conversation(SCRIPTS[kind], issue, Outlook())
+    for kind, path in paths:
+        conversation = Conversation(SCRIPTS[kind], issue_of(kind), Outlook())
         dialogue = await stage.runs.open(stage.run, kind)
         turns = conversation.open()
         for call in path:
@@ -64,6 +62,20 @@ async def test_every_branch_of_a_dialogue(stage: Stage, kind: str, answer: Answe
         await expect_shown(page, turns)
         await stage.runs.finish_leaf(dialogue)
         await expect(page.get_by_text("No robot asks anything")).to_be_visible()
+
+
+def issue_of(kind: str) -> Issue:
+    """What `PlayedDialogues` opens a dialogue about."""
+    return Issue(
+        kind,
+        "pr2",
+        "/0",
+        "yellow_bar",
+        "yellow_bar",
+        "yellow_bar_place",
+        5,
+        reason=DETECTION.explanation,
+    )
 
 
 async def make(stage: Stage, page: Page, dialogue: UUID, call: str, answer: Answer) -> None:

@@ -12,7 +12,7 @@ from server.runtime.requests import RunRequest
 # One event loop for all tests of the console, and so one browser.
 pytestmark = pytest.mark.asyncio(loop_scope="session")
 
-PATIENCE_MS = 30_000
+PATIENCE_MS = 60_000
 
 
 async def sign_in(page: Page) -> None:

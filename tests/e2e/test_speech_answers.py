@@ -68,7 +68,7 @@ async def spoken(tmp_path: Path) -> AsyncIterator[Spoken]:
 
 async def test_yes_is_heard_and_answers(spoken: Spoken) -> None:
     runs, dialogue, page = await spoken("yes i will")
-    await expect(page.get_by_text("The robot watches for")).to_be_visible(timeout=40_000)
+    await expect(page.get_by_text("The robot watches for")).to_be_visible(timeout=60_000)
     assert runs.dialogue(dialogue).answered_by == "anna"
     assert runs.dialogue(dialogue).help is not None
 
@@ -77,7 +77,7 @@ async def test_no_answers_every_question_until_the_dialogue_closes(spoken: Spoke
     runs, dialogue, page = await spoken("no")
     # The second no is final: it is held back like that of a button, and then sent.
     await expect(page.get_by_role("button", name="Undo")).to_be_visible(timeout=60_000)
-    await expect(page.get_by_text("No robot asks anything")).to_be_visible(timeout=20_000)
+    await expect(page.get_by_text("No robot asks anything")).to_be_visible(timeout=60_000)
     assert runs.dialogue(dialogue).reason == "resolved"
 
 
@@ -86,7 +86,7 @@ async def test_what_is_not_understood_ends_at_the_buttons(spoken: Spoken) -> Non
         "something else", SpeechAbilities(NoVoice("no voice here"), MishearingEars())
     )
     await expect(page.get_by_text("Not understood. Please use the buttons.")).to_be_visible(
-        timeout=40_000
+        timeout=60_000
     )
     assert runs.dialogue(dialogue).awaiting == "answer"
     await page.locator(".answer.yes").click()

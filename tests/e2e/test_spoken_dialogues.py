@@ -1,8 +1,11 @@
-"""Every branch of every dialogue by voice, and what else can be said, in a real browser."""
+"""Every kind of answer by voice, and what else can be said, in a real browser.
+
+That every branch of every dialogue is walked is for `test_question_dialogues.py`, by buttons.
+"""
 
 import asyncio
 import shutil
-from collections.abc import AsyncIterator, Awaitable, Callable
+from collections.abc import AsyncIterator, Awaitable, Callable, Iterator
 from contextlib import AsyncExitStack, asynccontextmanager
 from importlib.util import find_spec
 from uuid import UUID
@@ -10,14 +13,14 @@ from uuid import UUID
 import pytest
 import pytest_asyncio
 from console_in_browser import TOKEN, Stage
-from dialogue_paths import every_branch
+from dialogue_paths import Path, every_kind_of_answer
 from fake_microphone import launch_speaking
-from played_dialogues import DETECTION, PlayedDialogues
+from played_dialogues import PlayedDialogues
 from playwright.async_api import Browser, async_playwright, expect
 from scripted_ears import ToneVoice
 from service_under_test import serving
 from spoken_console import SpokenConsole
-from test_question_dialogues import SCRIPTS, expect_shown
+from test_question_dialogues import SCRIPTS, expect_shown, issue_of
 
 from dialogue.conversation import Conversation
 from dialogue.outlook import Outlook
@@ -26,7 +29,6 @@ from server.runtime.run_state import RunStatus, converse
 from server.speech.abilities import SpeechAbilities
 from server.speech.ear import ProcessEars
 from server.speech.rendering import SpokenTexts
-from tasks.issue import Issue
 
 pytestmark = [
     pytest.mark.asyncio(loop_scope="session"),
@@ -73,33 +75,22 @@ async def speech() -> AsyncIterator[SpeechAbilities]:
     await speech.close()
 
 
-async def test_every_branch_of_every_dialogue_by_voice(
-    persons: Persons, speech: SpeechAbilities
-) -> None:
+async def test_every_kind_of_answer_by_voice(persons: Persons, speech: SpeechAbilities) -> None:
     # Two at once: most of the time is taken by words.
-    room = asyncio.Semaphore(AT_ONCE)
+    paths = iter(every_kind_of_answer(SCRIPTS, issue_of("dropped")))
     async with asyncio.TaskGroup() as walks:
-        for kind in sorted(SCRIPTS):
-            walks.create_task(walk_every_branch(kind, room, persons, speech))
+        for _ in range(AT_ONCE):
+            walks.create_task(walk(paths, persons, speech))
 
 
-async def walk_every_branch(
-    kind: str, room: asyncio.Semaphore, persons: Persons, speech: SpeechAbilities
+async def walk(
+    paths: Iterator[tuple[str, Path]], persons: Persons, speech: SpeechAbilities
 ) -> None:
-    async with room, at_work(speech) as (stage, open_console):
+    """Walk such paths as nobody else has walked yet."""
+    async with at_work(speech) as (stage, open_console):
         consoles = {answer: await open_console(persons, words) for answer, words in WORDS.items()}
-        issue = Issue(
-            kind,
-            "pr2",
-            "/0",
-            "yellow_bar",
-            "yellow_bar",
-            "yellow_bar_place",
-            5,
-            reason=DETECTION.explanation,
-        )
-        for path in every_branch(SCRIPTS[kind], issue, ("yes", "no")):
-            conversation = Conversation(SCRIPTS[kind], issue, Outlook())
+        for kind, path in paths:
+            conversation = Conversation(SCRIPTS[kind], issue_of(kind), Outlook())
             dialogue = await stage.runs.open(stage.run, kind)
             turns = conversation.open()
             for call in path:

@@ -108,13 +108,13 @@ async def test_foreign_origin_may_not_change_anything(client: httpx.AsyncClient)
 
 
 async def close_code(socket: ClientConnection) -> int | None:
-    async with asyncio.timeout(10):
+    async with asyncio.timeout(60):
         await socket.wait_closed()
     return socket.close_code
 
 
 async def first_message(socket: Any) -> Any:
-    async with asyncio.timeout(10):
+    async with asyncio.timeout(60):
         return json.loads(await socket.recv())
 
 

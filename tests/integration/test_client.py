@@ -109,7 +109,7 @@ async def test_stream_gives_a_snapshot_and_answers_on_the_way(
 
 
 async def collect(messages: AsyncIterator[Snapshot | Event], count: int) -> list[int]:
-    async with asyncio.timeout(20):
+    async with asyncio.timeout(60):
         return [(await anext(messages)).seq for _ in range(count)]
 
 
@@ -139,7 +139,7 @@ async def test_an_event_with_a_detection_comes_as_it_was_committed(
         messages = aiter(stream)
         assert isinstance(await anext(messages), Snapshot)
         [raised] = await service.journal.append(Entry(events=[detected()]))
-        async with asyncio.timeout(20):
+        async with asyncio.timeout(60):
             assert await anext(messages) == raised
 
 
@@ -151,7 +151,7 @@ async def test_stream_gives_every_event_of_a_real_run(
         messages = aiter(stream)
         await anext(messages)
         await service.runs.commit(*recorded)
-        async with asyncio.timeout(20):
+        async with asyncio.timeout(60):
             came = [await anext(messages) for _ in recorded]
     assert [told(each) for each in came] == [told(each) for each in recorded]
 
@@ -169,7 +169,7 @@ async def test_stream_ends_with_a_sentence_at_what_it_cannot_read(
         await anext(messages)
         await service.runs.commit(paused())
         with pytest.raises(StreamRefusedError, match="is it of another version"):
-            async with asyncio.timeout(20):
+            async with asyncio.timeout(60):
                 await anext(messages)
 
 

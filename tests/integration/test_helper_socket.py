@@ -29,7 +29,7 @@ def helper(service: ServiceUnderTest, query: str = "helper=anna", **more: Any) -
 
 
 async def receive(socket: ClientConnection) -> Any:
-    async with asyncio.timeout(10):
+    async with asyncio.timeout(60):
         return json.loads(await socket.recv())
 
 

@@ -68,7 +68,7 @@ async def deliver_through(drops: list[tuple[int, int, bool]], simulated: bool) -
         registry.send("counter", f"c{n}", start)
         await sink.wait_until(lambda n=n: sink.types().count("finished") == n + 1)
     registry.send("counter", "last", Shutdown())
-    async with asyncio.timeout(30):
+    async with asyncio.timeout(60):
         await robot
         await asyncio.gather(*serving)
 

@@ -68,7 +68,7 @@ async def done_by_name(journal: SqliteJournal, run: UUID) -> Counter[str]:
 
 async def third_step(journal: SqliteJournal) -> None:
     """Wait until some behavior's third step has begun."""
-    async with asyncio.timeout(30):
+    async with asyncio.timeout(60):
         with journal.subscribe(0) as records:
             async for record in records:
                 if '"step":3' in record.text:
@@ -146,7 +146,7 @@ async def test_what_an_earlier_boot_left_is_recorded_and_is_no_news(
             boot="b1", seq=3, time=9.0, body=Holding(execution="an old one", at="in_place")
         )
         await robot.send(stale.model_dump_json())
-        async with asyncio.timeout(10):
+        async with asyncio.timeout(60):
             while '"ack"' not in await robot.receive():
                 pass
         events = await journal.read(0, 100, run.id)

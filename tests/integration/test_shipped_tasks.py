@@ -14,17 +14,8 @@ async def test_a_shipped_task_is_done_on_the_tabletop(task: str) -> None:
     assert max(outcome.errors_mm) < 5.0
 
 
-THIN_PARTS = pytest.mark.skip(
-    reason="of its parts, 12 and 14 mm wide, some slip from the fingers and topple in a run"
-)
-"""What the workcell's arm does not do without help every time."""
-
-
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "task",
-    [pytest.param(each, marks=[THIN_PARTS] * (each == "workshop")) for each in TREES.names()],
-)
+@pytest.mark.parametrize("task", TREES.names())
 async def test_a_shipped_task_is_done_in_the_workcell(task: str) -> None:
     pytest.importorskip("pybullet")
     outcome = await run_task(task, "workcell", seed=1)

@@ -44,7 +44,7 @@ def microphone(service: ServiceUnderTest, query: str = "helper=anna", **more: An
 
 
 async def receive(socket: ClientConnection) -> Any:
-    async with asyncio.timeout(10):
+    async with asyncio.timeout(60):
         return json.loads(await socket.recv())
 
 

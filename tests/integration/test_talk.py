@@ -81,7 +81,7 @@ async def test_a_spoken_stop_pauses_the_run(service: ServiceUnderTest, voice: Co
 
 async def test_a_service_without_speech_is_read_instead() -> None:
     device = WavDevice(await ToneVoice().render("-"))
-    async with serving() as service, MendClient(service.url) as client, asyncio.timeout(20):
+    async with serving() as service, MendClient(service.url) as client, asyncio.timeout(60):
         helping = asyncio.create_task(SpokenHelper(client, "anna", device, device.tell).run())
         run = await service.runs.start_run(REQUEST)
         view = await service.runs.raise_issue(run.id)
@@ -122,7 +122,7 @@ async def test_an_ear_knows_nothing_of_the_conversation_before(voice: CommandVoi
     await first.close()
     second = await ears.open()
     second.hear(said + bytes(32_000))
-    async with asyncio.timeout(30):
+    async with asyncio.timeout(60):
         reports = [await second.report() for _ in range(2)]
     await second.close()
     await ears.close()

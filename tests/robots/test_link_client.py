@@ -53,7 +53,7 @@ class PlayedService:
         return robot_end
 
     async def accept(self, received: int = 0) -> Hello:
-        async with asyncio.timeout(10):
+        async with asyncio.timeout(60):
             self._channel = await self._connections.get()
             hello = await self.next(Hello)
         await self.say(Welcome(protocol=1, received=received, heartbeat_s=self.heartbeat_s))
@@ -72,7 +72,7 @@ class PlayedService:
     async def next(self, kind: type[M]) -> M:
         """The next message of a kind; skips others."""
         assert self._channel is not None
-        async with asyncio.timeout(10):
+        async with asyncio.timeout(60):
             while True:
                 message = robot_message.validate_json(await self._channel.receive())
                 if isinstance(message, kind):
@@ -231,7 +231,7 @@ async def test_a_shutdown_ends_the_robot_after_its_last_report(robot: Robot) -> 
     await robot.service.command("c2", Shutdown())
     report = await robot.service.next(Report)
     await robot.service.say(Ack(seq=report.seq))
-    async with asyncio.timeout(10):
+    async with asyncio.timeout(60):
         await robot.task
 
 
@@ -239,7 +239,7 @@ async def test_a_shutdown_does_not_wait_for_a_service_that_is_gone(robot: Robot)
     await robot.service.accept()
     await robot.service.command("c1", Hold(until=1.0))
     await robot.service.command("c2", Shutdown())
-    async with asyncio.timeout(10):
+    async with asyncio.timeout(60):
         await robot.task
 
 

@@ -21,7 +21,9 @@ from fleet.scheduling.schedule import Action, Route, Schedule, Task
 from fleet.scheduling.solution import Status
 from fleet.scheduling.timing import earliest_schedule
 
-SECONDS = 60.0
+PATIENCE_S = 600.0
+"""More than a small problem ever takes, on however busy a machine."""
+PUBLISHED_S = 60.0
 
 
 def plain_optimum(problem: Problem) -> float | None:
@@ -76,7 +78,7 @@ def test_optimum_equals_that_of_plain_enumeration(items: tuple[Item, ...]) -> No
     )
     problem = replace(problem, weights=Weights(distance=1.0, completion=0.25))
     expected = plain_optimum(problem)
-    solution = solve_exactly(problem, seconds=SECONDS, clock=time.perf_counter)
+    solution = solve_exactly(problem, seconds=PATIENCE_S, clock=time.perf_counter)
     if expected is None:
         assert solution.status is Status.INFEASIBLE
     else:
@@ -91,11 +93,11 @@ def test_transfer_makes_possible_what_no_robot_can_do_alone() -> None:
         Robot("right", 4, 4, 1.0, Window(0.0, 60.0)),
     )
     problem = corridor(items=(parcel(),), robots=robots)
-    solution = solve_exactly(problem, seconds=SECONDS, clock=time.perf_counter)
+    solution = solve_exactly(problem, seconds=PATIENCE_S, clock=time.perf_counter)
     assert solution.status is Status.OPTIMAL
     assert solution.schedule is not None
     assert solution.schedule.transfers == 1
-    alone = solve_exactly(problem.without_transfers(), seconds=SECONDS, clock=time.perf_counter)
+    alone = solve_exactly(problem.without_transfers(), seconds=PATIENCE_S, clock=time.perf_counter)
     assert alone.status is Status.INFEASIBLE
 
 
@@ -107,7 +109,7 @@ def test_face_to_face_transfer_keeps_both_robots_there() -> None:
     shift_end = replace(robots[0], shift=Window(0.0, 90.0))
     problem = replace(problem, robots=(shift_end, robots[1]))
     problem = replace(problem, weights=Weights(distance=0.0, makespan=1.0))
-    solution = solve_exactly(problem, seconds=SECONDS, clock=time.perf_counter)
+    solution = solve_exactly(problem, seconds=PATIENCE_S, clock=time.perf_counter)
     assert solution.status is Status.OPTIMAL
     assert solution.schedule is not None
     assert check(problem, solution.schedule) == []
@@ -116,7 +118,7 @@ def test_face_to_face_transfer_keeps_both_robots_there() -> None:
 def test_item_aboard_is_delivered_by_who_has_it_or_whom_it_is_given() -> None:
     aboard = Item("aboard", 1.0, Visit(0), Visit(4), aboard=0)
     problem = corridor(items=(aboard,))
-    solution = solve_exactly(problem, seconds=SECONDS, clock=time.perf_counter)
+    solution = solve_exactly(problem, seconds=PATIENCE_S, clock=time.perf_counter)
     assert solution.status is Status.OPTIMAL
     assert solution.schedule is not None
     assert solution.cost is not None
@@ -131,7 +133,7 @@ def test_start_that_is_as_good_as_any_stays_as_it_is(routes: tuple[Route, ...]) 
     problem = corridor(items=(parcel(),))
     start = earliest_schedule(problem, routes)
     assert isinstance(start, Schedule)
-    solution = solve_exactly(problem, seconds=SECONDS, start=start, clock=time.perf_counter)
+    solution = solve_exactly(problem, seconds=PATIENCE_S, start=start, clock=time.perf_counter)
     assert solution.status is Status.OPTIMAL
     assert solution.schedule == start
     assert solution.gap == 0.0
@@ -139,9 +141,11 @@ def test_start_that_is_as_good_as_any_stays_as_it_is(routes: tuple[Route, ...]) 
 
 def test_start_is_never_made_worse() -> None:
     problem = corridor(items=(parcel(), parcel("other", 4, 0)))
-    first = solve_exactly(problem, seconds=SECONDS, clock=time.perf_counter)
+    first = solve_exactly(problem, seconds=PATIENCE_S, clock=time.perf_counter)
     assert first.schedule is not None
-    again = solve_exactly(problem, seconds=SECONDS, start=first.schedule, clock=time.perf_counter)
+    again = solve_exactly(
+        problem, seconds=PATIENCE_S, start=first.schedule, clock=time.perf_counter
+    )
     assert again.cost is not None
     assert first.cost is not None
     assert again.cost.total <= first.cost.total
@@ -153,7 +157,7 @@ def test_start_is_never_made_worse() -> None:
 def test_published_optimum_is_found_and_proved(name: str) -> None:
     (path,) = DATA.glob(f"*/{name}.txt")
     problem = read_transfer_benchmark(path.read_text(), name)
-    solution = solve_exactly(problem, seconds=SECONDS, clock=time.perf_counter)
+    solution = solve_exactly(problem, seconds=PUBLISHED_S, clock=time.perf_counter)
     assert solution.status is Status.OPTIMAL
     assert solution.cost is not None
     assert solution.cost.total == pytest.approx(published(path), abs=0.01)

@@ -39,7 +39,7 @@ def test_cost_is_at_most_twice_the_optimum(seed: int) -> None:
     problem = collection(2 + seed % 2, 2, Random(seed))
     walk = solve_to_one_destination(problem, seconds=0.0, clock=TickingClock())
     shared = solve_to_one_destination(problem, seconds=60.0, clock=TickingClock())
-    best = solve_exactly(problem, seconds=20.0, start=shared.schedule, clock=time.perf_counter)
+    best = solve_exactly(problem, seconds=600.0, start=shared.schedule, clock=time.perf_counter)
     assert best.status is Status.OPTIMAL
     assert walk.cost is not None
     assert best.cost is not None

@@ -21,7 +21,8 @@ from fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit, Wei
 from fleet.scheduling.schedule import Action
 from fleet.scheduling.solution import Progress, Status
 
-EFFORT = Effort(60.0, 1, 2)
+EFFORT = Effort(600.0, 1, 2)
+"""More than it ever takes, on however busy a machine."""
 
 
 def drawn_with_distances(seed: int) -> Problem:

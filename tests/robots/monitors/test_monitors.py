@@ -3,39 +3,23 @@
 from dataclasses import replace
 from itertools import pairwise
 
-import numpy as np
 import pytest
-from drawn_scene import PARTS, TABLE_Z, DrawnScene
+from drawn_scene import TABLE_Z, DrawnScene
+from monitor_view import BLOB, SEEN, VIEW
 from pydantic import ValidationError
 
 from robots.behaviors.contact import Contact
 from robots.behaviors.phase import Phase
-from robots.body import Reach
 from robots.grip import GripReading, GripState
 from robots.monitors.blocked import Blocked
 from robots.monitors.dropped import Dropped
 from robots.monitors.missed import Missed
 from robots.monitors.missing import Missing
-from robots.monitors.monitor import Meanwhile, Monitor, MonitorView
+from robots.monitors.monitor import Meanwhile, Monitor
 from robots.monitors.positioning import Positioning
 from robots.monitors.unreachable import Unreachable
-from robots.vision.blob import Blob
-from robots.vision.head import HeadSighting
 from robots.vision.obstruction import Obstruction
 from tasks.plugins import load_plugins
-
-BLOB = Blob((50.0, 60.0), 200, (40, 50, 20, 20), np.zeros((120, 160), np.uint8))
-SEEN = HeadSighting(0.5, -0.2, TABLE_Z, 0.0, TABLE_Z + 0.04, True, 1.0, BLOB, 0.0)
-VIEW = MonitorView(
-    time_s=1.0,
-    step=0,
-    phase=Phase.PREPARE,
-    part=PARTS["pink_bar"],
-    needs_help=False,
-    reach=Reach((0.0, 0.0), 0.3, 0.8),
-    table_z=TABLE_Z,
-    sighting=SEEN,
-)
 
 
 def grip(state: GripState) -> GripReading:

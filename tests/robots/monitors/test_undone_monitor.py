@@ -3,33 +3,18 @@
 from dataclasses import replace
 from typing import Any
 
-import numpy as np
 import pytest
-from drawn_scene import PARTS, TABLE_Z
+from drawn_scene import TABLE_Z
+from monitor_view import BLOB, SEEN, VIEW
 
 from robots.behaviors.phase import Phase
-from robots.body import Reach
 from robots.monitors.missing import Missing
-from robots.monitors.monitor import Meanwhile, Monitor, MonitorView
+from robots.monitors.monitor import Meanwhile, Monitor
 from robots.monitors.undone import Undone
-from robots.vision.blob import Blob
-from robots.vision.head import HeadSighting
 from robots.vision.presence import Presence
 from tasks.plugins import load_plugins
 
-BLOB = Blob((50.0, 60.0), 200, (40, 50, 20, 20), np.zeros((120, 160), np.uint8))
-SEEN = HeadSighting(0.5, -0.2, TABLE_Z, 0.0, TABLE_Z + 0.04, True, 1.0, BLOB, 0.0)
-BEFORE = MonitorView(
-    time_s=1.0,
-    step=0,
-    phase=Phase.PREPARE,
-    part=PARTS["pink_bar"],
-    needs_help=False,
-    reach=Reach((0.0, 0.0), 0.3, 0.8),
-    table_z=TABLE_Z,
-    was_done="gone",
-    sighting=SEEN,
-)
+BEFORE = replace(VIEW, was_done="gone")
 AFTER = replace(
     BEFORE, step=8, phase=Phase.CONFIRM, was_done=None, placed=SEEN, presence=Presence.GONE
 )

@@ -103,7 +103,7 @@ async def test_what_waits_is_written_without_anybody_asking(
     monkeypatch.setattr("server.poses.record.FLUSH_S", 0.0)
     records = PoseRecords(tmp_path)
     records.open(RUN).add(frame(1.0))
-    async with asyncio.timeout(10):
+    async with asyncio.timeout(60):
         while await records.last(RUN) is None:
             pass
     records.shut()

@@ -61,7 +61,7 @@ class PlayedRobot:
         await self.channel.send(message.model_dump_json(exclude_none=True))
 
     async def hear(self) -> AnyServiceMessage:
-        async with asyncio.timeout(10):
+        async with asyncio.timeout(60):
             return service_message.validate_json(await self.channel.receive())
 
     async def greet(self, message: Hello) -> Welcome:

@@ -25,7 +25,7 @@ async def open_question(service: PretendService) -> DialogueView:
 
 
 async def first_question(service: PretendService) -> DialogueView:
-    async with asyncio.timeout(10):
+    async with asyncio.timeout(60):
         while not (waiting := service.runtime.dialogues("open")):  # noqa: ASYNC110
             await asyncio.sleep(0)
     return waiting[0]
@@ -180,7 +180,7 @@ async def test_a_restart_keeps_the_moved_deadline_and_what_is_left(tmp_path: Pat
 async def test_the_clip_of_a_fault_is_kept_after_the_question_and_belongs_to_it() -> None:
     async with pretend_service(ONE_PART, FAULT, patient=True, films=True) as service:
         view = await open_question(service)
-        async with asyncio.timeout(10):
+        async with asyncio.timeout(60):
             while not service.runtime.dialogue(view.dialogue).clip:  # noqa: ASYNC110
                 await asyncio.sleep(0)
         events = await service.journal.read(0, 1000)

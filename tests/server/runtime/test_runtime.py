@@ -173,7 +173,7 @@ async def open_question(service: PretendService, **fields: Any) -> DialogueView:
 
 
 async def first_open_dialogue(service: PretendService) -> DialogueView:
-    async with asyncio.timeout(10):
+    async with asyncio.timeout(60):
         while not (waiting := service.runtime.dialogues("open")):  # noqa: ASYNC110
             await asyncio.sleep(0)
     return waiting[0]
@@ -297,7 +297,7 @@ async def test_a_fault_of_ours_fails_the_run_instead_of_hanging_it(
 
     monkeypatch.setattr("server.runtime.run.choose", broken)
     async with pretend_service(TWO_PARTS) as service:
-        view, events = await asyncio.wait_for(service.run_to_end(), timeout=10)
+        view, events = await asyncio.wait_for(service.run_to_end(), timeout=60)
     assert view.status is RunStatus.FAILED
     assert view.result is not None
     assert "a fault in Mend stopped it (RuntimeError: no such thing)" in view.result.reason
@@ -316,7 +316,7 @@ async def test_a_robot_that_cannot_be_started_again_fails_the_run(
         await service.runtime.pause(started.id)
         monkeypatch.setattr(NoHardware, "restart", refuse)
         service.run_of(started).tell_lost(started.robots[0], "it was killed")
-        view = await asyncio.wait_for(service.runtime.wait_for_end(started.id), timeout=10)
+        view = await asyncio.wait_for(service.runtime.wait_for_end(started.id), timeout=60)
     assert view.status is RunStatus.FAILED
     assert view.result is not None
     assert view.result.reason == "it could not go on: the world cannot run here"
@@ -329,7 +329,7 @@ async def test_a_robot_that_never_begins_a_step_is_not_started_for_ever() -> Non
         run = service.run_of(started)
         for _ in range(RunSettings().max_restarts + 1):
             run.tell_lost(started.robots[0], "it was killed")
-        view = await asyncio.wait_for(service.runtime.wait_for_end(started.id), timeout=10)
+        view = await asyncio.wait_for(service.runtime.wait_for_end(started.id), timeout=60)
     assert view.result is not None
     assert "its process keeps ending: it was killed" in view.result.reason
     assert len(service.worlds.restarted) == 1 + RunSettings().max_restarts

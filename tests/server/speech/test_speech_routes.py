@@ -141,7 +141,7 @@ async def test_a_prompt_is_rendered_when_it_is_published(
     texts = service.app.state.parts.speech.texts
     rendering = asyncio.create_task(render_prompts(texts, service.journal))
     run = await service.runs.start_run(RunRequest(tree="eket", world="tabletop", speed="max"))
-    async with asyncio.timeout(10):
+    async with asyncio.timeout(60):
         await voice.has_rendered(len(FIXED))
         view = await service.runs.raise_issue(run.id)
         await voice.has_rendered(len(FIXED) + 2)

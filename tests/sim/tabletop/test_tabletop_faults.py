@@ -218,11 +218,13 @@ def test_parts_without_faults_are_placed_without_an_alarm(noise: float) -> None:
 
 
 @pytest.mark.slow
-def test_the_fullest_table_is_worked_off_without_an_alarm() -> None:
+def test_parts_of_the_fullest_table_are_placed_without_an_alarm() -> None:
+    # Every seventh of them: `benchmarks/random_scenarios.py` works off whole tables.
     scene = lay_out([(f"o{i}", f"p{i}") for i in range(64)], seed=9)
     driver = make_driver(scene)
-    for index in range(64):
+    chosen = range(0, 64, 7)
+    for index in chosen:
         driver.start(f"o{index}", f"p{index}", execution=f"e{index}")
         driver.run()
     assert driver.issues == []
-    assert len(driver.of(Finished)) == 64
+    assert len(driver.of(Finished)) == len(chosen)

@@ -2,13 +2,14 @@
 
 import math
 
+import numpy as np
 import pytest
 from workcell_hands import TABLE_M, Hands, distance_m
 
 from robots.body import ToolPose
 from sim.workcell.parts import PartPose
 from sim.workcell.world import WorkcellWorld
-from tasks.scene import Scene
+from tasks.scene import Pose, Scene, SceneObject
 
 pytestmark = pytest.mark.slow
 
@@ -24,6 +25,27 @@ def test_a_part_is_placed_within_3_mm(hands: Hands, name: str) -> None:
     assert distance_m(part, place) < 0.003
     assert abs(math.remainder(part.yaw, math.pi)) < math.radians(2.5)
     assert part.tilt_rad < 0.01
+
+
+def test_fingers_do_not_sink_into_small_light_parts() -> None:
+    rng = np.random.default_rng(5)
+    pin = SceneObject(
+        color=(0.8, 0.1, 0.1), size=(0.013, 0.013, 0.036), mass_kg=0.007, pose=Pose(x=0.5, y=-0.3)
+    )
+    world = WorkcellWorld(Scene(name="one", objects={"pin": pin}, places={}), seed=7)
+    hands = Hands(world)
+    openings_m = []
+    for _ in range(8):
+        yaw = float(rng.uniform(-1.5, 1.5))
+        world.parts["pin"].put(PartPose.upright(0.5, -0.3, TABLE_M, yaw))
+        # Seen hardly less exactly than a camera does.
+        dx, dy, turn = rng.normal(0.0, (0.0005, 0.0005, 0.03))
+        hands.pick("pin", PartPose.upright(0.5 + dx, -0.3 + dy, TABLE_M, yaw + turn))
+        openings_m.append(hands.body.gripper_opening_m() if world.held == "pin" else 0.0)
+        hands.body.open_gripper(0.036)
+        hands.settle()
+    world.close()
+    assert min(openings_m) > 0.8 * pin.size[1]
 
 
 def test_closing_the_gripper_on_nothing_holds_nothing(hands: Hands) -> None:

@@ -1,0 +1,61 @@
+"""How far one execution has come: its state, its step, and what was planned and seen for it."""
+
+from dataclasses import dataclass, field
+
+from robots.behaviors.assignment import Findings
+from robots.behaviors.confirmation import Outcome
+from robots.behaviors.contact import Contact
+from robots.behaviors.execution_state import ExecutionState, ExecutionTransitionError, follow
+from robots.behaviors.phase import Phase
+from robots.behaviors.preparation import Plan, waypoints_of
+from robots.body import ToolPose
+from robots.link.messages import WasDone
+from robots.monitors.monitor import BEFORE_FIRST_STEP
+
+
+@dataclass(slots=True)
+class Progress:
+    """What walks an execution's steps and what watches them both go by.
+
+    `step` counts from 1 and is 0 before the first; `contact` is what the last try of a step felt.
+    """
+
+    was_done: WasDone | None
+    state: ExecutionState = ExecutionState.PREPARING
+    step: int = BEFORE_FIRST_STEP
+    plan: Plan | None = None
+    seen: Findings = field(default_factory=Findings)
+    outcome: Outcome | None = None
+    contact: Contact | None = None
+
+    def move_to(self, state: ExecutionState) -> None:
+        """Become this. Raises `ExecutionTransitionError`."""
+        self.state = follow(self.state, state)
+
+    def start_again(self) -> None:
+        """Forget what was planned and seen: the first step is still to come."""
+        self.step, self.plan, self.seen = BEFORE_FIRST_STEP, None, Findings()
+        self.outcome = self.contact = None
+
+    @property
+    def planned(self) -> Plan:
+        """The plan that is walked. Raises `ExecutionTransitionError` before there is one."""
+        if self.plan is None:
+            raise ExecutionTransitionError(f"expected a plan while it is {self.state}, got none")
+        return self.plan
+
+    @property
+    def phase(self) -> Phase:
+        """What the step under way is for."""
+        if self.state is ExecutionState.CONFIRMING:
+            return Phase.CONFIRM
+        if self.plan is None or self.step == BEFORE_FIRST_STEP:
+            return Phase.PREPARE
+        return self.plan.steps[self.step - 1].phase
+
+    @property
+    def way(self) -> list[ToolPose]:
+        """The poses that the steps still to come lead through."""
+        if self.plan is None or self.outcome is not None:
+            return []
+        return waypoints_of(self.plan.steps[max(self.step, self.plan.first) - 1 :])

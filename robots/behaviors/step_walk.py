@@ -1,0 +1,111 @@
+"""Walking a step of a plan on a body, again and more gently while something is felt."""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from robots.arm import Arm, Routine
+from robots.behaviors.assignment import Assignment
+from robots.behaviors.backing_off import back_off
+from robots.behaviors.behavior import Move, Step
+from robots.behaviors.contact import Contact, ContactWatch, Track, Try, hindering_n, is_arrival
+from robots.behaviors.phase import Phase
+from robots.behaviors.progress import Progress
+from robots.behaviors.watch import Watch
+from robots.body import ToolPose
+from robots.link.messages import ReportBody, StepStarted
+from robots.senses import Senses
+
+
+@dataclass(frozen=True, slots=True)
+class _Felt:
+    """What ended a try: how hard it pushed, and the poses that lead back."""
+
+    force_n: float
+    way_back: Sequence[ToolPose]
+
+
+class StepWalk:
+    """Walks the steps of the plan in an execution's progress, one at a time."""
+
+    def __init__(
+        self,
+        assignment: Assignment,
+        progress: Progress,
+        watch: Watch,
+        arm: Arm,
+        senses: Senses,
+        report: Callable[[ReportBody], None],
+    ) -> None:
+        self._assignment = assignment
+        self._progress = progress
+        self._watch = watch
+        self._arm = arm
+        self._senses = senses
+        self._report = report
+
+    def take(self, number: int) -> Routine[None]:
+        """One step, tried again more gently while something is felt. Raises `Interruption`."""
+        progress = self._progress
+        progress.step, progress.was_done = number, None
+        name = progress.planned.steps[number - 1].name
+        self._report(StepStarted(execution=self._assignment.execution, step=number, name=name))
+        tries = self._watch.tries()
+        for count, each in enumerate(tries or [Try(math.inf, 1.0)], start=1):
+            felt = yield from self._try(number, each)
+            if felt is None:
+                return
+            contact, last = Contact(felt.force_n, count), count == len(tries)
+            yield from back_off(progress, felt.way_back, contact, self._arm, self._watch, last=last)
+
+    def _try(self, number: int, attempt: Try) -> Routine[_Felt | None]:
+        """One try of a step, checked at the camera's period; what was felt if something was.
+
+        Raises `Interruption`.
+        """
+        step = self._progress.planned.steps[number - 1]
+        track, contact = Track(), ContactWatch(attempt.limit_n)
+        self._begin(number, step, attempt.speed)
+        arrived_s: float | None = None
+        # A step may be over before the camera's next picture; it is judged at its start as well.
+        self._watch.check(None)
+        while True:
+            self._watch.check_if_due()
+            now_s = self._arm.body.time_s()
+            if not self._arm.body.moving:
+                arrived_s = now_s if arrived_s is None else arrived_s
+                settled = now_s - arrived_s >= step.settle_s - 1e-9
+                if settled and not self._watch.grip_is_open_question(arrived_s):
+                    return None
+            yield
+            self._watch.note_force(self._arm.body.contact_force_n())
+            if isinstance(step.action, Move) and arrived_s is None:
+                force_n = self._feel(step.action, contact, track)
+                if force_n is not None:
+                    return _Felt(force_n, track.way_back())
+
+    def _begin(self, number: int, step: Step, speed: float) -> None:
+        part, plan = self._assignment.part, self._progress.planned
+        if isinstance(step.action, Move):
+            if plan.path is not None:
+                if step.action.opening_m is not None:
+                    self._arm.start_opening_to(step.action.opening_m)
+                self._arm.start(plan.path, plan.segment_of(number), step.action.speed * speed)
+        elif step.action.to == "closed":
+            if part is not None and step.phase is Phase.GRASP:
+                self._senses.watch_grip(part, plan.grasp)
+            self._arm.start_closing()
+        else:
+            self._senses.let_go()
+            self._arm.start_opening(step.action.opening_m)
+
+    def _feel(self, move: Move, contact: ContactWatch, track: Track) -> float | None:
+        """Stop where something pushes lastingly; its force unless that ends the move."""
+        body, here = self._arm.body, self._arm.tool_pose()
+        track.note(here)
+        force = body.contact_force()
+        strength_n = body.contact_force_n() if here is None else hindering_n(force, here, move.to)
+        if not contact.feel(strength_n, body.control_period_s):
+            return None
+        self._arm.stop()
+        return None if here is not None and is_arrival(here, move.to) else contact.strongest_n
