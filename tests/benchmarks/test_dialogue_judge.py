@@ -177,6 +177,11 @@ def test_what_has_lain_in_the_open_for_long_must_not_be_told_to_be_away() -> Non
     ]
 
 
+def test_what_is_waited_for_is_not_said_to_be_so() -> None:
+    assert told(BLOCKED).say("Please clear it away. I wait until I see my way free.").wrong() == []
+    assert told(BLOCKED).say("I see my way free. I go on.").wrong() != []
+
+
 def test_thanks_need_a_deed_for_the_part_since_the_question_was_put() -> None:
     thanks = "Thank you. I see the part 1. I go on."
     assert told().say(thanks).wrong() == ["nobody has done anything"]
