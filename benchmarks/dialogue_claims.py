@@ -33,7 +33,7 @@ def _at_place(record: RunRecord, index: int, event: ev.Prompt, _: re.Match[str])
 
 def _not_at_place(record: RunRecord, index: int, event: ev.Prompt, _: re.Match[str]) -> str | None:
     off_m = max(record.offset(index, event.node, event.object))
-    hidden = record.moment(index).blocked
+    hidden = record.moment(index).blocked or record.arm_holds_in_place(index)
     return None if off_m > CLEARLY_AT_PLACE_M or hidden else "it is there"
 
 
