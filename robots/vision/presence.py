@@ -50,6 +50,9 @@ def judge_presence(
     for box in view.boxes:
         if box.name in equals and _stands_at(box, room):
             return Presence.THERE
+    elsewhere = {box.name for box in view.boxes if box.complete}
+    if elsewhere.issuperset(equals):
+        return Presence.GONE
     if any(_keeps_out(box, room, equals) for box in view.boxes):
         return Presence.GONE
     through = _share_seen_through(view, room)
