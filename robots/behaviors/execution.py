@@ -86,6 +86,8 @@ class Execution:
         self._raised: set[str] = set()
         self._forces_n: list[float] = []
         self._contact: Contact | None = None
+        self._felt: Contact | None = None
+        """What the empty hand felt last on its way to the object."""
         self._track = Track()
         self._next_check_s = -math.inf
         self._read_s = -math.inf
@@ -168,6 +170,7 @@ class Execution:
     # --- Before the first step ----------------------------------------------------------------
 
     def _attempt(self, resumed: bool) -> Routine[None]:
+        self._felt = None
         try:
             there = False
             while not there:
@@ -179,9 +182,7 @@ class Execution:
                 if resumed:
                     self._report(Resumed(execution=self.id, step=plan.first))
                     resumed = False
-                for number in range(plan.first, len(plan.steps) + 1):
-                    yield from self._take_step(number)
-                there = yield from self._confirm()
+                there = (yield from self._take_steps(plan)) and (yield from self._confirm())
             self._finish(found_in_place=False)
         except Interruption as interruption:
             yield from self._react(interruption.monitor.meanwhile)
@@ -195,13 +196,16 @@ class Execution:
         self._seen.carrying = carrying and goes_on_carrying(self._assignment, arm, senses)
         if not self._seen.carrying:
             yield from put_down(arm, senses, self._picked_at)
-            yield from arm.go_to_neutral()
+            yield from self._go_to_neutral()
             yield from find(part, arm, senses, self._seen)
             if self._in_place():
                 return None
             self._picked_at = None
         self._plan = make_plan(self._assignment, arm, senses, self._seen)
         self._check(senses.read_grip() if self._seen.carrying else None)
+        if self._felt is not None and self._felt.tries >= len(self._tries(Phase.PREPARE)):
+            # Nothing that is seen explains it.
+            self._judge(self._felt)
         if self._plan is None:
             raise ExecutionTransitionError(
                 f"expected a path for {self._assignment.behavior.name} or an issue, got neither"
@@ -222,27 +226,50 @@ class Execution:
 
     # --- The steps ----------------------------------------------------------------------------
 
-    def _take_step(self, number: int) -> Routine[None]:
-        """One step, tried again more gently while something is felt. Raises `Interruption`."""
+    def _take_steps(self, plan: Plan) -> Routine[bool]:
+        """All steps; False if what they were planned for has to be looked at again.
+
+        Raises `Interruption`.
+        """
+        for number in range(plan.first, len(plan.steps) + 1):
+            taken = yield from self._take_step(number)
+            if not taken:
+                return False
+        return True
+
+    def _take_step(self, number: int) -> Routine[bool]:
+        """One step, tried again more gently while something is felt. Raises `Interruption`.
+
+        False where an empty hand on its way to the object felt something: the head camera can
+        tell what it was once the arm is out of its view.
+        """
         self._step, self._was_done = number, None
         name = self._planned.steps[number - 1].name
         self._report(StepStarted(execution=self.id, step=number, name=name))
-        tries = self._tries()
-        for count, each in enumerate(tries or [Try(math.inf, 1.0)], start=1):
+        tries = self._tries(self._phase) or [Try(math.inf, 1.0)]
+        looks = self._phase is Phase.APPROACH and bool(self._tries(Phase.PREPARE))
+        if not looks:
+            self._felt = None
+        begin = 0 if self._felt is None else self._felt.tries
+        for count, each in enumerate(tries[begin:], start=begin + 1):
             felt_n = yield from self._walk(number, each)
             if felt_n is None:
-                return
-            yield from self._back_off(number, Contact(felt_n, count), last=count == len(tries))
+                return True
+            contact = Contact(felt_n, count)
+            yield from self._go_back()
+            if looks:
+                self._felt = contact
+                self._move_to(ExecutionState.PREPARING)
+                return False
+            self._try_again(number, contact, last=count == len(tries))
+        raise ExecutionTransitionError(f"expected a try of step {number}, got none")
 
-    def _tries(self) -> Sequence[Try]:
-        """The tries of the first monitor to which it matters what is felt."""
-        return next((each.tries for each in self._watching(self._phase) if each.tries), ())
+    def _tries(self, phase: Phase) -> Sequence[Try]:
+        """The tries of the first monitor of a phase to which it matters what is felt."""
+        return next((each.tries for each in self._watching(phase) if each.tries), ())
 
-    def _back_off(self, number: int, contact: Contact, *, last: bool) -> Routine[None]:
-        """Go back the way the arm came, ready to try again. Raises `Interruption`.
-
-        After the last try, or where no way leads on, the monitors judge what was felt.
-        """
+    def _go_back(self) -> Routine[None]:
+        """Back off the way the arm came. Raises `Interruption`."""
         self._move_to(ExecutionState.BACKING_OFF)
         passed = self._track.way_back()
         back = self._arm.body.plan_path(passed) if passed else None
@@ -252,16 +279,39 @@ class Execution:
             while self._arm.body.moving:
                 self._check_if_due()
                 yield
+
+    def _try_again(self, number: int, contact: Contact, *, last: bool) -> None:
+        """Plan the way on; after the last try, or where none leads on, judge what was felt.
+
+        Raises `Interruption`.
+        """
         steps = self._planned.steps
         again = None if last else self._arm.body.plan_path(waypoints_of(steps[number - 1 :]))
         if again is None:
-            self._contact = contact
-            self._check(None)
-            raise ExecutionTransitionError(
-                f"expected an issue of {contact.force_n:.0f} N against the arm, got none"
-            )
+            self._judge(contact)
         self._plan = replace(self._planned, first=number, path=again)
         self._move_to(ExecutionState.RUNNING)
+
+    def _judge(self, contact: Contact) -> None:
+        """Let the monitors judge what was felt. Raises `Interruption`."""
+        self._contact = contact
+        self._check(None)
+        raise ExecutionTransitionError(
+            f"expected an issue of {contact.force_n:.0f} N against the arm, got none"
+        )
+
+    def _go_to_neutral(self) -> Routine[None]:
+        """Get out of the head camera's view; an arm that felt something goes feeling its way.
+
+        Raises `Interruption`.
+        """
+        tries = self._tries(Phase.PREPARE) if self._felt is not None else ()
+        watch = ContactWatch(tries[0].limit_n if tries else math.inf)
+        for _ in self._arm.go_to_neutral():
+            yield
+            if watch.feel(self._arm.body.contact_force_n(), self._arm.body.control_period_s):
+                self._arm.stop()
+                self._judge(Contact(watch.strongest_n, 1))
 
     def _walk(self, number: int, attempt: Try) -> Routine[float | None]:
         """One try of a step, checked at the camera's period; the force if something was felt.
