@@ -63,10 +63,15 @@ class Fit:
 def find_occupant(view: TableView, room: Room, fit: Fit) -> Obstruction | None:
     """What is in `room` that is not its part."""
     us, vs, points = view.standing_out(room.bottom_z + fit.tolerance_m)
-    inside = _volume(room, fit).holds(points, margin_m=0.0)
+    volume = _volume(room, fit)
+    inside = volume.holds(points, margin_m=0.0)
+    column = replace(volume, size=(*volume.size[:2], np.inf)).holds(points, margin_m=0.0)
     for box in view.boxes:
         if box.name == room.part.name:
             inside &= ~box.holds(points)
+        elif box.bottom_z < volume.top_z:
+            # Of what is taller than the room only a top above it may be seen.
+            inside |= column & box.holds(points)
     at = (room.at.x, room.at.y, room.bottom_z)
     floor_px = pixels_covered(view.heights.image, at, room.part.size[:2])
     found = obstruction_of(us, vs, points, inside, max(fit.fewest_px, fit.share * floor_px))

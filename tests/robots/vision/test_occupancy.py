@@ -5,6 +5,7 @@ import pytest
 from drawn_scene import PARTS, TABLE_Z, DrawnScene, Resting
 from scripted_body import view_of
 
+from robots.catalogue import Part
 from robots.link.messages import Location
 from robots.vision.obstruction import Obstruction
 from robots.vision.occupancy import Fit, Room, find_occupant, room_above, room_at_place
@@ -30,6 +31,14 @@ def test_another_part_at_the_place_is_seen_and_named(at: Resting, noise: float) 
     assert found is not None
     assert np.allclose(found.position[:2], (0.535, -0.12), atol=0.04)
     assert found.what == "yellow_bar is where pink_bar belongs"
+
+
+def test_what_is_taller_than_the_room_is_seen_by_its_top() -> None:
+    room = room_at_place(Part("pin", (0.024, 0.08, 0.02)), Location(x=0.535, y=-0.12), TABLE_Z)
+    tall = ((0.535, -0.12, TABLE_Z), (0.13, 0.13, 0.11))
+    found = check(DrawnScene(grey_boxes=[tall]), room)
+    assert found is not None
+    assert found.what == "something unknown is where pin belongs"
 
 
 def test_something_unknown_at_the_place_is_seen() -> None:
