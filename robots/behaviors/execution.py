@@ -42,6 +42,7 @@ from robots.link.messages import (
 from robots.monitors.monitor import BEFORE_FIRST_STEP, Meanwhile, Monitor, MonitorView
 from robots.senses import FOREARM, HEAD, Senses
 from robots.vision.drawing import draw_detection, encode_jpeg
+from robots.vision.head import HeadSighting
 from robots.vision.presence import Presence, is_at
 
 _BACK_OFF_SPEED = 0.3
@@ -189,6 +190,7 @@ class Execution:
 
     def _prepare(self) -> Routine[Plan | None]:
         """The plan to walk; None if there is nothing left to do. Raises `Interruption`."""
+        earlier, before = self._plan, self._seen.sighting
         self._step, self._plan, self._seen = BEFORE_FIRST_STEP, None, Findings()
         self._outcome = self._contact = None
         part, arm, senses = self._assignment.part, self._arm, self._senses
@@ -200,6 +202,9 @@ class Execution:
             yield from find(part, arm, senses, self._seen)
             if self._in_place():
                 return None
+            if self._felt is not None and self._is_hidden(before):
+                self._plan = earlier
+                self._judge(self._felt)
             self._picked_at = None
         self._plan = make_plan(self._assignment, arm, senses, self._seen)
         self._check(senses.read_grip() if self._seen.carrying else None)
@@ -223,6 +228,14 @@ class Execution:
         # What is out of sight at its place since it was seen there needs nobody to fetch it.
         hidden = senses.presence(image, part, target) is Presence.HIDDEN
         return self._was_done == "there" and hidden
+
+    def _is_hidden(self, before: HeadSighting | None) -> bool:
+        """Whether something may hide the object where it was seen before."""
+        part, image = self._assignment.part, self._seen.image
+        if self._seen.sighting is not None or part is None or image is None or before is None:
+            return False
+        where = Location(x=before.x, y=before.y, z=before.z, yaw=before.yaw)
+        return self._senses.presence(image, part, where) is Presence.HIDDEN
 
     # --- The steps ----------------------------------------------------------------------------
 
@@ -365,7 +378,11 @@ class Execution:
             return Phase.CONFIRM
         if self._plan is None or self._step == BEFORE_FIRST_STEP:
             return Phase.PREPARE
-        return self._plan.steps[self._step - 1].phase
+        phase = self._plan.steps[self._step - 1].phase
+        if self._state is ExecutionState.BACKING_OFF and phase is Phase.PLACE:
+            # What it was about to put down it carries again, unless that was taken from it.
+            return Phase.CARRY
+        return phase
 
     def _begin(self, plan: Plan, number: int, step: Step, speed: float) -> None:
         part = self._assignment.part

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from robot_bench import RobotBench
 
 from robots.behaviors.contact import ContactWatch, Track, hindering_n, is_arrival
+from robots.behaviors.execution_state import ExecutionState
 from robots.body import ToolPose
 from robots.link.messages import Finished, Holding, IssueDetected, Resume
 
@@ -222,6 +223,22 @@ def test_a_part_lost_while_backing_off_is_dropped() -> None:
 
     bench.body.at_cycle = act
     bench.start("pink_bar")
+    bench.run()
+    assert [each.issue for each in bench.of(IssueDetected)] == ["dropped"]
+
+
+def test_a_part_pulled_away_while_it_is_put_down_is_dropped() -> None:
+    bench = RobotBench()
+    bench.start("pink_bar")
+    bench.run_to(6, 0.3)
+
+    def pull() -> None:
+        bench.body.force_n = 80.0 if bench.body.in_hand is not None else 0.0
+        execution = bench.robot._execution
+        if execution is not None and execution.state is ExecutionState.BACKING_OFF:
+            bench.body.vanish("pink_bar")
+
+    bench.body.at_cycle = pull
     bench.run()
     assert [each.issue for each in bench.of(IssueDetected)] == ["dropped"]
 

@@ -1,5 +1,7 @@
 """Whether a place is free: what is in the room for a part is seen, its neighbours are let be."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from drawn_scene import PARTS, TABLE_Z, DrawnScene, Resting
@@ -62,6 +64,15 @@ def test_something_unknown_at_the_place_is_seen() -> None:
 )
 def test_a_free_place_is_free(parts: dict[str, Resting], room: Room, noise: float) -> None:
     assert check(DrawnScene(parts, noise=noise), room) is None
+
+
+def test_what_stands_beside_a_half_hidden_part_does_not_lie_on_it() -> None:
+    bar = Resting(0.52, -0.30, TABLE_Z, np.pi / 2)
+    sighting = view_of(DrawnScene({"pink_bar": bar}).picture()).sightings["pink_bar"]
+    leg = Resting(0.488, -0.30, TABLE_Z)
+    view = view_of(DrawnScene({"pink_bar": bar, "green_leg": leg}).picture())
+    room = room_above(PARTS["pink_bar"], replace(sighting, shown=0.5))
+    assert find_occupant(view, room, Fit()) is None
 
 
 @pytest.mark.parametrize(("on_it", "free"), [(0.04, False), (None, True)])
