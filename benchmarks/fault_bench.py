@@ -42,6 +42,8 @@ THERE_M = 0.02
 UPRIGHT_RAD = 0.2
 LAST_STEP = 8
 _CARRYING = range(3, 7)
+_LIFTED = 4
+_SLID_M = 0.01
 _STACK_M = 0.12
 
 
@@ -154,6 +156,7 @@ class Bench:
         )
         self._trial: Trial | None = None
         self._was_held = False
+        self._grasped: tuple[str, np.ndarray] | None = None
         self._looked: Looked | None = None
         self._executions = 0
         self.robot.attach(self._take, _ignore)
@@ -165,7 +168,7 @@ class Bench:
         self, trial: Trial, fault: Callable[[], None], was_done: WasDone | None = None
     ) -> None:
         """One pick and place, with `fault` at the trial's moment. Raises `NotNowError`."""
-        self._trial, self._was_held = trial, False
+        self._trial, self._was_held, self._grasped = trial, False, None
         self._plain.reset()
         trial.finished = False
         if trial.moment.step == 0 and trial.fault_s is None:
@@ -176,7 +179,7 @@ class Bench:
         while self.robot.advance(self.world.body.control_period_s):
             progress = self.robot.task_progress
             step = 0 if progress is None else progress.step
-            self._was_held |= step in _CARRYING and self.holds(trial.name)
+            self._note_grasp(trial.name, step)
             due = progress is not None and (step, progress.fraction) >= trial.moment
             if due and trial.fault_s is None:
                 self._strike(trial, fault)
@@ -287,6 +290,24 @@ class Bench:
         around = self.world.body.gripper_opening_m() > min((part.knob or part.size)[:2]) / 2
         return around and self.world.held in self.alike[name]
 
+    def _note_grasp(self, name: str, step: int) -> None:
+        if step in _CARRYING and self.holds(name):
+            self._was_held = True
+            held = self.world.held
+            if step >= _LIFTED and self._grasped is None and held is not None:
+                self._grasped = held, self._in_tool(held)
+
+    def _has_slid(self) -> bool:
+        """Whether what the fingers took is about to leave them: it is not where it was."""
+        if self._grasped is None:
+            return False
+        held, at = self._grasped
+        return float(np.linalg.norm(self._in_tool(held) - at)) > _SLID_M
+
+    def _in_tool(self, name: str) -> np.ndarray:
+        at = np.array([*self.world.parts[name].pose().position, 1.0])
+        return np.asarray((np.linalg.inv(self.world.body.tool_pose()) @ at)[:3])
+
     def at_place(self, name: str) -> bool:
         """Whether such a part stands where this one belongs."""
         target = self.scene.places[place_of(name)].pose
@@ -307,7 +328,7 @@ class Bench:
             case "missed":
                 return not self.holds(name) and not self._was_held
             case "dropped":
-                return not self.holds(name) and self._was_held
+                return self._was_held and (not self.holds(name) or self._has_slid())
             case "missing":
                 return part.stolen
             case "unreachable":
