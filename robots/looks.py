@@ -18,7 +18,7 @@ from robots.result import Result
 from robots.senses import Senses
 from robots.understanding import Understanding
 from robots.vision.head import HeadSighting
-from robots.vision.presence import Presence, is_at
+from robots.vision.presence import Presence
 
 LOOK_PERIOD_S = 0.5
 
@@ -108,16 +108,14 @@ class Expectation(Protocol):
 
 
 class AtPlace:
-    """An object rests at its place."""
+    """An object, or one just like it, rests at its place."""
 
     def __init__(self, looker: Looker, part: Part, target: Location) -> None:
         self._looker, self._part, self._target = looker, part, target
 
     def is_fulfilled(self) -> bool:
         senses = self._looker.senses
-        sighting = senses.sight(self._part, senses.look())
-        height_m = senses.catalogue.height_of(self._target)
-        return sighting is not None and is_at(sighting, self._target, height_m)
+        return senses.recognize_at(senses.look(), self._part, self._target)
 
 
 class InReach:
@@ -167,11 +165,11 @@ class WayClear:
         if here is not None and not arm.at_neutral:
             way = [here, *way]
         image = senses.look()
-        if senses.obstruction(image, way) is not None:
+        part, target = self._looker.destination or (None, None)
+        if senses.obstruction(image, way, part) is not None:
             return False
-        if self._looker.destination is None:
+        if part is None:
             return True
-        part, target = self._looker.destination
         sighting = None if senses.holds(part.name) else senses.sight(part, image)
         return senses.occupant(image, part, sighting, target) is None
 

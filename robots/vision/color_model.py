@@ -83,6 +83,10 @@ class Segmentation:
         """
         return np.where(self._of(name)[self._bins], 255, 0).astype(np.uint8)
 
+    def within(self, mask: Mask) -> "Segmentation":
+        """The pixels inside a mask alone, in one row."""
+        return Segmentation(self._bins[np.newaxis, mask > 0], self._owned)
+
     def share(self, name: str, us: NDArray[np.intp], vs: NDArray[np.intp]) -> float:
         """The share of some pixels that have an object's colours. Raises as `mask` does."""
         return float(self._of(name)[self._bins[vs, us]].mean()) if len(us) else 0.0
