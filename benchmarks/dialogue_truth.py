@@ -22,14 +22,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from dialogue_judge import DialogueJudge, Moment, Untruth
-from random_scenarios import MOST_LEAVES, draw, where_parts_rest
+from dialogue_judge import DialogueJudge, Untruth
+from random_scenarios import MOST_LEAVES, draw
+from watched_world import WatchedWorld, where_parts_rest
 
 from server.composition import open_service
 from server.dialogues import answers as answering
 from server.journal import events as ev
 from server.journal.audit import audit
-from server.journal.journal import Entry, Journal
 from server.journal.sqlite import IN_MEMORY
 from server.journal.untruths import find_untruths, kinds_of
 from server.runtime.requests import RunRequest
@@ -74,50 +74,12 @@ class Outcome:
     broken: list[str] = field(default_factory=list)
 
 
-class WatchedWorld:
-    """Notes the state of a run's world beside every entry of the journal."""
-
-    def __init__(self, journal: Journal) -> None:
-        self.after: list[tuple[int, dict[str, Any]]] = []
-        self._append = journal.append
-        journal.append = self._watched  # type: ignore[method-assign]
-
-    async def _watched(self, entry: Entry, *folded: Any, **named: Any) -> list[ev.Event]:
-        committed = await self._append(entry, *folded, **named)
-        if entry.world is not None:
-            first = committed[0].seq if committed else self._last + 1
-            self.after.append((first, dict(entry.world)))
-        if committed:
-            self._last = committed[-1].seq
-        return committed
-
-    _last = 0
-
-    def moments(self, events: Sequence[ev.Event]) -> list[Moment]:
-        """The world at each event: as the report said from which it follows, or the last one."""
-        started = events[0]
-        assert isinstance(started, ev.RunStarted), "a run begins with run_started"
-        states, current = list(self.after), None
-        moments = []
-        for event in events:
-            while states and states[0][0] <= event.seq:
-                current = states.pop(0)[1]
-            moments.append(_moment(started, current))
-        return moments
-
-
-def _moment(started: ev.RunStarted, state: dict[str, Any] | None) -> Moment:
-    world = {} if state is None else state["world"]
-    blocker = world.get("blocker_at") or world.get("obstacle") or world.get("blocker")
-    return Moment(where_parts_rest(started, state), world.get("held"), blocker is not None)
-
-
 async def run_once(world: str, kind: str, seed: int, *, show: bool = False) -> Outcome:
     """One random run with a helper of one kind, judged."""
     helper = HELPERS[kind]
     answering.DEFAULT_DELAY_S = helper.delay_s
     drawn = draw(world, seed, min(MOST_LEAVES[world], 8))
-    settings = Settings(port=0, journal=Path(IN_MEMORY), log_level="error")
+    settings = Settings(port=0, journal=Path(IN_MEMORY), log_level="error", speech_voice="none")
     request = RunRequest(
         tree="random",
         world=world,

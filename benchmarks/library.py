@@ -22,10 +22,11 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
-from random_scenarios import Rest, where_parts_rest
+from watched_world import where_parts_rest
 
 from server.journal import events as ev
 from server.journal.sqlite import IN_MEMORY
+from server.journal.untruths import Rest
 from server.runtime.requests import RunRequest
 from server.runtime.views import RunStatus
 from server.settings import Settings

@@ -5,9 +5,10 @@
 
 Half of the runs are random trees over random scenes, the others random trees with OR over made-up
 scenes (tabletop) or over the EKET base (workcell); with random interventions, and helpers that
-answer at random, never, or always yes. Every run's events are audited, and its end is compared with
-its events and with where the simulated world's parts really are. The exit code is 1 if any run
-broke a constraint, hung or told an untruth, or if one with a willing helper did not finish.
+answer at random, never, or always yes. Every run's events are audited; its end and every sentence
+of its dialogues are compared with its events and with where the simulated world's parts really are.
+The exit code is 1 if any run broke a constraint, hung or told an untruth, or if one with a willing
+helper did not finish.
 `--replay` prints one run's events. Tables of up to 60 parts are worked off here only; the tests
 take six runs of up to 12.
 """
@@ -19,12 +20,11 @@ import asyncio
 import faulthandler
 import json
 import logging
-import math
 import os
 import sys
 import time
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass, field
@@ -34,6 +34,8 @@ from typing import TYPE_CHECKING, Any, Literal
 from uuid import UUID
 
 import numpy as np
+from dialogue_judge import DialogueJudge
+from watched_world import WatchedWorld, where_parts_rest
 
 from server.journal import events as ev
 from server.journal.audit import audit
@@ -182,12 +184,13 @@ async def run_once(
 
     answers = KINDS[seed % len(KINDS)]
     drawn = draw(world, seed, most_leaves or MOST_LEAVES[world])
-    settings = Settings(port=0, journal=Path(IN_MEMORY), log_level="error")
+    settings = Settings(port=0, journal=Path(IN_MEMORY), log_level="error", speech_voice="none")
     began = time.perf_counter()
     async with open_service(settings) as service:
         if drawn.scene is not None:
             await service.library.scenes.save("random", drawn.scene)
         await service.library.trees.save("random", drawn.tree)
+        watched = WatchedWorld(service.journal)
         run = (await service.runtime.start_run(request(world, seed, answers))).id
         view = await _ended_or_hung(service, run, QUIET_S[world])
         wall_s = time.perf_counter() - began
@@ -207,37 +210,21 @@ async def run_once(
         simulated_s=view.time,
         missing=len(view.result.missing) if view.result else 0,
         violations=audit(events, kinds_of(started)),
-        untruths=find_untruths(events, where_parts_rest(started, snapshot))
+        untruths=_untruths(events, watched, where_parts_rest(started, snapshot))
         if view.status.ended
         else [],
     )
 
 
-def where_parts_rest(
-    started: ev.RunStarted, snapshot: dict[str, Any] | None
-) -> dict[str, Rest | None]:
-    """Where a simulated world's parts really are, from its last snapshot; None for gone ones."""
-    objects = started.scene["objects"]
-    world = {} if snapshot is None else snapshot["world"]
-    if "parts" in world:
-        return {
-            name: None if part["stolen"] else _rest_of(part["rest"])
-            for name, part in world["parts"].items()
-        }
-    height_m = started.scene["table"]["height"]
-    resting: dict[str, Rest | None] = {}
-    for name, each in objects.items():
-        pose = each["pose"]
-        start = (pose["x"], pose["y"], height_m if pose["z"] is None else pose["z"])
-        x, y, z = world.get("moved", {}).get(name, start)[:3]
-        resting[name] = None if name in world.get("gone", []) else Rest(x, y, z)
-    return resting
-
-
-def _rest_of(pose: dict[str, Any]) -> Rest:
-    tilt_x, tilt_y, _, _ = pose["quaternion"]
-    upright = 1.0 - 2.0 * (tilt_x**2 + tilt_y**2)
-    return Rest(*pose["position"], lean_rad=math.acos(min(max(upright, -1.0), 1.0)))
+def _untruths(
+    events: Sequence[ev.Event], watched: WatchedWorld, resting: Mapping[str, Rest | None]
+) -> list[str]:
+    """What was said in dialogues, told of them, or at the end, and was not so."""
+    said = DialogueJudge(events, watched.moments(events)).judge()
+    return [
+        *(f"event {each.seq}: '{each.what}': {each.why}" for each in said),
+        *find_untruths(events, resting),
+    ]
 
 
 def _print_events(events: Iterable[ev.Event]) -> None:

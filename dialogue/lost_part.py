@@ -23,7 +23,8 @@ def lost_part_script(what_happened: str, failed: str) -> ScriptWithParameters[Pa
             thanks="Thank you. I see the {object} back on the table.",
             unchanged="I see the {object} on the table, but I saw nothing change: {attempt} has "
             "failed.",
-            not_seen="I do not see the {object} on the table yet. Are you still putting it back?",
+            not_seen="I do not see the {object} where I can reach it yet. "
+            "Are you still putting it back?",
             put_right={
                 Expectation.AT_PLACE: Resolution.HUMAN_FINISH,
                 Expectation.IN_REACH: Resolution.ROBOT_RETRY,

@@ -21,7 +21,7 @@ _OFFER = offer_script(
         resolution=Resolution.ROBOT_FINISH,
         thanks="Thank you. I see the {object}.",
         unchanged="I see the {object}, where it was before.",
-        not_seen="I do not see the {object} on the table yet. Are you still bringing it?",
+        not_seen="I do not see the {object} where I can reach it yet. Are you still bringing it?",
         put_right=PUT_RIGHT,
     )
 )

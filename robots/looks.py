@@ -12,12 +12,13 @@ from robots.body import CameraImage, ToolPose
 from robots.catalogue import Part
 from robots.grasp import can_grasp, grasps_of
 from robots.grip import GripState
+from robots.grip.composition import likeliest
 from robots.link.messages import FinishedResult, Holding, Location, Look, Looked, ReportBody
 from robots.result import Result
 from robots.senses import Senses
 from robots.understanding import Understanding
 from robots.vision.head import HeadSighting
-from robots.vision.presence import Presence, is_at
+from robots.vision.presence import Presence
 
 LOOK_PERIOD_S = 0.5
 
@@ -26,7 +27,6 @@ _RESTS_WITHIN_M = 0.006
 _STEADY_S = 0.3
 _TRY_EVERY_S = 2.0
 """Where the picture cannot tell whether anything is held out, the fingers close that often."""
-_OFFERED_SHARE = 0.5
 _CLEAR_FORCE_N = 20.0
 _MOST_READINGS = 6
 
@@ -108,16 +108,14 @@ class Expectation(Protocol):
 
 
 class AtPlace:
-    """An object rests at its place."""
+    """An object, or one just like it, rests at its place."""
 
     def __init__(self, looker: Looker, part: Part, target: Location) -> None:
         self._looker, self._part, self._target = looker, part, target
 
     def is_fulfilled(self) -> bool:
         senses = self._looker.senses
-        sighting = senses.sight(self._part, senses.look())
-        height_m = senses.catalogue.height_of(self._target)
-        return sighting is not None and is_at(sighting, self._target, height_m)
+        return senses.recognize_at(senses.look(), self._part, self._target)
 
 
 class InReach:
@@ -167,11 +165,11 @@ class WayClear:
         if here is not None and not arm.at_neutral:
             way = [here, *way]
         image = senses.look()
-        if senses.obstruction(image, way) is not None:
+        part, target = self._looker.destination or (None, None)
+        if senses.obstruction(image, way, part) is not None:
             return False
-        if self._looker.destination is None:
+        if part is None:
             return True
-        part, target = self._looker.destination
         sighting = None if senses.holds(part.name) else senses.sight(part, image)
         return senses.occupant(image, part, sighting, target) is None
 
@@ -247,7 +245,7 @@ def _wait_until_offered(looker: Looker, part: Part, end_s: float) -> Routine[boo
     shown, begin_s = 0, looker.arm.body.time_s()
     while looker.arm.body.time_s() < end_s - 1e-9:
         seen = looker.senses.measure_grip(watch).composition
-        shown = shown + 1 if seen is not None and seen.own >= _OFFERED_SHARE else 0
+        shown = shown + 1 if seen is not None and likeliest(seen) == "right" else 0
         blind = seen is None and looker.arm.body.time_s() - begin_s >= _TRY_EVERY_S
         if shown >= needed or blind:
             return True

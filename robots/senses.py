@@ -1,7 +1,8 @@
 """What one robot perceives: its cameras' pictures, and what they show."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,8 +24,8 @@ from robots.vision.obstruction import (
     find_obstruction,
     near,
 )
-from robots.vision.occupancy import Fit, find_occupant, room_above, room_at_place
-from robots.vision.presence import Presence, judge_presence
+from robots.vision.occupancy import Fit, Room, find_occupant, room_above, room_at_place
+from robots.vision.presence import Presence, is_at, judge_presence
 from robots.vision.projection import Points
 from robots.vision.scene_change import shows_change
 from robots.vision.seen_box import SeenBox
@@ -42,16 +43,22 @@ _BELOW_TOOL_M = 0.03
 """So far the fingers, or what they hold, may reach below the tool point."""
 
 
+_Way = tuple[tuple[ToolPose, ...], str | None]
+"""Waypoints of the tool point, and the name of the part that is to be taken there."""
+
+
 @dataclass(slots=True)
 class _Seen:
     """A head picture, and what was understood of it, by what else was looked for.
 
-    It was taken while `held` was in the gripper.
+    It was taken while `held` was in the gripper. `in_the_way` is what was found on ways and in
+    rooms.
     """
 
     image: CameraImage
     held: str | None
     views: dict[Part | None, TableView | None] = field(default_factory=dict)
+    in_the_way: dict[_Way | Room, Obstruction | None] = field(default_factory=dict)
 
 
 class Senses:
@@ -126,6 +133,17 @@ class Senses:
             view, part, self._equals_of(part), target, self.catalogue.height_of(target)
         )
 
+    def recognize_at(self, image: CameraImage, part: Part, target: Location) -> bool:
+        """Whether a part, or one that looks the same, stands at a place; then that is the part."""
+        if self.presence(image, part, target) is not Presence.THERE:
+            return False
+        view = self._understand(image)
+        sighting = None if view is None else view.sightings.get(part.name)
+        if sighting is None or not is_at(sighting, target, self.catalogue.height_of(target)):
+            self._last_seen.note(part.name, target.x, target.y)
+            self._seen = None
+        return True
+
     def gripper(self) -> Position:
         """Where the tool point is."""
         x, y, z = (float(each) for each in self._body.tool_pose()[:3, 3])
@@ -185,12 +203,21 @@ class Senses:
             and name in (None, self.grip.part.name)
         )
 
-    def obstruction(self, image: CameraImage, waypoints: Sequence[ToolPose]) -> Obstruction | None:
-        """What stands in the way through `waypoints` that is no known part."""
+    def obstruction(
+        self, image: CameraImage, waypoints: Sequence[ToolPose], taking: Part | None = None
+    ) -> Obstruction | None:
+        """What stands in the way through `waypoints` that is no known part.
+
+        It is no matter what the part that is to be taken stands on.
+        """
         view = self._understand(image)
         if view is None:
             return None
-        return find_obstruction(view, corridor(waypoints), self._clearance)
+        name = None if taking is None else taking.name
+        return self._in_the_way(
+            (tuple(waypoints), name),
+            partial(find_obstruction, view, corridor(waypoints), self._clearance, name),
+        )
 
     def occupant(
         self,
@@ -208,8 +235,21 @@ class Senses:
             rooms.append(room_above(part, sighting))
         if target is not None:
             rooms.append(room_at_place(part, target, self.catalogue.height_of(target)))
-        found = (find_occupant(view, room, self._fit) for room in rooms)
+        found = (
+            self._in_the_way(room, partial(find_occupant, view, room, self._fit)) for room in rooms
+        )
         return next((each for each in found if each is not None), None)
+
+    def _in_the_way(
+        self, where: _Way | Room, find: Callable[[], Obstruction | None]
+    ) -> Obstruction | None:
+        """What was found in a picture once is not searched for again while nothing changes."""
+        if self._seen is None:
+            return find()
+        known = self._seen.in_the_way
+        if where not in known:
+            known[where] = find()
+        return known[where]
 
     def _understand(self, image: CameraImage, stranger: Part | None = None) -> TableView | None:
         """What a head picture shows; `stranger` is looked for besides the catalogue's parts."""

@@ -35,8 +35,8 @@ from tasks.scene import StrictModel
 _SEEN_AT_ONCE = (StepStarted, IssueDetected, Finished, Looked, Rejected, Held)
 """Reports that the service must see before more time passes."""
 
-_WITH_WORLD = (StepStarted, Finished, Holding, Intervened)
-"""Reports from which the world can be rebuilt."""
+_WITH_WORLD = (StepStarted, Finished, Holding, Intervened, IssueDetected)
+"""Reports from which the world can be rebuilt; a look is one, too, that saw what it waited for."""
 
 _LET_HOLD_GO_ON = (Intervene, TakePicture)
 
@@ -256,7 +256,8 @@ class SimulatedAgent:
             # The last moments of the last step are over before anybody can ask for them.
             self._do_due(replace(self._progress, step=_LAST_STEP, fraction=1.0))
         if self._emit is not None:
-            world = self.snapshot() if isinstance(body, _WITH_WORLD) else None
+            seen = isinstance(body, Looked) and body.fulfilled
+            world = self.snapshot() if seen or isinstance(body, _WITH_WORLD) else None
             self._emit(body, time_s, world)
 
     def _restore(self, snapshot: AgentSnapshot) -> None:

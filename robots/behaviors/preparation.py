@@ -131,7 +131,7 @@ def _obstruction(
 ) -> Obstruction | None:
     """What is seen on the way, on the object, or at the place where that is to go."""
     if findings.image is not None:
-        on_the_way = senses.obstruction(findings.image, waypoints)
+        on_the_way = senses.obstruction(findings.image, waypoints, assignment.part)
         if on_the_way is not None:
             return on_the_way
     if assignment.part is None:

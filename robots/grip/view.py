@@ -76,10 +76,10 @@ def composition(
     pixels = int(np.count_nonzero(region))
     if name not in model.names or pixels < _FEWEST_PX * scale * scale:
         return None
-    inside = region > 0
-    own = segmentation.mask(name)[inside] > 0
+    inside = segmentation.within(region)
+    own = inside.mask(name) > 0
     others = {
-        other: float(np.mean((segmentation.mask(other)[inside] > 0) & ~own))
+        other: float(np.mean((inside.mask(other) > 0) & ~own))
         for other in model.names
         if other != name
     }

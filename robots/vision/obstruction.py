@@ -9,8 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robots.body import ToolPose
+from robots.vision.head import HeadSighting
 from robots.vision.projection import Points
 from robots.vision.table_view import TableView
+
+_BOTTOM_ERROR_M = 0.010
+"""So well is it known how high a part stands."""
 
 Segment = tuple[NDArray[np.float64], NDArray[np.float64]]
 """Two ends in the base frame."""
@@ -49,13 +53,19 @@ def corridor(waypoints: Sequence[ToolPose]) -> list[Segment]:
 
 
 def find_obstruction(
-    view: TableView, way: Sequence[Segment], clearance: Clearance
+    view: TableView, way: Sequence[Segment], clearance: Clearance, taking: str | None = None
 ) -> Obstruction | None:
-    """What is in `way` that is neither table nor known part."""
+    """What is in `way` that is neither table nor known part, nor carries the part to be taken.
+
+    Of a stack only the uppermost parts can be told by name, but the arm goes no lower than them.
+    """
     if not way:
         return None
     us, vs, points = view.standing_out(view.heights.table_z + clearance.above_table_m)
     inside = near(points, way, clearance.radius_m)
+    taken = None if taking is None else view.sightings.get(taking)
+    if taken is not None:
+        inside &= ~_carries(points, taken, clearance)
     us, vs, points = us[inside], vs[inside], points[inside]
     for box in view.boxes:
         if box.name is not None:
@@ -65,6 +75,13 @@ def find_obstruction(
     canvas[vs, us] = 255
     clean = np.asarray(cv2.morphologyEx(canvas, cv2.MORPH_OPEN, np.ones((3, 3), np.uint8)))
     return obstruction_of(us, vs, points, clean[vs, us] > 0, clearance.fewest_px)
+
+
+def _carries(points: Points, taken: HeadSighting, clearance: Clearance) -> NDArray[np.bool_]:
+    """Which points are below the bottom of a part, and as near as the way down to it is wide."""
+    aside_m = np.hypot(points[:, 0] - taken.x, points[:, 1] - taken.y)
+    below: NDArray[np.bool_] = points[:, 2] <= taken.z + _BOTTOM_ERROR_M
+    return below & (aside_m <= clearance.radius_m)
 
 
 def obstruction_of(

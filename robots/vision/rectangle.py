@@ -106,7 +106,12 @@ def gather(
         inside = chosen
     with np.errstate(invalid="ignore"):
         low = height < surface.top_z - surfaces.tolerance_m
-    splinters = [each.label for each in surfaces.all if _is_splinter(each, surface, surfaces)]
+    near = set(np.unique(labels).tolist())
+    splinters = [
+        each.label
+        for each in surfaces.all
+        if each.label in near and _is_splinter(each, surface, surfaces)
+    ]
     other = (labels > 0) & ~inside & ~np.isin(labels, splinters)
     # Without depth only the table's own colour says that nothing is in front.
     off = np.abs(image.bgr[patch].astype(np.float64) - surfaces.table_color).max(axis=2)

@@ -44,6 +44,8 @@ def shows_change(before: CameraImage, now: CameraImage) -> bool:
 
 
 def _equal(before: CameraImage, now: CameraImage) -> bool:
+    if before.bgr is now.bgr and before.depth_m is now.depth_m:
+        return True
     if not np.array_equal(before.bgr, now.bgr):
         return False
     if before.depth_m is None or now.depth_m is None:

@@ -75,8 +75,9 @@ def run(
 ) -> None:
     """Run a task tree in a simulated world, and print what happens.
 
-    The exit code is 0 only if the task finished; 1 if it failed, 2 if it could not begin. Ctrl-C
-    aborts the run.
+    The exit code is 0 only if the task finished; 1 if it failed, 2 if it could not begin. A task
+    also finishes without a part that a helper said to leave out; the last line names it, and who
+    said so. Ctrl-C aborts the run.
     """
     # Imported only here: the whole service would make every other command wait.
     from server.composition import open_service

@@ -54,7 +54,7 @@ def _untrue_missing(
     end: ev.RunFinished,
     resting: Mapping[str, Rest | None],
 ) -> list[str]:
-    leaves = _leaves(started)
+    leaves = leaves_of(started)
     scene = Scene.model_validate(started.scene, strict=False)
     told = {each.node for each in end.missing}
     blocked = _somebody_stands_there(events)
@@ -64,7 +64,7 @@ def _untrue_missing(
         leaf = leaves[done.node]
         if leaf.object is None or leaf.place is None or done.node not in started_last:
             continue
-        rest = resting[leaf.object]
+        rest = _nearest_equal(leaf.object, resting, scene, scene.places[leaf.place])
         aside_m, above_m = _offset(rest, scene, scene.places[leaf.place])
         level = rest is not None and rest.lean_rad <= LEVEL_RAD
         there = level and aside_m <= AT_PLACE_M and above_m <= AT_PLACE_M
@@ -102,7 +102,7 @@ def _done_at_the_end(events: Sequence[ev.Event]) -> list[ev.NodeDone | ev.NodeLe
 
 def _started_last(events: Sequence[ev.Event]) -> set[str]:
     """Of the leaves that handle one object in turn, those that were started last."""
-    leaves = _leaves(_start_of(events))
+    leaves = leaves_of(_start_of(events))
     started = [each.node for each in events if isinstance(each, ev.NodeStarted)]
     return set({leaves[node].object or node: node for node in started}.values())
 
@@ -111,6 +111,24 @@ def _start_of(events: Sequence[ev.Event]) -> ev.RunStarted:
     started = events[0]
     assert isinstance(started, ev.RunStarted), "a run begins with run_started"
     return started
+
+
+def equals_of(name: str, scene: Scene) -> set[str]:
+    """The objects that nobody can tell from one, itself among them: any of them will do."""
+    own = scene.objects[name]
+    return {
+        other
+        for other, each in scene.objects.items()
+        if (each.size, each.knob, each.color) == (own.size, own.knob, own.color)
+    }
+
+
+def _nearest_equal(
+    name: str, resting: Mapping[str, Rest | None], scene: Scene, place: Place
+) -> Rest | None:
+    """Of an object and its equals, the one nearest to a place."""
+    rests = (resting.get(each) for each in equals_of(name, scene))
+    return min(rests, key=lambda each: math.hypot(*_offset(each, scene, place)))
 
 
 def _offset(rest: Rest | None, scene: Scene, place: Place) -> tuple[float, float]:
@@ -172,7 +190,7 @@ def _untrue_reason(
     if end.node is None:
         lost = any(isinstance(each, ev.RobotLost) for each in events)
         return [] if lost else [f"it failed because {end.reason}, but no robot was lost"]
-    if end.node not in _leaves(started):
+    if end.node not in leaves_of(started):
         return [f"it failed because of '{end.node}', which is no leaf"]
     wrong = []
     most = int(started.options.get("max_attempts", 3))
@@ -221,7 +239,8 @@ def _way_out(started: ev.RunStarted, events: Sequence[ev.Event], node: str) -> s
     return None
 
 
-def _leaves(started: ev.RunStarted) -> dict[str, BehaviorNode]:
+def leaves_of(started: ev.RunStarted) -> dict[str, BehaviorNode]:
+    """Every leaf by its path."""
     definition = TaskTreeDefinition.model_validate(started.tree)
     pairs = zip(_paths(definition), definition.nodes, strict=True)
     return {path: each for path, each in pairs if isinstance(each, BehaviorNode)}

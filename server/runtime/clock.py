@@ -3,6 +3,9 @@
 from collections.abc import Callable
 from typing import Protocol
 
+TOLERANCE_S = 1e-6
+"""Two moments closer than this are the same: converting between clocks loses the last digits."""
+
 
 class RunClock(Protocol):
     """Seconds since the run began."""
@@ -89,3 +92,8 @@ class WallClock:
     def resume(self) -> None:
         if self._since is None:
             self._since = self._monotonic()
+
+
+def has_come(clock: RunClock, moment: float) -> bool:
+    """Whether a moment of the run's clock is now or past."""
+    return clock.now() + TOLERANCE_S >= moment

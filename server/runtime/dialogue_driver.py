@@ -18,6 +18,7 @@ from server.dialogues.escalation import (
 )
 from server.errors import ConflictError, LostRaceError, NotFoundError
 from server.journal import events as ev
+from server.runtime.clock import has_come
 from server.runtime.context import RunContext
 from server.runtime.dialogue_events import DialogueEvents
 from server.runtime.dialogue_looks import DialogueLooks, seen_at
@@ -26,9 +27,6 @@ from server.runtime.promises import Promises
 from server.runtime.robot_side import Purpose, RobotSide
 from server.runtime.run_state import MOST_EXTENSIONS, DialogueState, rehearse
 from tasks.scenario import Person
-
-TOLERANCE_S = 1e-6
-"""Two moments of the run's clock closer than this are the same."""
 
 SendMail = Callable[[ev.Escalated | ev.SuspectedFalseAlarm, DialogueState], None]
 """Writes to the operators: about a question that nobody answered, or a suspected false alarm."""
@@ -81,13 +79,13 @@ class DialogueDriver:
         ask = dialogue.open_ask
         if ask is None:
             return False
-        now = self._context.clock.now() + TOLERANCE_S
-        scripted = self._scripted(dialogue, ask)
-        if scripted is not None and now >= scripted[1]:
+        clock = self._context.clock
+        scripted = self._scripted(dialogue)
+        if scripted is not None and has_come(clock, scripted[1]):
             await self._take_answer(dialogue, ask, scripted[0], "script", side)
             return True
         assert ask.deadline is not None, "every question has a deadline"
-        if now >= ask.deadline:
+        if has_come(clock, ask.deadline):
             await self._nobody_answered(dialogue, ask, side)
             return True
         if side.free:
@@ -100,7 +98,7 @@ class DialogueDriver:
         dues = []
         for dialogue in self._context.state.open_dialogues:
             if (ask := dialogue.open_ask) is not None and ask.deadline is not None:
-                scripted = self._scripted(dialogue, ask)
+                scripted = self._scripted(dialogue)
                 dues.append(min(ask.deadline, scripted[1]) if scripted else ask.deadline)
             if (look := self._looks.next_watch(dialogue)) is not None:
                 dues.append(look)
@@ -203,14 +201,19 @@ class DialogueDriver:
     def _make(self, dialogue: DialogueState) -> DialogueEvents:
         return DialogueEvents(self._context.stamp, dialogue.id, dialogue.raised)
 
-    def _scripted(
-        self, dialogue: DialogueState, ask: ev.Prompt
-    ) -> tuple[Literal["yes", "no"], float] | None:
-        """The scripted answer to the open question and when it is due."""
+    def _scripted(self, dialogue: DialogueState) -> tuple[Literal["yes", "no"], float] | None:
+        """The scripted answer to the open question and when it is due.
+
+        Who takes longer than the deadline answers while the question is put again.
+        """
         if self._answers.live:
             return None
-        scripted = self._answers.next_answer(dialogue.ask_number)
-        return None if scripted.answer is None else (scripted.answer, ask.time + scripted.delay_s)
+        due = []
+        for number, put_at in dialogue.put_at.items():
+            scripted = self._answers.next_answer(number)
+            if scripted.answer is not None:
+                due.append((scripted.answer, put_at + scripted.delay_s))
+        return min(due, key=lambda each: each[1], default=None)
 
     async def _take_answer(
         self,
@@ -347,7 +350,7 @@ class DialogueDriver:
             change = self._looks.change_seen(dialogue, side, awaiting.help)
             verified = make.help_verified(awaiting, change)
             await self._converse(dialogue, f"seen:{change}", [verified], side, dialogue.helper)
-        elif self._context.clock.now() + TOLERANCE_S >= awaiting.until:
+        elif has_come(self._context.clock, awaiting.until):
             await self._converse(dialogue, "not_seen", [make.help_not_seen(awaiting)], side)
 
     @property

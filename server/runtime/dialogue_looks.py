@@ -15,6 +15,7 @@ from dialogue.evidence import (
 from dialogue.script import Expectation, Help
 from robots.link.messages import FinishedResult
 from server.journal import events as ev
+from server.runtime.clock import has_come
 from server.runtime.context import RunContext
 from server.runtime.robot_side import Doing, Purpose, RobotSide
 from server.runtime.run_state import EXPECTED, DialogueState
@@ -64,7 +65,7 @@ class DialogueLooks:
         if not (side.free or side.interruptible):
             return
         begin = self.help_looked_for_from(dialogue, awaiting)
-        if self._context.clock.now() < begin:
+        if not has_come(self._context.clock, begin):
             if side.free:
                 self._hold(side, begin)
             return
@@ -112,7 +113,7 @@ class DialogueLooks:
             self._look(dialogue, side, Purpose.WATCH, watched, max(0.0, due - now))
             return
         begin = self._next_watch.setdefault(dialogue.id, now + WATCH_PERIOD_S)
-        if now + 1e-6 < begin:
+        if not has_come(self._context.clock, begin):
             self._hold(side, min(due, begin))
             return
         self._next_watch[dialogue.id] = now + WATCH_PERIOD_S

@@ -314,19 +314,21 @@ class Run:
             return False
         assert side.hello is not None, "a free robot has said hello"
         execution = Execution(uuid4(), choice.leaf, side.robot, side.hello.boot)
-        await self._context.commit(
-            [
-                ev.NodeStarted(
-                    **self._context.stamp(),
-                    **self._reports.node(choice.leaf),
-                    robot=side.robot,
-                    boot=side.hello.boot,
-                    execution=execution.id,
-                    attempt=state.tree.attempts(choice.leaf) + 1,
-                    candidates=choice.candidates,
-                )
-            ]
+        started = ev.NodeStarted(
+            **self._context.stamp(),
+            **self._reports.node(choice.leaf),
+            robot=side.robot,
+            boot=side.hello.boot,
+            execution=execution.id,
+            attempt=state.tree.attempts(choice.leaf) + 1,
+            candidates=choice.candidates,
         )
+        said = state.to_leave_out.get(choice.leaf)
+        if said is not None:
+            stamp = {**self._context.stamp(), "seq": 0, "robot": side.robot}
+            await self._context.commit([started, said.model_copy(update=stamp)])
+            return True
+        await self._context.commit([started])
         self._start(side, execution)
         return True
 

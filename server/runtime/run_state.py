@@ -65,7 +65,8 @@ class DialogueState:
     resolved: ev.Resolved | None = None
     closed: CloseReason | None = None
     helps: int = 0
-    ask_number: int = 0
+    put_at: dict[int, float] = field(default_factory=dict)
+    """When (run's clock) the latest question was put, and each time again, by the ask's number."""
     asked_for_s: float | None = None
     """How long the open question waited for an answer when it was put."""
     first_look: ev.FirstLook | None = None
@@ -182,6 +183,8 @@ class RunState:
         self.times_gone: Counter[int] = Counter()
         """How often a leaf was done and its object then gone."""
         self.left_out: dict[int, ev.NodeLeftOut] = {}
+        self.to_leave_out: dict[int, ev.NodeLeftOut] = {}
+        """Leaves that were left out and taken back since: nobody is asked about them again."""
         """Leaves that count as done though their object is missing, as a helper said."""
         self.last_handled: dict[str, int] = {}
         """Which leaf was started last for an object: the one that says where it is to be."""
@@ -278,8 +281,9 @@ class RunState:
         dialogue.prompt = dialogue.prompts[event.prompt] = event
         if event.kind == "ask":
             self.asks += 1
-            dialogue.ask_number = self.asks
             dialogue.asked = event
+            before = dialogue.put_at if event.version > 1 else {}
+            dialogue.put_at = before | {self.asks: event.time}
             dialogue.asked_for_s = None if event.deadline is None else event.deadline - event.time
             dialogue.awaiting = None
 
@@ -373,6 +377,7 @@ class RunState:
     def _finish(self, leaf: int) -> None:
         self.tree.finish(leaf)
         self.taken_back.pop(leaf, None)
+        self.to_leave_out.pop(leaf, None)
         self._end_execution(leaf)
 
     @_apply.register
@@ -383,7 +388,8 @@ class RunState:
     def _(self, event: ev.NodeUndone) -> None:
         leaf = self.tree.index_of(event.node)
         self.tree.take_back(leaf)
-        self.left_out.pop(leaf, None)
+        if leaf in self.left_out:
+            self.to_leave_out[leaf] = self.left_out.pop(leaf)
         self.taken_back[leaf] = event
         self.times_gone[leaf] += event.because_of is None
 

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +31,17 @@ TABLE_COLOR = (0.72, 0.70, 0.68)
 BLOCKER_COLOR = (0.30, 0.30, 0.32)
 
 
+@dataclass(frozen=True, slots=True)
+class _Shown:
+    """All that a picture depends on."""
+
+    poses: bytes
+    visible: bytes
+    camera: bytes
+    focal_px: float
+    light: Light
+
+
 class Scenery:
     """Draws the state of a tabletop world."""
 
@@ -55,15 +67,24 @@ class Scenery:
         self._transforms = np.tile(np.eye(4), (count, 1, 1))
         self._visible = np.ones(count, dtype=np.bool_)
         self._drawn: list[PartPose | None] = [None] * len(self._parts)
+        self._last: dict[tuple[int, int], tuple[_Shown, RenderedImage]] = {}
 
     def render(
         self, camera_pose: Matrix4, size: tuple[int, int], focal_px: float, light: Light
     ) -> RenderedImage:
-        """What a camera at `camera_pose` sees now; ids are the parts' indices in the scene."""
+        """What a camera at `camera_pose` sees now; ids are the parts' indices in the scene.
+
+        While nothing changes it is the very same, read-only picture.
+        """
         self._place_parts()
         self._place_arm()
         self._place_blocker()
-        return self._rasterizer.render(
+        poses, visible = self._transforms.tobytes(), self._visible.tobytes()
+        shown = _Shown(poses, visible, camera_pose.tobytes(), focal_px, light)
+        last = self._last.get(size)
+        if last is not None and last[0] == shown:
+            return last[1]
+        rendered = self._rasterizer.render(
             self._transforms,
             camera_pose,
             size,
@@ -72,6 +93,10 @@ class Scenery:
             visible=self._visible,
             background=_FLOOR_BGR,
         )
+        for each in (rendered.bgr, rendered.depth_m, rendered.ids):
+            each.flags.writeable = False
+        self._last[size] = shown, rendered
+        return rendered
 
     def _place_parts(self) -> None:
         for index, part in enumerate(self._parts):

@@ -261,14 +261,14 @@ def test_advance_returns_at_what_the_service_must_see() -> None:
     assert driver.reports[-1].body.type == "holding"
 
 
-def test_steps_ends_holds_and_interventions_carry_the_world() -> None:
+def test_steps_ends_holds_issues_and_interventions_carry_the_world() -> None:
     driver = Driver(make_agent(at_step(5, 0.5)))
     driver.start("a", "at_a")
     driver.run()
     driver.start("b", "at_b", execution="e2")
     driver.run()
     carried = {each.body.type for each in driver.reports if each.world is not None}
-    assert carried == {"step_started", "finished", "holding", "intervened"}
+    assert carried == {"step_started", "finished", "holding", "intervened", "issue"}
     for each in driver.reports:
         assert each.world is None or json.loads(json.dumps(each.world)) == each.world
 

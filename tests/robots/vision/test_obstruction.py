@@ -39,3 +39,23 @@ def test_what_is_not_in_the_way_is_let_be(scene: DrawnScene) -> None:
 
 def test_no_way_is_never_blocked() -> None:
     assert check(DrawnScene(grey_boxes=[BOX]), way=[]) is None
+
+
+@pytest.mark.parametrize("taking", ["green_leg", None])
+def test_what_carries_a_part_is_not_in_the_way_of_taking_it(taking: str | None) -> None:
+    on_top = Resting(0.5, -0.15, TABLE_Z + 0.10)
+    pile = [((0.5, -0.15, TABLE_Z), (0.11, 0.11, 0.10))]
+    view = view_of(DrawnScene({"green_leg": on_top}, grey_boxes=pile).picture())
+    over = ToolPose(0.5, -0.15, TABLE_Z + 0.30, 0.0)
+    down = ToolPose(0.5, -0.15, TABLE_Z + 0.13, 0.0)
+    found = find_obstruction(view, corridor([over, down]), Clearance(), taking)
+    assert (found is None) is (taking is not None)
+
+
+def test_something_beside_a_part_is_in_the_way_of_taking_it() -> None:
+    wall = [((0.5, -0.10, TABLE_Z), (0.12, 0.02, 0.15))]
+    parts = {"green_leg": Resting(0.5, -0.15, TABLE_Z)}
+    view = view_of(DrawnScene(parts, grey_boxes=wall).picture())
+    over = ToolPose(0.5, -0.15, TABLE_Z + 0.30, 0.0)
+    down = ToolPose(0.5, -0.15, TABLE_Z + 0.05, 0.0)
+    assert find_obstruction(view, corridor([over, down]), Clearance(), "green_leg") is not None

@@ -6,6 +6,7 @@ import pytest
 from pretend_service import pretend_service
 from task_documents import definition_of
 
+from server.dialogues import answers as answering
 from server.dialogues.escalation import EscalationPolicy
 from server.journal import events as ev
 from server.journal.audit import audit
@@ -157,3 +158,20 @@ async def test_every_question_says_what_silence_leads_to() -> None:
     assert asks[-1].timeout_effect == (
         "Attempt 3 of 3 has failed, and the task ends here, unfinished."
     )
+
+
+@pytest.mark.parametrize("delay_s", [20.0, 40.0, 59.0])
+async def test_who_takes_longer_than_the_deadline_is_heard_when_asked_again(
+    delay_s: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(answering, "DEFAULT_DELAY_S", delay_s)
+    policy = EscalationPolicy(repeats=1, answer_within_s=30.0)
+    faults = {"part_1": [("missed", 4)]}
+    async with pretend_service(
+        definition_of({"then": LEAVES}), faults, scene=SCENE, policy=policy
+    ) as service:
+        view, events = await service.run_to_end(answers=["yes"] * 9)
+    assert view.status is RunStatus.FINISHED
+    asked, answered = of_type(events, ev.Prompt)[0], of_type(events, ev.Answered)[0]
+    assert answered.time == pytest.approx(asked.time + delay_s, abs=0.1)
+    assert [each.helped for each in of_type(events, ev.Resolved)] == [True]

@@ -195,6 +195,24 @@ async def test_what_was_left_out_and_comes_back_counts_as_there() -> None:
     assert [each.node for each in events if isinstance(each, ev.NodeReturned)] == ["/0"]
 
 
+async def test_nobody_is_asked_again_about_what_was_left_out_and_only_comes_after_a_gone_part() -> (
+    None
+):
+    answers = ["no", "no", "yes", *["yes"] * 9]
+    thefts = {"part_2": ["part_2"], "part_3": ["part_1"]}
+    tree = {"then": LEAVES[:3]}
+    view, events = await run_with(tree, thefts, answers=answers, max_attempts=1)
+    assert view.status is RunStatus.FINISHED
+    assert view.result is not None
+    assert [each.object for each in view.result.missing] == ["part_2"]
+    undone = [each.node for each in events if isinstance(each, ev.NodeUndone)]
+    assert undone == ["/1", "/2", "/1", "/0"]
+    asked_about = [each.node for each in events if isinstance(each, ev.DialogueOpened)]
+    assert asked_about == ["/1", "/0"]
+    left_out = [each.helper for each in events if isinstance(each, ev.NodeLeftOut)]
+    assert left_out == ["script", "script"]
+
+
 # --- What the audit finds -----------------------------------------------------------------------
 
 

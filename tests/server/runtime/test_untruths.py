@@ -136,3 +136,16 @@ async def test_a_failure_with_an_alternative_left_is_untrue() -> None:
     assert find_untruths(events, {}) == []
     kept = [each for each in events if not isinstance(each, ev.NodeAbandoned)]
     assert any("could have abandoned" in each for each in find_untruths(kept, {}))
+
+
+async def test_a_part_just_like_it_will_do() -> None:
+    events = with_end(await events_of("then"), missing=[])
+    started = events[0]
+    assert isinstance(started, ev.RunStarted)
+    alike = dict.fromkeys(SCENE.objects, SCENE.objects["part_1"])
+    scene = SCENE.model_copy(update={"objects": alike})
+    equal = started.model_copy(update={"scene": scene.model_dump(mode="json")})
+    swapped = {"part_1": at_places()["part_2"], "part_2": at_places()["part_1"]}
+    assert find_untruths([equal, *events[1:]], swapped) == []
+    assert find_untruths(events, swapped) != []
+    assert find_untruths([equal, *events[1:]], {**swapped, "part_2": None}) != []

@@ -157,6 +157,29 @@ def test_a_tower_of_equal_parts_is_seen_from_the_top() -> None:
     assert near((sightings["low"].x, sightings["low"].y), (0.5, -0.2))
 
 
+def test_of_equal_parts_the_one_that_stands_at_a_place_is_the_one_that_belongs_there() -> None:
+    height_m, table_z = 0.047, 0.70
+    size = (0.055, 0.06, height_m)
+    watcher = Watcher(
+        scene_of(
+            {
+                "low": at(0.493, -0.524, -1.2, size=size),
+                "middle": at(0.497, -0.527, 2.2, table_z + height_m, size=size),
+                "high": at(0.492, -0.521, 0.6, table_z + 2 * height_m, size=size),
+            }
+        )
+    )
+    senses, target = watcher.senses, Location(x=0.57, y=-0.35, yaw=0.9)
+    high = watcher.catalogue.parts["high"]
+    watcher.seen()
+    assert not senses.recognize_at(senses.look(), high, target)
+    watcher.do(Act.MOVE, "high", to=Pose(x=0.57, y=-0.35, yaw=0.9))
+    assert senses.recognize_at(senses.look(), high, target)
+    assert near(watcher.seen()["high"], (0.57, -0.35))
+    watcher.do(Act.STEAL, "high")
+    assert not senses.recognize_at(senses.look(), high, target)
+
+
 def test_something_unknown_is_a_box_without_a_name() -> None:
     scene = scene_of({"known": at(0.5, -0.2), "stranger": at(0.6, 0.0, size=(0.05, 0.09, 0.06))})
     watcher = Watcher(scene)

@@ -1,0 +1,185 @@
+"""A run as it really was: its events, and the state of the simulated world beside each."""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from server.journal import events as ev
+from server.journal.untruths import Rest, equals_of, leaves_of
+from tasks.scene import Scene
+
+NEAR_M = 0.06
+"""Room that the fingers need: a part this near to another, or to its place, may be in the way."""
+
+LEANS_RAD = 0.05
+"""What leans less stands."""
+
+GIVEN = frozenset({"place", "put_back", "hand_over", "move", "release"})
+"""Deeds that may be help."""
+
+
+@dataclass(frozen=True, slots=True)
+class Moment:
+    """The world at one event; a part is None in `resting` while somebody has taken it away."""
+
+    resting: Mapping[str, Rest | None]
+    held: str | None
+    blocked: bool
+
+
+class RunRecord:
+    """What was so when, for a judge; `moments[i]` is the world at `events[i]`."""
+
+    def __init__(self, events: Sequence[ev.Event], moments: Sequence[Moment]) -> None:
+        started = events[0]
+        assert isinstance(started, ev.RunStarted), "a run begins with run_started"
+        self.events = events
+        self._moments = moments
+        self._scene = Scene.model_validate(started.scene, strict=False)
+        self._leaves = leaves_of(started)
+        self._raised: dict[str, ev.IssueRaised] = {}
+        self._opened: dict[Any, int] = {}
+
+    def note(self, index: int) -> None:
+        """Take note of the event that comes next."""
+        match self.events[index]:
+            case ev.IssueRaised() as raised:
+                self._raised[raised.node] = raised
+            case ev.DialogueOpened() as opened:
+                self._opened[opened.dialogue] = index
+
+    def object_of(self, node: str) -> str | None:
+        """What a leaf puts at its place; None without one."""
+        leaf = self._leaves.get(node)
+        return None if leaf is None or leaf.place is None else leaf.object
+
+    def since_opened(self, index: int, event: ev.DialogueEvent) -> Sequence[ev.Event]:
+        """The events of a dialogue, and all beside them, so far."""
+        return self.events[self._opened[event.dialogue] : index]
+
+    def offset(self, index: int, node: str, name: str | None) -> tuple[float, float]:
+        """How far a part is from its place (in the plane, in height), infinite if it is gone."""
+        place = self._place(node)
+        if place is None:
+            return math.inf, math.inf
+        pose = self._scene.places[place].pose
+        height_m = self._scene.table.height if pose.z is None else pose.z
+        offsets = [
+            (math.hypot(rest.x - pose.x, rest.y - pose.y), abs(rest.z - height_m))
+            for rest in self._lying(index, name)
+        ]
+        return min(offsets, key=max, default=(math.inf, math.inf))
+
+    def rests(self, index: int, name: str | None) -> bool:
+        """Whether a part lies anywhere."""
+        return bool(self._lying(index, name))
+
+    def equals(self, name: str | None) -> set[str]:
+        """The parts that nobody can tell from one, itself among them."""
+        return equals_of(name, self._scene) if name in self._scene.objects else set()
+
+    def holds(self, moment: Moment, name: str | None) -> bool:
+        """Whether the fingers hold a part."""
+        return moment.held is not None and moment.held in self.equals(name)
+
+    def _lying(self, index: int, name: str | None) -> list[Rest]:
+        """Where a part, and each that is just like it, lies."""
+        moment = self._moments[index]
+        lying = (moment.resting.get(each) for each in self.equals(name) if each != moment.held)
+        return [each for each in lying if each is not None]
+
+    def moment(self, index: int) -> Moment:
+        return self._moments[index]
+
+    def raised_at(self, node: str) -> int:
+        """The event with which the issue of a leaf was raised last."""
+        return self.events.index(self._raised[node])
+
+    def at_issue(self, node: str) -> Moment:
+        """The world when the issue of a leaf was raised last."""
+        return self._moments[self.raised_at(node)]
+
+    def buried(self, index: int, name: str | None) -> bool:
+        """Whether another part lies over one, and may hide it."""
+        resting = self._moments[index].resting
+        rest = resting.get(name or "")
+        if rest is None or name is None:
+            return False
+        return any(
+            each is not None
+            and other != name
+            and each.z > rest.z
+            and math.hypot(each.x - rest.x, each.y - rest.y) < self._together_m(name, other)
+            for other, each in resting.items()
+        )
+
+    def lay_for_s(self, index: int, name: str | None) -> float:
+        """For how long a part has lain where it lies, upright; 0 if it does not."""
+        rest = self._moments[index].resting.get(name or "")
+        if rest is None or rest.lean_rad > LEANS_RAD or self._moments[index].held == name:
+            return 0.0
+        since = index
+        while since > 0 and self._moments[since - 1].resting.get(name or "") == rest:
+            since -= 1
+        return self.events[index].time - self.events[since].time
+
+    def answered_last(self, index: int, event: ev.DialogueEvent) -> bool:
+        """Whether the last question of a dialogue was answered."""
+        for each in reversed(self.since_opened(index, event)):
+            if isinstance(each, ev.Answered) and each.dialogue == event.dialogue:
+                return True
+            if isinstance(each, ev.Prompt) and each.kind == "ask":
+                return False
+        return False
+
+    def _together_m(self, name: str, other: str) -> float:
+        """Parts nearer to each other than this may touch or hide each other."""
+        objects = self._scene.objects
+        size = objects[name].size if name in objects else (0.1, 0.1, 0.1)
+        return (max(size[:2]) + max(objects[other].size[:2])) / 2 + NEAR_M
+
+    def crowded(self, node: str, name: str | None, index: int | None = None) -> bool:
+        """Whether another part lies so near the place of a leaf that it may be in the way.
+
+        When its issue was raised, or at an event.
+        """
+        place = self._place(node)
+        if place is None:
+            return False
+        pose = self._scene.places[place].pose
+        moment = self.at_issue(node) if index is None else self._moments[index]
+        return any(
+            rest is not None
+            and other != name
+            and math.hypot(rest.x - pose.x, rest.y - pose.y) < self._together_m(name or "", other)
+            for other, rest in moment.resting.items()
+        )
+
+    def deeds(self, index: int, event: ev.DialogueEvent) -> Iterator[ev.InterventionDone]:
+        """What people really did for a dialogue's object, or about the way, since it opened."""
+        for each in self.since_opened(index, event):
+            if not isinstance(each, ev.InterventionDone) or not each.ok or each.act not in GIVEN:
+                continue
+            if each.object == event.object or each.act == "release":
+                yield each
+
+    def issues_so_far(self, index: int, event: ev.DialogueEvent) -> int:
+        return sum(
+            isinstance(each, ev.IssueRaised)
+            and (each.node, each.issue) == (event.node, event.issue)
+            for each in self.events[:index]
+        )
+
+    def following(self, index: int) -> Sequence[ev.Event]:
+        return self.events[index + 1 :]
+
+    def failed_before(self, index: int, node: str) -> int:
+        return sum(
+            isinstance(each, ev.NodeReset) and each.node == node and each.failed_attempt
+            for each in self.events[:index]
+        )
+
+    def _place(self, node: str) -> str | None:
+        leaf = self._leaves.get(node)
+        return None if leaf is None else leaf.place

@@ -1,0 +1,297 @@
+"""The judge of dialogues catches what is untrue, and passes what is true."""
+
+from dataclasses import dataclass, field, replace
+from typing import Any
+from uuid import UUID
+
+import pytest
+from dialogue_judge import DialogueJudge
+from dialogue_record import Moment
+from sample_events import RUN, WALL_TIME
+from task_documents import definition_of
+
+from server.journal import events as ev
+from server.journal.untruths import Rest
+from sim.tabletop.layout import lay_out
+from tasks.intervention import Act, Intervention
+
+NAMES = [("part_1", "spot_1"), ("part_2", "spot_2")]
+SCENE = lay_out(NAMES, seed=1)
+LEAVES = [{"behavior": "pick_and_place", "object": part, "place": spot} for part, spot in NAMES]
+DIALOGUE = UUID("22222222-2222-4222-8222-222222222222")
+
+
+def start_of(part: str) -> Rest:
+    pose = SCENE.objects[part].pose
+    return Rest(pose.x, pose.y, SCENE.table.height if pose.z is None else pose.z)
+
+
+def place_of(part: str) -> Rest:
+    pose = SCENE.places[dict(NAMES)[part]].pose
+    return Rest(pose.x, pose.y, SCENE.table.height if pose.z is None else pose.z)
+
+
+STARTS = Moment({part: start_of(part) for part, _ in NAMES}, None, blocked=False)
+GONE = replace(STARTS, resting={**STARTS.resting, "part_1": None})
+PLACED = replace(STARTS, resting={**STARTS.resting, "part_1": place_of("part_1")})
+HELD = replace(STARTS, held="part_1")
+BLOCKED = replace(STARTS, blocked=True)
+TOPPLED = replace(
+    STARTS, resting={**STARTS.resting, "part_1": replace(start_of("part_1"), lean_rad=1.57)}
+)
+CROWDED = replace(STARTS, resting={**STARTS.resting, "part_2": place_of("part_1")})
+
+
+@dataclass
+class Told:
+    """A run that is told event by event, each with the world as it then is."""
+
+    world: Moment = STARTS
+    time_s: float = 0.0
+    events: list[ev.Event] = field(default_factory=list)
+    moments: list[Moment] = field(default_factory=list)
+
+    def add(self, event: type[Any], /, **fields: Any) -> "Told":
+        stamp: dict[str, Any] = {"time": self.time_s, "wall_time": WALL_TIME, "run": RUN}
+        stamp["seq"] = len(self.events) + 1
+        node: dict[str, Any] = {"node": "/0", "name": "part_1"}
+        dialogue = {"dialogue": DIALOGUE, "robot": "robot", "issue": "missed", "object": "part_1"}
+        known = stamp | node | dialogue
+        given = {name: each for name, each in known.items() if name in event.model_fields}
+        self.events.append(event.model_validate(given | fields))
+        self.moments.append(self.world)
+        return self
+
+    def begin(self) -> "Told":
+        self.add(
+            ev.RunStarted,
+            tree_name="tree",
+            tree=definition_of({"then": LEAVES}).model_dump(mode="json"),
+            scene=SCENE.model_dump(mode="json"),
+            world="tabletop",
+            robots=["robot"],
+            seed=1,
+            speed="max",
+            scenario=None,
+            options={},
+        )
+        return self.start()
+
+    def start(self, node: str = "/0", name: str = "part_1") -> "Told":
+        return self.add(
+            ev.NodeStarted,
+            node=node,
+            name=name,
+            boot="1",
+            execution=RUN,
+            attempt=1,
+            candidates=[],
+        )
+
+    def alarm(self, issue: str = "missed") -> "Told":
+        self.add(
+            ev.IssueRaised,
+            issue=issue,
+            place="spot_1",
+            execution=RUN,
+            step=4,
+            interrupts=True,
+        )
+        return self.add(ev.DialogueOpened, issue=issue)
+
+    def say(self, text: str, *, issue: str = "missed", **fields: Any) -> "Told":
+        asks = text.endswith("?")
+        return self.add(
+            ev.Prompt,
+            issue=issue,
+            prompt=RUN,
+            version=1,
+            kind="ask" if asks else "say",
+            text=text,
+            **fields,
+        )
+
+    def now(self, world: Moment, after_s: float = 0.0) -> "Told":
+        self.world, self.time_s = world, self.time_s + after_s
+        return self
+
+    def deed(self, act: Act, part: str | None = "part_1", **fields: Any) -> "Told":
+        place = "spot_1" if act is Act.PLACE else None
+        done = Intervention(act=act, object=part, place=place)
+        return self.add(
+            ev.InterventionDone, act=act, object=part, intervention=done, by="helper", **fields
+        )
+
+    def reset(self, *, failed: bool) -> "Told":
+        return self.add(ev.NodeReset, reason="", failed_attempt=failed)
+
+    def close(self, reason: str = "gave_up") -> "Told":
+        return self.add(ev.DialogueClosed, reason=reason)
+
+    def wrong(self) -> list[str]:
+        return [each.why for each in DialogueJudge(self.events, self.moments).judge()]
+
+
+def told(world: Moment = STARTS, issue: str = "missed") -> Told:
+    """A run in which part_1 has just met an issue, while the world was so."""
+    return Told().begin().now(world, 10.0).alarm(issue)
+
+
+@pytest.mark.parametrize(
+    ("text", "true", "untrue"),
+    [
+        ("I missed the part 1.", STARTS, HELD),
+        ("I lost hold of the part 1.", GONE, HELD),
+        ("I have the part 1 between my fingers.", HELD, STARTS),
+        ("I do not see the part 1 between my fingers yet. Hm?", STARTS, HELD),
+        ("I cannot find the part 1. Hm?", GONE, STARTS),
+        ("I cannot reach the part 1. The part 1 has toppled over. Hm?", TOPPLED, STARTS),
+        ("I see something in my way. Hm?", BLOCKED, STARTS),
+        ("I see something in my way. Hm?", CROWDED, STARTS),
+        ("I felt something hold up my arm and stopped. Hm?", BLOCKED, STARTS),
+        ("I do not see my way free yet. Hm?", BLOCKED, STARTS),
+        ("I see nothing in my way now.", STARTS, BLOCKED),
+        ("I see the part 1 at its place now.", PLACED, STARTS),
+        ("I see the part 1 at its place now.", PLACED, GONE),
+        ("I do not see the part 1 at its place yet. Hm?", STARTS, PLACED),
+        ("The part 1 is not at its place. Hm?", GONE, PLACED),
+        ("I have now seen once that the part 1 is not at its place.", GONE, PLACED),
+        ("I see the part 1 within my reach now.", STARTS, GONE),
+        ("I see the part 1. I go on.", STARTS, GONE),
+        ("I see the part 1, where it was before.", STARTS, HELD),
+    ],
+)
+def test_what_is_said_of_the_world_is_compared_with_it(
+    text: str, true: Moment, untrue: Moment
+) -> None:
+    assert told(true).say(text).wrong() == []
+    assert len(told(untrue).say(text).wrong()) == 1
+
+
+def test_what_has_lain_in_the_open_for_long_must_not_be_told_to_be_away() -> None:
+    text = "I do not see the part 1 on the table yet. Hm?"
+    assert told(GONE).say(text).wrong() == []
+    assert told(GONE).now(STARTS).deed(Act.PUT_BACK).now(STARTS, 0.5).say(text).wrong() == []
+    assert told(GONE).now(STARTS).deed(Act.PUT_BACK).now(STARTS, 5.0).say(text).wrong() == [
+        "it lies there"
+    ]
+
+
+def test_thanks_need_a_deed_for_the_part_since_the_question_was_put() -> None:
+    thanks = "Thank you. I see the part 1. I go on."
+    assert told().say(thanks).wrong() == ["nobody has done anything"]
+    assert told().deed(Act.PUT_BACK).say(thanks).wrong() == []
+    assert told().deed(Act.PUT_BACK, ok=False).say(thanks).wrong() != []
+    assert told().deed(Act.PUT_BACK, "part_2").say(thanks).wrong() != []
+    assert Told().begin().deed(Act.PUT_BACK).alarm().say(thanks).wrong() != []
+
+
+@pytest.mark.parametrize(("said", "times"), [("once", 1), ("twice", 2), ("three times", 3)])
+def test_how_often_something_happened_is_counted(said: str, times: int) -> None:
+    run = Told().begin()
+    for _ in range(times):
+        run.alarm()
+    text = f"I have now failed {said} to pick up the part 1."
+    assert run.say(text).wrong() == []
+    assert run.alarm().say(text).wrong() == [f"it happened {times + 1} times"]
+
+
+def test_the_next_attempt_is_counted_and_must_come() -> None:
+    text = "I heard no answer. I try again (attempt 2 of 3)."
+    true = told().say(text).close().reset(failed=True).start()
+    assert true.wrong() == []
+    never = told().say(text).close().reset(failed=True)
+    assert never.wrong() == ["it was never tried again"]
+    miscounted = told().reset(failed=True).start().say(text).close().reset(failed=True).start()
+    assert miscounted.wrong() == ["2 attempts have failed"]
+
+
+def test_what_answers_lead_to_names_the_attempt_that_it_is() -> None:
+    option = ev.AnswerOption(value="yes", effect="You put it back; I pick it up (attempt 2 of 3).")
+    first = told().say("Hm?", answers=[option])
+    assert first.wrong() == ["0 attempts have failed"]
+    second = told().reset(failed=True).start().alarm().say("Hm?", answers=[option])
+    assert second.wrong() == []
+    silent = told().say("Hm?", timeout_effect="I try again (attempt 2 of 3).")
+    assert silent.wrong() == []
+
+
+def test_what_was_said_to_go_first_has_to() -> None:
+    text = "All right. I go on with the part 2 first, then I try again (attempt 2 of 3)."
+    run = told().say(text).close().reset(failed=True)
+    assert replace_events(run).start("/1", "part_2").start().wrong() == []
+    assert replace_events(run).start().wrong() == ["it was tried again before that"]
+
+
+def replace_events(run: Told) -> Told:
+    return Told(run.world, run.time_s, list(run.events), list(run.moments))
+
+
+def test_the_end_that_was_announced_has_to_come() -> None:
+    text = "I heard no answer. The task ends here, unfinished."
+    run = told().say(text).close().reset(failed=True)
+    assert replace_events(run).add(ev.RunFailed, reason="it failed", node="/0").wrong() == []
+    assert replace_events(run).start().wrong() == ["the task went on"]
+
+
+def test_who_says_to_go_on_does() -> None:
+    text = "I see my way free. I go on."
+    assert told().say(text).add(ev.RobotResumed, step=5).wrong() == []
+    assert told().say(text).reset(failed=True).wrong() == ["it was put back"]
+
+
+def test_what_is_said_to_be_left_out_is() -> None:
+    text = "All right. I leave the part 1 out."
+    left = told().say(text).add(ev.NodeLeftOut, helper="script")
+    assert left.wrong() == []
+    assert told().say(text).reset(failed=True).wrong() == ["it was not left out"]
+
+
+def test_silence_must_not_be_told_of_an_answer() -> None:
+    text = "I heard no answer."
+    asked = told().say("Shall I try again?")
+    assert replace_events(asked).say(text).wrong() == []
+    answered = asked.add(ev.Answered, prompt=RUN, version=1, answer="yes", helper="ann")
+    assert answered.say(text).wrong() == ["somebody has answered"]
+
+
+def test_help_is_told_only_where_somebody_helped() -> None:
+    helped = {"resolution": "robot_retry", "helped": True}
+    assert told().add(ev.Resolved, **helped).wrong() == ["nobody has helped"]
+    assert told().deed(Act.PUT_BACK).add(ev.Resolved, **helped).wrong() == []
+    both = {"resolution": "collab_finish", "helped": True}
+    assert told().add(ev.Resolved, **both).wrong() == ["nobody has helped"]
+    yes = told().add(ev.Answered, prompt=RUN, version=1, answer="yes", helper="ann")
+    assert yes.add(ev.Resolved, **both).wrong() == []
+
+
+def test_who_has_done_it_is_told_truly() -> None:
+    def done(run: Told, by: str) -> list[str]:
+        return run.now(PLACED).add(ev.NodeDone, by=by).wrong()
+
+    assert done(Told().begin(), "robot") == []
+    assert done(Told().begin(), "human") == ["no person put it there"]
+    assert done(Told().begin().deed(Act.PLACE), "human") == []
+    assert done(Told().begin(), "both") == ["no person was heard to help"]
+    run = Told().begin().now(STARTS).add(ev.NodeDone, by="robot")
+    assert len(run.wrong()) == 1
+    assert "m off" in run.wrong()[0]
+
+
+def test_only_what_is_said_first_is_counted_as_a_sentence() -> None:
+    run = told(GONE).say("I missed the part 1. Shall I try again?")
+    again = run.events[-1].model_copy(update={"version": 2})
+    judge = DialogueJudge([*run.events, again], [*run.moments, run.world])
+    assert judge.judge() == []
+    assert judge.sentences == 1
+
+
+def test_of_parts_that_nobody_can_tell_apart_any_will_do() -> None:
+    text = "I see the part 1 at its place now."
+    there = replace(GONE, resting={"part_1": None, "part_2": place_of("part_1")})
+    run = told(there)
+    assert len(replace_events(run).say(text).wrong()) == 1
+    alike = dict.fromkeys(SCENE.objects, SCENE.objects["part_1"])
+    scene = SCENE.model_copy(update={"objects": alike}).model_dump(mode="json")
+    run.events[0] = run.events[0].model_copy(update={"scene": scene})
+    assert run.say(text).wrong() == []

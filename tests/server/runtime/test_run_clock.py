@@ -1,0 +1,52 @@
+"""The run's clock and a robot's: a moment that came on one has come on the other."""
+
+import asyncio
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from pretend_service import pretend_service
+from task_documents import definition_of
+
+from server.runtime.clock import SimulatedClock, has_come
+from server.runtime.views import RunStatus
+from sim.tabletop.layout import lay_out
+
+NAMES = [("part_1", "spot_1")]
+LEAVES = [{"behavior": "pick_and_place", "object": part, "place": spot} for part, spot in NAMES]
+
+moments = st.floats(min_value=0.0, max_value=1e5)
+
+
+@given(start=moments, robot=moments, wait_s=st.floats(min_value=0.0, max_value=1e4))
+def test_a_robot_that_waited_until_a_moment_has_let_it_come(
+    start: float, robot: float, wait_s: float
+) -> None:
+    clock = SimulatedClock(start)
+    clock.align(robot)
+    until = start + wait_s
+    clock.observe(clock.to_robot(until))
+    assert has_come(clock, until)
+
+
+def test_what_is_still_to_come_has_not_come() -> None:
+    clock = SimulatedClock(3.0)
+    assert not has_come(clock, 3.1)
+    assert has_come(clock, 3.0)
+
+
+@pytest.mark.parametrize("robot_time", [0.0, 17.8, 1000.1])
+async def test_promised_help_is_looked_for_whatever_the_robots_clock_says(
+    robot_time: float,
+) -> None:
+    faults = {"part_1": [("blocked", 6)]}
+    async with asyncio.timeout(10):
+        async with pretend_service(
+            definition_of({"then": LEAVES}),
+            faults,
+            scene=lay_out(NAMES, seed=1),
+            felt=True,
+            time=robot_time,
+        ) as service:
+            view, _ = await service.run_to_end(answers=["yes"])
+    assert view.status is RunStatus.FINISHED
