@@ -33,7 +33,7 @@ def _at_place(record: RunRecord, index: int, event: ev.Prompt, _: re.Match[str])
 
 def _not_at_place(record: RunRecord, index: int, event: ev.Prompt, _: re.Match[str]) -> str | None:
     off_m = max(record.offset(index, event.node, event.object))
-    hidden = record.moment(index).blocked
+    hidden = record.moment(index).blocked or record.arm_holds_in_place(index)
     return None if off_m > CLEARLY_AT_PLACE_M or hidden else "it is there"
 
 
@@ -196,7 +196,7 @@ CHECKS: Sequence[tuple[str, Check]] = (
     (r"I do not see the .* between my fingers", _not_held_yet),
     (r"I see something in my way", _in_the_way),
     (r"I felt something hold up my arm", _held_up),
-    (r"I see my way free|I see nothing in my way", _way_free),
+    (r"(?<!until )I see my way free|I see nothing in my way", _way_free),
     (r"I do not see my way free|I still see or feel something", _not_free),
     (r"I heard no answer", _nobody_answered),
     (r"I have now (?:failed|been stopped|looked|tried|seen) (once|twice|\w+ times)", _so_often),

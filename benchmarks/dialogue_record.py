@@ -1,6 +1,7 @@
 """A run as it really was: its events, and the state of the simulated world beside each."""
 
 import math
+from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -123,6 +124,11 @@ class RunRecord:
         while since > 0 and self._moments[since - 1].resting.get(name or "") == rest:
             since -= 1
         return self.events[index].time - self.events[since].time
+
+    def arm_holds_in_place(self, index: int) -> bool:
+        """Whether the arm has stopped in the middle of a step, where it may hide what is below."""
+        held = (each.at for each in self.events[:index] if isinstance(each, ev.RobotHolding))
+        return deque(held, maxlen=1) == deque(["in_place"])
 
     def answered_last(self, index: int, event: ev.DialogueEvent) -> bool:
         """Whether the last question of a dialogue was answered."""

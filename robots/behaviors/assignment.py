@@ -1,9 +1,10 @@
 """What is to be executed, and what was found out about it before the first step."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from robots.behaviors.behavior import Behavior
-from robots.body import CameraImage
+from robots.body import CameraImage, ToolPose
 from robots.catalogue import Part
 from robots.link.messages import Location, WasDone
 from robots.vision.head import HeadSighting
@@ -28,7 +29,8 @@ class Assignment:
 class Findings:
     """What was seen before the first step; `carrying`: the object is in the gripper already.
 
-    `refusal` says why the object cannot be grasped and placed as it was seen.
+    `refusal` says why the object cannot be grasped and placed as it was seen. `obstruction` is what
+    stands in `way`, through which the tool point is to go.
     """
 
     carrying: bool = False
@@ -36,3 +38,4 @@ class Findings:
     sighting: HeadSighting | None = None
     refusal: str | None = None
     obstruction: Obstruction | None = None
+    way: Sequence[ToolPose] = ()

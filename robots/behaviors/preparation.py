@@ -12,7 +12,6 @@ from robots.body import ArmPath, NoWay, ToolPose
 from robots.catalogue import Part
 from robots.grasp import Grasp, UngraspableError
 from robots.senses import Senses
-from robots.vision.obstruction import Obstruction
 
 LOOKS = 3
 """So often a part that is not wholly seen is looked for before that is believed."""
@@ -89,9 +88,8 @@ def make_plan(assignment: Assignment, arm: Arm, senses: Senses, findings: Findin
         steps = assignment.behavior.steps(assignment.parameters, situation)
         first = assignment.behavior.first_carrying(steps) if findings.carrying else None
         first = 1 if first is None else first
-        if findings.obstruction is None and not refusals:
-            waypoints = waypoints_of(steps[first - 1 :])
-            findings.obstruction = _obstruction(assignment, waypoints, senses, findings)
+        if not refusals:
+            _judge_way(waypoints_of(steps[first - 1 :]), assignment, senses, findings)
         tight = crowded(steps[first - 1 :], arm.body.gripper, boxes)
         if tight is not None:
             refusals.append(tight)
@@ -107,6 +105,9 @@ def make_plan(assignment: Assignment, arm: Arm, senses: Senses, findings: Findin
         if isinstance(path, NoWay):
             refusals.append(f"with {_name(part)} the arm {path.reason}")
             continue
+        if refusals:
+            # What stands in a way that is not taken is in nobody's way.
+            _judge_way(waypoints_of(steps[first - 1 :]), assignment, senses, findings)
         return Plan(steps, first, path, situation.grasp)
     findings.refusal = refusals[0]
     return None
@@ -123,21 +124,18 @@ def _name(part: Part | None) -> str:
     return "the place" if part is None else part.name
 
 
-def _obstruction(
-    assignment: Assignment,
-    waypoints: Sequence[ToolPose],
-    senses: Senses,
-    findings: Findings,
-) -> Obstruction | None:
-    """What is seen on the way, on the object, or at the place where that is to go."""
-    if findings.image is not None:
-        on_the_way = senses.obstruction(findings.image, waypoints, assignment.part)
-        if on_the_way is not None:
-            return on_the_way
-    if assignment.part is None:
-        return None
-    image = findings.image or senses.look()
-    return senses.occupant(image, assignment.part, findings.sighting, assignment.target)
+def _judge_way(
+    way: Sequence[ToolPose], assignment: Assignment, senses: Senses, findings: Findings
+) -> None:
+    """Note what is seen on the way, on the object, or at the place where that is to go."""
+    findings.way = way
+    findings.obstruction = None
+    image, part = findings.image, assignment.part
+    if image is not None:
+        findings.obstruction = senses.obstruction(image, way, part)
+    if findings.obstruction is None and part is not None:
+        image = image or senses.look()
+        findings.obstruction = senses.occupant(image, part, findings.sighting, assignment.target)
 
 
 def waypoints_of(steps: Sequence[Step]) -> list[ToolPose]:

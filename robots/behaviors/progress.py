@@ -61,7 +61,9 @@ class Progress:
 
     @property
     def way(self) -> list[ToolPose]:
-        """The poses that the steps still to come lead through."""
-        if self.plan is None or self.outcome is not None:
+        """The poses that the steps still to come lead through, or would if there were a path."""
+        if self.outcome is not None:
             return []
+        if self.plan is None:
+            return list(self.seen.way)
         return waypoints_of(self.plan.steps[max(self.step, self.plan.first) - 1 :])

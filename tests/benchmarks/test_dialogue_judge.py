@@ -177,6 +177,18 @@ def test_what_has_lain_in_the_open_for_long_must_not_be_told_to_be_away() -> Non
     ]
 
 
+def test_what_is_waited_for_is_not_said_to_be_so() -> None:
+    assert told(BLOCKED).say("Please clear it away. I wait until I see my way free.").wrong() == []
+    assert told(BLOCKED).say("I see my way free. I go on.").wrong() != []
+
+
+@pytest.mark.parametrize(("at", "may_be_hidden"), [("in_place", True), ("neutral", False)])
+def test_what_the_arm_hides_may_be_told_not_to_be_seen(at: str, may_be_hidden: bool) -> None:
+    run = told(PLACED).add(ev.RobotHolding, at=at)
+    wrong = run.say("I do not see the part 1 at its place yet. Hm?").wrong()
+    assert (wrong == []) is may_be_hidden
+
+
 def test_thanks_need_a_deed_for_the_part_since_the_question_was_put() -> None:
     thanks = "Thank you. I see the part 1. I go on."
     assert told().say(thanks).wrong() == ["nobody has done anything"]

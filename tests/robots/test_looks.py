@@ -213,6 +213,20 @@ def test_the_way_is_clear_once_nothing_pushes_or_stands_in_it() -> None:
     assert bench.kinds()[-1] == "finished"
 
 
+def test_what_stands_in_the_way_is_seen_even_where_no_path_was_found() -> None:
+    bench = RobotBench()
+    bench.body.unplannable = True
+    bench.body.grey_boxes.append(((0.5, -0.12, 0.7), (0.12, 0.12, 0.2)))
+    bench.start("pink_bar")
+    bench.run()
+    assert bench.of(IssueDetected)[-1].issue == "blocked"
+    bench.look(expect="way_clear", within_s=1.0)
+    assert looked(bench).fulfilled is False
+    bench.body.grey_boxes.clear()
+    bench.look(expect="way_clear", within_s=1.0)
+    assert looked(bench).fulfilled is True
+
+
 def test_what_stands_in_the_way_of_a_held_start_is_seen_until_it_is_gone() -> None:
     bench = RobotBench()
     bench.body.grey_boxes.append(((0.5, -0.12, 0.7), (0.12, 0.12, 0.2)))

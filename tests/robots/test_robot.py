@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from robot_bench import RobotBench
 from scripted_body import STARTS, ScriptedBody, catalogue, trained_model
 
+from robots.body import NoWay
 from robots.link.messages import (
     Finished,
     Hold,
@@ -30,6 +31,8 @@ from robots.link.messages import (
     TakePicture,
 )
 from robots.robot import Robot
+from robots.senses import Senses
+from robots.vision.obstruction import Obstruction
 from tasks.plugins import load_plugins
 
 
@@ -133,6 +136,30 @@ def test_an_object_in_reach_to_which_no_path_leads_is_unreachable_too() -> None:
     bench.start("pink_bar")
     bench.run()
     assert only_issue(bench).issue == "unreachable"
+
+
+def test_what_stands_only_in_a_way_that_is_not_taken_blocks_nothing(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    bench = RobotBench()
+    plan = bench.body.plan_among
+
+    def is_high(way) -> bool:
+        return max(pose.z for pose in way) > 0.7 + 0.15
+
+    def plan_low(legs, boxes):
+        too_high = is_high([leg.to for leg in legs])
+        return NoWay("finds no path") if too_high else plan(legs, boxes)
+
+    def see_high(_, __, way, ___=None) -> Obstruction | None:
+        return Obstruction((0.5, -0.1, 0.9), (80.0, 60.0), 500) if is_high(way) else None
+
+    monkeypatch.setattr(bench.body, "plan_among", plan_low)
+    monkeypatch.setattr(Senses, "obstruction", see_high)
+    bench.start("pink_bar")
+    bench.run()
+    assert bench.of(IssueDetected) == []
+    assert bench.of(Finished)
 
 
 def test_something_unknown_in_the_way_blocks_the_start() -> None:
