@@ -42,10 +42,11 @@ serve: console  ## The service with the helper console on http://127.0.0.1:8080
 screenshots: console  ## The console's pictures in docs/images, from situations that are played
 	$(BIN)/python scripts/screenshots.py
 
+# One more at a time than two cores: tests in a browser, and of processes, wait a good deal.
 test: console  ## Every test, in random order
 	cd web && PATH="$(CURDIR)/$(BIN):$$PATH" npm test --silent
 	@command -v chromium google-chrome >/dev/null || echo 'There is no Chromium on this machine: the tests in a browser are skipped.'
-	$(BIN)/pytest -n 2 --dist worksteal -rs
+	$(BIN)/pytest -n 3 --dist worksteal -rs
 
 REPEAT := 30
 steady: console  ## The tests in a browser 30 times over (or REPEAT=n), to find one that fails now and then

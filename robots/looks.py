@@ -12,6 +12,7 @@ from robots.body import CameraImage, ToolPose
 from robots.catalogue import Part
 from robots.grasp import can_grasp, grasps_of
 from robots.grip import GripState
+from robots.grip.composition import likeliest
 from robots.link.messages import FinishedResult, Holding, Location, Look, Looked, ReportBody
 from robots.result import Result
 from robots.senses import Senses
@@ -26,7 +27,6 @@ _RESTS_WITHIN_M = 0.006
 _STEADY_S = 0.3
 _TRY_EVERY_S = 2.0
 """Where the picture cannot tell whether anything is held out, the fingers close that often."""
-_OFFERED_SHARE = 0.5
 _CLEAR_FORCE_N = 20.0
 _MOST_READINGS = 6
 
@@ -245,7 +245,7 @@ def _wait_until_offered(looker: Looker, part: Part, end_s: float) -> Routine[boo
     shown, begin_s = 0, looker.arm.body.time_s()
     while looker.arm.body.time_s() < end_s - 1e-9:
         seen = looker.senses.measure_grip(watch).composition
-        shown = shown + 1 if seen is not None and seen.own >= _OFFERED_SHARE else 0
+        shown = shown + 1 if seen is not None and likeliest(seen) == "right" else 0
         blind = seen is None and looker.arm.body.time_s() - begin_s >= _TRY_EVERY_S
         if shown >= needed or blind:
             return True

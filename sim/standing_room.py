@@ -8,21 +8,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from robots.catalogue import Part
-from robots.grasp import grasp_of
+from robots.grasp import grasps_of
+from robots.gripper import ToolBox
 from sim.workcell.gripper import PR2_GRIPPER
 from tasks.footprint import TOUCH_M, Footprint
 
 _GAP_M = 0.010
 """Kept between what one site needs and what stands on another."""
-_FINGER_M = 0.024
-"""How much room a finger needs beside the part: its thickness, and the way that it opens."""
-_FINGER_WIDTH_M = 0.026
-_TIP_M = 0.014
-"""How far the finger tips reach below the tool point."""
-_HAND_M = (0.16, 0.06)
-"""The hand above the fingers: along the direction in which they open, and across."""
-_HAND_HEIGHT_M = 0.045
-"""How far the hand is above the tool point."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +28,10 @@ class Solid:
     def meets(self, other: "Solid") -> bool:
         """Whether two come nearer to each other than `_GAP_M`, one beside the other."""
         if self.low_m >= other.high_m or other.low_m >= self.high_m:
+            return False
+        one, two = self.ground, other.ground
+        room_m = one.radius_m + two.radius_m + 2 * (_GAP_M + TOUCH_M)
+        if math.hypot(one.x - two.x, one.y - two.y) > room_m:
             return False
         wide = Footprint(
             self.ground.x,
@@ -65,15 +61,29 @@ class Standing:
 
 def standing(part: Part, x: float, y: float, bottom_z: float, yaw: float) -> Standing:
     """A part that stands with its bottom centre at (x, y, bottom_z), base frame."""
-    grasp = grasp_of(part, PR2_GRIPPER)
+    # The one that needs the least room; the others are there where they have room as well.
+    grasp = max(grasps_of(part, PR2_GRIPPER), key=lambda each: (each.height_m, -each.opening_m))
     tool_z = bottom_z + grasp.height_m
-    across = yaw + grasp.yaw
     top = bottom_z + part.size[2] + (part.knob[2] if part.knob else 0.0)
-    fingers = Footprint(x, y, across, grasp.width_m + 2 * _FINGER_M, _FINGER_WIDTH_M)
     return Standing(
         Solid(Footprint(x, y, yaw, part.size[0], part.size[1]), bottom_z, top),
-        (
-            Solid(fingers, tool_z - _TIP_M),
-            Solid(Footprint(x, y, across, *_HAND_M), tool_z + _HAND_HEIGHT_M),
-        ),
+        [
+            Solid(Footprint(x, y, yaw + grasp.yaw, length_m, width_m), tool_z + bottom_m)
+            for bottom_m, length_m, width_m in _levels(PR2_GRIPPER.boxes(grasp.opening_m))
+        ],
     )
+
+
+def _levels(boxes: Sequence[ToolBox]) -> list[tuple[float, float, float]]:
+    """From each height up, the extents of all boxes that begin there, with what is between them.
+
+    Nothing but the part itself finds room between the two fingers.
+    """
+    extents: dict[float, tuple[float, float]] = {}
+    for box in boxes:
+        length_m, width_m = extents.get(box.bottom_m, (0.0, 0.0))
+        extents[box.bottom_m] = (
+            max(length_m, 2 * abs(box.along_m) + box.length_m),
+            max(width_m, 2 * abs(box.aside_m) + box.width_m),
+        )
+    return [(bottom_m, *extent) for bottom_m, extent in sorted(extents.items())]

@@ -1,11 +1,13 @@
-"""Backing off: after a contact the arm goes back the way it came, ready to try again."""
+"""Backing off: after a contact the arm goes back, to look or to try again more gently."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 
 from robots.arm import Arm, Routine
-from robots.behaviors.contact import Contact
-from robots.behaviors.execution_state import ExecutionState, ExecutionTransitionError
+from robots.behaviors.contact import Contact, ContactWatch
+from robots.behaviors.execution_state import ExecutionState
+from robots.behaviors.phase import Phase
 from robots.behaviors.preparation import waypoints_of
 from robots.behaviors.progress import Progress
 from robots.behaviors.watch import Watch
@@ -15,18 +17,9 @@ _SPEED = 0.3
 
 
 def back_off(
-    progress: Progress,
-    way_back: Sequence[ToolPose],
-    contact: Contact,
-    arm: Arm,
-    watch: Watch,
-    *,
-    last: bool,
+    progress: Progress, way_back: Sequence[ToolPose], arm: Arm, watch: Watch
 ) -> Routine[None]:
-    """Go back through these poses, with a new path for the step under way. Raises `Interruption`.
-
-    After the last try, or where no way leads on, the monitors judge what was felt.
-    """
+    """Go back through these poses. Raises `Interruption`."""
     progress.move_to(ExecutionState.BACKING_OFF)
     back = arm.body.plan_path(way_back) if way_back else None
     for segment in range(0 if back is None else back.segments):
@@ -35,13 +28,30 @@ def back_off(
         while arm.body.moving:
             watch.check_if_due()
             yield
+
+
+def try_again(progress: Progress, contact: Contact, arm: Arm, watch: Watch, *, last: bool) -> None:
+    """Plan the way on; after the last try, or where none leads on, judge what was felt.
+
+    Raises `Interruption`.
+    """
     steps = progress.planned.steps
     again = None if last else arm.body.plan_path(waypoints_of(steps[progress.step - 1 :]))
     if again is None:
-        progress.contact = contact
-        watch.check(None)
-        raise ExecutionTransitionError(
-            f"expected an issue of {contact.force_n:.0f} N against the arm, got none"
-        )
+        watch.judge(contact)
     progress.plan = replace(progress.planned, first=progress.step, path=again)
     progress.move_to(ExecutionState.RUNNING)
+
+
+def get_out_of_view(progress: Progress, arm: Arm, watch: Watch) -> Routine[None]:
+    """Get out of the head camera's view; an arm that felt something goes feeling its way.
+
+    Raises `Interruption`.
+    """
+    tries = watch.tries(Phase.PREPARE) if progress.felt is not None else ()
+    feeling = ContactWatch(tries[0].limit_n if tries else math.inf)
+    for _ in arm.go_to_neutral():
+        yield
+        if feeling.feel(arm.body.contact_force_n(), arm.body.control_period_s):
+            arm.stop()
+            watch.judge(Contact(feeling.strongest_n, 1))

@@ -5,8 +5,10 @@ from typing import Any
 
 from robots.arm import Arm, Routine
 from robots.behaviors.assignment import Assignment
+from robots.behaviors.backing_off import get_out_of_view
 from robots.behaviors.confirmation import look_at_outcome
 from robots.behaviors.execution_state import ExecutionState, ExecutionTransitionError, is_over
+from robots.behaviors.phase import Phase
 from robots.behaviors.preparation import (
     Plan,
     check_carrying,
@@ -23,6 +25,7 @@ from robots.catalogue import Part
 from robots.link.messages import Finished, Holding, Location, ReportBody, Resumed
 from robots.monitors.monitor import BEFORE_FIRST_STEP, Meanwhile, Monitor
 from robots.senses import Senses
+from robots.vision.head import HeadSighting
 from robots.vision.presence import Presence, is_at
 
 
@@ -123,6 +126,7 @@ class Execution:
         self._report(Holding(execution=self.id, at="neutral"))
 
     def _attempt(self, resumed: bool) -> Routine[None]:
+        self._progress.felt = None
         try:
             there = False
             while not there:
@@ -134,9 +138,7 @@ class Execution:
                 if resumed:
                     self._report(Resumed(execution=self.id, step=plan.first))
                     resumed = False
-                for number in range(plan.first, len(plan.steps) + 1):
-                    yield from self._walk.take(number)
-                there = yield from self._confirm()
+                there = (yield from self._walk.take_all(plan)) and (yield from self._confirm())
             self._finish(found_in_place=False)
         except Interruption as interruption:
             yield from self._react(interruption.monitor.meanwhile)
@@ -145,20 +147,27 @@ class Execution:
 
     def _prepare(self) -> Routine[Plan | None]:
         """The plan to walk; None if there is nothing left to do. Raises `Interruption`."""
-        progress = self._progress
+        progress, watch = self._progress, self._watch
+        earlier, before = progress.plan, progress.seen.sighting
         progress.start_again()
         part, arm, senses, seen = self._assignment.part, self._arm, self._senses, progress.seen
         carrying = yield from check_carrying(part, arm, senses)
         seen.carrying = carrying and goes_on_carrying(self._assignment, arm, senses)
         if not seen.carrying:
             yield from put_down(arm, senses, self._picked_at)
-            yield from arm.go_to_neutral()
+            yield from get_out_of_view(progress, arm, watch)
             yield from find(part, arm, senses, seen)
             if self._in_place():
                 return None
+            if progress.felt is not None and self._is_hidden(before):
+                progress.plan = earlier
+                watch.judge(progress.felt)
             self._picked_at = None
         progress.plan = make_plan(self._assignment, arm, senses, seen)
-        self._watch.check(senses.read_grip() if seen.carrying else None)
+        watch.check(senses.read_grip() if seen.carrying else None)
+        if progress.felt is not None and progress.felt.tries >= len(watch.tries(Phase.PREPARE)):
+            # Nothing that is seen explains it.
+            watch.judge(progress.felt)
         if progress.plan is None:
             raise ExecutionTransitionError(
                 f"expected a path for {self._assignment.behavior.name} or an issue, got neither"
@@ -177,6 +186,14 @@ class Execution:
         # What is out of sight at its place since it was seen there needs nobody to fetch it.
         hidden = senses.presence(seen.image, part, target) is Presence.HIDDEN
         return self._progress.was_done == "there" and hidden
+
+    def _is_hidden(self, before: HeadSighting | None) -> bool:
+        """Whether something may hide the object where it was seen before."""
+        part, seen = self._assignment.part, self._progress.seen
+        if seen.sighting is not None or part is None or seen.image is None or before is None:
+            return False
+        where = Location(x=before.x, y=before.y, z=before.z, yaw=before.yaw)
+        return self._senses.presence(seen.image, part, where) is Presence.HIDDEN
 
     # --- After the steps ----------------------------------------------------------------------
 

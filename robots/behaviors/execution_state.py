@@ -10,7 +10,7 @@ class ExecutionState(StrEnum):
     """Before step 1: the arm gets out of the camera's way, the object is looked for."""
     RUNNING = "running"
     BACKING_OFF = "backing_off"
-    """Something was felt: the arm goes back the way it came, to try again more gently."""
+    """Something was felt: the arm goes back the way it came, to look or to try again gently."""
     CONFIRMING = "confirming"
     """After the last step: the arm gets out of the camera's way, the object is looked for."""
     RETREATING = "retreating"
@@ -46,7 +46,12 @@ _NEXT: dict[ExecutionState, frozenset[ExecutionState]] = {
         }
     ),
     ExecutionState.BACKING_OFF: frozenset(
-        {ExecutionState.RUNNING, ExecutionState.RETREATING, ExecutionState.HOLDING}
+        {
+            ExecutionState.PREPARING,
+            ExecutionState.RUNNING,
+            ExecutionState.RETREATING,
+            ExecutionState.HOLDING,
+        }
     ),
     ExecutionState.CONFIRMING: frozenset(
         {

@@ -17,7 +17,8 @@ from robots.monitors.monitor import BEFORE_FIRST_STEP
 class Progress:
     """What walks an execution's steps and what watches them both go by.
 
-    `step` counts from 1 and is 0 before the first; `contact` is what the last try of a step felt.
+    `step` counts from 1 and is 0 before the first; `contact` is what the monitors are to judge,
+    `felt` what the empty hand felt last on its way to the object.
     """
 
     was_done: WasDone | None
@@ -27,6 +28,7 @@ class Progress:
     seen: Findings = field(default_factory=Findings)
     outcome: Outcome | None = None
     contact: Contact | None = None
+    felt: Contact | None = None
 
     def move_to(self, state: ExecutionState) -> None:
         """Become this. Raises `ExecutionTransitionError`."""
@@ -51,7 +53,11 @@ class Progress:
             return Phase.CONFIRM
         if self.plan is None or self.step == BEFORE_FIRST_STEP:
             return Phase.PREPARE
-        return self.plan.steps[self.step - 1].phase
+        phase = self.plan.steps[self.step - 1].phase
+        if self.state is ExecutionState.BACKING_OFF and phase is Phase.PLACE:
+            # What it was about to put down it carries again, unless that was taken from it.
+            return Phase.CARRY
+        return phase
 
     @property
     def way(self) -> list[ToolPose]:

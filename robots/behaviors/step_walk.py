@@ -6,10 +6,12 @@ from dataclasses import dataclass
 
 from robots.arm import Arm, Routine
 from robots.behaviors.assignment import Assignment
-from robots.behaviors.backing_off import back_off
+from robots.behaviors.backing_off import back_off, try_again
 from robots.behaviors.behavior import Move, Step
 from robots.behaviors.contact import Contact, ContactWatch, Track, Try, hindering_n, is_arrival
+from robots.behaviors.execution_state import ExecutionState, ExecutionTransitionError
 from robots.behaviors.phase import Phase
+from robots.behaviors.preparation import Plan
 from robots.behaviors.progress import Progress
 from robots.behaviors.watch import Watch
 from robots.body import ToolPose
@@ -44,19 +46,44 @@ class StepWalk:
         self._senses = senses
         self._report = report
 
-    def take(self, number: int) -> Routine[None]:
-        """One step, tried again more gently while something is felt. Raises `Interruption`."""
-        progress = self._progress
+    def take_all(self, plan: Plan) -> Routine[bool]:
+        """All steps; False if what they were planned for has to be looked at again.
+
+        Raises `Interruption`.
+        """
+        for number in range(plan.first, len(plan.steps) + 1):
+            taken = yield from self._take(number)
+            if not taken:
+                return False
+        return True
+
+    def _take(self, number: int) -> Routine[bool]:
+        """One step, tried again more gently while something is felt. Raises `Interruption`.
+
+        False where an empty hand on its way to the object felt something: the head camera can
+        tell what it was once the arm is out of its view.
+        """
+        progress, watch = self._progress, self._watch
         progress.step, progress.was_done = number, None
         name = progress.planned.steps[number - 1].name
         self._report(StepStarted(execution=self._assignment.execution, step=number, name=name))
-        tries = self._watch.tries()
-        for count, each in enumerate(tries or [Try(math.inf, 1.0)], start=1):
+        tries = watch.tries(progress.phase) or [Try(math.inf, 1.0)]
+        looks = progress.phase is Phase.APPROACH and bool(watch.tries(Phase.PREPARE))
+        if not looks:
+            progress.felt = None
+        begin = 0 if progress.felt is None else progress.felt.tries
+        for count, each in enumerate(tries[begin:], start=begin + 1):
             felt = yield from self._try(number, each)
             if felt is None:
-                return
-            contact, last = Contact(felt.force_n, count), count == len(tries)
-            yield from back_off(progress, felt.way_back, contact, self._arm, self._watch, last=last)
+                return True
+            contact = Contact(felt.force_n, count)
+            yield from back_off(progress, felt.way_back, self._arm, watch)
+            if looks:
+                progress.felt = contact
+                progress.move_to(ExecutionState.PREPARING)
+                return False
+            try_again(progress, contact, self._arm, watch, last=count == len(tries))
+        raise ExecutionTransitionError(f"expected a try of step {number}, got none")
 
     def _try(self, number: int, attempt: Try) -> Routine[_Felt | None]:
         """One try of a step, checked at the camera's period; what was felt if something was.

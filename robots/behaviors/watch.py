@@ -2,12 +2,13 @@
 
 import math
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, NoReturn
 
 from robots.arm import Arm
 from robots.behaviors.assignment import Assignment
 from robots.behaviors.behavior import SetGripper
-from robots.behaviors.contact import Try
+from robots.behaviors.contact import Contact, Try
+from robots.behaviors.execution_state import ExecutionTransitionError
 from robots.behaviors.phase import Phase
 from robots.behaviors.progress import Progress
 from robots.grip import GripReading
@@ -51,9 +52,9 @@ class Watch:
         self._next_check_s = -math.inf
         self._read_s = -math.inf
 
-    def tries(self) -> Sequence[Try]:
-        """The tries of the first monitor to which it matters what is felt."""
-        return next((each.tries for each in self._watching(self._progress.phase) if each.tries), ())
+    def tries(self, phase: Phase) -> Sequence[Try]:
+        """The tries of the first monitor of a phase to which it matters what is felt."""
+        return next((each.tries for each in self._watching(phase) if each.tries), ())
 
     def note_force(self, force_n: float) -> None:
         """The arm felt this; it is shown at the next check."""
@@ -91,6 +92,14 @@ class Watch:
             self._report_issue(monitor, detection, view)
             if monitor.interrupts:
                 raise Interruption(monitor)
+
+    def judge(self, contact: Contact) -> NoReturn:
+        """Let the monitors judge what was felt. Raises `Interruption`."""
+        self._progress.contact = contact
+        self.check(None)
+        raise ExecutionTransitionError(
+            f"expected an issue of {contact.force_n:.0f} N against the arm, got none"
+        )
 
     def grip_is_open_question(self, arrived_s: float) -> bool:
         """Whether the pictures have yet to show what the gripper holds.

@@ -71,3 +71,8 @@ def log_density(composition: Composition, what: str) -> float:
         exponent = sum((alpha - 1.0) * each for alpha, each in zip(alphas, logs, strict=True))
         density += component.weight * math.exp(log_norm + exponent)
     return math.log(density)
+
+
+def likeliest(composition: Composition) -> str:
+    """What is most likely between the fingers: `right`, `other` or `nothing`."""
+    return max(_COMPONENTS, key=lambda what: log_density(composition, what))

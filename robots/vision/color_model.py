@@ -39,7 +39,8 @@ class ColorSettings:
 
     Saturations and values are OpenCV's (0 to 255). The training limits are the stricter ones, so
     that a histogram is learned from pixels that surely have the object's colour. A bin belongs to
-    an object only where its histogram has at least `min_share` of its peak. Samples are also
+    an object only where its histogram has at least `min_share` of its peak. An object of which less
+    than `hued_share` of the pixels surely have a hue has none, only noise. Samples are also
     learned from with other light (`gains`) and with noise of `noise` grey levels, because
     pictures at work have both. Objects whose histograms have at least the share `alike` in common
     have the same hue and share their bins.
@@ -52,6 +53,7 @@ class ColorSettings:
     min_training_saturation: int = 70
     min_training_value: int = 35
     min_share: float = 0.02
+    hued_share: float = 0.5
     gains: tuple[float, ...] = (0.65, 1.0, 1.35)
     noise: float = 8.0
     alike: float = 0.5
@@ -262,6 +264,7 @@ def learn(name: str, samples: Sequence[Sample], settings: ColorSettings) -> Hist
     bins = [settings.hue_bins, settings.saturation_bins]
     lowest = (0, settings.min_training_saturation, settings.min_training_value)
     total = np.zeros(bins, np.float32)
+    pixels = 0
     rng = np.random.default_rng(_NOISE_SEED)
     for sample in samples:
         if sample.bgr.shape[:2] != sample.mask.shape:
@@ -280,8 +283,9 @@ def learn(name: str, samples: Sequence[Sample], settings: ColorSettings) -> Hist
             hsv = _hue_saturation_value(bgr)
             usable = cv2.bitwise_and(cv2.inRange(hsv, lowest, (180, 255, 255)), inside)
             total += cv2.calcHist([hsv], [0, 1], usable, bins, _RANGES)
-    if total.max() <= 0:
-        return total
+            pixels += cv2.countNonZero(inside)
+    if total.sum() <= settings.hued_share * pixels:
+        return np.zeros(bins, np.float32)
     smooth = _blur(total)
     return np.asarray(smooth / smooth.max(), np.float32)
 

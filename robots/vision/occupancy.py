@@ -22,6 +22,7 @@ class Room:
     """The room that `part` takes at a place: upright, with its bottom at `bottom_z`.
 
     `meaning` says what it is when something else is there. `around_m` is looked at beside it.
+    `over_part`: the room is over the part itself, so that what stands lower is beside it.
     """
 
     part: Part
@@ -29,6 +30,7 @@ class Room:
     bottom_z: float
     meaning: str
     around_m: float = 0.0
+    over_part: bool = False
 
 
 def room_at_place(part: Part, target: Location, bottom_z: float) -> Room:
@@ -41,7 +43,7 @@ def room_above(part: Part, sighting: HeadSighting) -> Room:
     at = Location(x=sighting.x, y=sighting.y, z=sighting.top_z, yaw=sighting.yaw)
     # Of a part that is half covered the other half was measured: what covers it is beside that.
     around_m = 0.0 if sighting.shown >= _COVERED_SHARE else min(part.size[:2]) / 2
-    return Room(part, at, sighting.top_z, f"lies on {part.name}", around_m)
+    return Room(part, at, sighting.top_z, f"lies on {part.name}", around_m, over_part=True)
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,10 +65,16 @@ class Fit:
 def find_occupant(view: TableView, room: Room, fit: Fit) -> Obstruction | None:
     """What is in `room` that is not its part."""
     us, vs, points = view.standing_out(room.bottom_z + fit.tolerance_m)
-    inside = _volume(room, fit).holds(points, margin_m=0.0)
+    volume = _volume(room, fit)
+    inside = volume.holds(points, margin_m=0.0)
+    column = replace(volume, size=(*volume.size[:2], np.inf)).holds(points, margin_m=0.0)
     for box in view.boxes:
-        if box.name == room.part.name:
+        beside = room.over_part and box.name is not None and _is_lower(box, room, fit)
+        if box.name == room.part.name or beside:
             inside &= ~box.holds(points)
+        elif box.bottom_z < volume.top_z:
+            # Of what is taller than the room only a top above it may be seen.
+            inside |= column & box.holds(points)
     at = (room.at.x, room.at.y, room.bottom_z)
     floor_px = pixels_covered(view.heights.image, at, room.part.size[:2])
     found = obstruction_of(us, vs, points, inside, max(fit.fewest_px, fit.share * floor_px))
@@ -74,6 +82,11 @@ def find_occupant(view: TableView, room: Room, fit: Fit) -> Obstruction | None:
         return None
     what = _most_of(points[inside], view.boxes) or "something unknown"
     return replace(found, what=f"{what} {room.meaning}")
+
+
+def _is_lower(box: SeenBox, room: Room, fit: Fit) -> bool:
+    """Whether a known part stands on something lower than the room's floor."""
+    return box.bottom_z < room.bottom_z - fit.tolerance_m
 
 
 def _volume(room: Room, fit: Fit) -> SeenBox:

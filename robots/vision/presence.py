@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Collection
+from collections.abc import Set as AbstractSet
 from enum import StrEnum
 
 import numpy as np
@@ -41,7 +42,7 @@ def is_at(sighting: HeadSighting, target: Location, target_z: float) -> bool:
 
 
 def judge_presence(
-    view: TableView, part: Part, equals: Collection[str], target: Location, bottom_z: float
+    view: TableView, part: Part, equals: AbstractSet[str], target: Location, bottom_z: float
 ) -> Presence:
     """Whether `part`, or one of its `equals` by name, stands with its bottom at `bottom_z`."""
     room = SeenBox(
@@ -50,8 +51,8 @@ def judge_presence(
     for box in view.boxes:
         if box.name in equals and _stands_at(box, room):
             return Presence.THERE
-    elsewhere = {box.name for box in view.boxes if box.complete}
-    if elsewhere.issuperset(equals):
+    if equals <= {box.name for box in view.boxes if box.complete}:
+        # Whatever may be hidden here, it is none of them: all are seen elsewhere.
         return Presence.GONE
     if any(_keeps_out(box, room, equals) for box in view.boxes):
         return Presence.GONE

@@ -68,6 +68,11 @@ def test_what_stands_elsewhere_and_what_is_nowhere_is_gone() -> None:
     assert (looked.there, looked.gone) == ([], [BAR, LEG])
 
 
+def test_what_still_covers_most_of_its_place_but_is_off_it_is_gone() -> None:
+    looked = judged(bench_with(pink_bar=at("left", x=0.03)), BAR)
+    assert (looked.there, looked.gone) == ([], [BAR])
+
+
 def test_what_something_hides_is_neither_there_nor_gone() -> None:
     bench = bench_with()
     bench.body.vanish("pink_bar")

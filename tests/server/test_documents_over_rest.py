@@ -11,6 +11,7 @@ from server.fixed_documents import GivenFiles, fixed_documents
 from server.journal.sqlite import SqliteJournal
 from server.library import Library, build_library
 from server.scene_checks import WorldChecks
+from tasks.library import SCENES
 from tasks.scene_problem import SceneProblem
 
 SCENE = """\
@@ -33,7 +34,10 @@ interventions:
   - {when: {object: cup, step: 4}, do: {act: steal, object: cup}}
 answers: [yes, no]
 """
-YAML = {"content-type": "application/yaml"}
+YAML = {"content-type": "application/yaml; charset=utf-8"}
+EVERY_KIND = pytest.mark.parametrize(
+    ("path", "text"), [("scenes", SCENE), ("trees", TREE), ("scenarios", SCENARIO)]
+)
 
 
 class TimidWorld:
@@ -83,6 +87,10 @@ async def client() -> AsyncIterator[httpx.AsyncClient]:
     service.journal.close()
 
 
+def names(response: httpx.Response) -> list[str]:
+    return [each["name"] for each in response.json()]
+
+
 async def keep_all(client: httpx.AsyncClient) -> None:
     for path, text in (("scenes", SCENE), ("trees", TREE), ("scenarios", SCENARIO)):
         response = await client.post(f"/api/{path}", content=text, headers=YAML)
@@ -110,9 +118,30 @@ async def test_a_scene_a_tree_and_a_scenario_are_kept_and_read(client: httpx.Asy
     } in listed
 
 
-@pytest.mark.parametrize(
-    ("path", "text"), [("scenes", SCENE), ("trees", TREE), ("scenarios", SCENARIO)]
-)
+@EVERY_KIND
+async def test_post_keeps_under_the_name_that_is_given(
+    client: httpx.AsyncClient, path: str, text: str
+) -> None:
+    await keep_all(client)
+    before = names(await client.get(f"/api/{path}"))
+    first = await client.post(f"/api/{path}", json={"name": "other", "text": text})
+    assert (first.status_code, first.json()["name"]) == (201, "other")
+    assert first.headers["location"] == f"/api/{path}/other"
+    again = await client.post(f"/api/{path}?name=other", content=text, headers=YAML)
+    assert (again.status_code, again.json()["name"]) == (200, "other")
+    assert names(await client.get(f"/api/{path}")) == sorted([*before, "other"])
+    assert (await client.delete(f"/api/{path}/other")).status_code == 204
+    assert (await client.delete(f"/api/{path}/other")).status_code == 404
+    assert names(await client.get(f"/api/{path}")) == before
+
+
+@EVERY_KIND
+async def test_what_has_no_name_is_refused(client: httpx.AsyncClient, path: str, text: str) -> None:
+    nameless = text.partition("\n")[2]
+    assert (await client.post(f"/api/{path}", content=nameless, headers=YAML)).status_code == 422
+
+
+@EVERY_KIND
 async def test_put_keeps_under_the_name_of_the_address(
     client: httpx.AsyncClient, path: str, text: str
 ) -> None:
@@ -162,6 +191,29 @@ async def test_mistakes_are_told_with_their_lines_and_nothing_is_kept(
     assert [(each["line"], each["column"]) for each in checked["errors"]] == [(3, 3)]
 
 
+async def test_checking_keeps_nothing(client: httpx.AsyncClient) -> None:
+    before = names(await client.get("/api/scenes"))
+    for checked in (
+        await client.post("/api/scenes/check", json={"text": SCENE}),
+        await client.post("/api/scenes/check", content=SCENE, headers=YAML),
+    ):
+        assert checked.status_code == 200
+        assert (checked.json()["name"], checked.json()["errors"]) == ("bench", [])
+        assert checked.json()["definition"]["objects"].keys() == {"cup", "pot"}
+    assert (await client.post("/api/scenes/check", content=SCENE, headers={})).status_code == 415
+    assert names(await client.get("/api/scenes")) == before
+
+
+async def test_what_is_built_in_is_listed_and_read(client: httpx.AsyncClient) -> None:
+    listed = (await client.get("/api/scenes")).json()
+    assert {"name": "eket", "built_in": True, "objects": 6, "places": 6} in listed
+    scene = (await client.get("/api/scenes/eket")).json()
+    assert (scene["name"], scene["built_in"]) == ("eket", True)
+    assert scene["definition"]["objects"]["green_leg"]["size"] == [0.03, 0.2, 0.08]
+    assert scene["text"] == SCENES.read("eket")
+    assert (await client.get("/api/scenes/..%2Feket")).status_code in (404, 422)
+
+
 async def test_a_scenario_for_what_is_not_there_is_refused(client: httpx.AsyncClient) -> None:
     refused = await client.post("/api/scenarios", content=SCENARIO, headers=YAML)
     assert refused.status_code == 422
@@ -208,24 +260,30 @@ async def test_a_scene_that_a_tree_needs_is_neither_deleted_nor_spoilt(
         assert (await client.delete(f"/api/{path}")).status_code == 204
 
 
-@pytest.mark.parametrize("path", ["scenes", "scenarios"])
+@pytest.mark.parametrize("path", ["scenes", "trees", "scenarios"])
 @pytest.mark.parametrize(
     ("content", "kind", "status"),
     [
         (b'{"text": 7}', "application/json", 422),
         (b'{"text": "", "more": 1}', "application/json", 422),
+        (b'{"text": "\\ud800then"}', "application/json", 422),
+        (b'{"name": "../etc", "text": "then: []"}', "application/json", 422),
         (b"\xff", "application/yaml", 400),
         (b"name: x", "text/plain", 415),
+        (b"name: x", "", 415),
         (b"{", "application/json", 422),
         (b"", "application/yaml", 422),
+        (b"nothing", "application/yaml", 422),
     ],
 )
-async def test_hostile_uploads_are_refused(
+async def test_hostile_uploads_are_refused_and_nothing_is_kept(
     client: httpx.AsyncClient, path: str, content: bytes, kind: str, status: int
 ) -> None:
+    before = names(await client.get(f"/api/{path}"))
     response = await client.post(f"/api/{path}", content=content, headers={"content-type": kind})
     assert response.status_code == status
     assert response.headers["content-type"] == "application/problem+json"
+    assert names(await client.get(f"/api/{path}")) == before
 
 
 async def test_a_tree_is_loaded_with_its_scene_or_another_one_that_it_fits() -> None:

@@ -1,3 +1,5 @@
+"""Runs, dialogues and what goes with them over REST; documents: `test_documents_over_rest.py`."""
+
 from collections.abc import AsyncIterator
 from typing import Any
 
@@ -6,7 +8,7 @@ import pytest
 from service_under_test import ServiceUnderTest, build
 
 from server.runtime.requests import RunRequest
-from tasks.library import SCENARIOS, SCENES
+from tasks.library import SCENARIOS
 
 # Fixed, so that every worker collects the same tests.
 NOBODY = "2dc8e3f6-6479-4c12-9baf-d2534d0b7e34"
@@ -262,58 +264,6 @@ async def test_camera_picture_is_a_jpeg(client: httpx.AsyncClient) -> None:
     assert (await client.get(f"/api/runs/{run}/cameras/foot")).status_code == 404
 
 
-async def test_tree_is_uploaded_read_and_deleted(client: httpx.AsyncClient) -> None:
-    upload = {"name": "mine", "text": "then: [a]"}
-    first = await client.post("/api/trees", json=upload)
-    assert first.status_code == 201
-    assert first.headers["location"] == "/api/trees/mine"
-    assert (await client.post("/api/trees", json=upload)).status_code == 200
-    listed = (await client.get("/api/trees")).json()
-    assert [each["name"] for each in listed] == ["eket", "mine", "tea_table"]
-    assert (await client.get("/api/trees/mine")).json()["text"] == "then: [a]"
-    assert (await client.delete("/api/trees/mine")).status_code == 204
-    assert (await client.delete("/api/trees/mine")).status_code == 404
-
-
-async def test_tree_is_uploaded_as_yaml(client: httpx.AsyncClient) -> None:
-    yaml = {"content-type": "application/yaml; charset=utf-8"}
-    named = await client.post("/api/trees", content=b"name: mine\nthen: []", headers=yaml)
-    assert named.json()["name"] == "mine"
-    unnamed = await client.post("/api/trees?name=other", content=b"then: []", headers=yaml)
-    assert unnamed.json()["name"] == "other"
-    assert (await client.post("/api/trees", content=b"then: []", headers=yaml)).status_code == 422
-
-
-@pytest.mark.parametrize(
-    ("content", "kind", "status"),
-    [
-        (b"nothing", "application/yaml", 422),
-        (b"then: \xff", "application/yaml", 400),
-        (b"then: []", "text/plain", 415),
-        (b"then: []", "", 415),
-        (b'{"name": "eket", "text": "then: []"}', "application/json", 409),
-        (b'{"name": "../etc", "text": "then: []"}', "application/json", 422),
-        (b'{"text": 7}', "application/json", 422),
-        (b'{"text": "\\ud800then"}', "application/json", 422),
-        (b"{", "application/json", 422),
-    ],
-)
-async def test_wrong_upload_keeps_nothing(
-    client: httpx.AsyncClient, content: bytes, kind: str, status: int
-) -> None:
-    response = await client.post("/api/trees", content=content, headers={"content-type": kind})
-    assert response.status_code == status
-    problem_in(response)
-    listed = (await client.get("/api/trees")).json()
-    assert [each["name"] for each in listed] == ["eket", "tea_table"]
-
-
-async def test_built_in_tree_cannot_be_deleted(client: httpx.AsyncClient) -> None:
-    response = await client.delete("/api/trees/eket")
-    assert response.status_code == 409
-    assert "built in" in problem_in(response)["detail"]
-
-
 async def test_body_above_the_limit_is_refused(client: httpx.AsyncClient) -> None:
     yaml = {"content-type": "application/yaml"}
     declared = await client.post("/api/trees", content=b"then" * (3 * 1024**2), headers=yaml)
@@ -375,38 +325,6 @@ async def test_worlds_say_why_they_cannot_run(client: httpx.AsyncClient) -> None
     assert tabletop == {"name": "tabletop", "available": True, "reason": None}
     assert workcell["available"] is False
     assert workcell["reason"]
-
-
-async def test_scenes_are_listed_and_read(client: httpx.AsyncClient) -> None:
-    listed = (await client.get("/api/scenes")).json()
-    assert {"name": "eket", "built_in": True, "objects": 6, "places": 6} in listed
-    scene = (await client.get("/api/scenes/eket")).json()
-    assert (scene["name"], scene["built_in"]) == ("eket", True)
-    assert scene["definition"]["objects"]["green_leg"]["size"] == [0.03, 0.2, 0.08]
-    assert scene["text"] == SCENES.read("eket")
-    assert (await client.get("/api/scenes/nowhere")).status_code == 404
-    assert (await client.get("/api/scenes/..%2Feket")).status_code in (404, 422)
-
-
-async def test_checking_a_tree_tells_its_mistakes_and_keeps_nothing(
-    client: httpx.AsyncClient,
-) -> None:
-    before = (await client.get("/api/trees")).json()
-    good = await client.post("/api/trees/check", json={"text": "name: mine\nthen: []"})
-    assert good.status_code == 200
-    assert good.json()["name"] == "mine"
-    assert good.json()["definition"]
-    assert good.json()["errors"] == []
-    bad = await client.post("/api/trees/check", json={"text": "tree: 7"})
-    assert bad.status_code == 200
-    assert bad.json()["definition"] is None
-    (mistake,) = bad.json()["errors"]
-    assert mistake["message"]
-    assert (mistake["line"], mistake["column"]) == (1, 1)
-    yaml = {"content-type": "application/yaml"}
-    assert (await client.post("/api/trees/check", content="then: []", headers=yaml)).is_success
-    assert (await client.post("/api/trees/check", content="x", headers={})).status_code == 415
-    assert (await client.get("/api/trees")).json() == before
 
 
 async def test_more_time_and_taking_over_are_asked_for_over_rest(

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from robot_bench import RobotBench
 
 from robots.behaviors.contact import ContactWatch, Track, hindering_n, is_arrival
+from robots.behaviors.execution_state import ExecutionState
 from robots.body import ToolPose
 from robots.link.messages import Finished, Holding, IssueDetected, Resume
 
@@ -78,6 +79,95 @@ def test_behind_a_wall_that_is_taken_away_it_goes_on() -> None:
     assert bench.of(Finished) == [Finished(execution="e1")]
 
 
+def on_the_way_down(bench: RobotBench, do: Callable[[], None]) -> list[float]:
+    """Once the empty hand is halfway down something happens, and something keeps it from there.
+
+    The speed at which each push began; nothing pushes any more where the arm comes down later.
+    """
+    happened: list[ToolPose] = []
+
+    def pushes(tool: ToolPose) -> float:
+        progress = bench.robot.task_progress
+        if progress is None or progress.step != 2:
+            return 0.0
+        if not happened and progress.fraction >= 0.5:
+            happened.append(tool)
+            do()
+        return 35.0 if any(_is_under(tool, each) for each in happened) else 0.0
+
+    return push_where(bench, pushes)
+
+
+def _is_under(tool: ToolPose, where: ToolPose) -> bool:
+    return math.dist((tool.x, tool.y), (where.x, where.y)) < 0.05 and tool.z <= where.z
+
+
+def test_a_hand_that_meets_what_is_not_its_part_says_that_the_part_is_missing() -> None:
+    bench = RobotBench()
+    pushed = on_the_way_down(bench, lambda: bench.body.vanish("pink_bar"))
+    bench.start("pink_bar")
+    bench.run()
+    assert [each.issue for each in bench.of(IssueDetected)] == ["missing"]
+    assert len(pushed) == 1
+
+
+def test_a_hand_that_meets_something_takes_its_part_where_that_is_now() -> None:
+    bench = RobotBench()
+
+    def push_aside() -> None:
+        bench.body.parts["pink_bar"].y += 0.09
+
+    on_the_way_down(bench, push_aside)
+    bench.start("pink_bar")
+    bench.run()
+    assert bench.of(IssueDetected) == []
+    resting = bench.body.parts["pink_bar"]
+    assert math.dist((resting.x, resting.y), (0.55, 0.05)) < 0.004
+
+
+def test_what_an_empty_hand_meets_and_no_camera_shows_is_blocked() -> None:
+    bench = RobotBench()
+    pushed = on_the_way_down(bench, lambda: None)
+    bench.start("pink_bar")
+    bench.run()
+    (issue,) = bench.of(IssueDetected)
+    assert issue.issue == "blocked"
+    assert issue.detection is not None
+    assert issue.detection.felt
+    assert "35 N push against the arm, felt in 3 tries" in issue.detection.explanation
+    assert pushed == pytest.approx([0.5, 0.2, 0.1])
+    assert bench.of(Holding) == [Holding(execution="e1", at="neutral")]
+
+
+def test_a_hand_that_is_held_up_on_its_way_to_look_stops_there() -> None:
+    bench = RobotBench()
+    on_the_way_down(bench, lambda: None)
+    push = bench.body.at_cycle
+
+    def act() -> None:
+        push()
+        if bench.robot.task_progress is not None and bench.robot.task_progress.step == 0:
+            bench.body.force_n = 60.0 if bench.body.tool.y < -0.5 else 0.0
+
+    bench.body.at_cycle = act
+    bench.start("pink_bar")
+    bench.run()
+    assert [each.issue for each in bench.of(IssueDetected)] == ["blocked"]
+    assert bench.of(Holding) == [Holding(execution="e1", at="in_place")]
+
+
+def test_it_tries_anew_after_somebody_has_helped() -> None:
+    bench = RobotBench()
+    on_the_way_down(bench, lambda: None)
+    bench.start("pink_bar")
+    bench.run()
+    bench.body.at_cycle = lambda: None
+    bench.body.force_n = 0.0
+    bench.send(Resume(execution="e1"))
+    bench.run()
+    assert bench.of(Finished) == [Finished(execution="e1")]
+
+
 def test_the_weight_of_what_is_carried_is_no_contact() -> None:
     bench = RobotBench()
     push_where(bench, lambda _: 8.0)
@@ -133,6 +223,22 @@ def test_a_part_lost_while_backing_off_is_dropped() -> None:
 
     bench.body.at_cycle = act
     bench.start("pink_bar")
+    bench.run()
+    assert [each.issue for each in bench.of(IssueDetected)] == ["dropped"]
+
+
+def test_a_part_pulled_away_while_it_is_put_down_is_dropped() -> None:
+    bench = RobotBench()
+    bench.start("pink_bar")
+    bench.run_to(6, 0.3)
+
+    def pull() -> None:
+        bench.body.force_n = 80.0 if bench.body.in_hand is not None else 0.0
+        execution = bench.robot._execution
+        if execution is not None and execution.state is ExecutionState.BACKING_OFF:
+            bench.body.vanish("pink_bar")
+
+    bench.body.at_cycle = pull
     bench.run()
     assert [each.issue for each in bench.of(IssueDetected)] == ["dropped"]
 

@@ -49,7 +49,7 @@ def test_a_part_wider_than_the_gripper_is_never_taken() -> None:
     assert (issue.issue, issue.step) == ("unreachable", 0)
     assert issue.detection is not None
     assert issue.detection.explanation == (
-        "pink_bar is 30 mm wide at its narrower side; this gripper takes 10 to 20 mm"
+        "pink_bar is 30 mm wide at its narrower side; this gripper takes 12 to 20 mm"
     )
 
 

@@ -101,6 +101,13 @@ def test_a_grey_object_has_no_hue_and_a_coloured_one_has() -> None:
     assert not model.segment(patch((120, 120, 120))).mask("grey").any()
 
 
+@pytest.mark.parametrize("bgr", [(152, 145, 152), (70, 62, 66), (40, 30, 36)])
+def test_the_noise_of_what_is_almost_grey_is_no_hue(bgr: tuple[float, float, float]) -> None:
+    model = ColorModel.train({"greyish": [sample(bgr)], "red": [sample((20, 20, 220))]})
+    assert not model.has_hue("greyish")
+    assert model.has_hue("red")
+
+
 def test_objects_of_one_hue_have_each_others_pixels() -> None:
     model = ColorModel.train(
         {

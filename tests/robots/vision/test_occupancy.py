@@ -1,10 +1,13 @@
 """Whether a place is free: what is in the room for a part is seen, its neighbours are let be."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from drawn_scene import PARTS, TABLE_Z, DrawnScene, Resting
 from scripted_body import view_of
 
+from robots.catalogue import Part
 from robots.link.messages import Location
 from robots.vision.obstruction import Obstruction
 from robots.vision.occupancy import Fit, Room, find_occupant, room_above, room_at_place
@@ -32,6 +35,14 @@ def test_another_part_at_the_place_is_seen_and_named(at: Resting, noise: float) 
     assert found.what == "yellow_bar is where pink_bar belongs"
 
 
+def test_what_is_taller_than_the_room_is_seen_by_its_top() -> None:
+    room = room_at_place(Part("pin", (0.024, 0.08, 0.02)), Location(x=0.535, y=-0.12), TABLE_Z)
+    tall = ((0.535, -0.12, TABLE_Z), (0.13, 0.13, 0.11))
+    found = check(DrawnScene(grey_boxes=[tall]), room)
+    assert found is not None
+    assert found.what == "something unknown is where pin belongs"
+
+
 def test_something_unknown_at_the_place_is_seen() -> None:
     found = check(DrawnScene(grey_boxes=[((0.55, -0.12, TABLE_Z), (0.05, 0.05, 0.05))]))
     assert found is not None
@@ -53,6 +64,15 @@ def test_something_unknown_at_the_place_is_seen() -> None:
 )
 def test_a_free_place_is_free(parts: dict[str, Resting], room: Room, noise: float) -> None:
     assert check(DrawnScene(parts, noise=noise), room) is None
+
+
+def test_what_stands_beside_a_half_hidden_part_does_not_lie_on_it() -> None:
+    bar = Resting(0.52, -0.30, TABLE_Z, np.pi / 2)
+    sighting = view_of(DrawnScene({"pink_bar": bar}).picture()).sightings["pink_bar"]
+    leg = Resting(0.488, -0.30, TABLE_Z)
+    view = view_of(DrawnScene({"pink_bar": bar, "green_leg": leg}).picture())
+    room = room_above(PARTS["pink_bar"], replace(sighting, shown=0.5))
+    assert find_occupant(view, room, Fit()) is None
 
 
 @pytest.mark.parametrize(("on_it", "free"), [(0.04, False), (None, True)])

@@ -115,14 +115,19 @@ def test_a_part_that_needs_help_is_announced_and_placed_slowly() -> None:
     assert len(driver.of(Finished)) == 1
 
 
-@pytest.mark.parametrize("step", [1, 2, 5, 6])
-def test_somebody_in_the_way_is_felt_and_when_gone_the_robot_goes_on(step: int) -> None:
+@pytest.mark.parametrize(
+    ("step", "told_in", "held_at"),
+    [(1, 0, "neutral"), (2, 0, "neutral"), (5, 5, "in_place"), (6, 6, "in_place")],
+)
+def test_somebody_in_the_way_is_felt_and_when_gone_the_robot_goes_on(
+    step: int, told_in: int, held_at: str
+) -> None:
     driver = make_driver(LAID_OUT, during(step, 0.4, Intervention(act=Act.BLOCK)))
     driver.start("o1", "p1")
     raised = driver.run_until_issue()
-    assert (raised.issue, raised.step) == ("blocked", step)
+    assert (raised.issue, raised.step) == ("blocked", told_in)
     driver.run()
-    assert driver.of(Holding)[-1].body.at == "in_place"
+    assert driver.of(Holding)[-1].body.at == held_at
     assert expect(driver, Look(expect="way_clear", within_s=2.0)) is False
     driver.send(by_ann(Act.RELEASE))
     assert expect(driver, Look(expect="way_clear", within_s=2.0)) is True
