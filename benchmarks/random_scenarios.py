@@ -44,6 +44,7 @@ from server.journal.untruths import Rest, find_untruths, kinds_of
 from server.runtime.requests import RunRequest
 from server.runtime.views import RunStatus, RunView
 from server.settings import Settings
+from tasks.definition import BehaviorNode
 from tasks.random_task import random_nesting, random_task
 from tasks.scenario import Person
 
@@ -114,7 +115,7 @@ def draw(world: str, seed: int, most_leaves: int) -> Drawn:
     if seed // len(KINDS) % 2:
         return _random_scene(world, seed, min(most_leaves, MOST_PARTS[world]))
     if world == "workcell":
-        return Drawn(*_random_base(rng))
+        return _possible_base(rng)
     leaves = int(rng.integers(1, most_leaves + 1))
     return Drawn(json.dumps(random_task(rng, leaves)), leaves)
 
@@ -132,6 +133,22 @@ def _random_scene(world: str, seed: int, most_parts: int) -> Drawn:
     tree = {**drawn.tree, "name": "random", "scene": "random"}
     scene = {**scene_document(drawn.scene), "name": "random"}
     return Drawn(json.dumps(tree), parts, json.dumps(scene))
+
+
+def _possible_base(rng: np.random.Generator) -> Drawn:
+    """A random tree over the EKET base in an order in which there is room for the fingers."""
+    from server.behaviors import behavior_parameters
+    from sim.workcell.adapter import adapter
+    from tasks.scene_file import built_in_scene
+    from tasks.task_file import check_task_text
+
+    scene = built_in_scene("eket")
+    while True:
+        tree, leaves = _random_base(rng)
+        task = check_task_text(tree, behavior_parameters(), built_in_scene)
+        nodes = [each for each in task.definition.nodes if isinstance(each, BehaviorNode)]
+        if not adapter.check_scene(scene, nodes):
+            return Drawn(tree, leaves)
 
 
 def _random_base(rng: np.random.Generator) -> tuple[str, int]:
