@@ -180,6 +180,24 @@ def test_of_equal_parts_the_one_that_stands_at_a_place_is_the_one_that_belongs_t
     assert not senses.recognize_at(senses.look(), high, target)
 
 
+def test_a_part_that_is_seen_elsewhere_is_not_hidden_at_its_place() -> None:
+    size = (0.06, 0.05, 0.05)
+    watcher = Watcher(
+        scene_of(
+            {
+                "part": at(0.5, -0.2, size=size),
+                "below": at(0.6, 0.0, size=size, color=(0.8, 0.2, 0.1)),
+            }
+        )
+    )
+    watcher.do(Act.MOVE, "part", to=Pose(x=0.6, y=0.0))
+    pose = watcher.world.pose_of("part")
+    assert pose is not None
+    assert pose.z == pytest.approx(0.75)
+    assert watcher.presence("part", 0.6, 0.0) is Presence.GONE
+    assert watcher.presence("part", 0.6, 0.0, 0.75) is Presence.THERE
+
+
 def test_something_unknown_is_a_box_without_a_name() -> None:
     scene = scene_of({"known": at(0.5, -0.2), "stranger": at(0.6, 0.0, size=(0.05, 0.09, 0.06))})
     watcher = Watcher(scene)
