@@ -11,7 +11,7 @@ from robots.body import Matrix4
 from robots.vision.color_model import (
     ColorModel,
     ColorSettings,
-    Histogram,
+    LearnedColor,
     Sample,
     Tint,
     learn,
@@ -48,14 +48,14 @@ def teach_colors(scene: Scene, studio: Studio, camera_noise: float) -> ColorMode
         name: _learn(each.color, studio, camera_noise) for name, each in scene.objects.items()
     }
     return ColorModel(
-        {name: histogram for name, (histogram, _) in learned.items()},
+        {name: look for name, (look, _) in learned.items()},
         settings,
         {name: tint for name, (_, tint) in learned.items()},
     )
 
 
 @lru_cache(maxsize=4096)
-def _learn(color: Color, studio: Studio, camera_noise: float) -> tuple[Histogram, Tint]:
+def _learn(color: Color, studio: Studio, camera_noise: float) -> tuple[LearnedColor, Tint]:
     """Scenes share their colours, so one is learned but once."""
     rng = np.random.default_rng(_SEED)
     samples = []

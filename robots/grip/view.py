@@ -71,13 +71,16 @@ def visible_region(
 def composition(
     region: Mask, segmentation: Segmentation, model: ColorModel, name: str
 ) -> Composition | None:
-    """Which colours a region shows; None where that cannot tell whether it is part `name`."""
+    """Which colours a region shows; None where that cannot tell whether it is part `name`.
+
+    What may be the part's own colour is no sign of another part, even of one that has more of it.
+    """
     scale = region.shape[1] / REFERENCE_WIDTH_PX
     pixels = int(np.count_nonzero(region))
     if name not in model.names or pixels < _FEWEST_PX * scale * scale:
         return None
     inside = segmentation.within(region)
-    own = inside.mask(name) > 0
+    own = inside.may_be(name)
     others = {
         other: float(np.mean((inside.mask(other) > 0) & ~own))
         for other in model.names

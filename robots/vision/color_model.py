@@ -8,6 +8,7 @@ measures whatever the light is.
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 from zipfile import BadZipFile
 
 import cv2
@@ -18,7 +19,7 @@ from robots.vision.blob import Mask
 
 Histogram = NDArray[np.float32]
 
-FILE_VERSION = 2
+FILE_VERSION = 3
 Tint = tuple[float, float, float]
 """The colour (BGR) of something level over that of the table in the same light."""
 
@@ -67,13 +68,34 @@ class Sample:
     mask: Mask
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class LearnedColor:
+    """What one object's pixels are like, over bins of hue and saturation.
+
+    `histogram` is that of the pixels that surely have a hue, its peak 1; empty for an object that
+    is too grey or too dark. `shown` are all bins that its pixels fall into at work.
+    """
+
+    histogram: Histogram
+    shown: NDArray[np.bool_]
+
+
 class Segmentation:
     """A picture in which every pixel has the number of its bin of hue and saturation."""
 
-    def __init__(self, bins: NDArray[np.uint16], owned: Mapping[str, NDArray[np.bool_]]) -> None:
-        """`owned` says of each bin, and of 0 for what has no colour, whether an object has it."""
+    def __init__(
+        self,
+        bins: NDArray[np.uint16],
+        owned: Mapping[str, NDArray[np.bool_]],
+        shown: Mapping[str, NDArray[np.bool_]],
+    ) -> None:
+        """`owned` says of each bin, and of 0 for what has no colour, whether an object has it.
+
+        `shown` says whether the object may show it, though another may have more of it.
+        """
         self._bins = bins
         self._owned = owned
+        self._shown = shown
 
     def mask(self, name: str) -> Mask:
         """Where the colours of one object are: 255 there, 0 elsewhere.
@@ -81,22 +103,26 @@ class Segmentation:
         Objects whose colours the cameras cannot tell apart have each other's. Raises
         `ColorModelError` for an object that the model was not trained for.
         """
-        return np.where(self._of(name)[self._bins], 255, 0).astype(np.uint8)
+        return np.where(_of(self._owned, name)[self._bins], 255, 0).astype(np.uint8)
+
+    def may_be(self, name: str) -> NDArray[np.bool_]:
+        """Which pixels may be an object's, as far as their colour says. Raises as `mask` does."""
+        return _of(self._shown, name)[self._bins]
 
     def within(self, mask: Mask) -> "Segmentation":
         """The pixels inside a mask alone, in one row."""
-        return Segmentation(self._bins[np.newaxis, mask > 0], self._owned)
+        return Segmentation(self._bins[np.newaxis, mask > 0], self._owned, self._shown)
 
     def share(self, name: str, us: NDArray[np.intp], vs: NDArray[np.intp]) -> float:
         """The share of some pixels that have an object's colours. Raises as `mask` does."""
-        return float(self._of(name)[self._bins[vs, us]].mean()) if len(us) else 0.0
+        return float(_of(self._owned, name)[self._bins[vs, us]].mean()) if len(us) else 0.0
 
-    def _of(self, name: str) -> NDArray[np.bool_]:
-        owned = self._owned.get(name)
-        if owned is None:
-            known = ", ".join(sorted(self._owned))
-            raise ColorModelError(f"the colour model does not know '{name}'; it knows {known}")
-        return owned
+
+def _of(bins: Mapping[str, NDArray[np.bool_]], name: str) -> NDArray[np.bool_]:
+    if name not in bins:
+        known = ", ".join(sorted(bins))
+        raise ColorModelError(f"the colour model does not know '{name}'; it knows {known}")
+    return bins[name]
 
 
 class ColorModel:
@@ -108,16 +134,21 @@ class ColorModel:
 
     def __init__(
         self,
-        histograms: Mapping[str, Histogram],
+        learned: Mapping[str, LearnedColor],
         settings: ColorSettings,
         tints: Mapping[str, Tint] | None = None,
     ) -> None:
-        if not histograms:
+        if not learned:
             raise ColorModelError("a colour model holds at least one object, not 0")
-        self._histograms = dict(histograms)
+        self._learned = dict(learned)
+        self._histograms = {name: each.histogram for name, each in learned.items()}
         self._settings = settings
         self.tints: Mapping[str, Tint] = dict(tints or {})
         self._owned = self._share_out()
+        self._shown = {
+            name: self._owned[name] | np.append(False, each.shown.ravel())
+            for name, each in learned.items()
+        }
 
     def _share_out(self) -> dict[str, NDArray[np.bool_]]:
         """Which bins each object has: those of which it, or one of the same hue, has the most."""
@@ -177,7 +208,7 @@ class ColorModel:
         bins += saturation[hsv[:, :, 1]] + np.uint16(1)
         bins[hsv[:, :, 1] < self._settings.min_saturation] = 0
         bins[hsv[:, :, 2] < self._settings.min_value] = 0
-        return Segmentation(bins, self._owned)
+        return Segmentation(bins, self._owned, self._shown)
 
     def save(self, path: Path) -> None:
         """Write the model to one .npz file."""
@@ -187,7 +218,8 @@ class ColorModel:
                 file,
                 version=np.array(FILE_VERSION),
                 names=np.array(self.names),
-                histograms=np.stack(list(self._histograms.values())),
+                histograms=np.stack([each.histogram for each in self._learned.values()]),
+                shown=np.stack([each.shown for each in self._learned.values()]),
                 limits=np.array(
                     [
                         settings.min_saturation,
@@ -221,14 +253,15 @@ class ColorModel:
             raise ColorModelError(f"'{path}' is not a colour model: {error}") from error
 
     @classmethod
-    def _from_arrays(cls, path: Path, arrays: Mapping[str, NDArray[np.float32]]) -> "ColorModel":
+    def _from_arrays(cls, path: Path, arrays: Mapping[str, NDArray[Any]]) -> "ColorModel":
         version = int(arrays["version"])
         if version != FILE_VERSION:
             raise ColorModelError(
                 f"'{path}' is a colour model of version {version}; this reads {FILE_VERSION}"
             )
         names, histograms = arrays["names"].tolist(), arrays["histograms"].astype(np.float32)
-        if histograms.ndim != 3 or len(names) != len(histograms):
+        shown = arrays["shown"].astype(np.bool_)
+        if histograms.ndim != 3 or len(names) != len(histograms) or shown.shape != histograms.shape:
             raise ColorModelError(f"'{path}' is not a colour model: its histograms do not fit")
         limits = [int(each) for each in arrays["limits"]]
         _, hue_bins, saturation_bins = histograms.shape
@@ -247,7 +280,8 @@ class ColorModel:
                 arrays["tinted"].tolist(), arrays["tints"], strict=True
             )
         }
-        return cls(dict(zip(names, histograms, strict=True)), settings, tints)
+        learned = map(LearnedColor, histograms, shown)
+        return cls(dict(zip(names, learned, strict=True)), settings, tints)
 
 
 def tint_sigma(tint: Tint | NDArray[np.float64]) -> NDArray[np.float64]:
@@ -256,14 +290,15 @@ def tint_sigma(tint: Tint | NDArray[np.float64]) -> NDArray[np.float64]:
     return sigma
 
 
-def learn(name: str, samples: Sequence[Sample], settings: ColorSettings) -> Histogram:
-    """One object's histogram, empty for one that is too grey or dark to have a hue.
+def learn(name: str, samples: Sequence[Sample], settings: ColorSettings) -> LearnedColor:
+    """What one object's colour looks like.
 
     Raises `ColorModelError` for a mask that does not fit its picture.
     """
     bins = [settings.hue_bins, settings.saturation_bins]
-    lowest = (0, settings.min_training_saturation, settings.min_training_value)
-    total = np.zeros(bins, np.float32)
+    surely = (0, settings.min_training_saturation, settings.min_training_value)
+    at_work = (0, settings.min_saturation, settings.min_value)
+    total, shown = np.zeros(bins, np.float32), np.zeros(bins, np.float32)
     pixels = 0
     rng = np.random.default_rng(_NOISE_SEED)
     for sample in samples:
@@ -272,7 +307,8 @@ def learn(name: str, samples: Sequence[Sample], settings: ColorSettings) -> Hist
                 f"a mask of '{name}' is {sample.mask.shape}, its picture {sample.bgr.shape[:2]}"
             )
         # Masks and rims are a pixel off now and then.
-        inside = cv2.erode(np.where(sample.mask > 0, 255, 0).astype(np.uint8), _KERNEL)
+        whole = np.where(sample.mask > 0, 255, 0).astype(np.uint8)
+        inside = np.asarray(cv2.erode(whole, _KERNEL), np.uint8)
         left, top, width, height = cv2.boundingRect(inside)
         # With the rim that the median filter reaches over.
         patch = np.s_[max(top - 1, 0) : top + height + 1, max(left - 1, 0) : left + width + 1]
@@ -281,13 +317,22 @@ def learn(name: str, samples: Sequence[Sample], settings: ColorSettings) -> Hist
             noise = rng.normal(0.0, settings.noise, clean.shape)
             bgr = np.clip(clean * gain + noise, 0, 255).astype(np.uint8)
             hsv = _hue_saturation_value(bgr)
-            usable = cv2.bitwise_and(cv2.inRange(hsv, lowest, (180, 255, 255)), inside)
-            total += cv2.calcHist([hsv], [0, 1], usable, bins, _RANGES)
+            total += _histogram(hsv, surely, inside, bins)
+            shown += _histogram(hsv, at_work, inside, bins)
             pixels += cv2.countNonZero(inside)
+    shown = _blur(shown)
+    may_show = (shown > 0) & (shown >= settings.min_share * shown.max())
     if total.sum() <= settings.hued_share * pixels:
-        return np.zeros(bins, np.float32)
+        return LearnedColor(np.zeros(bins, np.float32), may_show)
     smooth = _blur(total)
-    return np.asarray(smooth / smooth.max(), np.float32)
+    return LearnedColor(np.asarray(smooth / smooth.max(), np.float32), may_show)
+
+
+def _histogram(
+    hsv: NDArray[np.uint8], lowest: tuple[int, int, int], inside: Mask, bins: list[int]
+) -> Histogram:
+    usable = cv2.bitwise_and(cv2.inRange(hsv, lowest, (180, 255, 255)), inside)
+    return np.asarray(cv2.calcHist([hsv], [0, 1], usable, bins, _RANGES), np.float32)
 
 
 def _hue_saturation_value(bgr: NDArray[np.uint8]) -> NDArray[np.uint8]:

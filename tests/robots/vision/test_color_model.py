@@ -155,7 +155,7 @@ def test_a_missing_file_and_another_version_are_told(tmp_path) -> None:
     with pytest.raises(ColorModelError, match="there is no colour model at"):
         ColorModel.load(path)
     np.savez(path, version=np.array(99))
-    with pytest.raises(ColorModelError, match="of version 99; this reads 2"):
+    with pytest.raises(ColorModelError, match="of version 99; this reads 3"):
         ColorModel.load(path)
     np.savez(path, names=np.array(["a"]))
     with pytest.raises(ColorModelError, match="is not a colour model"):
