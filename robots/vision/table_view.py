@@ -22,6 +22,7 @@ from robots.vision.rectangle import Fitted, Rectangle, fit_any, fit_sized, gathe
 from robots.vision.seen_box import SeenBox, Size
 from tasks.scene import Table
 
+_TURNS_RAD = (math.pi / 4, math.pi / 2, -math.pi / 4)
 _COMPLETE_SHARE = 0.8
 _OWN_M = 0.004
 """What is within a part's outline, so much wider, and not above it is the part itself."""
@@ -93,7 +94,12 @@ def _fit_match(match: Match, surfaces: Surfaces) -> Fitted:
     cos, sin = math.cos(at.yaw), math.sin(at.yaw)
     x, y = at.x + cos * shifts[0] - sin * shifts[1], at.y + sin * shifts[0] + cos * shifts[1]
     start = Rectangle(x, y, at.yaw, match.extents)
-    return fit_sized(gather(match.top.surface, surfaces), start)
+    evidence = gather(match.top.surface, surfaces)
+    fits = [fit_sized(evidence, start)]
+    if all(rough.sides_seen):
+        # A rectangle of a few pixels, fitted without its size, may lie any way round.
+        fits += [fit_sized(evidence, replace(start, yaw=at.yaw + turn)) for turn in _TURNS_RAD]
+    return min(fits, key=lambda each: each.misfit)
 
 
 def _centred_by_knob(match: Match, fitted: Fitted) -> Fitted:

@@ -1,0 +1,52 @@
+"""Small parts in the workcell's noisy head pictures: found, and which way round they lie."""
+
+import math
+
+import numpy as np
+import pytest
+
+from robots.catalogue import Catalogue
+from robots.vision.table_view import view_table
+from sim.workcell.colors import learn_colors
+from sim.workcell.options import WorkcellOptions
+from sim.workcell.world import WorkcellWorld
+from tasks.scene import Pose, Scene, SceneObject
+
+COLORS = [(0.9, 0.2, 0.1), (0.1, 0.6, 0.2), (0.1, 0.3, 0.9), (0.8, 0.7, 0.1), (0.6, 0.1, 0.6)]
+
+
+@pytest.mark.parametrize("size", [(0.016, 0.013, 0.024), (0.018, 0.014, 0.040)])
+def test_it_is_seen_which_side_of_a_small_part_is_the_longer_one(
+    size: tuple[float, float, float],
+) -> None:
+    rng = np.random.default_rng(11)
+    noisy = WorkcellOptions(camera_noise=3.0, light=1.0, depth_noise=1.0)
+    errors_rad = []
+    for seed in range(6):
+        spots = [(0.45 + 0.05 * i, -0.5 + 0.12 * j) for i in range(5) for j in range(5)]
+        chosen = rng.permutation(len(spots))[: len(COLORS)]
+        objects = {
+            f"pin_{n}": SceneObject(
+                color=color,
+                size=size,
+                mass_kg=0.01,
+                pose=Pose(x=spots[at][0], y=spots[at][1], yaw=float(rng.uniform(-1.5, 1.5))),
+            )
+            for n, (at, color) in enumerate(zip(chosen, COLORS, strict=True))
+        }
+        scene = Scene(name="pins", objects=objects, places={})
+        world = WorkcellWorld(scene, seed, noisy)
+        catalogue = Catalogue.from_scene(scene)
+        view = view_table(
+            world.head.capture(),
+            scene.table,
+            catalogue.parts,
+            learn_colors(scene, noisy.camera_noise),
+            catalogue.starts,
+        )
+        world.close()
+        assert view is not None
+        for name, each in objects.items():
+            turn = view.sightings[name].yaw - each.pose.yaw
+            errors_rad.append(abs(math.remainder(turn, math.pi)))
+    assert max(errors_rad) < math.radians(25)
