@@ -42,6 +42,10 @@ T = TypeVar("T")
 DEFAULT_URL = "http://127.0.0.1:8080"
 READY_PAUSE_S = 0.1
 
+IDLE_S = 2.0
+"""An idle connection is let go after so long: a request on one that the service is just closing
+would be lost."""
+
 ENDS = (RunFinished, RunFailed, RunAborted)
 
 _events: TypeAdapter[Any] = TypeAdapter(list[AnyEvent])
@@ -58,7 +62,12 @@ class MendClient:
     ) -> None:
         self._url = url.rstrip("/")
         self._headers = {"Authorization": f"Bearer {token}"} if token else {}
-        self._http = httpx.AsyncClient(base_url=self._url, headers=self._headers, timeout=timeout_s)
+        self._http = httpx.AsyncClient(
+            base_url=self._url,
+            headers=self._headers,
+            timeout=timeout_s,
+            limits=httpx.Limits(keepalive_expiry=IDLE_S),
+        )
 
     async def __aenter__(self) -> Self:
         return self

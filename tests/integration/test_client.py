@@ -5,12 +5,14 @@ from typing import Any
 from uuid import uuid4
 
 import pytest
+from fastapi import FastAPI
 from pydantic import TypeAdapter
 from recorded_service import recorded_events
 from sample_events import detected, paused
 from service_under_test import TOKEN, ServiceUnderTest, build, serving
 
-from server.client import MendClient
+from server.app import serve_config
+from server.client import IDLE_S, MendClient
 from server.client_errors import (
     CommandRefusedError,
     RefusedError,
@@ -21,6 +23,7 @@ from server.journal.events import Answered, Event, RunAborted, RunStarted
 from server.journal.journal import Entry
 from server.runtime.requests import RunRequest
 from server.runtime.views import RunStatus, Snapshot
+from server.settings import Settings
 from tasks.intervention import Act, Intervention
 
 REQUEST = RunRequest(tree="eket", world="tabletop", speed="max", seed=7)
@@ -207,3 +210,7 @@ async def test_answer_of_something_else_is_a_problem() -> None:
             await client._request("GET", "/nowhere")
         assert refused.value.problem.status == 404
     service.journal.close()
+
+
+def test_the_client_lets_idle_connections_go_before_the_service_does() -> None:
+    assert serve_config(FastAPI(), Settings()).timeout_keep_alive > IDLE_S
