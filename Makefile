@@ -62,7 +62,7 @@ lint: types  ## Formatting, lint, types (of web/ too) and the floors
 	cd web && PATH="$(CURDIR)/$(BIN):$$PATH" npm run --silent check
 
 bench: $(READY)  ## Every benchmark, one after the other (takes long)
-	@for each in benchmarks/*.py; do echo "== $$each"; $(BIN)/python "$$each"; done
+	@for each in $$(grep -l __main__ benchmarks/*.py); do echo "== $$each"; $(BIN)/python "$$each"; done
 
 lock: $(READY)  ## Pin the newest versions that pyproject.toml allows
 	$(BIN)/uv pip compile --quiet --universal --all-extras --no-emit-index-url --no-annotate \

@@ -77,9 +77,11 @@ def _not_held_yet(record: RunRecord, index: int, event: ev.Prompt, _: re.Match[s
     return "the fingers hold it" if record.holds(record.moment(index), event.object) else None
 
 
-def _not_on_table(record: RunRecord, index: int, event: ev.Prompt, _: re.Match[str]) -> str | None:
+def _not_in_reach(record: RunRecord, index: int, event: ev.Prompt, _: re.Match[str]) -> str | None:
     """What lies in the open, and not only since a moment ago, must not be told not to be there."""
     if record.moment(index).blocked or record.buried(index, event.object):
+        return None
+    if not record.is_surely_in_reach(index, event.object):
         return None
     return "it lies there" if record.lay_for_s(index, event.object) >= LONG_ENOUGH_S else None
 
@@ -188,7 +190,7 @@ CHECKS: Sequence[tuple[str, Check]] = (
     (r"I see the .* at its place", _at_place),
     (r"I do not see the .* at its place yet|[Tt]he .* is not at its place", _not_at_place),
     (r"I see the (?!.* at its place)", _somewhere),
-    (r"I do not see the .* on the table yet", _not_on_table),
+    (r"I do not see the .* where I can reach it yet", _not_in_reach),
     (r"has toppled over", _toppled),
     (r"I cannot find the|cannot find it", _nowhere),
     (r"I missed the|I lost hold of|failed .* to (pick up|hold)", _not_held),

@@ -13,6 +13,9 @@ from tasks.scene import Scene
 NEAR_M = 0.06
 """Room that the fingers need: a part this near to another, or to its place, may be in the way."""
 
+SAME_SPOT_M = 0.02
+"""What is this near to a pose of the scene is there."""
+
 LEANS_RAD = 0.05
 """What leans less stands."""
 
@@ -124,6 +127,15 @@ class RunRecord:
         while since > 0 and self._moments[since - 1].resting.get(name or "") == rest:
             since -= 1
         return self.events[index].time - self.events[since].time
+
+    def is_surely_in_reach(self, index: int, name: str | None) -> bool:
+        """Whether a part lies where the scene has a start or a place: the robot reaches those."""
+        rest = self._moments[index].resting.get(name or "")
+        spots = [each.pose for each in self._scene.objects.values()]
+        spots += [each.pose for each in self._scene.places.values()]
+        return rest is not None and any(
+            math.hypot(rest.x - each.x, rest.y - each.y) <= SAME_SPOT_M for each in spots
+        )
 
     def arm_holds_in_place(self, index: int) -> bool:
         """Whether the arm has stopped in the middle of a step, where it may hide what is below."""

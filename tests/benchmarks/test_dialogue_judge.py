@@ -10,6 +10,8 @@ from dialogue_record import Moment
 from sample_events import RUN, WALL_TIME
 from task_documents import definition_of
 
+from dialogue import missing
+from dialogue.script import HelpState
 from server.journal import events as ev
 from server.journal.untruths import Rest
 from sim.tabletop.layout import lay_out
@@ -34,12 +36,20 @@ def place_of(part: str) -> Rest:
 STARTS = Moment({part: start_of(part) for part, _ in NAMES}, None, blocked=False)
 GONE = replace(STARTS, resting={**STARTS.resting, "part_1": None})
 PLACED = replace(STARTS, resting={**STARTS.resting, "part_1": place_of("part_1")})
+FAR = replace(STARTS, resting={**STARTS.resting, "part_1": Rest(5.0, 5.0, SCENE.table.height)})
 HELD = replace(STARTS, held="part_1")
 BLOCKED = replace(STARTS, blocked=True)
 TOPPLED = replace(
     STARTS, resting={**STARTS.resting, "part_1": replace(start_of("part_1"), lean_rad=1.57)}
 )
 CROWDED = replace(STARTS, resting={**STARTS.resting, "part_2": place_of("part_1")})
+
+
+def not_seen_in_reach() -> str:
+    """As the script of `missing` has it, so that the judge listens to what is really said."""
+    state = missing.script.make(missing.script.parameters()).states["request"]
+    assert isinstance(state, HelpState)
+    return state.not_seen.replace("{object}", "part 1")
 
 
 @dataclass
@@ -169,12 +179,13 @@ def test_what_is_said_of_the_world_is_compared_with_it(
 
 
 def test_what_has_lain_in_the_open_for_long_must_not_be_told_to_be_away() -> None:
-    text = "I do not see the part 1 on the table yet. Hm?"
+    text = not_seen_in_reach()
     assert told(GONE).say(text).wrong() == []
     assert told(GONE).now(STARTS).deed(Act.PUT_BACK).now(STARTS, 0.5).say(text).wrong() == []
     assert told(GONE).now(STARTS).deed(Act.PUT_BACK).now(STARTS, 5.0).say(text).wrong() == [
         "it lies there"
     ]
+    assert told(GONE).now(FAR).deed(Act.PUT_BACK).now(FAR, 5.0).say(text).wrong() == []
 
 
 def test_what_is_waited_for_is_not_said_to_be_so() -> None:
