@@ -3,6 +3,8 @@
     python benchmarks/scenes.py [--scenes 500] [--seed 0] [--parts MOST] [--jobs 2] [--quick]
     python benchmarks/scenes.py --task eket --scenes 100
     python benchmarks/scenes.py --replay SEED
+    python benchmarks/scenes.py --scenes 50 --seed 900 --keep some.jsonl
+    python benchmarks/scenes.py --show some.jsonl more.jsonl
 
 Pictures and depth have noise, light and exposure change. Leaves are done in an order that the tree
 allows, nearest first; a leaf whose attempt ends in an issue is tried again, at most three times, by
@@ -21,8 +23,9 @@ import time
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from multiprocessing import get_context
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -319,6 +322,14 @@ def run_all(
                 yield Outcome(seed, 0, wrong=[f"seed {seed}: {type(error).__name__}: {error}"])
 
 
+def read(path: Path) -> Iterator[Outcome]:
+    """The outcomes that an earlier run kept."""
+    for line in path.read_text(encoding="utf-8").splitlines():
+        raw = json.loads(line)
+        raw["alarms"] = [Alarm(**each) for each in raw["alarms"]]
+        yield Outcome(**raw)
+
+
 def report(outcomes: Sequence[Outcome], wall_s: float) -> bool:
     """Print what came of all; True if every goal is met."""
     parts = sum(each.parts for each in outcomes)
@@ -382,7 +393,11 @@ def main() -> int:
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--quick", action="store_true", help="two scenes of at most six parts")
     parser.add_argument("--replay", type=int, metavar="SEED", help="one scene, told as it goes")
+    parser.add_argument("--keep", type=Path, help="add what comes of each scene to this file")
+    parser.add_argument("--show", type=Path, nargs="+", help="report what was kept in these")
     given = parser.parse_args()
+    if given.show:
+        return 0 if report([each for path in given.show for each in read(path)], 0.0) else 1
     if given.replay is not None:
         return 0 if report([run(given.replay, given.task, given.parts, show=True)], 0.0) else 1
     scenes, parts = (2, 6) if given.quick else (given.scenes, given.parts)
@@ -391,6 +406,9 @@ def main() -> int:
     for outcome in run_all(range(given.seed, given.seed + scenes), given.task, parts, given.jobs):
         outcomes.append(outcome)
         print(f"\r{len(outcomes)}/{scenes}", end="", flush=True)
+        if given.keep:
+            with given.keep.open("a", encoding="utf-8") as file:
+                print(json.dumps(asdict(outcome)), file=file)
     print("\r", end="")
     return 0 if report(outcomes, time.perf_counter() - begin) else 1
 
