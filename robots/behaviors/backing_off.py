@@ -14,20 +14,29 @@ from robots.behaviors.watch import Watch
 from robots.body import ToolPose
 
 _SPEED = 0.3
+_BIDE_S = 0.5
+"""Who pulls at what the fingers hold has it in three times this, or has let go of it."""
 
 
 def back_off(
     progress: Progress, way_back: Sequence[ToolPose], arm: Arm, watch: Watch
 ) -> Routine[None]:
-    """Go back through these poses. Raises `Interruption`."""
+    """Go back through these poses; where no way leads back, bide a while. Raises `Interruption`."""
     progress.move_to(ExecutionState.BACKING_OFF)
     back = arm.body.plan_path(way_back) if way_back else None
-    for segment in range(0 if back is None else back.segments):
-        if back is not None:
-            arm.start(back, segment, _SPEED)
-        while arm.body.moving:
-            watch.check_if_due()
-            yield
+    if back is None:
+        yield from _watched(arm.wait(_BIDE_S), watch)
+        return
+    for segment in range(back.segments):
+        arm.start(back, segment, _SPEED)
+        yield from _watched(arm.settle(), watch)
+
+
+def _watched(routine: Routine[None], watch: Watch) -> Routine[None]:
+    """A routine during which the monitors look as ever. Raises `Interruption`."""
+    for _ in routine:
+        watch.check_if_due()
+        yield
 
 
 def try_again(progress: Progress, contact: Contact, arm: Arm, watch: Watch, *, last: bool) -> None:

@@ -243,6 +243,22 @@ def test_a_part_pulled_away_while_it_is_put_down_is_dropped() -> None:
     assert [each.issue for each in bench.of(IssueDetected)] == ["dropped"]
 
 
+def test_a_part_pulled_away_before_the_hand_has_moved_is_dropped() -> None:
+    bench = RobotBench()
+    bench.start("pink_bar")
+    bench.run_to(4, 0.0)
+    pulled_s = bench.body.time_s()
+
+    def pull() -> None:
+        if bench.body.time_s() > pulled_s + 0.6:
+            bench.body.vanish("pink_bar")
+        bench.body.force_n = 56.0 if bench.body.in_hand is not None else 0.0
+
+    bench.body.at_cycle = pull
+    bench.run()
+    assert [each.issue for each in bench.of(IssueDetected)] == ["dropped"]
+
+
 @given(
     limit_n=st.floats(8.0, 30.0), forces=st.lists(st.floats(0.0, 1.0), min_size=1, max_size=2000)
 )
