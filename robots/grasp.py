@@ -35,14 +35,21 @@ class UngraspableError(Exception):
 class Grasp:
     """Relative to the part: the tool point's height above its bottom, the opening direction.
 
-    `yaw` turns the part's x axis into the direction in which the fingers open; `width_m` is what
-    is then between them. They are `opening_m` apart before they close and after they let go.
+    `yaw` turns the part's x axis into the direction in which the fingers open; what is then
+    between them is `width_m` wide, and `across_m` the other way. They are `opening_m` apart before
+    they close and after they let go.
     """
 
     height_m: float
     yaw: float
     width_m: float
+    across_m: float
     opening_m: float
+
+    @property
+    def diagonal_m(self) -> float:
+        """Of what is between the fingers, seen from above."""
+        return math.hypot(self.width_m, self.across_m)
 
     def tool_pose(self, x: float, y: float, bottom_z: float, part_yaw: float) -> ToolPose:
         """The tool pose for a part whose bottom centre is at (x, y, bottom_z)."""
@@ -69,19 +76,20 @@ def grasps_of(part: Part, gripper: GripperModel) -> list[Grasp]:
     shallow. Raises `UngraspableError` where there is none.
     """
     low_m, held = (0.0, part.size) if part.knob is None else (part.size[2], part.knob)
-    widths = sorted([(held[0], 0.0), (held[1], math.pi / 2)])
+    length_m, width_m, high_m = held
+    widths = sorted([(length_m, width_m, 0.0), (width_m, length_m, math.pi / 2)])
     fitting = [each for each in widths if gripper.min_width_m <= each[0] <= gripper.max_width_m]
     if not fitting:
         raise UngraspableError(_misfit(part, widths[0][0], gripper))
     grasps = [
-        Grasp(height_m, yaw, width_m, min(width_m + 2 * beside_m, gripper.max_opening_m))
-        for width_m, yaw in fitting
-        for height_m in _heights(low_m, held[2], width_m, gripper)
+        Grasp(height_m, yaw, wide_m, across_m, min(wide_m + 2 * beside_m, gripper.max_opening_m))
+        for wide_m, across_m, yaw in fitting
+        for height_m in _heights(low_m, high_m, wide_m, gripper)
         for beside_m in (OPEN_BESIDE_M, OPEN_LEAST_M)
     ]
     if not grasps:
         raise UngraspableError(
-            f"{_held(part)} is {held[2] * _MM:.0f} mm high; for fingers of this gripper to hold it "
+            f"{_held(part)} is {high_m * _MM:.0f} mm high; for fingers of this gripper to hold it "
             f"without touching what is below, it has to be at least "
             f"{least_height_m(gripper) * _MM:.0f} mm high"
         )

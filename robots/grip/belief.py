@@ -1,34 +1,75 @@
-"""The belief that the fingers hold what they are to hold, as log odds.
+"""The belief about what is between the fingers.
 
-A binary Bayes filter (Thrun, Burgard & Fox, Probabilistic Robotics, 2005, ch. 4.2) over a state
-that can change one way: what is held may get lost, what is lost does not come back by itself.
+A discrete Bayes filter (Thrun, Burgard & Fox, Probabilistic Robotics, 2005, ch. 4.1). What is
+there stays what it is: a part that fingers hold turned is turned in every picture, so that many
+readings of one grasp do not make a stranger of it. It can change in two ways only: what is held
+may turn, and whatever is there may get lost, which does not come back by itself.
 """
 
 import math
+from collections.abc import Mapping
+from enum import StrEnum
+
+
+class Between(StrEnum):
+    """What may be between the fingers."""
+
+    STRAIGHT = "straight"
+    """The right part, as it was to be grasped."""
+    TURNED = "turned"
+    """The right part, another way round or askew."""
+    OTHER = "other"
+    """Something else."""
+    NOTHING = "nothing"
+
+
+HELD = frozenset({Between.STRAIGHT, Between.TURNED})
+
+_AT_FIRST: Mapping[Between, float] = {
+    Between.STRAIGHT: 0.485,
+    Between.TURNED: 0.015,
+    Between.OTHER: 0.25,
+    Between.NOTHING: 0.25,
+}
+"""Even odds that the part is held; of 100 held ones 3 are turned."""
 
 _LOST_PER_S = 0.02
-"""How often something held gets lost, as the filter expects it."""
+_TURNS_PER_S = 0.005
+"""How often something held gets lost or turns, as the filter expects it."""
 
-_MOST_LOG_ODDS = 7.0
-"""Readings of one grasp are not independent: however many agree, they prove no more than this."""
+_LEAST = math.exp(-7.0)
+"""Readings of one grasp are not independent: however many agree, they leave so much doubt."""
 
 
 class Belief:
-    """Starts at even odds; `probability` is that of holding."""
+    """Starts at even odds; `probability` is that of holding the part."""
 
     def __init__(self) -> None:
-        self._log_odds = 0.0
+        self._shares = dict(_AT_FIRST)
 
     @property
     def probability(self) -> float:
-        return 1.0 / (1.0 + math.exp(-self._log_odds))
+        return sum(self._shares[each] for each in HELD)
 
     def predict(self, elapsed_s: float) -> None:
-        """Time has passed in which it may have been lost."""
-        kept = math.exp(-_LOST_PER_S * elapsed_s) * self.probability
-        self._log_odds = math.log(kept / (1.0 - kept))
+        """Time has passed in which it may have been lost or have turned."""
+        shares = {each: share * math.exp(-_LOST_PER_S * elapsed_s) for each, share in self._all()}
+        shares[Between.NOTHING] += 1.0 - sum(shares.values())
+        turns = shares[Between.STRAIGHT] * -math.expm1(-_TURNS_PER_S * elapsed_s)
+        shares[Between.STRAIGHT] -= turns
+        shares[Between.TURNED] += turns
+        self._shares = shares
 
-    def update(self, log_ratio: float) -> None:
-        """Take a reading into account: log p(reading | held) - log p(reading | not held)."""
-        log_odds = self._log_odds + log_ratio
-        self._log_odds = min(max(log_odds, -_MOST_LOG_ODDS), _MOST_LOG_ODDS)
+    def update(self, log_likelihoods: Mapping[Between, float]) -> None:
+        """Take a reading into account: log p(reading | what is there)."""
+        most = max(log_likelihoods.values())
+        shares = {
+            each: share * math.exp(log_likelihoods[each] - most) for each, share in self._all()
+        }
+        total = sum(shares.values())
+        shares = {each: max(share / total, _LEAST) for each, share in shares.items()}
+        total = sum(shares.values())
+        self._shares = {each: share / total for each, share in shares.items()}
+
+    def _all(self) -> list[tuple[Between, float]]:
+        return list(self._shares.items())

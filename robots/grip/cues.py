@@ -1,17 +1,17 @@
 """How likely each reading of the hand is, by what is between the fingers.
 
-What the fingers do not hold rightly is one of two things: nothing, or something else. The ratio of
-likelihoods is that of the right part to an even mixture of both, each the product over the cues,
-which say nothing about one another once it is known what is there.
+Each likelihood is the product over the cues, which say nothing about one another once it is known
+what is there.
 """
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
+from robots.grasp import Grasp
+from robots.grip.belief import Between
 from robots.grip.composition import Composition, log_density
 from robots.gripper import GripperModel
-
-_EVEN = 0.5
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,50 +28,51 @@ class CueModel:
     """How the cues scatter.
 
     The opening of fingers on the right part is normal around its width, with the encoder's noise
-    and `grasp_sd_m`, what pads and parts give way; in `turned_share` of all grasps the part is
-    turned between them, which makes it up to `turned_m` wider. Fingers that closed on nothing are
-    apart by the noise alone, in `moving_share` of the cases they are still on their way.
+    and `grasp_sd_m`, what pads and parts give way. A part that is turned between them either lies
+    the other way round or is jammed askew: flat fingers turn it straight unless the line between
+    the two corners that they touch is within the angle of their `friction`. Fingers that closed on
+    nothing are apart by the noise alone, in `moving_share` of the cases they are still on their
+    way.
     """
 
     encoder_sd_m: float = 0.0003
     grasp_sd_m: float = 0.0015
-    turned_share: float = 0.03
-    turned_m: float = 0.022
+    friction: float = 1.0
     closed_sd_m: float = 0.001
     moving_share: float = 0.4
     impossible_per_m: float = 1e-3
     presses_on_something: float = 0.9999
     presses_on_nothing: float = 0.3
 
-    def log_ratio(self, reading: HandReading, width_m: float, gripper: GripperModel) -> float:
-        """log p(reading | the right part, `width_m` wide) - log p(reading | anything else)."""
-        held = (
-            math.log(self._opening_on(reading.opening_m, width_m))
-            + self._log_pressing(reading.presses, self.presses_on_something)
-            + _log_looks(reading.composition, "right")
-        )
-        empty = (
-            math.log(self._opening_on_nothing(reading.opening_m, gripper))
-            + self._log_pressing(reading.presses, self.presses_on_nothing)
-            + _log_looks(reading.composition, "nothing")
-        )
-        other = (
-            math.log(self._opening_on_other(reading.opening_m, gripper))
-            + self._log_pressing(reading.presses, self.presses_on_something)
-            + _log_looks(reading.composition, "other")
-        )
-        most = max(empty, other)
-        mixture = _EVEN * (math.exp(empty - most) + math.exp(other - most))
-        return held - most - math.log(mixture)
+    def log_likelihoods(
+        self, reading: HandReading, grasp: Grasp, gripper: GripperModel
+    ) -> Mapping[Between, float]:
+        """log p(reading | what is between the fingers), for everything that may be there."""
+        opening_m, seen = reading.opening_m, reading.composition
+        on_something = self._log_pressing(reading.presses, self.presses_on_something)
+        on_nothing = self._log_pressing(reading.presses, self.presses_on_nothing)
+        right = on_something + _log_looks(seen, "right")
+        return {
+            Between.STRAIGHT: right + math.log(self._opening_on(opening_m, grasp)),
+            Between.TURNED: right + math.log(self._opening_on_turned(opening_m, grasp)),
+            Between.OTHER: on_something
+            + _log_looks(seen, "other")
+            + math.log(self._opening_on_other(opening_m, gripper)),
+            Between.NOTHING: on_nothing
+            + _log_looks(seen, "nothing")
+            + math.log(self._opening_on_nothing(opening_m, gripper)),
+        }
 
-    def _opening_on(self, opening_m: float, width_m: float) -> float:
+    def _opening_on(self, opening_m: float, grasp: Grasp) -> float:
         """Density per metre."""
-        sd_m = math.hypot(self.encoder_sd_m, self.grasp_sd_m)
-        straight = _normal(opening_m - width_m, sd_m)
-        may_be_turned = -2 * sd_m <= opening_m - width_m <= self.turned_m
-        turned = 1.0 / (self.turned_m + 2 * sd_m) if may_be_turned else 0.0
-        share = self.turned_share
-        return (1.0 - share) * straight + share * turned + self.impossible_per_m
+        return _normal(opening_m - grasp.width_m, self._sd_m) + self.impossible_per_m
+
+    def _opening_on_turned(self, opening_m: float, grasp: Grasp) -> float:
+        jammed_m = grasp.diagonal_m / math.hypot(1.0, self.friction)
+        least_m, most_m = jammed_m - 2 * self._sd_m, grasp.diagonal_m + 2 * self._sd_m
+        askew = 1.0 / (most_m - least_m) if least_m <= opening_m <= most_m else 0.0
+        other_way_round = _normal(opening_m - grasp.across_m, self._sd_m)
+        return 0.5 * (askew + other_way_round) + self.impossible_per_m
 
     def _opening_on_nothing(self, opening_m: float, gripper: GripperModel) -> float:
         sd_m = math.hypot(self.encoder_sd_m, self.closed_sd_m)
@@ -85,6 +86,10 @@ class CueModel:
 
     def _log_pressing(self, presses: bool, share: float) -> float:
         return math.log(share if presses else 1.0 - share)
+
+    @property
+    def _sd_m(self) -> float:
+        return math.hypot(self.encoder_sd_m, self.grasp_sd_m)
 
 
 def _log_looks(composition: Composition | None, what: str) -> float:

@@ -1,6 +1,6 @@
 """Follows one part between the fingers, from when they closed on it until they open."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import cv2
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from robots.body import CameraImage, Matrix4
 from robots.catalogue import Part
 from robots.grasp import Grasp, corners_in_tool
-from robots.grip.belief import Belief
+from robots.grip.belief import Belief, Between
 from robots.grip.composition import Composition
 from robots.grip.cues import CueModel, HandReading
 from robots.grip.reading import GripReading, GripState, follow
@@ -101,7 +101,7 @@ class GripWatch:
         if self._read_s is not None:
             self._belief.predict(max(0.0, now_s - self._read_s))
         self._read_s = now_s
-        self._belief.update(self._log_ratio(reading))
+        self._belief.update(self._log_likelihoods(reading))
         if self._state is GripState.UNDECIDED:
             self._learn(reading)
         self._judge()
@@ -140,16 +140,16 @@ class GripWatch:
             image=image,
         )
         alone = Belief()
-        alone.update(self._log_ratio(reading))
+        alone.update(self._log_likelihoods(reading))
         return replace(reading, probability=alone.probability)
 
     def _composition(self, hand: Hand, segmentation: Segmentation) -> Composition | None:
         region = visible_region(hand.image, hand.tool, self._near, hand.fingers)
         return composition(region, segmentation, self._model, self.part.name)
 
-    def _log_ratio(self, reading: GripReading) -> float:
+    def _log_likelihoods(self, reading: GripReading) -> Mapping[Between, float]:
         hand = HandReading(reading.opening_m, reading.presses, reading.composition)
-        return self._cues.log_ratio(hand, self.grasp.width_m, self._gripper)
+        return self._cues.log_likelihoods(hand, self.grasp, self._gripper)
 
     def _judge(self) -> None:
         sure = self.probability >= _SURE or self.probability <= 1.0 - _SURE

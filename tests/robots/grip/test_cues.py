@@ -1,10 +1,14 @@
 """The likelihoods: each cue says what it can, and nothing where it cannot tell."""
 
+import math
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scripted_body import GRIPPER
 
+from robots.grasp import Grasp
+from robots.grip.belief import Belief, Between
 from robots.grip.composition import Composition
 from robots.grip.cues import CueModel, HandReading
 
@@ -15,36 +19,82 @@ OTHERS = Composition(60, 0.0, 0.9, "another")
 NOBODYS = Composition(60, 0.0, 0.0, None)
 
 
-def ratio(width_m: float, opening_m: float, presses: bool, seen: Composition | None) -> float:
-    return CUES.log_ratio(HandReading(opening_m, presses, seen), width_m, GRIPPER)
+def grasp(width_m: float, across_m: float | None = None) -> Grasp:
+    across_m = width_m if across_m is None else across_m
+    return Grasp(0.02, 0.0, width_m, across_m, width_m + 0.024)
+
+
+def log_odds(
+    width_m: float,
+    opening_m: float,
+    presses: bool,
+    seen: Composition | None,
+    across_m: float | None = None,
+) -> float:
+    """Of the part being held, after one reading; where little doubt is left it may not change."""
+    reading = HandReading(opening_m, presses, seen)
+    belief = Belief()
+    belief.update(CUES.log_likelihoods(reading, grasp(width_m, across_m), GRIPPER))
+    return math.log(belief.probability / (1.0 - belief.probability))
 
 
 @given(width_m=WIDTHS)
 def test_the_right_width_is_for_it_and_closed_fingers_against_it_for_every_part(width_m) -> None:
-    assert ratio(width_m, width_m, True, None) > 2.0
-    assert ratio(width_m, 0.0, False, None) < -8.0
-    assert ratio(width_m, 0.0, True, None) < -4.0
+    assert log_odds(width_m, width_m, True, None) > 2.0
+    assert log_odds(width_m, 0.0, False, None) < -5.0
+    assert log_odds(width_m, 0.0, True, None) < -4.0
 
 
 @given(width_m=WIDTHS, opening_m=st.floats(0.0, 0.09), presses=st.booleans())
 def test_its_own_colours_never_speak_against_a_part_and_others_never_for_it(
     width_m, opening_m, presses
 ) -> None:
-    blind = ratio(width_m, opening_m, presses, None)
-    assert ratio(width_m, opening_m, presses, OWN) > blind
-    assert ratio(width_m, opening_m, presses, OTHERS) < blind
+    blind = log_odds(width_m, opening_m, presses, None)
+    assert log_odds(width_m, opening_m, presses, OWN) >= blind - 0.01
+    assert log_odds(width_m, opening_m, presses, OTHERS) <= blind + 0.01
 
 
 @given(width_m=WIDTHS, opening_m=st.floats(0.0, 0.09))
-def test_fingers_that_do_not_press_speak_against_it(width_m, opening_m) -> None:
-    assert ratio(width_m, opening_m, False, None) < ratio(width_m, opening_m, True, None)
+def test_fingers_that_do_not_press_never_speak_for_it(width_m, opening_m) -> None:
+    pressing = log_odds(width_m, opening_m, True, None)
+    assert log_odds(width_m, opening_m, False, None) <= pressing + 1e-9
 
 
 @pytest.mark.parametrize("width_m", [0.012, 0.03, 0.06])
 def test_a_dim_picture_alone_does_not_outweigh_the_fingers(width_m: float) -> None:
-    assert ratio(width_m, width_m, True, NOBODYS) > 0.0
+    assert log_odds(width_m, width_m, True, NOBODYS) > 0.0
 
 
 @pytest.mark.parametrize("width_m", [0.012, 0.03, 0.06])
 def test_other_colours_outweigh_the_right_width(width_m: float) -> None:
-    assert ratio(width_m, width_m, True, OTHERS) < 0.0
+    assert log_odds(width_m, width_m, True, OTHERS) < 0.0
+
+
+@pytest.mark.parametrize("across_m", [0.02, 0.022, 0.026])
+@pytest.mark.parametrize("share", [0.5, 1.0])
+def test_on_an_almost_square_part_fingers_may_be_up_to_its_diagonal_apart(across_m, share) -> None:
+    held = grasp(0.02, across_m)
+    opening_m = across_m + share * (held.diagonal_m - across_m)
+    logs = CUES.log_likelihoods(HandReading(opening_m, True, None), held, GRIPPER)
+    assert logs[Between.TURNED] > logs[Between.OTHER]
+
+
+@given(width_m=st.floats(0.02, 0.04), across_m=st.floats(0.02, 0.04))
+def test_a_part_may_lie_the_other_way_round(width_m, across_m) -> None:
+    logs = CUES.log_likelihoods(
+        HandReading(across_m, True, None), grasp(width_m, across_m), GRIPPER
+    )
+    assert logs[Between.TURNED] > logs[Between.OTHER]
+
+
+@given(width_m=st.floats(0.02, 0.04), wider_m=st.floats(0.006, 0.015))
+def test_no_long_part_is_held_askew(width_m, wider_m) -> None:
+    """Flat fingers turn it straight; so it is something else, even of its colour."""
+    long_m = 4 * width_m
+    assert log_odds(width_m, width_m + wider_m, True, OWN, long_m) < 0.0
+
+
+@given(width_m=WIDTHS, wider_m=st.floats(0.004, 0.02))
+def test_a_wider_stranger_is_no_turned_part_where_no_way_round_is_so_wide(width_m, wider_m) -> None:
+    diagonal_m = grasp(width_m).diagonal_m
+    assert log_odds(width_m, diagonal_m + 0.004 + wider_m, True, OWN) < 0.0
