@@ -38,6 +38,7 @@ class Hand:
             [0.0, 0.0, 0.0, 1.0],
             quaternion,
         )
+        part.stay_awake(True)
         hand = cls(client, part, force_n, pose, constraint)
         hand.move_by((0.0, 0.0, 0.0))
         return hand
@@ -54,3 +55,4 @@ class Hand:
 
     def let_go(self) -> None:
         self.client.removeConstraint(self._constraint)
+        self.part.stay_awake(False)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sim.workcell.physics import Client, Point, Quaternion, to_matrix, yaw_quaternion
+from sim.workcell.physics import Client, Point, Quaternion, to_matrix, wake, yaw_quaternion
 from tasks.scene import Pose, SceneObject
 
 _FRICTION = 0.8
@@ -22,6 +22,8 @@ _AWAY_SPACING_M = 0.5
 
 _AT_REST = 0.01
 """Slower than this (m/s and rad/s) a part is at rest."""
+_ASLEEP_BELOW = _AT_REST**2
+"""The sum of both speeds squared below which, for two seconds, the engine lets a part sleep."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,10 +108,25 @@ class Part:
         x, y, z = (float(value) for value in np.array(pose.position) + up)
         return (x, y, z), pose.quaternion
 
+    def stay_awake(self, wanted: bool) -> None:
+        """Whether it is moved by something other than what touches it."""
+        client = self._client
+        state = "DISABLE_SLEEPING" if wanted else "ENABLE_SLEEPING"
+        activation = getattr(client, f"ACTIVATION_STATE_{state}")
+        client.changeDynamics(self.body_id, -1, activationState=activation)
+
     def _reset(self, pose: PartPose) -> None:
         self.hidden = False
+        self._wake_what_touches()
         self._client.resetBasePositionAndOrientation(self.body_id, *self.body_pose(pose))
         self._client.resetBaseVelocity(self.body_id, [0.0] * 3, [0.0] * 3)
+        wake(self._client, self.body_id)
+
+    def _wake_what_touches(self) -> None:
+        """What it leaves may have rested on it."""
+        touching = self._client.getContactPoints(bodyA=self.body_id)
+        for other in {point[2] for point in touching}:
+            wake(self._client, other)
 
 
 def _create_body(client: Client, definition: SceneObject) -> int:
@@ -139,6 +156,9 @@ def _create_body(client: Client, definition: SceneObject) -> int:
         rollingFriction=0,
         # Without an anchor, friction holds velocities only: what is grasped creeps sideways.
         frictionAnchor=1,
+        # What has come to rest costs nothing until something awake touches it.
+        activationState=client.ACTIVATION_STATE_ENABLE_SLEEPING,
+        sleepThreshold=_ASLEEP_BELOW,
     )
     return body_id
 

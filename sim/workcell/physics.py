@@ -40,6 +40,11 @@ def arrangement(client: Client) -> bytes:
     return np.array(values).tobytes()
 
 
+def wake(client: Client, body_id: int) -> None:
+    """Have the engine move a body again that may sleep."""
+    client.changeDynamics(body_id, -1, activationState=client.ACTIVATION_STATE_WAKE_UP)
+
+
 def to_matrix(position: Point, quaternion: Quaternion) -> Matrix4:
     """A pose of the engine as a homogeneous transform."""
     x, y, z, w = quaternion
