@@ -36,7 +36,7 @@ class CueModel:
     """
 
     encoder_sd_m: float = 0.0003
-    grasp_sd_m: float = 0.0015
+    grasp_sd_m: float = 0.001
     friction: float = 1.0
     closed_sd_m: float = 0.001
     moving_share: float = 0.4

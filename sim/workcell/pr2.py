@@ -47,6 +47,9 @@ _WRIST_TO_TOOL_M = 0.18
 _FINGER_LENGTH_M = 0.0914
 """From a finger's joint to where it presses."""
 
+_MARGIN_M = 0.001
+"""The engine keeps what fingers close on so far away from each pad."""
+
 _ARM_COLOR = (0.80, 0.80, 0.82, 1.0)
 _GRIPPER_COLOR = (0.35, 0.36, 0.38, 1.0)
 
@@ -142,8 +145,11 @@ class Pr2:
         return left[0], right[0]
 
     def gripper_opening_m(self) -> float:
-        """The distance between the finger tips, which stay parallel."""
-        return sum(inner_side_m(angle) for angle in self.finger_angles())
+        """The distance between the pads, which stay parallel; negative where they press together.
+
+        It is calibrated as on a gauge: it is the width of what the fingers have closed on.
+        """
+        return sum(inner_side_m(angle) - _MARGIN_M for angle in self.finger_angles())
 
     def gripper_effort_n(self) -> float:
         """The force with which the fingers press together, by their motors' torques."""

@@ -57,7 +57,7 @@ def test_closing_the_gripper_on_nothing_holds_nothing(hands: Hands) -> None:
 
 def test_the_opening_is_the_width_of_what_is_held(hands: Hands) -> None:
     hands.pick("bar")
-    assert hands.body.gripper_opening_m() == pytest.approx(0.03, abs=0.006)
+    assert hands.body.gripper_opening_m() == pytest.approx(0.03, abs=0.001)
 
 
 def test_an_opened_gripper_drops_the_part(hands: Hands) -> None:
