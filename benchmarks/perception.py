@@ -29,6 +29,7 @@ from robots.vision.head import HeadSighting
 from robots.vision.lookalikes import find_lookalikes
 from robots.vision.projection import pixels_covered, unproject
 from robots.vision.table_view import TableView, view_table
+from robots.vision.tracking import LastSeen
 from sim.random_scene import NoRoomError, random_scene
 from sim.workcell.colors import learn_colors
 from sim.workcell.options import WorkcellOptions
@@ -221,7 +222,7 @@ def show(title: str, tally: Tally, *, verbose: bool) -> None:
 
 def _view(image: CameraImage, catalogue: Catalogue, model: ColorModel, tally: Tally) -> TableView:
     started = time.process_time()
-    view = view_table(image, catalogue.table, catalogue.parts, model, catalogue.starts)
+    view = view_table(image, catalogue.table, catalogue.parts, model, LastSeen(catalogue.starts))
     tally.cpu_s.append(time.process_time() - started)
     assert view is not None
     return view

@@ -268,12 +268,12 @@ class Senses:
                 self.catalogue.table,
                 parts,
                 self._model,
-                self._last_seen.spots,
+                self._last_seen,
                 self._is_own_arm,
             )
             seen.views[stranger] = view
             for name, each in view.sightings.items() if view is not None else ():
-                self._last_seen.note(name, each.x, each.y)
+                self._last_seen.note_sighting(name, each)
         return seen.views[stranger]
 
     def _is_own_arm(self, points: Points) -> NDArray[np.bool_]:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from robots.body import CameraImage
 from robots.catalogue import Part
 from robots.grasp import half_turn
+from robots.link.messages import Location
 from robots.vision.blob import Blob
 from robots.vision.color_model import ColorModel
 from robots.vision.head import HeadSighting
@@ -20,10 +21,13 @@ from robots.vision.naming import Match, Namer, Top
 from robots.vision.projection import Points, unproject
 from robots.vision.rectangle import Fitted, Rectangle, fit_any, fit_sized, gather
 from robots.vision.seen_box import SeenBox, Size
+from robots.vision.tracking import LastSeen
 from tasks.scene import Table
 
 _TURNS_RAD = (math.pi / 4, math.pi / 2, -math.pi / 4)
 _COMPLETE_SHARE = 0.8
+_AS_WELL = 1.2
+"""A rectangle fits a half hidden surface as well as another if its misfit is not larger by more."""
 _OWN_M = 0.004
 """What is within a part's outline, so much wider, and not above it is the part itself."""
 
@@ -51,13 +55,13 @@ def view_table(
     table: Table,
     parts: Mapping[str, Part],
     model: ColorModel,
-    last_seen: Mapping[str, tuple[float, float]],
+    last_seen: LastSeen,
     own_arm: Callable[[NDArray[np.float64]], NDArray[np.bool_]] | None = None,
 ) -> TableView | None:
     """Understand a head picture; None for one without depth.
 
-    `parts` are those that can be on the table, by name; `own_arm` says of points (n, 3) which
-    belong to the robot.
+    `parts` are those that can be on the table, by name; `last_seen` is what earlier pictures say
+    of them; `own_arm` says of points (n, 3) which belong to the robot.
     """
     heights = measure_heights(image, table, own_arm)
     if heights is None:
@@ -65,11 +69,13 @@ def view_table(
     surfaces = find_surfaces(heights)
     tops = [Top(each, fit_any(gather(each, surfaces))) for each in surfaces.all]
     known = {name: part for name, part in parts.items() if name in model.names}
-    matches, unknown = Namer(known, model).name(tops, surfaces, model.segment(image.bgr), last_seen)
+    matches, unknown = Namer(known, model).name(
+        tops, surfaces, model.segment(image.bgr), last_seen.spots
+    )
     sightings: dict[str, HeadSighting] = {}
     boxes: list[SeenBox] = []
     for match in matches:
-        fitted = _fit_match(match, surfaces)
+        fitted = _fit_match(match, surfaces, last_seen.seen_whole(match.part.name))
         sighting = _sighting(match, _centred_by_knob(match, fitted), image)
         sightings[match.part.name] = sighting
         boxes += _boxes(match, sighting)
@@ -81,8 +87,8 @@ def view_table(
     return TableView(heights, sightings, [*boxes, *strange])
 
 
-def _fit_match(match: Match, surfaces: Surfaces) -> Fitted:
-    """Where exactly the surface is, now that its size is known."""
+def _fit_match(match: Match, surfaces: Surfaces, stood: Location | None) -> Fitted:
+    """Where exactly the surface is, now that its size is known; `stood`: when last seen whole."""
     rough = match.top.fitted.turned() if match.swapped else match.top.fitted
     at = rough.rectangle
     # What is hidden goes on from the end that is seen.
@@ -99,7 +105,20 @@ def _fit_match(match: Match, surfaces: Surfaces) -> Fitted:
     if all(rough.sides_seen):
         # A rectangle of a few pixels, fitted without its size, may lie any way round.
         fits += [fit_sized(evidence, replace(start, yaw=at.yaw + turn)) for turn in _TURNS_RAD]
-    return min(fits, key=lambda each: each.misfit)
+    best = min(fits, key=lambda each: each.misfit)
+    if all(rough.sides_seen) or stood is None or not _is_so_high(match, stood, surfaces):
+        return best
+    # Of a corner that is seen the rest may lie either way: it stands as it did if that fits, too.
+    still = fit_sized(evidence, Rectangle(stood.x, stood.y, stood.yaw, match.extents))
+    return still if still.misfit <= _AS_WELL * best.misfit else best
+
+
+def _is_so_high(match: Match, stood: Location, surfaces: Surfaces) -> bool:
+    """Whether a surface is as high as the part's top was."""
+    if not match.upright or stood.z is None:
+        return False
+    off_m = stood.z + match.height_m - match.top.surface.top_z
+    return abs(off_m) <= 2 * surfaces.tolerance_m
 
 
 def _centred_by_knob(match: Match, fitted: Fitted) -> Fitted:

@@ -1,27 +1,42 @@
-"""Which of several equal parts is which: names stay with what was last seen under them."""
+"""What earlier pictures say of the parts: where each was last, and how it stood when seen whole."""
 
 from collections.abc import Mapping
 from types import MappingProxyType
+
+from robots.link.messages import Location
+from robots.vision.head import HeadSighting
 
 Spot = tuple[float, float]
 """A place in the plane of the base frame, metres."""
 
 
 class LastSeen:
-    """Where each part was last, by name.
+    """Where each part was last, by name; of equal parts names stay with what was seen under them.
 
     A part that is not seen keeps its place: it may be hidden, or gone, and what is put back
-    elsewhere is then the one that is left over.
+    elsewhere is then the one that is left over. What is half hidden most likely stands as it did
+    when it was last seen whole.
     """
 
-    def __init__(self, starts: Mapping[str, Spot]) -> None:
+    def __init__(self, starts: Mapping[str, Spot] | None = None) -> None:
         """`starts`: where the parts are said to start."""
-        self._spots = dict(starts)
+        self._spots = dict(starts or {})
+        self._whole: dict[str, Location] = {}
 
     @property
     def spots(self) -> Mapping[str, Spot]:
         return MappingProxyType(self._spots)
 
+    def seen_whole(self, name: str) -> Location | None:
+        """How a part stood when it was last seen whole."""
+        return self._whole.get(name)
+
+    def note_sighting(self, name: str, seen: HeadSighting) -> None:
+        """A part was seen."""
+        self.note(name, seen.x, seen.y)
+        if seen.complete:
+            self._whole[name] = Location(x=seen.x, y=seen.y, z=seen.z, yaw=seen.yaw)
+
     def note(self, name: str, x: float, y: float) -> None:
-        """A part was seen, or let go, at a place."""
+        """A part was at a place, or was let go there."""
         self._spots[name] = (x, y)

@@ -15,6 +15,7 @@ from robots.gripper import GripperModel
 from robots.link.messages import Location
 from robots.vision.color_model import ColorModel, Sample
 from robots.vision.table_view import TableView, view_table
+from robots.vision.tracking import LastSeen
 from sim.tabletop.arm import GRIPPER
 from tasks.scene import Table
 
@@ -301,6 +302,6 @@ def catalogue() -> Catalogue:
 
 def view_of(image: CameraImage, parts: Mapping[str, Part] = PARTS) -> TableView:
     """What a drawn head picture shows, with colours that were learned from drawn pictures."""
-    view = view_table(image, Table(), parts, trained_model(), {})
+    view = view_table(image, Table(), parts, trained_model(), LastSeen())
     assert view is not None
     return view

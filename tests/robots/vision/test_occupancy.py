@@ -11,6 +11,7 @@ from robots.catalogue import Part
 from robots.link.messages import Location
 from robots.vision.obstruction import Obstruction
 from robots.vision.occupancy import Fit, Room, find_occupant, room_above, room_at_place
+from robots.vision.seen_box import SeenBox
 
 BAR_ROOM = room_at_place(PARTS["pink_bar"], Location(x=0.535, y=-0.12), TABLE_Z)
 TOP_ROOM = room_at_place(PARTS["purple_top"], Location(x=0.535, y=-0.05), TABLE_Z + 0.08)
@@ -87,3 +88,13 @@ def test_what_lies_on_a_part_is_seen(on_it: float | None, free: bool) -> None:
     found = find_occupant(view, room, Fit())
     assert (found is None) is free
     assert free or found.what == "yellow_bar lies on pink_bar"
+
+
+def test_a_part_does_not_lie_on_itself() -> None:
+    """Something badly seen beside it may seem to reach into the part."""
+    scene = DrawnScene({"purple_top": Resting(0.535, -0.12)})
+    view = view_of(scene.picture())
+    unclear = SeenBox(0.535, -0.12, 0.3, (0.3, 0.3, 0.2), TABLE_Z, None, complete=False)
+    view = replace(view, boxes=[*view.boxes, unclear])
+    room = room_above(PARTS["purple_top"], view.sightings["purple_top"])
+    assert find_occupant(view, room, Fit(share=0.01)) is None

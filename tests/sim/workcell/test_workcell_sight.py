@@ -7,6 +7,7 @@ import pytest
 
 from robots.catalogue import Catalogue
 from robots.vision.table_view import view_table
+from robots.vision.tracking import LastSeen
 from sim.workcell.colors import learn_colors
 from sim.workcell.options import WorkcellOptions
 from sim.workcell.world import WorkcellWorld
@@ -42,7 +43,7 @@ def test_it_is_seen_which_side_of_a_small_part_is_the_longer_one(
             scene.table,
             catalogue.parts,
             learn_colors(scene, noisy.camera_noise),
-            catalogue.starts,
+            LastSeen(catalogue.starts),
         )
         world.close()
         assert view is not None
