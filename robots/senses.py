@@ -187,6 +187,7 @@ class Senses:
             tool=body.tool_pose(),
             opening_m=body.gripper_opening_m(),
             effort_n=body.gripper_effort_n(),
+            contact_n=body.contact_force_n(),
             fingers=body.finger_hulls(),
         )
 

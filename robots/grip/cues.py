@@ -16,11 +16,15 @@ from robots.gripper import GripperModel
 
 @dataclass(frozen=True, slots=True)
 class HandReading:
-    """What the hand's sensors say at one moment; the composition is None where it cannot tell."""
+    """What the hand's sensors say at one moment; the composition is None where it cannot tell.
+
+    `presses`: the fingers press on something; `pushed`: something pushes against the arm.
+    """
 
     opening_m: float
     presses: bool
     composition: Composition | None
+    pushed: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,13 +34,13 @@ class CueModel:
     The opening of fingers on the right part is normal around its width, with the encoder's noise
     and `grasp_sd_m`, what pads and parts give way. A part that is turned between them either lies
     the other way round or is jammed askew: flat fingers turn it straight unless the line between
-    the two corners that they touch is within the angle of their `friction`. Fingers that closed on
-    nothing are apart by the noise alone, in `moving_share` of the cases they are still on their
-    way.
+    the two corners that they touch is within the angle of their `friction`, or something pushes.
+    Fingers that closed on nothing are apart by the noise alone, in `moving_share` of the cases they
+    are still on their way.
     """
 
     encoder_sd_m: float = 0.0003
-    grasp_sd_m: float = 0.001
+    grasp_sd_m: float = 0.0015
     friction: float = 1.0
     closed_sd_m: float = 0.001
     moving_share: float = 0.4
@@ -54,7 +58,8 @@ class CueModel:
         right = on_something + _log_looks(seen, "right")
         return {
             Between.STRAIGHT: right + math.log(self._opening_on(opening_m, grasp)),
-            Between.TURNED: right + math.log(self._opening_on_turned(opening_m, grasp)),
+            Between.TURNED: right
+            + math.log(self._opening_on_turned(opening_m, grasp, gripper, pushed=reading.pushed)),
             Between.OTHER: on_something
             + _log_looks(seen, "other")
             + math.log(self._opening_on_other(opening_m, gripper)),
@@ -67,12 +72,22 @@ class CueModel:
         """Density per metre."""
         return _normal(opening_m - grasp.width_m, self._sd_m) + self.impossible_per_m
 
-    def _opening_on_turned(self, opening_m: float, grasp: Grasp) -> float:
+    def _opening_on_turned(
+        self, opening_m: float, grasp: Grasp, gripper: GripperModel, *, pushed: bool
+    ) -> float:
+        narrower_m = min(grasp.width_m, grasp.across_m)
+        if pushed:
+            return self._opening_within(opening_m, narrower_m, gripper.max_opening_m)
         jammed_m = grasp.diagonal_m / math.hypot(1.0, self.friction)
-        least_m, most_m = jammed_m - 2 * self._sd_m, grasp.diagonal_m + 2 * self._sd_m
-        askew = 1.0 / (most_m - least_m) if least_m <= opening_m <= most_m else 0.0
+        askew = self._opening_within(opening_m, jammed_m, grasp.diagonal_m)
         other_way_round = _normal(opening_m - grasp.across_m, self._sd_m)
-        return 0.5 * (askew + other_way_round) + self.impossible_per_m
+        return 0.5 * (askew + other_way_round)
+
+    def _opening_within(self, opening_m: float, least_m: float, most_m: float) -> float:
+        """Evenly between these, but for the scatter at both ends."""
+        least_m, most_m = least_m - 2 * self._sd_m, most_m + 2 * self._sd_m
+        inside = least_m <= opening_m <= most_m
+        return (1.0 / (most_m - least_m) if inside else 0.0) + self.impossible_per_m
 
     def _opening_on_nothing(self, opening_m: float, gripper: GripperModel) -> float:
         sd_m = math.hypot(self.encoder_sd_m, self.closed_sd_m)
@@ -80,9 +95,7 @@ class CueModel:
         return (1.0 - self.moving_share) * closed + self.moving_share / gripper.max_opening_m
 
     def _opening_on_other(self, opening_m: float, gripper: GripperModel) -> float:
-        fits = gripper.min_width_m <= opening_m <= gripper.max_opening_m
-        spread_m = gripper.max_opening_m - gripper.min_width_m
-        return (1.0 / spread_m if fits else 0.0) + self.impossible_per_m
+        return self._opening_within(opening_m, gripper.min_width_m, gripper.max_opening_m)
 
     def _log_pressing(self, presses: bool, share: float) -> float:
         return math.log(share if presses else 1.0 - share)

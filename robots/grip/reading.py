@@ -46,7 +46,8 @@ class GripReading:
     """One reading of opening, effort and picture, and the verdict with it.
 
     `probability` is how sure it is that `name` is held rightly. The fingers are `opening_m` apart
-    where the part is `width_m` wide. `composition` says which colours the picture shows where the
+    where the part is `width_m` wide; `presses`: they press on something, `pushed`: something pushes
+    against the arm. `composition` says which colours the picture shows where the
     part must be seen; None where the fingers hide it or its colour cannot be told. `blob` are the
     pixels of its colours, `expected` the centre of its outline (pixels) and `overhang_px` how far
     the blob hangs over that, for a picture 160 pixels wide; `tolerance_px` of it are usual.
@@ -58,6 +59,7 @@ class GripReading:
     opening_m: float
     width_m: float
     presses: bool
+    pushed: bool
     composition: Composition | None
     blob: Blob | None
     expected: tuple[float, float]

@@ -33,6 +33,9 @@ _LONGEST_DOUBT = 12
 _PRESSES_SHARE = 0.5
 """Fingers press on something if they do so with this share of their force."""
 
+_PUSHED_N = 10.0
+"""More than a hand feels while it carries something freely."""
+
 _OVERHANG_PX = 3.0
 """A part hangs over its outline by no more, in a picture 160 pixels wide, while it stays put."""
 _STRAY_SHARE = 0.1
@@ -44,13 +47,14 @@ class Hand:
     """The hand at one moment: its picture, where it is, and what the fingers feel.
 
     `tool` is the tool point's pose; `fingers` are the convex pieces (n, 3) of the gripper in the
-    tool frame that may hide what is held.
+    tool frame that may hide what is held. `contact_n` is how hard something pushes against the arm.
     """
 
     image: CameraImage
     tool: Matrix4
     opening_m: float
     effort_n: float
+    contact_n: float
     fingers: Sequence[NDArray[np.float64]]
 
 
@@ -132,6 +136,7 @@ class GripWatch:
             opening_m=hand.opening_m,
             width_m=self.grasp.width_m,
             presses=hand.effort_n >= _PRESSES_SHARE * self._gripper.grip_force_n,
+            pushed=hand.contact_n >= _PUSHED_N,
             composition=self._composition(hand, segmentation),
             blob=blob,
             expected=_center(whole, project(image, hand.tool[None, :3, 3])[0]),
@@ -148,7 +153,7 @@ class GripWatch:
         return composition(region, segmentation, self._model, self.part.name)
 
     def _log_likelihoods(self, reading: GripReading) -> Mapping[Between, float]:
-        hand = HandReading(reading.opening_m, reading.presses, reading.composition)
+        hand = HandReading(reading.opening_m, reading.presses, reading.composition, reading.pushed)
         return self._cues.log_likelihoods(hand, self.grasp, self._gripper)
 
     def _judge(self) -> None:

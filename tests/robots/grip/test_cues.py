@@ -98,3 +98,23 @@ def test_no_long_part_is_held_askew(width_m, wider_m) -> None:
 def test_a_wider_stranger_is_no_turned_part_where_no_way_round_is_so_wide(width_m, wider_m) -> None:
     diagonal_m = grasp(width_m).diagonal_m
     assert log_odds(width_m, diagonal_m + 0.004 + wider_m, True, OWN) < 0.0
+
+
+@given(width_m=st.floats(0.012, 0.04), wider_m=st.floats(0.0, 0.03))
+def test_what_something_pushes_may_be_askew_however_long_it_is(width_m, wider_m) -> None:
+    reading = HandReading(width_m + wider_m, True, OWN, pushed=True)
+    logs = CUES.log_likelihoods(reading, grasp(width_m, 5 * width_m), GRIPPER)
+    assert logs[Between.TURNED] > logs[Between.OTHER]
+
+
+@given(width_m=WIDTHS)
+def test_fingers_that_close_tell_that_it_is_gone_even_while_something_pushes(width_m) -> None:
+    belief = Belief()
+    for _ in range(20):
+        belief.update(
+            CUES.log_likelihoods(HandReading(width_m, True, OWN), grasp(width_m), GRIPPER)
+        )
+    for _ in range(3):
+        closed = HandReading(0.0, False, None, pushed=True)
+        belief.update(CUES.log_likelihoods(closed, grasp(width_m), GRIPPER))
+    assert belief.probability < 0.01

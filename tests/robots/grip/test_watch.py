@@ -57,6 +57,7 @@ class ScriptedHand:
         return Hand(
             image=image,
             tool=self.tool,
+            contact_n=0.0,
             opening_m=self.grasp.width_m if opening_m is None else opening_m,
             effort_n=GRIPPER.grip_force_n if presses else 0.0,
             fingers=[BIG_PLATE] if hidden else [],

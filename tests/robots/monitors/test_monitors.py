@@ -32,6 +32,7 @@ def grip(state: GripState) -> GripReading:
         opening_m=0.03 if held else 0.003,
         width_m=0.03,
         presses=held,
+        pushed=False,
         composition=None,
         blob=BLOB,
         expected=(80.0, 60.0),
