@@ -18,6 +18,7 @@ from robots.result import Result
 from robots.senses import Senses
 from robots.understanding import Understanding
 from robots.vision.head import HeadSighting
+from robots.vision.obstruction import Obstruction
 from robots.vision.presence import Presence
 
 LOOK_PERIOD_S = 0.5
@@ -35,8 +36,8 @@ _MOST_READINGS = 6
 class Looker:
     """What a look works with.
 
-    `way` are the poses that the held execution has still to go through; `execution` its id,
-    `destination` its object and where that goes.
+    `way` are the poses that the held execution has still to go through, `obstruction` what was seen
+    to be in the way; `execution` its id, `destination` its object and where that goes.
     `may_move`: the arm may go to neutral to free the head camera's view. `finished`: the results
     that it is to judge.
     """
@@ -48,6 +49,7 @@ class Looker:
     way: list[ToolPose]
     may_move: bool
     destination: tuple[Part, Location | None] | None = None
+    obstruction: Obstruction | None = None
     finished: Sequence[Result] = ()
 
     def free_view(self) -> Routine[None]:
@@ -165,6 +167,9 @@ class WayClear:
         if here is not None and not arm.at_neutral:
             way = [here, *way]
         image = senses.look()
+        before = self._looker.obstruction
+        if before is not None and senses.shows_something_unknown(image, before.position):
+            return False
         part, target = self._looker.destination or (None, None)
         if senses.obstruction(image, way, part) is not None:
             return False

@@ -367,6 +367,7 @@ class Robot:
             execution=None if held is None else held.id,
             way=[] if held is None else held.way,
             destination=None if held is None else held.destination,
+            obstruction=None if held is None else held.obstruction,
             may_move=may_move and not self._senses.holds(),
             finished=finished,
         )

@@ -124,6 +124,12 @@ class Senses:
         view = self._understand(image)
         return () if view is None else view.boxes
 
+    def shows_something_unknown(self, image: CameraImage, at: tuple[float, float, float]) -> bool:
+        """Whether something that is no known part stands around a point."""
+        point = np.array([at])
+        strange = (each for each in self.seen_boxes(image) if each.name is None)
+        return any(bool(each.holds(point)[0]) for each in strange)
+
     def presence(self, image: CameraImage, part: Part, target: Location) -> Presence:
         """Whether a part, or one that looks the same, stands at a place."""
         view = self._understand(image)

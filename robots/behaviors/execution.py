@@ -26,6 +26,7 @@ from robots.link.messages import Finished, Holding, Location, ReportBody, Resume
 from robots.monitors.monitor import BEFORE_FIRST_STEP, Meanwhile, Monitor
 from robots.senses import Senses
 from robots.vision.head import HeadSighting
+from robots.vision.obstruction import Obstruction
 from robots.vision.presence import Presence, is_at
 
 
@@ -78,6 +79,11 @@ class Execution:
     def way(self) -> list[ToolPose]:
         """The poses that the steps still to come lead through."""
         return self._progress.way
+
+    @property
+    def obstruction(self) -> Obstruction | None:
+        """What was last seen to be in that way."""
+        return self._progress.seen.obstruction
 
     @property
     def destination(self) -> tuple[Part, Location | None] | None:

@@ -12,6 +12,8 @@ from robots.body import ArmPath, NoWay, ToolPose
 from robots.catalogue import Part
 from robots.grasp import Grasp, UngraspableError
 from robots.senses import Senses
+from robots.vision.obstruction import obstruction_by
+from robots.vision.seen_box import SeenBox
 
 LOOKS = 3
 """So often a part that is not wholly seen is looked for before that is believed."""
@@ -70,47 +72,66 @@ def make_plan(assignment: Assignment, arm: Arm, senses: Senses, findings: Findin
     """Lay out the steps and plan their path; None if there is none, or the object is not seen.
 
     The first way of grasping the object is taken for which there is room and a path. What it
-    finds out about the way goes to `findings`.
+    finds out about the way goes to `findings`; what keeps the arm from it is in the way if it is
+    unknown, and a reason to refuse if it is a part.
     """
     part = assignment.part
     if part is not None and findings.sighting is None and not findings.carrying:
         return None
-    seen = senses.seen_boxes(findings.image or senses.look())
-    boxes = others(part, seen)
+    boxes = others(part, senses.seen_boxes(findings.image or senses.look()))
     try:
-        ways = list(ways_to_grasp(assignment, arm, senses, findings, boxes))
+        found = _plan_amid(boxes, assignment, arm, senses, findings)
+        if isinstance(found, Plan):
+            return found
+        known = [each for each in boxes if each.name is not None]
+        if isinstance(found, NoWay) and findings.obstruction is None and len(known) < len(boxes):
+            without = _plan_amid(known, assignment, arm, senses, findings)
+            if isinstance(without, Plan):
+                strange = [each for each in boxes if each.name is None]
+                image = findings.image or senses.look()
+                findings.obstruction = obstruction_by(strange, findings.way, image)
+                return None
     except UngraspableError as error:
         findings.refusal = str(error)
         return None
-    table = table_box(senses.catalogue.table)
-    refusals: list[str] = []
-    for situation in ways:
+    if isinstance(found, NoWay):
+        found = f"with {_name(part)} the arm {found.reason}"
+    findings.refusal = found
+    return None
+
+
+def _plan_amid(
+    boxes: Sequence[SeenBox], assignment: Assignment, arm: Arm, senses: Senses, findings: Findings
+) -> Plan | NoWay | str:
+    """The plan amid some boxes, or why there is none: no path, or no room, which is said.
+
+    Raises `UngraspableError`.
+    """
+    part = assignment.part
+    obstacles = [table_box(senses.catalogue.table), *boxes]
+    refusals: list[NoWay | str] = []
+    for situation in ways_to_grasp(assignment, arm, senses, findings, boxes):
         steps = assignment.behavior.steps(assignment.parameters, situation)
         first = assignment.behavior.first_carrying(steps) if findings.carrying else None
         first = 1 if first is None else first
+        left = steps[first - 1 :]
         if not refusals:
-            _judge_way(waypoints_of(steps[first - 1 :]), assignment, senses, findings)
-        tight = crowded(steps[first - 1 :], arm.body.gripper, boxes)
+            _judge_way(waypoints_of(left), assignment, senses, findings)
+        tight = crowded(left, arm.body.gripper, boxes)
         if tight is not None:
             refusals.append(tight)
             continue
-        legs = legs_of(
-            steps[first - 1 :],
-            part,
-            situation.grasp,
-            arm.body.gripper,
-            carrying=findings.carrying,
-        )
-        path = arm.body.plan_among(legs, [table, *boxes]) if legs else None
+        gripper, grasp = arm.body.gripper, situation.grasp
+        legs = legs_of(left, part, grasp, gripper, carrying=findings.carrying)
+        path = arm.body.plan_among(legs, obstacles) if legs else None
         if isinstance(path, NoWay):
-            refusals.append(f"with {_name(part)} the arm {path.reason}")
+            refusals.append(path)
             continue
         if refusals:
             # What stands in a way that is not taken is in nobody's way.
-            _judge_way(waypoints_of(steps[first - 1 :]), assignment, senses, findings)
+            _judge_way(waypoints_of(left), assignment, senses, findings)
         return Plan(steps, first, path, situation.grasp)
-    findings.refusal = refusals[0]
-    return None
+    return refusals[0]
 
 
 def goes_on_carrying(assignment: Assignment, arm: Arm, senses: Senses) -> bool:

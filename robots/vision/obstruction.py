@@ -6,11 +6,13 @@ from itertools import pairwise
 
 import cv2
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 
-from robots.body import ToolPose
+from robots.body import CameraImage, ToolPose
 from robots.vision.head import HeadSighting
-from robots.vision.projection import Points
+from robots.vision.projection import Points, pixels_covered, project
+from robots.vision.seen_box import SeenBox
 from robots.vision.table_view import TableView
 
 _BOTTOM_ERROR_M = 0.010
@@ -100,6 +102,25 @@ def obstruction_of(
         position=(float(middle[0]), float(middle[1]), float(middle[2])),
         center=(float(np.median(us[kept])), float(np.median(vs[kept]))),
         area_px=area_px,
+    )
+
+
+def obstruction_by(
+    boxes: Sequence[SeenBox], waypoints: Sequence[ToolPose], image: CameraImage
+) -> Obstruction:
+    """That of some unknown things which is nearest to the way through `waypoints`.
+
+    Raises `ValueError` without any.
+    """
+    way = [(each.x, each.y) for each in waypoints]
+    line = shapely.LineString(way) if len(way) > 1 else shapely.MultiPoint(way)
+    nearest = min(boxes, key=lambda box: shapely.Polygon(box.corners()).distance(line))
+    top = (nearest.x, nearest.y, nearest.top_z)
+    u, v = project(image, np.array([top]))[0]
+    return Obstruction(
+        position=top,
+        center=(float(u), float(v)),
+        area_px=round(pixels_covered(image, top, nearest.size[:2])),
     )
 
 

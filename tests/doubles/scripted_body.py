@@ -90,6 +90,8 @@ class ScriptedBody:
     def __init__(self, parts: dict[str, Resting], period_s: float = 1 / 30) -> None:
         self.parts: dict[str, Resting] = {name: replace(each) for name, each in parts.items()}
         self.grey_boxes: list = []
+        self.avoids_the_unknown = False
+        """Whether it finds no path while anything unknown is seen."""
         self.in_hand: tuple[str, np.ndarray] | None = None
         self.held_out: tuple[str, np.ndarray] | None = None
         self.force_n = 0.0
@@ -159,7 +161,9 @@ class ScriptedBody:
     def plan_path(self, waypoints) -> ScriptedPath | None:
         return None if self.unplannable else ScriptedPath(list(waypoints))
 
-    def plan_among(self, legs, _boxes) -> ScriptedPath | NoWay:
+    def plan_among(self, legs, boxes) -> ScriptedPath | NoWay:
+        if self.avoids_the_unknown and any(box.name is None for box in boxes[1:]):
+            return NoWay("would touch something unknown on the way")
         path = self.plan_path([leg.to for leg in legs])
         return NoWay("finds no path") if path is None else path
 
