@@ -8,7 +8,7 @@ import numpy as np
 from robots.motion.collision import CollisionModel, Hand, Surrounded
 from robots.motion.curve import JointCurve
 from robots.motion.kinematics import Joints
-from robots.motion.planner import JointPath
+from robots.motion.planner import JointPath, PathSegment
 from robots.vision.seen_box import SeenBox
 
 FREE_MARGIN_M = 0.008
@@ -38,13 +38,22 @@ class PathObstacles:
 
     def first_on(self, path: JointPath) -> str | None:
         """What the arm would touch first on a path; None if nothing."""
-        for number, way in enumerate(path.ways):
-            surrounded = (self.straight if way.straight else self.free)[number]
-            for joints in samples(way.curve):
-                hit = surrounded.hit(joints)
-                if hit is not None and hit not in self.known:
-                    return hit.name or "something unknown"
+        hits = (self.on(number, way) for number, way in enumerate(path.ways))
+        return next((hit for hit in hits if hit is not None), None)
+
+    def on(self, number: int, way: PathSegment) -> str | None:
+        """What it would touch on segment `number` of a path; None if nothing."""
+        surrounded = (self.straight if way.straight else self.free)[number]
+        for joints in samples(way.curve):
+            hit = surrounded.hit(joints)
+            if hit is not None and hit not in self.known:
+                return hit.name or "something unknown"
         return None
+
+    def is_free(self, number: int, joints: Joints) -> bool:
+        """Whether it touches nothing at these joint angles on such a segment, by a free way."""
+        hit = self.free[number].hit(joints)
+        return hit is None or hit in self.known
 
 
 def samples(curve: JointCurve) -> list[Joints]:

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Protocol
 
 import numpy as np
@@ -10,6 +11,7 @@ import numpy as np
 from robots.body import Matrix4, NoWay, ToolPose
 from robots.motion.curve import JointCurve
 from robots.motion.kinematics import Joints, KinematicChain
+from robots.motion.rrt_connect import connect
 
 _LINE_STEPS = 8
 """Postures along a straight line; between them the tool strays less than 0.1 mm."""
@@ -25,6 +27,10 @@ _MAX_DIP_M = 0.03
 _SAME_SPOT_M = 1e-3
 _SAME_YAW_RAD = 5e-3
 _SAMPLES_PER_MOVE = 12
+
+_LEAST_DOWNWARD = -0.7
+"""On the way around, too, the gripper points down but for 45 degrees."""
+_KNOTS_RAD = 0.25
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,6 +57,14 @@ class Obstacles(Protocol):
 
     def first_on(self, path: JointPath) -> str | None:
         """What the arm would touch first on a path; None if nothing."""
+        ...
+
+    def on(self, number: int, way: PathSegment) -> str | None:
+        """What it would touch on segment `number` of a path; None if nothing."""
+        ...
+
+    def is_free(self, number: int, joints: Joints) -> bool:
+        """Whether it touches nothing at these joint angles on such a segment."""
         ...
 
 
@@ -95,11 +109,13 @@ class PathPlanner:
             raise ValueError("a path needs at least one waypoint")
         best: tuple[float, JointPath] | None = None
         hit: str | None = None
+        obstructed: list[JointPath] = []
         for tried, (seed, yaw_offset) in enumerate(self._attempts(start, rng)):
             found = self._try(start, waypoints, seed, yaw_offset)
             touched = obstacles and found and obstacles.first_on(found[1])
-            if touched:
+            if touched and found is not None:
                 hit = hit or touched
+                obstructed.append(found[1])
             elif found is not None and (best is None or found[0] < best[0]):
                 best = found
             if best is not None and (tried + 1 >= _ENOUGH_SEEDS or best[0] < _GOOD_COST):
@@ -108,8 +124,12 @@ class PathPlanner:
                 break
         if best is not None:
             return best[1]
-        if hit is None:
+        if hit is None or obstacles is None:
             return NoWay("does not reach all of the way with the gripper pointing down")
+        for path in obstructed:
+            around = self._detour(path, obstacles, rng)
+            if around is not None:
+                return around
         return NoWay(f"would touch {hit} on the way")
 
     def plan_to_joints(self, start: Joints, end: Joints) -> JointPath:
@@ -170,6 +190,41 @@ class PathPlanner:
             return None
         return [found]
 
+    def _detour(
+        self, path: JointPath, obstacles: Obstacles, rng: np.random.Generator
+    ) -> JointPath | None:
+        """The path with its free ways led around what is on them; None if that is not found."""
+        ways = []
+        for number, way in enumerate(path.ways):
+            if obstacles.on(number, way) is None:
+                ways.append(way)
+                continue
+            around = None if way.straight else self._around(number, way.curve, obstacles, rng)
+            if around is None:
+                return None
+            ways.append(around)
+        return JointPath(tuple(ways))
+
+    def _around(
+        self, number: int, curve: JointCurve, obstacles: Obstacles, rng: np.random.Generator
+    ) -> PathSegment | None:
+        ends = [self._chain.pose(each) for each in (curve.start, curve.end)]
+        lowest_m = min(float(each[2, 3]) for each in ends) - _MAX_DIP_M
+        most_level = max(_LEAST_DOWNWARD, *(float(each[2, 0]) for each in ends)) + 1e-6
+
+        def is_free(joints: Joints) -> bool:
+            tool = self._chain.pose(joints)
+            upright = tool[2, 3] >= lowest_m and tool[2, 0] <= most_level
+            return bool(upright) and obstacles.is_free(number, joints)
+
+        chain = self._chain
+        knots = connect(curve.start, curve.end, chain.lower, chain.upper, is_free, rng)
+        if knots is None:
+            return None
+        way = PathSegment(JointCurve(_denser(knots)), straight=False)
+        # The curve rounds the corners off.
+        return way if obstacles.on(number, way) is None else None
+
     def _dips(self, start: Joints, end: Joints) -> bool:
         """Whether the tool comes lower on the way than at both ends, where things lie."""
         heights = [
@@ -183,6 +238,15 @@ class PathPlanner:
         away = np.abs(end - self._preferred)
         move = 0.3 * away.max() if first else np.abs(end - start).max()
         return float(move + 0.7 * away[_WRIST].max())
+
+
+def _denser(knots: Sequence[Joints]) -> list[Joints]:
+    """The same corners with knots between them, so that a curve stays near the straight ways."""
+    dense = [knots[0]]
+    for start, end in pairwise(knots):
+        count = max(1, round(float(np.abs(end - start).max()) / _KNOTS_RAD))
+        dense += [start + (end - start) * (step / count) for step in range(1, count + 1)]
+    return dense
 
 
 def _is_above(origin: Matrix4, target: Matrix4) -> bool:

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from robots.behaviors.legs import table_box
 from robots.body import HeldBox, NoWay, ToolPose
 from robots.motion.collision import CollisionModel, Hand
 from robots.motion.kinematics import KinematicChain
@@ -20,6 +21,7 @@ from sim.workcell.robot_model import (
     TOOL_FRAME,
     robot_urdf,
 )
+from tasks.scene import Table
 
 START = np.array(NEUTRAL_RAD)
 PICK, PLACE = ToolPose(0.5, -0.45, 0.75, 0.0), ToolPose(0.55, 0.0, 0.75, 0.0)
@@ -91,6 +93,27 @@ def test_a_path_goes_around_or_over_what_stands_there(
     assert isinstance(path, JointPath)
     around = arm.among(posts, hand(0.04), 0.0)
     assert all(around.hit(joints) is None for way in path.ways for joints in samples(way.curve))
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_where_every_straight_way_touches_something_one_around_it_is_found(
+    arm: CollisionModel, chain: KinematicChain, seed: int
+) -> None:
+    x, y = np.random.default_rng(seed).uniform((0.5, -0.26), (0.56, -0.2))
+    tower = box(float(x), float(y), (0.05, 0.05, 0.2))
+    boxes = [tower, table_box(Table())]
+    path = plan(arm, chain, *boxes)
+    assert isinstance(path, JointPath)
+    around = arm.among(boxes, hand(0.04), 0.0)
+    for number, way in enumerate(path.ways):
+        for joints in samples(way.curve):
+            assert around.hit(joints) is None
+            assert number == 0 or chain.pose(joints)[2, 0] < -0.6
+    for way, waypoint in zip(
+        path.ways, (over(PICK), PICK, over(PICK), over(PLACE), PLACE), strict=True
+    ):
+        end = chain.pose(way.curve.end)[:3, 3]
+        assert np.allclose(end, (waypoint.x, waypoint.y, waypoint.z), atol=2e-4)
 
 
 def test_what_no_path_keeps_away_from_is_named(arm: CollisionModel, chain: KinematicChain) -> None:
