@@ -213,6 +213,7 @@ KINDS = {
     "stolen after done": Kind(_stolen_after_done, frozenset({"undone"})),
     "swapped": Kind(_swapped, frozenset({"missing", "missed"})),
     "pushed aside": Kind(_pushed_aside, frozenset({"missed", "unreachable", "undone"})),
-    "in the way": Kind(_in_the_way, frozenset({"blocked"})),
+    # A known part at the place leaves no room there, which is as true and names it.
+    "in the way": Kind(_in_the_way, frozenset({"blocked", "unreachable"})),
     "wrong hand-over": Kind(_wrong_hand_over, frozenset({REFUSED})),
 }

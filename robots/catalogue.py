@@ -28,6 +28,12 @@ class Part:
         """From its bottom to its highest point, in metres."""
         return self.size[2] + (self.knob[2] if self.knob is not None else 0.0)
 
+    @property
+    def off_square_m(self) -> float:
+        """By how much, at most, its sides differ from what they are after a quarter of a turn."""
+        sizes = [self.size] if self.knob is None else [self.size, self.knob]
+        return max(abs(length - width) for length, width, _ in sizes)
+
     def equals(self, other: "Part") -> bool:
         """Whether another part has exactly its measures."""
         return (self.size, self.knob) == (other.size, other.knob)

@@ -13,10 +13,11 @@ from robots.behaviors.behavior import Move, SetGripper, Situation, Step
 from robots.body import ToolPose
 from robots.catalogue import Part
 from robots.clearance import in_the_way
-from robots.grasp import Grasp, grasps_of
+from robots.grasp import Grasp, grasps_of, half_turn
 from robots.gripper import GripperModel
 from robots.link.messages import Location
 from robots.senses import Senses
+from robots.vision.head import HeadSighting
 from robots.vision.seen_box import SeenBox
 
 Vector = NDArray[np.float64]
@@ -29,6 +30,9 @@ _OVER_M = 0.015
 """What is carried passes so far above the tallest thing on the way."""
 _BESIDE_M = 0.12
 """What stands so near to the straight way is on it: half a gripper, and half of what it carries."""
+
+_HARDLY_M = 0.0015
+"""Sides that differ by no more are now and then taken for one another by the head camera."""
 
 MARGIN_M = 0.0005
 """Kept between the gripper and what stands beside an object, as it is seen: hardly more than the
@@ -46,16 +50,13 @@ def ways_to_grasp(
 
     Raises `UngraspableError` where the gripper cannot take the object at all.
     """
-    part, sighting = assignment.part, findings.sighting
-    found = None
-    if sighting is not None:
-        found = Location(x=sighting.x, y=sighting.y, z=sighting.z, yaw=sighting.yaw)
+    part, target = assignment.part, assignment.target
+    ways_round = _ways_round(part, findings.sighting, target)
     table_z = senses.catalogue.table.height
-    over_z = clear_z(found, assignment.target, table_z, boxes)
-    for grasp, lift_m in product(_grasps(part, arm, senses, findings), LIFTS_M):
-        yield Situation(
-            part, found, assignment.target, table_z, arm.body.gripper, grasp, over_z, lift_m
-        )
+    over_z = clear_z(ways_round[0], target, table_z, boxes)
+    grasps = _grasps(part, arm, senses, findings)
+    for found, grasp, lift_m in product(ways_round, grasps, LIFTS_M):
+        yield Situation(part, found, target, table_z, arm.body.gripper, grasp, over_z, lift_m)
 
 
 def others(part: Part | None, boxes: Sequence[SeenBox]) -> list[SeenBox]:
@@ -92,6 +93,23 @@ def _grasps(
     if findings.carrying and senses.grip is not None:
         return [senses.grip.grasp]
     return grasps_of(part, arm.body.gripper)
+
+
+def _ways_round(
+    part: Part | None, sighting: HeadSighting | None, target: Location | None
+) -> list[Location | None]:
+    """Where the object is; one that is square, or hardly not, may lie two ways round.
+
+    Of what is square first the one that has to be turned less on its way; of what is hardly not
+    first the one that was seen: a camera may be wrong about it.
+    """
+    if part is None or sighting is None:
+        return [None]
+    first, quarter = sighting.yaw, math.pi / 2
+    if part.off_square_m == 0.0 and target is not None:
+        first = target.yaw + math.remainder(first - target.yaw, quarter)
+    yaws = [first] if part.off_square_m > _HARDLY_M else [first, first + quarter]
+    return [Location(x=sighting.x, y=sighting.y, z=sighting.z, yaw=half_turn(yaw)) for yaw in yaws]
 
 
 def clear_z(

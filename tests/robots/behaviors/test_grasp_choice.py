@@ -1,20 +1,28 @@
 """Before the first step a grasp is chosen for which there is room, and refused in words if none."""
 
+import math
 from dataclasses import replace
 
+import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from robot_bench import RobotBench
 from scripted_body import GRIPPER, STARTS, ScriptedBody
 
+from robots.behaviors.assignment import Assignment, Findings
 from robots.behaviors.behavior import Move, SetGripper, Step
-from robots.behaviors.grasp_choice import clear_z, crowded, others
+from robots.behaviors.grasp_choice import clear_z, crowded, others, ways_to_grasp
 from robots.behaviors.legs import held_boxes, legs_of
 from robots.behaviors.phase import Phase
+from robots.behaviors.pick_and_place import PickAndPlace, PickAndPlaceParameters
 from robots.body import ToolPose
 from robots.catalogue import Part
-from robots.grasp import grasp_of
+from robots.grasp import grasp_of, half_turn
 from robots.gripper import GripperModel
 from robots.link.messages import IssueDetected, Location, Look, Looked
+from robots.vision.blob import Blob
+from robots.vision.head import HeadSighting
 from robots.vision.seen_box import SeenBox
 
 PLATE = Part("plate", (0.10, 0.10, 0.012), knob=(0.03, 0.03, 0.04))
@@ -106,3 +114,47 @@ def test_only_what_stands_on_the_way_is_passed_over() -> None:
     on_the_way, aside = box(0.55, -0.2, 0.2), box(0.9, -0.2, 0.3)
     assert clear_z(found, target, 0.7, [aside]) < 0.75
     assert clear_z(found, target, 0.7, [aside, on_the_way]) > on_the_way.top_z
+
+
+@given(seen=st.floats(-1.57, 1.57), wanted=st.floats(-3.1, 3.1))
+def test_a_square_part_is_tried_both_ways_round_the_nearer_first(
+    seen: float, wanted: float
+) -> None:
+    peg = Part("peg", (0.03, 0.03, 0.05))
+    first, *_, last = yaws_of(peg, seen, wanted)
+    assert abs(math.remainder(first - wanted, math.pi)) <= math.pi / 4 + 1e-9
+    assert math.remainder(first - seen, math.pi / 2) == pytest.approx(0.0, abs=1e-9)
+    assert abs(math.remainder(last - first, math.pi)) == pytest.approx(math.pi / 2)
+
+
+@given(seen=st.floats(-1.57, 1.57), wanted=st.floats(-3.1, 3.1))
+def test_a_hardly_oblong_part_is_tried_as_it_is_seen_first(seen: float, wanted: float) -> None:
+    first, *_, last = yaws_of(Part("peg", (0.013, 0.012, 0.05)), seen, wanted)
+    assert first == pytest.approx(seen)
+    assert abs(math.remainder(last - first, math.pi)) == pytest.approx(math.pi / 2)
+
+
+@given(seen=st.floats(-1.57, 1.57), wanted=st.floats(-3.1, 3.1))
+def test_any_other_part_lies_as_it_is_seen(seen: float, wanted: float) -> None:
+    assert set(yaws_of(PART, seen, wanted)) == {half_turn(seen)}
+    assert set(yaws_of(replace(PLATE, knob=(0.03, 0.04, 0.04)), seen, wanted)) == {half_turn(seen)}
+
+
+BENCH = RobotBench()
+
+
+def yaws_of(part: Part, seen: float, wanted: float) -> list[float]:
+    """As what a part seen so may be grasped, in turn."""
+    arm, senses = BENCH.robot._arm, BENCH.robot._senses
+    blob = Blob((0.0, 0.0), 1, (0, 0, 1, 1), np.ones((1, 1), np.uint8))
+    findings = Findings(sighting=HeadSighting(0.5, -0.4, 0.7, seen, 0.75, True, 1.0, blob, 0.0))
+    assignment = Assignment(
+        "e1",
+        PickAndPlace(),
+        PickAndPlaceParameters(object=part.name, place="left"),
+        part,
+        Location(x=0.5, y=0.0, yaw=wanted),
+        needs_help=False,
+    )
+    ways = ways_to_grasp(assignment, arm, senses, findings, ())
+    return [way.found.yaw for way in ways if way.found is not None]
