@@ -55,8 +55,9 @@ def ways_to_grasp(
     table_z = senses.catalogue.table.height
     over_z = clear_z(ways_round[0], target, table_z, boxes)
     grasps = _grasps(part, arm, senses, findings)
-    for found, grasp, lift_m in product(ways_round, grasps, LIFTS_M):
-        yield Situation(part, found, target, table_z, arm.body.gripper, grasp, over_z, lift_m)
+    # Where the arm does not reach so high it may still find a way between what stands there.
+    for clear_m, found, grasp, lift_m in product((over_z, table_z), ways_round, grasps, LIFTS_M):
+        yield Situation(part, found, target, table_z, arm.body.gripper, grasp, clear_m, lift_m)
 
 
 def others(part: Part | None, boxes: Sequence[SeenBox]) -> list[SeenBox]:

@@ -24,6 +24,8 @@ Reachable = Callable[[Sequence[ToolPose]], bool]
 ROOM_M = 0.002
 """Kept between the gripper and what stands beside a part: more than a robot keeps from what it
 sees, as that is never exact."""
+_SEEN_M = 0.0015
+"""A part may be seen so far away from where it is."""
 _SIDES = (-1.0, 1.0)
 _STEP_M, _STEPS = 0.002, 100
 
@@ -132,14 +134,15 @@ class ArmCheck:
         )
 
     def _scattered(self, pose: Pose) -> list[Pose]:
-        """The corners of where a start pose may come to be."""
-        if self.scatter.xy == 0.0:
-            return [pose]
+        """Where a start may come to be, or to be seen: the corners, or nearer and farther away."""
         shift_m = self.scatter.xy
-        return [
-            pose.model_copy(update={"x": pose.x + dx * shift_m, "y": pose.y + dy * shift_m})
-            for dx, dy in product(_SIDES, _SIDES)
-        ]
+        if shift_m == 0.0:
+            away_m = max(math.hypot(pose.x, pose.y), _SEEN_M)
+            shifts = [(pose.x * far, pose.y * far) for far in (-_SEEN_M / away_m, _SEEN_M / away_m)]
+        else:
+            off_m = shift_m + _SEEN_M
+            shifts = [(dx * off_m, dy * off_m) for dx, dy in product(_SIDES, _SIDES)]
+        return [pose.model_copy(update={"x": pose.x + dx, "y": pose.y + dy}) for dx, dy in shifts]
 
     def _way(
         self,

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 
 from robots.body import CameraImage
@@ -28,6 +29,9 @@ _TURNS_RAD = (math.pi / 4, math.pi / 2, -math.pi / 4)
 _COMPLETE_SHARE = 0.8
 _AS_WELL = 1.2
 """A rectangle fits a half hidden surface as well as another if its misfit is not larger by more."""
+_SHARED = 0.4
+_APART_M = 0.005
+"""Where badly seen boxes share less of their outline, or of their height, each may be right."""
 _OWN_M = 0.004
 """What is within a part's outline, so much wider, and not above it is the part itself."""
 
@@ -72,13 +76,14 @@ def view_table(
     matches, unknown = Namer(known, model).name(
         tops, surfaces, model.segment(image.bgr), last_seen.spots
     )
-    sightings: dict[str, HeadSighting] = {}
-    boxes: list[SeenBox] = []
+    found = []
     for match in matches:
         fitted = _fit_match(match, surfaces, last_seen.seen_whole(match.part.name))
-        sighting = _sighting(match, _centred_by_knob(match, fitted), image)
-        sightings[match.part.name] = sighting
-        boxes += _boxes(match, sighting)
+        found.append((match, _sighting(match, _centred_by_knob(match, fitted), image)))
+    kept, pieces = _without_pieces(found, last_seen)
+    sightings = {match.part.name: sighting for match, sighting in kept}
+    boxes = [box for match, sighting in kept for box in _boxes(match, sighting)]
+    unknown += pieces
     strange = [
         _unknown_box(top, table.height)
         for top in unknown
@@ -192,6 +197,48 @@ def _unknown_box(top: Top, table_z: float) -> SeenBox:
     size = (*found.extents, top.surface.top_z - table_z)
     complete = all(top.fitted.whole)
     return SeenBox(found.x, found.y, half_turn(found.yaw), size, table_z, None, complete)
+
+
+def _without_pieces(
+    found: Sequence[tuple[Match, HeadSighting]], last_seen: LastSeen
+) -> tuple[list[tuple[Match, HeadSighting]], list[Top]]:
+    """What was found but for what is in one place with something better seen; and their tops.
+
+    Two pieces of one part, which its own knob divides, can look like two equal parts. The name is
+    then the one that was last nearer.
+    """
+    kept: list[tuple[Match, HeadSighting]] = []
+    pieces = []
+    for match, sighting in sorted(found, key=lambda each: -each[1].shown):
+        boxes = _boxes(match, sighting)
+        better = next((n for n, k in enumerate(kept) if _are_in_one_place(boxes, _boxes(*k))), None)
+        if better is None:
+            kept.append((match, sighting))
+            continue
+        pieces.append(match.top)
+        whole, at = kept[better]
+        names = whole.part.name, match.part.name
+        if whole.part.equals(match.part) and last_seen.nearer(names, at.x, at.y) == names[1]:
+            kept[better] = replace(whole, part=match.part), at
+    return kept, pieces
+
+
+def _are_in_one_place(some: Sequence[SeenBox], others: Sequence[SeenBox]) -> bool:
+    """Whether a box of some takes up much of the room of a box of others, which nothing can."""
+    return any(
+        min(one.top_z, other.top_z) - max(one.bottom_z, other.bottom_z) > _APART_M
+        and _shared(one, other) > _SHARED
+        for one in some
+        for other in others
+    )
+
+
+def _shared(one: SeenBox, other: SeenBox) -> float:
+    """How much of the smaller outline is in the other one, from above."""
+    if math.hypot(one.x - other.x, one.y - other.y) > sum(one.size[:2] + other.size[:2]) / 2:
+        return 0.0
+    outlines = [shapely.Polygon(each.corners()) for each in (one, other)]
+    return outlines[0].intersection(outlines[1]).area / min(each.area for each in outlines)
 
 
 def _is_of(top: Top, box: SeenBox, tolerance_m: float) -> bool:

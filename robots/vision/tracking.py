@@ -1,5 +1,6 @@
 """What earlier pictures say of the parts: where each was last, and how it stood when seen whole."""
 
+import math
 from collections.abc import Mapping
 from types import MappingProxyType
 
@@ -26,6 +27,15 @@ class LastSeen:
     @property
     def spots(self) -> Mapping[str, Spot]:
         return MappingProxyType(self._spots)
+
+    def nearer(self, names: tuple[str, str], x: float, y: float) -> str:
+        """Which of two parts was last nearer to a place."""
+
+        def distance_m(name: str) -> float:
+            spot = self._spots.get(name)
+            return math.inf if spot is None else math.hypot(spot[0] - x, spot[1] - y)
+
+        return min(names, key=distance_m)
 
     def seen_whole(self, name: str) -> Location | None:
         """How a part stood when it was last seen whole."""

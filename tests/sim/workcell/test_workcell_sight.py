@@ -51,3 +51,27 @@ def test_it_is_seen_which_side_of_a_small_part_is_the_longer_one(
             turn = view.sightings[name].yaw - each.pose.yaw
             errors_rad.append(abs(math.remainder(turn, math.pi)))
     assert max(errors_rad) < math.radians(25)
+
+
+def test_the_two_sides_of_one_plate_are_not_two_plates() -> None:
+    """Its own knob hides the middle of it, and an equal one is somewhere out of sight."""
+    noisy = WorkcellOptions(camera_noise=3.0, light=1.0, depth_noise=1.0)
+    plate = SceneObject(
+        color=(0.38, 0.06, 0.07),
+        size=(0.052, 0.051, 0.028),
+        knob=(0.045, 0.043, 0.035),
+        mass_kg=0.05,
+        pose=Pose(x=0.463, y=-0.612, yaw=0.28),
+    )
+    equal = plate.model_copy(update={"pose": Pose(x=0.65, y=-0.2)})
+    scene = Scene(name="plates", objects={"one": plate, "other": equal}, places={})
+    model, catalogue = learn_colors(scene, noisy.camera_noise), Catalogue.from_scene(scene)
+    for seed in range(8):
+        world = WorkcellWorld(scene, seed, noisy)
+        world.parts["other"].take_away()
+        view = view_table(
+            world.head.capture(), scene.table, catalogue.parts, model, LastSeen(catalogue.starts)
+        )
+        world.close()
+        assert view is not None
+        assert set(view.sightings) == {"one"}
