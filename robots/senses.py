@@ -195,7 +195,14 @@ class Senses:
             effort_n=body.gripper_effort_n(),
             contact_n=body.contact_force_n(),
             fingers=body.finger_hulls(),
+            around=self._last_seen_around(),
         )
+
+    def _last_seen_around(self) -> Sequence[SeenBox]:
+        """What the last head picture showed besides the part in the hand."""
+        view = None if self._seen is None else self._seen.views.get(None)
+        held = None if self.grip is None else self.grip.part.name
+        return () if view is None else [each for each in view.boxes if each.name != held]
 
     def _look_at_hand(self) -> CameraImage:
         image = self._body.cameras[FOREARM].capture()

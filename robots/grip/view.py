@@ -13,6 +13,7 @@ from robots.grip.composition import Composition
 from robots.vision.blob import Mask
 from robots.vision.color_model import ColorModel, Segmentation
 from robots.vision.projection import project
+from robots.vision.seen_box import SeenBox
 
 REFERENCE_WIDTH_PX = 160
 """Lengths in pixels are for a picture this wide and grow with it."""
@@ -22,6 +23,9 @@ _NEAR_M = 0.04
 
 _RIM_PX = 2.0
 """Projections are that exact: the tool point's and the grasp's error, seen from the forearm."""
+
+_LEAST_AHEAD_M = 0.02
+"""What is nearer, or beside the camera, has no outline in the picture."""
 
 _TELLING_SHARE = 0.5
 """Of a part without a hue nothing is seen but that much of another's colour is not its own."""
@@ -59,13 +63,33 @@ def visible_region(
     near: Sequence[NDArray[np.float64]],
     fingers: Sequence[NDArray[np.float64]],
 ) -> Mask:
-    """Where the part must be seen and neither its rim nor a finger is."""
+    """Where the part must be seen and neither its rim nor a finger, or the like, is."""
     scale = image.bgr.shape[1] / REFERENCE_WIDTH_PX
     size = 2 * round(_RIM_PX * scale) + 1
     rim = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (size, size))
     inside = cv2.erode(outline(image, tool, near), rim)
     hidden = cv2.dilate(outline(image, tool, fingers), rim)
     return np.where((np.asarray(inside) > 0) & (np.asarray(hidden) == 0), 1, 0).astype(np.uint8)
+
+
+def in_front(
+    image: CameraImage, tool: Matrix4, boxes: Sequence[SeenBox]
+) -> list[NDArray[np.float64]]:
+    """The corners (8, 3), in the tool frame, of boxes between the camera and what the tool holds.
+
+    `boxes` are in the base frame.
+    """
+    eye, at = image.pose[:3, 3], tool[:3, 3]
+    away_m = float(np.linalg.norm(at - eye))
+    hiding = []
+    for box in boxes:
+        outline = box.corners()
+        corners = np.array([(x, y, z) for x, y in outline for z in (box.bottom_z, box.top_z)])
+        ahead_m = (corners - eye) @ image.pose[:3, 2]
+        nearer = float(np.linalg.norm(corners.mean(axis=0) - eye)) < away_m
+        if nearer and ahead_m.min() > _LEAST_AHEAD_M:
+            hiding.append((corners - at) @ tool[:3, :3])
+    return hiding
 
 
 def composition(

@@ -17,6 +17,7 @@ from robots.grip.reading import GripReading, GripState, follow
 from robots.grip.view import (
     REFERENCE_WIDTH_PX,
     composition,
+    in_front,
     near_tool,
     outline,
     visible_region,
@@ -25,6 +26,7 @@ from robots.gripper import GripperModel
 from robots.vision.blob import Blob, Mask, find_blob
 from robots.vision.color_model import ColorModel, Segmentation
 from robots.vision.projection import project
+from robots.vision.seen_box import SeenBox
 
 _SURE = 0.99
 _LONGEST_DOUBT = 12
@@ -47,7 +49,8 @@ class Hand:
     """The hand at one moment: its picture, where it is, and what the fingers feel.
 
     `tool` is the tool point's pose; `fingers` are the convex pieces (n, 3) of the gripper in the
-    tool frame that may hide what is held. `contact_n` is how hard something pushes against the arm.
+    tool frame that may hide what is held, and so may `around`, what was last seen on the table (in
+    the base frame). `contact_n` is how hard something pushes against the arm.
     """
 
     image: CameraImage
@@ -56,6 +59,7 @@ class Hand:
     effort_n: float
     contact_n: float
     fingers: Sequence[NDArray[np.float64]]
+    around: Sequence[SeenBox] = ()
 
 
 class GripWatch:
@@ -149,7 +153,8 @@ class GripWatch:
         return replace(reading, probability=alone.probability)
 
     def _composition(self, hand: Hand, segmentation: Segmentation) -> Composition | None:
-        region = visible_region(hand.image, hand.tool, self._near, hand.fingers)
+        hiding = [*hand.fingers, *in_front(hand.image, hand.tool, hand.around)]
+        region = visible_region(hand.image, hand.tool, self._near, hiding)
         return composition(region, segmentation, self._model, self.part.name)
 
     def _log_likelihoods(self, reading: GripReading) -> Mapping[Between, float]:

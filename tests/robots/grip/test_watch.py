@@ -1,5 +1,7 @@
 """A held part is held whatever hides it; a lost, missed or wrong one is noticed at once."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from drawn_scene import PARTS, DrawnScene
@@ -11,6 +13,7 @@ from robots.body import ToolPose
 from robots.grasp import grasp_of
 from robots.grip.reading import GripReading, GripState
 from robots.grip.watch import GripWatch, Hand
+from robots.vision.seen_box import SeenBox
 
 MODEL = trained_model()
 BIG_PLATE = np.array([[x, y, z] for x in (-0.2, -0.1) for y in (-0.2, 0.2) for z in (-0.2, 0.2)])
@@ -98,6 +101,20 @@ def test_fingers_that_closed_on_nothing_have_missed(name: str, hidden: bool) -> 
     assert reading.probability < 0.01
     assert reading.reason.startswith("the fingers closed to 0 mm where the ")
     assert reading.reason.endswith(f"is {hand.grasp.width_m * 1e3:.0f} mm wide")
+
+
+def test_a_known_part_between_camera_and_hand_hides_what_is_held() -> None:
+    hand = ScriptedHand("pink_bar")
+    eye, at = forearm_pose(hand.tool)[:3, 3], hand.tool[:3, 3]
+    x, y, z = eye + 0.5 * (at - eye)
+    tower = SeenBox(x, y, 0.0, (0.06, 0.06, 0.12), z - 0.06, "yellow_bar", complete=True)
+    behind = replace(tower, x=x + 2 * (at - eye)[0], y=y + 2 * (at - eye)[1])
+    for _ in range(20):
+        shown = replace(hand.hand(shows="yellow_bar"), around=[tower, behind])
+        reading = hand.watch.update(shown)
+    assert reading.composition is None
+    assert reading.state is GripState.HELD
+    assert hand.watch.measure(replace(shown, around=[behind])).composition is not None
 
 
 def test_a_part_seen_behind_fingers_that_met_is_not_held() -> None:
