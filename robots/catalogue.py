@@ -46,7 +46,7 @@ class Catalogue:
     parts: Mapping[str, Part]
     places: Mapping[str, Location]
     table: Table
-    starts: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    starts: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
 
     @classmethod
     def from_scene(cls, scene: Scene) -> "Catalogue":
@@ -59,7 +59,11 @@ class Catalogue:
             name: Location(x=each.pose.x, y=each.pose.y, z=each.pose.z, yaw=each.pose.yaw)
             for name, each in scene.places.items()
         }
-        starts = {name: (each.pose.x, each.pose.y) for name, each in scene.objects.items()}
+        poses = {name: each.pose for name, each in scene.objects.items()}
+        starts = {
+            name: (pose.x, pose.y, scene.table.height if pose.z is None else pose.z)
+            for name, pose in poses.items()
+        }
         return cls(parts, places, scene.table, starts)
 
     def height_of(self, location: Location) -> float:

@@ -146,7 +146,8 @@ class Senses:
         view = self._understand(image)
         sighting = None if view is None else view.sightings.get(part.name)
         if sighting is None or not is_at(sighting, target, self.catalogue.height_of(target)):
-            self._last_seen.note(part.name, target.x, target.y)
+            at = target.x, target.y, self.catalogue.height_of(target)
+            self._last_seen.note(part.name, at)
             self._seen = None
         return True
 
@@ -168,7 +169,8 @@ class Senses:
         """The fingers open: there is nothing to follow any more."""
         if self.grip is not None:
             at = self.gripper()
-            self._last_seen.note(self.grip.part.name, at.x, at.y)
+            bottom_z = at.z - self.grip.grasp.height_m
+            self._last_seen.note(self.grip.part.name, (at.x, at.y, bottom_z))
         self.grip = None
 
     def read_grip(self) -> GripReading | None:

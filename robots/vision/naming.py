@@ -17,6 +17,7 @@ from robots.catalogue import Part, Size
 from robots.vision.color_model import ColorModel, Segmentation, tint_sigma
 from robots.vision.level_surfaces import Surface, Surfaces
 from robots.vision.rectangle import Fitted, Rectangle
+from robots.vision.tracking import Spot
 
 Costs = NDArray[np.float64]
 
@@ -96,7 +97,7 @@ class Namer:
         tops: Sequence[Top],
         surfaces: Surfaces,
         segmentation: Segmentation,
-        last_seen: Mapping[str, tuple[float, float]],
+        last_seen: Mapping[str, Spot],
     ) -> tuple[list[Match], list[Top]]:
         """The parts that are seen, and what stays unknown.
 
@@ -121,7 +122,8 @@ class Namer:
             for index in np.flatnonzero(costs[row, : len(self._parts)] < UNKNOWN_COST).tolist():
                 name = self._parts[index].name
                 costs[row, index] += self._hue_cost(name, top.surface, segmentation)
-                costs[row, index] += _tracking_cost(top, last_seen.get(name))
+                bottom_z = top.surface.top_z - float(self._heights[chosen[index]])
+                costs[row, index] += _tracking_cost(top, bottom_z, last_seen.get(name))
             costs[row, len(self._parts) + row] = UNKNOWN_COST
             choices.append((chosen, swapped))
         matches, unknown = [], []
@@ -267,9 +269,9 @@ def _supports(top: Top, tops: Sequence[Top], surfaces: Surfaces) -> NDArray[np.f
     return np.array(heights)
 
 
-def _tracking_cost(top: Top, last: tuple[float, float] | None) -> float:
+def _tracking_cost(top: Top, bottom_z: float, last: Spot | None) -> float:
     if last is None:
         return _TRACKING_COST / 2
     at: Rectangle = top.fitted.rectangle
-    moved = math.hypot(at.x - last[0], at.y - last[1])
-    return _TRACKING_COST * min(moved / _TRACKED_WITHIN_M, 1.0)
+    moved_m = math.dist((at.x, at.y, bottom_z), last)
+    return _TRACKING_COST * min(moved_m / _TRACKED_WITHIN_M, 1.0)

@@ -218,7 +218,10 @@ def _without_pieces(
         pieces.append(match.top)
         whole, at = kept[better]
         names = whole.part.name, match.part.name
-        if whole.part.equals(match.part) and last_seen.nearer(names, at.x, at.y) == names[1]:
+        if (
+            whole.part.equals(match.part)
+            and last_seen.nearer(names, (at.x, at.y, at.z)) == names[1]
+        ):
             kept[better] = replace(whole, part=match.part), at
     return kept, pieces
 

@@ -7,8 +7,8 @@ from types import MappingProxyType
 from robots.link.messages import Location
 from robots.vision.head import HeadSighting
 
-Spot = tuple[float, float]
-"""A place in the plane of the base frame, metres."""
+Spot = tuple[float, float, float]
+"""Where a part's bottom centre is, in the base frame, metres."""
 
 
 class LastSeen:
@@ -28,12 +28,12 @@ class LastSeen:
     def spots(self) -> Mapping[str, Spot]:
         return MappingProxyType(self._spots)
 
-    def nearer(self, names: tuple[str, str], x: float, y: float) -> str:
+    def nearer(self, names: tuple[str, str], to: Spot) -> str:
         """Which of two parts was last nearer to a place."""
 
         def distance_m(name: str) -> float:
             spot = self._spots.get(name)
-            return math.inf if spot is None else math.hypot(spot[0] - x, spot[1] - y)
+            return math.inf if spot is None else math.dist(spot, to)
 
         return min(names, key=distance_m)
 
@@ -43,10 +43,10 @@ class LastSeen:
 
     def note_sighting(self, name: str, seen: HeadSighting) -> None:
         """A part was seen."""
-        self.note(name, seen.x, seen.y)
+        self.note(name, (seen.x, seen.y, seen.z))
         if seen.complete:
             self._whole[name] = Location(x=seen.x, y=seen.y, z=seen.z, yaw=seen.yaw)
 
-    def note(self, name: str, x: float, y: float) -> None:
+    def note(self, name: str, at: Spot) -> None:
         """A part was at a place, or was let go there."""
-        self._spots[name] = (x, y)
+        self._spots[name] = at

@@ -74,6 +74,13 @@ def test_equal_parts_start_with_the_names_that_the_scene_gives_them() -> None:
     assert all(near(seen[name], spot) for name, spot in spots.items())
 
 
+@pytest.mark.parametrize("lower", ["bolt_0", "bolt_1"])
+def test_of_equal_parts_on_one_another_the_upper_one_is_seen(lower: str) -> None:
+    upper = {"bolt_0": "bolt_1", "bolt_1": "bolt_0"}[lower]
+    stack = {lower: at(0.5, -0.2), upper: at(0.5, -0.2, z=0.73)}
+    assert set(Watcher(scene_of(stack)).seen()) == {upper}
+
+
 def test_a_stolen_equal_is_the_one_that_is_missing_and_comes_back_as_itself() -> None:
     spots = {f"bolt_{i}": (0.42 + 0.05 * i, -0.3) for i in range(5)}
     watcher = Watcher(scene_of({name: at(*spot) for name, spot in spots.items()}))
