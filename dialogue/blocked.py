@@ -30,7 +30,7 @@ FELT = Offer(
     request="Please clear the way of my arm. I look whether it is free.",
     resolution=Resolution.ROBOT_FINISH,
     thanks="Thank you. I see my way free.",
-    unchanged="I see nothing in my way, and nothing holds my arm now.",
+    unchanged="I do not see what held up my arm, and nothing holds it now.",
     not_seen="I still see or feel something in my way. Are you still clearing it?",
     put_right={},
 )
