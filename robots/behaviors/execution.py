@@ -132,13 +132,13 @@ class Execution:
         self._report(Holding(execution=self.id, at="neutral"))
 
     def _attempt(self, resumed: bool) -> Routine[None]:
-        self._progress.felt = None
+        self._progress.felt, self._progress.inexact = None, False
         try:
             there = False
             while not there:
                 plan = yield from self._prepare()
                 if plan is None:
-                    self._finish(found_in_place=True)
+                    self._finish(found_in_place=not self._progress.inexact)
                     return
                 self._progress.move_to(ExecutionState.RUNNING)
                 if resumed:
@@ -163,13 +163,16 @@ class Execution:
             yield from put_down(arm, senses, self._picked_at)
             yield from get_out_of_view(progress, arm, watch)
             yield from find(part, arm, senses, seen)
-            if self._in_place():
+            if self._in_place() and not progress.inexact:
                 return None
             if progress.felt is not None and self._is_hidden(before):
                 progress.plan = earlier
                 watch.judge(progress.felt)
             self._picked_at = None
         progress.plan = make_plan(self._assignment, arm, senses, seen)
+        if progress.plan is None and progress.inexact and self._in_place():
+            # There is no way to place it better.
+            return None
         watch.check(senses.read_grip() if seen.carrying else None)
         if progress.felt is not None and progress.felt.tries >= len(watch.tries(Phase.PREPARE)):
             # Nothing that is seen explains it.
@@ -217,7 +220,9 @@ class Execution:
         self._progress.outcome = outcome
         self._watch.check(None)
         if outcome.presence is not Presence.GONE:
-            return True
+            if self._progress.inexact or not outcome.is_inexact(target):
+                return True
+            self._progress.inexact = True
         self._watch.start_again()
         self._progress.move_to(ExecutionState.PREPARING)
         return False

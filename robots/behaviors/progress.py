@@ -18,7 +18,8 @@ class Progress:
     """What walks an execution's steps and what watches them both go by.
 
     `step` counts from 1 and is 0 before the first; `contact` is what the monitors are to judge,
-    `felt` what the empty hand felt last on its way to the object.
+    `felt` what the empty hand felt last on its way to the object. `inexact`: the object is at its
+    place, but so far off that it is placed once more.
     """
 
     was_done: WasDone | None
@@ -29,6 +30,7 @@ class Progress:
     outcome: Outcome | None = None
     contact: Contact | None = None
     felt: Contact | None = None
+    inexact: bool = False
 
     def move_to(self, state: ExecutionState) -> None:
         """Become this. Raises `ExecutionTransitionError`."""

@@ -7,7 +7,7 @@ from robot_bench import MODEL, RobotBench
 from scripted_body import STARTS, catalogue
 
 from robots.behaviors import Phase
-from robots.link.messages import Detection, Finished, Holding, IssueDetected, Resume
+from robots.link.messages import Detection, Finished, Holding, IssueDetected, Resume, StepStarted
 from robots.monitors import Meanwhile, Monitor, MonitorView
 from robots.monitors.monitor import NoParameters
 from robots.robot import Robot
@@ -125,3 +125,43 @@ def test_what_is_placed_in_vain_again_and_again_is_asked_about() -> None:
     assert [each.interrupts for each in bench.of(IssueDetected)] == [False, True]
     assert bench.of(Finished) == []
     assert bench.of(Holding) == [Holding(execution="e1", at="neutral")]
+
+
+@pytest.mark.parametrize("off_m", [0.01, 0.015])
+def test_a_part_that_is_seen_off_its_place_is_placed_once_more(off_m: float) -> None:
+    bench = RobotBench()
+    bench.start("pink_bar")
+    bench.run_to(8, 0.2)
+    bench.body.parts["pink_bar"].y += off_m
+    bench.run()
+    assert bench.of(Finished) == [Finished(execution="e1")]
+    assert bench.of(IssueDetected) == []
+    assert [each.step for each in bench.of(StepStarted)] == [*range(1, 9)] * 2
+    resting = bench.body.parts["pink_bar"]
+    assert (resting.x, resting.y) == pytest.approx((0.55, 0.05), abs=0.004)
+
+
+def test_a_part_that_ends_off_its_place_twice_is_left_there() -> None:
+    bench = RobotBench()
+    nudged: list[float] = []
+
+    def nudge() -> None:
+        begun = sum(each.step == 8 for each in bench.of(StepStarted))
+        if len(nudged) < begun:
+            nudged.append(bench.body.time_s())
+            bench.body.parts["pink_bar"].y += 0.01
+
+    bench.body.at_cycle = nudge
+    bench.start("pink_bar")
+    bench.run()
+    assert len(nudged) == 2
+    assert bench.of(Finished) == [Finished(execution="e1")]
+    assert bench.body.parts["pink_bar"].y == pytest.approx(0.06, abs=0.004)
+
+
+def test_a_part_that_a_person_put_a_little_off_its_place_stays_there() -> None:
+    bench = RobotBench()
+    bench.body.parts["pink_bar"].x, bench.body.parts["pink_bar"].y = 0.55, 0.062
+    bench.start("pink_bar")
+    bench.run()
+    assert bench.of(Finished) == [Finished(execution="e1", found_in_place=True)]
