@@ -46,6 +46,9 @@ screenshots: console  ## The console's pictures in docs/images, from situations 
 test: console  ## Every test, in random order
 	cd web && PATH="$(CURDIR)/$(BIN):$$PATH" npm test --silent
 	@command -v chromium google-chrome >/dev/null || echo 'There is no Chromium on this machine: the tests in a browser are skipped.'
+	@# The kernels of vision and kinematics are compiled once here, not by many processes at a time.
+	$(BIN)/mend check tasks/library/eket.yaml --world workcell
+	$(BIN)/mend run eket --world tabletop --speed max --seed 1 --answers yes >/dev/null
 	$(BIN)/pytest -n 3 --dist worksteal -rs
 
 REPEAT := 30
