@@ -185,28 +185,28 @@ def in_step(bench: RobotBench, step: int, push: Callable[[ToolPose], float]) -> 
     push_where(bench, pushes)
 
 
-@pytest.mark.parametrize("early_m", [0.002, 0.006])
-def test_contact_near_the_end_of_placing_is_what_was_to_be_come_down_on(early_m: float) -> None:
+def placing(pushed_from_m: float) -> RobotBench:
+    """A hand that is pushed as soon as it is less than so far above the end of placing."""
     bench = RobotBench()
     bench.start("pink_bar")
     bench.run_to(5, 0.5)
     execution = bench.robot._execution
     assert execution is not None
     place_z = min(pose.z for pose in execution.way)
-    in_step(bench, 6, lambda tool: 40.0 if tool.z < place_z + early_m else 0.0)
+    in_step(bench, 6, lambda tool: 40.0 if tool.z < place_z + pushed_from_m else 0.0)
+    return bench
+
+
+@pytest.mark.parametrize("early_m", [0.002, 0.006])
+def test_contact_near_the_end_of_placing_is_what_was_to_be_come_down_on(early_m: float) -> None:
+    bench = placing(early_m)
     bench.run()
     assert bench.of(IssueDetected) == []
     assert bench.of(Finished) == [Finished(execution="e1")]
 
 
 def test_contact_well_above_the_place_is_blocked() -> None:
-    bench = RobotBench()
-    bench.start("pink_bar")
-    bench.run_to(5, 0.5)
-    execution = bench.robot._execution
-    assert execution is not None
-    place_z = min(pose.z for pose in execution.way)
-    in_step(bench, 6, lambda tool: 40.0 if tool.z < place_z + 0.03 else 0.0)
+    bench = placing(0.03)
     issue = bench.run_until(IssueDetected)
     assert (issue.issue, issue.step) == ("blocked", 6)
 
@@ -227,20 +227,26 @@ def test_a_part_lost_while_backing_off_is_dropped() -> None:
     assert [each.issue for each in bench.of(IssueDetected)] == ["dropped"]
 
 
-def test_a_part_pulled_away_while_it_is_put_down_is_dropped() -> None:
-    bench = RobotBench()
-    bench.start("pink_bar")
-    bench.run_to(6, 0.3)
+def lose_while_pulled(bench: RobotBench, gone: Callable[[], bool]) -> None:
+    """Somebody pulls at what is held until it is gone."""
 
     def pull() -> None:
-        bench.body.force_n = 80.0 if bench.body.in_hand is not None else 0.0
-        execution = bench.robot._execution
-        if execution is not None and execution.state is ExecutionState.BACKING_OFF:
+        bench.body.force_n = 60.0 if bench.body.in_hand is not None else 0.0
+        if gone():
             bench.body.vanish("pink_bar")
 
     bench.body.at_cycle = pull
     bench.run()
     assert [each.issue for each in bench.of(IssueDetected)] == ["dropped"]
+
+
+def test_a_part_pulled_away_while_it_is_put_down_is_dropped() -> None:
+    bench = RobotBench()
+    bench.start("pink_bar")
+    bench.run_to(6, 0.3)
+    execution = bench.robot._execution
+    assert execution is not None
+    lose_while_pulled(bench, lambda: execution.state is ExecutionState.BACKING_OFF)
 
 
 def test_a_part_pulled_away_before_the_hand_has_moved_is_dropped() -> None:
@@ -248,15 +254,7 @@ def test_a_part_pulled_away_before_the_hand_has_moved_is_dropped() -> None:
     bench.start("pink_bar")
     bench.run_to(4, 0.0)
     pulled_s = bench.body.time_s()
-
-    def pull() -> None:
-        if bench.body.time_s() > pulled_s + 0.6:
-            bench.body.vanish("pink_bar")
-        bench.body.force_n = 56.0 if bench.body.in_hand is not None else 0.0
-
-    bench.body.at_cycle = pull
-    bench.run()
-    assert [each.issue for each in bench.of(IssueDetected)] == ["dropped"]
+    lose_while_pulled(bench, lambda: bench.body.time_s() > pulled_s + 0.6)
 
 
 @given(
