@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
-from fault_bench import Bench, Moment, NotNowError, Said, Trial, alone, place_of
+from fault_bench import Bench, Moment, NotNowError, Said, Trial, alone, place_of, width_m
 
 from tasks.intervention import Act
 from tasks.scene import Pose
@@ -16,6 +16,7 @@ _PULL_TAKES_S = 2.0
 _PUSHED_M = (0.005, 0.12)
 _OFF_PLACE_M = 0.01
 _TRIES = 12
+_TOLD_APART_M = 0.008
 
 
 @dataclass(frozen=True, slots=True)
@@ -184,14 +185,13 @@ def _wrong_hand_over(bench: Bench, trial: Trial, rng: np.random.Generator) -> No
 
 
 def _other(bench: Bench, name: str, rng: np.random.Generator) -> str:
-    """Another part, one that a gripper or a camera can tell from this one."""
+    """Another part, one that the fingers or a forearm camera can tell from this one."""
     mine = bench.scene.objects[name]
     others = []
     for each in alone(bench):
         its = bench.scene.objects[each]
-        same = np.allclose(mine.color, its.color, atol=0.15) and np.allclose(
-            min(mine.size[:2]), min(its.size[:2]), atol=0.008
-        )
+        as_wide = abs(width_m(bench, name) - width_m(bench, each)) < _TOLD_APART_M
+        same = as_wide and np.allclose(mine.color, its.color, atol=0.15)
         if each not in bench.alike[name] and not same:
             others.append(each)
     if not others:

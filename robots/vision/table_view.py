@@ -73,14 +73,21 @@ def view_table(
     surfaces = find_surfaces(heights)
     tops = [Top(each, fit_any(gather(each, surfaces))) for each in surfaces.all]
     known = {name: part for name, part in parts.items() if name in model.names}
-    matches, unknown = Namer(known, model).name(
-        tops, surfaces, model.segment(image.bgr), last_seen.spots
-    )
-    found = []
-    for match in matches:
-        fitted = _fit_match(match, surfaces, last_seen.seen_whole(match.part.name))
-        found.append((match, _sighting(match, _centred_by_knob(match, fitted), image)))
-    kept, pieces = _without_pieces(found, last_seen)
+    namer, segmentation = Namer(known, model), model.segment(image.bgr)
+    pieces: list[Top] = []
+    while True:
+        matches, unknown = namer.name(tops, surfaces, segmentation, last_seen.spots)
+        found = []
+        for match in matches:
+            fitted = _fit_match(match, surfaces, last_seen.seen_whole(match.part.name))
+            found.append((match, _sighting(match, _centred_by_knob(match, fitted), image)))
+        kept, more = _without_pieces(found, last_seen)
+        if not more:
+            break
+        # The names that they took may belong to something else that is seen.
+        pieces += more
+        taken = {id(each.surface) for each in more}
+        tops = [each for each in tops if id(each.surface) not in taken]
     sightings = {match.part.name: sighting for match, sighting in kept}
     boxes = [box for match, sighting in kept for box in _boxes(match, sighting)]
     unknown += pieces
