@@ -53,8 +53,9 @@ def test_it_is_seen_which_side_of_a_small_part_is_the_longer_one(
     assert max(errors_rad) < math.radians(25)
 
 
-def test_the_two_sides_of_one_plate_are_not_two_plates() -> None:
-    """Its own knob hides the middle of it, and an equal one is somewhere out of sight."""
+@pytest.mark.parametrize("both_there", [True, False])
+def test_the_two_sides_of_one_plate_are_not_two_plates(both_there: bool) -> None:
+    """Its own knob hides the middle of it; an equal one is elsewhere, or out of sight."""
     noisy = WorkcellOptions(camera_noise=3.0, light=1.0, depth_noise=1.0)
     plate = SceneObject(
         color=(0.38, 0.06, 0.07),
@@ -66,12 +67,19 @@ def test_the_two_sides_of_one_plate_are_not_two_plates() -> None:
     equal = plate.model_copy(update={"pose": Pose(x=0.65, y=-0.2)})
     scene = Scene(name="plates", objects={"one": plate, "other": equal}, places={})
     model, catalogue = learn_colors(scene, noisy.camera_noise), Catalogue.from_scene(scene)
+    looks = []
     for seed in range(8):
         world = WorkcellWorld(scene, seed, noisy)
-        world.parts["other"].take_away()
+        if not both_there:
+            world.parts["other"].take_away()
         view = view_table(
             world.head.capture(), scene.table, catalogue.parts, model, LastSeen(catalogue.starts)
         )
         world.close()
         assert view is not None
-        assert set(view.sightings) == {"one"}
+        looks.append(set(view.sightings))
+        for name, seen in view.sightings.items():
+            assert abs(seen.x - scene.objects[name].pose.x) < 0.01
+    assert all("one" in names for names in looks)
+    # A plate of which hardly more than its knob shows is now and then not named.
+    assert sum("other" in names for names in looks) >= (7 if both_there else 0)
