@@ -196,7 +196,7 @@ CHECKS: Sequence[tuple[str, Check]] = (
     (r"I missed the|I lost hold of|failed .* to (pick up|hold)", _not_held),
     (r"I have the .* between my fingers", _held),
     (r"I do not see the .* between my fingers", _not_held_yet),
-    (r"I see something in my way", _in_the_way),
+    (r"I cannot go on with the .*Can you clear", _in_the_way),
     (r"I felt something hold up my arm", _held_up),
     (r"(?<!until )I see my way free|I see nothing in my way", _way_free),
     (r"I do not see my way free|I still see or feel something", _not_free),

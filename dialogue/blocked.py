@@ -9,11 +9,11 @@ from dialogue.script import Expectation, Help
 from tasks.resolution import Resolution
 
 SEEN = Offer(
-    question="I see something in my way, or at the place of the {object}. Can you clear it away?",
+    question="I cannot go on with the {object}.{why} Can you clear the way?",
     failed="I have now been stopped {times} on my way with the {object}.",
-    yes_effect="You clear it away; I go on as soon as I see my way free ({attempt}).",
+    yes_effect="You clear the way; I go on as soon as I see it free ({attempt}).",
     help=Help.CLEAR_WAY,
-    request="Please clear it away. I wait until I see my way free.",
+    request="Please clear the way. I wait until I see it free.",
     resolution=Resolution.ROBOT_FINISH,
     thanks="Thank you. I see my way free.",
     unchanged="I see nothing in my way.",

@@ -93,6 +93,8 @@ class Expectation(StrEnum):
     """The object rests at its final place."""
     IN_REACH = "in_reach"
     """The object rests within the robot's reach."""
+    IN_GRIPPER = "in_gripper"
+    """The object is between the robot's fingers."""
     WAY_CLEAR = "way_clear"
     """Nothing is in the arm's way."""
 

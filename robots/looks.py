@@ -6,10 +6,11 @@ from dataclasses import dataclass, replace
 from typing import Protocol
 
 from robots.arm import Arm, Routine
-from robots.behaviors.grasp_choice import LIFTS_M
+from robots.behaviors.grasp_choice import LIFTS_M, MARGIN_M, others
 from robots.behaviors.preparation import LOOK_AGAIN_S
 from robots.body import CameraImage, ToolPose
 from robots.catalogue import Part
+from robots.clearance import in_the_way
 from robots.grasp import can_grasp, grasps_of
 from robots.grip import GripState
 from robots.grip.composition import likeliest
@@ -20,6 +21,7 @@ from robots.understanding import Understanding
 from robots.vision.head import HeadSighting
 from robots.vision.obstruction import Obstruction
 from robots.vision.presence import Presence
+from robots.vision.seen_box import SeenBox
 
 LOOK_PERIOD_S = 0.5
 
@@ -98,6 +100,7 @@ class Looker:
             fulfilled=fulfilled,
             there=[each for each, so in verdicts.items() if so is Presence.THERE],
             gone=[each for each, so in verdicts.items() if so is Presence.GONE],
+            held=self.senses.held,
         )
 
 
@@ -121,7 +124,7 @@ class AtPlace:
 
 
 class InReach:
-    """An object rests, standing, where the arm can grasp it and lift it."""
+    """An object rests, standing, where the arm can grasp it and lift it and the fingers have room."""
 
     def __init__(self, looker: Looker, part: Part) -> None:
         self._looker, self._part = looker, part
@@ -129,14 +132,17 @@ class InReach:
 
     def is_fulfilled(self) -> bool:
         senses = self._looker.senses
-        before, self._before = self._before, senses.sight(self._part, senses.look())
+        image = senses.look()
+        before, self._before = self._before, senses.sight(self._part, image)
         now = self._before
         if before is None or now is None or not now.upright(senses.catalogue.table.height):
             return False
         moved_m = math.dist((now.x, now.y, now.z), (before.x, before.y, before.z))
-        return moved_m <= _RESTS_WITHIN_M and self._can_grasp(now)
+        if moved_m > _RESTS_WITHIN_M:
+            return False
+        return self._can_grasp(now, others(self._part, senses.seen_boxes(image)))
 
-    def _can_grasp(self, at: HeadSighting) -> bool:
+    def _can_grasp(self, at: HeadSighting, around: Sequence[SeenBox]) -> bool:
         body = self._looker.arm.body
         reach = body.reach
         distance_m = math.hypot(at.x - reach.origin[0], at.y - reach.origin[1])
@@ -144,11 +150,14 @@ class InReach:
             return False
         if not can_grasp(self._part, body.gripper):
             return False
-        grasps = grasps_of(self._part, body.gripper)
-        picks = [each.tool_pose(at.x, at.y, at.z, at.yaw) for each in grasps]
+        picks = [
+            (each.tool_pose(at.x, at.y, at.z, at.yaw), each.opening_m)
+            for each in grasps_of(self._part, body.gripper)
+        ]
         return any(
             body.plan_path([replace(pick, z=pick.z + lift_m), pick]) is not None
-            for pick in dict.fromkeys(picks)
+            for pick, opening_m in picks
+            if in_the_way(body.gripper, pick, opening_m, around, MARGIN_M) is None
             for lift_m in LIFTS_M
         )
 
@@ -167,10 +176,10 @@ class WayClear:
         if here is not None and not arm.at_neutral:
             way = [here, *way]
         image = senses.look()
-        before = self._looker.obstruction
-        if before is not None and senses.shows_something_unknown(image, before.position):
-            return False
         part, target = self._looker.destination or (None, None)
+        before = self._looker.obstruction
+        if before is not None and senses.shows_anything(image, before.position, but=part):
+            return False
         if senses.obstruction(image, way, part) is not None:
             return False
         if part is None:

@@ -124,11 +124,13 @@ class Senses:
         view = self._understand(image)
         return () if view is None else view.boxes
 
-    def shows_something_unknown(self, image: CameraImage, at: tuple[float, float, float]) -> bool:
-        """Whether something that is no known part stands around a point."""
+    def shows_anything(
+        self, image: CameraImage, at: tuple[float, float, float], but: Part | None = None
+    ) -> bool:
+        """Whether something other than a part stands around a point."""
         point = np.array([at])
-        strange = (each for each in self.seen_boxes(image) if each.name is None)
-        return any(bool(each.holds(point)[0]) for each in strange)
+        others = (each for each in self.seen_boxes(image) if but is None or each.name != but.name)
+        return any(bool(each.holds(point)[0]) for each in others)
 
     def presence(self, image: CameraImage, part: Part, target: Location) -> Presence:
         """Whether a part, or one that looks the same, stands at a place."""
@@ -211,13 +213,17 @@ class Senses:
         self.clip.note(image)
         return image
 
+    @property
+    def held(self) -> str | None:
+        """The part that was confirmed in the gripper and not lost since."""
+        if self.grip is None or self.grip.state is not GripState.HELD:
+            return None
+        return self.grip.part.name
+
     def holds(self, name: str | None = None) -> bool:
         """Whether a part (`name`, or any) was confirmed in the gripper and not lost since."""
-        return (
-            self.grip is not None
-            and self.grip.state is GripState.HELD
-            and name in (None, self.grip.part.name)
-        )
+        held = self.held
+        return held is not None and name in (None, held)
 
     def obstruction(
         self, image: CameraImage, waypoints: Sequence[ToolPose], taking: Part | None = None
@@ -269,8 +275,7 @@ class Senses:
 
     def _understand(self, image: CameraImage, stranger: Part | None = None) -> TableView | None:
         """What a head picture shows; `stranger` is looked for besides the catalogue's parts."""
-        held = self.grip.part.name if self.grip is not None and self.holds() else None
-        seen = self._seen
+        held, seen = self.held, self._seen
         if seen is None or seen.held != held or shows_change(seen.image, image):
             self._seen = seen = _Seen(image, held)
         if stranger not in seen.views:

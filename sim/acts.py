@@ -3,6 +3,7 @@
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
 from typing import Generic, Protocol, TypeVar
 
 import numpy as np
@@ -18,6 +19,8 @@ HAND_OVER_S = 15.0
 PULL_M_PER_S = 0.4
 
 _SPOT_STEP_M = 0.05
+_HAND_M = 0.06
+_MISPLACED_M = 0.01
 _IN_THE_WAY_M = 0.008
 """What reaches less than this over the floor of a place is what the place stands on."""
 
@@ -161,9 +164,9 @@ class Acts(ABC, Generic[P, At]):
         in_the_way = self._stands_in_the_way()
         if in_the_way:
             self._step_aside()
-        lying = self._lying_at(intervention)
+        lying = self._lying_at(intervention) or self._crowding(intervention)
         for part in lying:
-            self._put_aside(part)
+            self._put_aside(part, intervention)
         if not in_the_way and not lying:
             nothing = f" and '{intervention.place}' is free" if intervention.place else ""
             raise Impossible(f"nobody stands in the way{nothing}")
@@ -186,10 +189,8 @@ class Acts(ABC, Generic[P, At]):
         """What lies on the object, or at the place where that is to go."""
         if intervention.place is None or intervention.object is None:
             return []
-        belongs, pose = self._part(intervention), self._place_of(intervention.place).pose
-        length, width, _ = self._scene.objects[belongs.name].size
-        floor_z = self._scene.table.height if pose.z is None else pose.z
-        rooms = [(Footprint(pose.x, pose.y, pose.yaw, length, width), floor_z)]
+        belongs = self._part(intervention)
+        rooms = [self._room_at(intervention.place, belongs)]
         own = self._footprint(belongs)
         if own is not None:
             rooms.append((own, self._top_z(belongs)))
@@ -202,15 +203,44 @@ class Acts(ABC, Generic[P, At]):
             )
         ]
 
+    def _crowding(self, intervention: Intervention) -> list[P]:
+        """What stands a hand's breadth from where the object is to go, and belongs elsewhere."""
+        if intervention.place is None or intervention.object is None:
+            return []
+        belongs = self._part(intervention)
+        room, low_z = self._room_at(intervention.place, belongs)
+        wide = replace(room, length=room.length + 2 * _HAND_M, width=room.width + 2 * _HAND_M)
+        places = [each.pose for each in self._scene.places.values()]
+        return [
+            part
+            for part, covered in self._resting(belongs)
+            if covered.overlaps(wide)
+            and self._top_z(part) > low_z + _IN_THE_WAY_M
+            and all(math.dist((covered.x, covered.y), (at.x, at.y)) > _MISPLACED_M for at in places)
+        ]
+
+    def _room_at(self, place: str, belongs: P) -> tuple[Footprint, float]:
+        """The ground that a part covers at a place, and its height."""
+        pose = self._place_of(place).pose
+        length, width, _ = self._scene.objects[belongs.name].size
+        floor_z = self._scene.table.height if pose.z is None else pose.z
+        return Footprint(pose.x, pose.y, pose.yaw, length, width), floor_z
+
     def _resting(self, but: P) -> Iterator[tuple[P, Footprint]]:
         for part in self._parts.values():
             covered = None if part is but else self._footprint(part)
             if covered is not None:
                 yield part, covered
 
-    def _put_aside(self, part: P) -> None:
-        """Put a part back to where it started, or else to the nearest free spot of the table."""
+    def _put_aside(self, part: P, intervention: Intervention) -> None:
+        """Put a part back to where it started, or else to the nearest free spot of the table.
+
+        It does not go to what is to be cleared.
+        """
         others = [covered for _, covered in self._resting(part)]
+        if intervention.place is not None:
+            belongs = self._part(intervention)
+            others.append(self._room_at(intervention.place, belongs)[0])
         radius = radius_m(part.name, self._scene)
         start = self._scene.objects[part.name].pose
         spots = [(spot, self._pose_at(spot)) for spot in _spots(self._scene, start, radius)]

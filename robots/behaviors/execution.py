@@ -17,7 +17,7 @@ from robots.behaviors.preparation import (
     make_plan,
 )
 from robots.behaviors.progress import Progress
-from robots.behaviors.put_down import put_down
+from robots.behaviors.put_down import put_down, set_down
 from robots.behaviors.step_walk import StepWalk
 from robots.behaviors.watch import Interruption, Watch
 from robots.body import ToolPose
@@ -159,6 +159,13 @@ class Execution:
         part, arm, senses, seen = self._assignment.part, self._arm, self._senses, progress.seen
         carrying = yield from check_carrying(part, arm, senses)
         seen.carrying = carrying and goes_on_carrying(self._assignment, arm, senses)
+        if seen.carrying:
+            progress.plan = make_plan(self._assignment, arm, senses, seen)
+            refused = progress.plan is None and seen.refusal is not None
+            if refused and (yield from set_down(arm, senses, self._picked_at)):
+                # Held otherwise it may fit.
+                progress.start_again()
+                seen = progress.seen
         if not seen.carrying:
             yield from put_down(arm, senses, self._picked_at)
             yield from get_out_of_view(progress, arm, watch)
@@ -169,7 +176,7 @@ class Execution:
                 progress.plan = earlier
                 watch.judge(progress.felt)
             self._picked_at = None
-        progress.plan = make_plan(self._assignment, arm, senses, seen)
+            progress.plan = make_plan(self._assignment, arm, senses, seen)
         if progress.plan is None and progress.inexact and self._in_place():
             # There is no way to place it better.
             return None

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
@@ -39,6 +40,18 @@ MARGIN_M = 0.0005
 gripper model has to spare, as scenes are checked for more."""
 
 
+@dataclass(frozen=True, slots=True)
+class Crowding:
+    """What leaves the fingers no room: to grasp the object, or else to let go of it at its place."""
+
+    by: SeenBox
+    at_place: bool
+
+    def __str__(self) -> str:
+        where = "at its place" if self.at_place else "to grasp it"
+        return f"{self.by.name or 'something unknown'} leaves no room for the fingers {where}"
+
+
 def ways_to_grasp(
     assignment: Assignment,
     arm: Arm,
@@ -65,8 +78,10 @@ def others(part: Part | None, boxes: Sequence[SeenBox]) -> list[SeenBox]:
     return [box for box in boxes if part is None or box.name != part.name]
 
 
-def crowded(steps: Sequence[Step], gripper: GripperModel, boxes: Sequence[SeenBox]) -> str | None:
-    """What stands too close to where the fingers close or open, in words; None if nothing does."""
+def crowding(
+    steps: Sequence[Step], gripper: GripperModel, boxes: Sequence[SeenBox]
+) -> Crowding | None:
+    """What stands too close to where the fingers close or open; None if nothing does."""
     pose: ToolPose | None = None
     opening_m = 0.0
     for step in steps:
@@ -81,8 +96,7 @@ def crowded(steps: Sequence[Step], gripper: GripperModel, boxes: Sequence[SeenBo
             continue
         near = in_the_way(gripper, pose, opening_m, boxes, MARGIN_M)
         if near is not None:
-            where = "to grasp it" if closing else "at its place"
-            return f"{near.name or 'something unknown'} leaves no room for the fingers {where}"
+            return Crowding(near, at_place=not closing)
     return None
 
 

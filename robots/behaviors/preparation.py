@@ -1,18 +1,18 @@
 """Before the first step: whether the object is held, where it is, how to grasp it, the path."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from robots.arm import Arm, Routine
 from robots.behaviors.assignment import Assignment, Findings
 from robots.behaviors.behavior import Move, Step
-from robots.behaviors.grasp_choice import crowded, others, ways_to_grasp
+from robots.behaviors.grasp_choice import Crowding, crowding, others, ways_to_grasp
 from robots.behaviors.legs import legs_of, table_box
-from robots.body import ArmPath, NoWay, ToolPose
+from robots.body import ArmPath, CameraImage, NoWay, ToolPose
 from robots.catalogue import Part
 from robots.grasp import Grasp, UngraspableError
 from robots.senses import Senses
-from robots.vision.obstruction import obstruction_by
+from robots.vision.obstruction import Obstruction, obstruction_at, obstruction_by
 from robots.vision.seen_box import SeenBox
 
 LOOKS = 3
@@ -72,8 +72,8 @@ def make_plan(assignment: Assignment, arm: Arm, senses: Senses, findings: Findin
     """Lay out the steps and plan their path; None if there is none, or the object is not seen.
 
     The first way of grasping the object is taken for which there is room and a path. What it
-    finds out about the way goes to `findings`; what keeps the arm from it is in the way if it is
-    unknown, and a reason to refuse if it is a part.
+    finds out about the way goes to `findings`. What keeps the arm from it is in the way if it is
+    unknown or leaves no room at the place; everything else is a reason to refuse.
     """
     part = assignment.part
     if part is not None and findings.sighting is None and not findings.carrying:
@@ -94,22 +94,29 @@ def make_plan(assignment: Assignment, arm: Arm, senses: Senses, findings: Findin
     except UngraspableError as error:
         findings.refusal = str(error)
         return None
-    if isinstance(found, NoWay):
-        found = f"with {_name(part)} the arm {found.reason}"
-    findings.refusal = found
+    if isinstance(found, Crowding):
+        findings.refusal = str(found)
+        if found.at_place and findings.obstruction is None:
+            findings.obstruction = _standing_there(found, findings.image or senses.look())
+    else:
+        findings.refusal = f"with {_name(part)} the arm {found.reason}"
     return None
+
+
+def _standing_there(found: Crowding, image: CameraImage) -> Obstruction:
+    return replace(obstruction_at(found.by, image), what=str(found))
 
 
 def _plan_amid(
     boxes: Sequence[SeenBox], assignment: Assignment, arm: Arm, senses: Senses, findings: Findings
-) -> Plan | NoWay | str:
-    """The plan amid some boxes, or why there is none: no path, or no room, which is said.
+) -> Plan | NoWay | Crowding:
+    """The plan amid some boxes, or why there is none: no path, or no room.
 
     Raises `UngraspableError`.
     """
     part = assignment.part
     obstacles = [table_box(senses.catalogue.table), *boxes]
-    refusals: list[NoWay | str] = []
+    refusals: list[NoWay | Crowding] = []
     for situation in ways_to_grasp(assignment, arm, senses, findings, boxes):
         steps = assignment.behavior.steps(assignment.parameters, situation)
         first = assignment.behavior.first_carrying(steps) if findings.carrying else None
@@ -117,7 +124,7 @@ def _plan_amid(
         left = steps[first - 1 :]
         if not refusals:
             _judge_way(waypoints_of(left), assignment, senses, findings)
-        tight = crowded(left, arm.body.gripper, boxes)
+        tight = crowding(left, arm.body.gripper, boxes)
         if tight is not None:
             refusals.append(tight)
             continue
@@ -131,7 +138,8 @@ def _plan_amid(
             # What stands in a way that is not taken is in nobody's way.
             _judge_way(waypoints_of(left), assignment, senses, findings)
         return Plan(steps, first, path, situation.grasp)
-    return refusals[0]
+    # Where there was room, that there is none in another way is no reason.
+    return next((each for each in refusals if isinstance(each, NoWay)), refusals[0])
 
 
 def goes_on_carrying(assignment: Assignment, arm: Arm, senses: Senses) -> bool:

@@ -32,17 +32,27 @@ def put_down(arm: Arm, senses: Senses, picked_at: ToolPose | None) -> Routine[No
 
     `picked_at` is the tool pose at which it was picked up, None if a person handed it over.
     """
+    if not (yield from set_down(arm, senses, picked_at)):
+        senses.let_go()
+        yield from arm.open_gripper()
+
+
+def set_down(arm: Arm, senses: Senses, picked_at: ToolPose | None) -> Routine[bool]:
+    """Take what the gripper holds to where it was picked, or to a free spot, and let go of it.
+
+    Whether that was done: without a way there it is still held.
+    """
     grip = senses.grip
-    if grip is not None and senses.holds():
-        yield from arm.lift()
-        path = _way_down(arm, senses, grip.part, grip.grasp, picked_at)
-        if path is not None:
-            yield from arm.follow(path, _SPEED)
-            senses.let_go()
-            yield from arm.open_gripper(grip.grasp.opening_m)
-            return
+    if grip is None or not senses.holds():
+        return False
+    yield from arm.lift()
+    path = _way_down(arm, senses, grip.part, grip.grasp, picked_at)
+    if path is None:
+        return False
+    yield from arm.follow(path, _SPEED)
     senses.let_go()
-    yield from arm.open_gripper()
+    yield from arm.open_gripper(grip.grasp.opening_m)
+    return True
 
 
 def _way_down(

@@ -209,7 +209,8 @@ class Looked(Message):
     `objects`: every object seen, by name. `gripper`: where the tool point is. `fulfilled`: whether
     what was expected came to be within the time given; None when nothing was expected.
     `there` and `gone`: of the command's `finished` results those that are seen to be so, and those
-    whose place is seen without the object; what something hides is in neither.
+    whose place is seen without the object; what something hides is in neither. `held`: the object
+    that is between the fingers.
     """
 
     type: Literal["looked"] = "looked"
@@ -219,6 +220,7 @@ class Looked(Message):
     fulfilled: bool | None = None
     there: list[FinishedResult] = []
     gone: list[FinishedResult] = []
+    held: str | None = None
 
 
 class Held(Message):

@@ -58,12 +58,11 @@ class Blocked(Monitor[BlockedParameters]):
         if view.contact is not None:
             return Detection(camera="head", felt=True, explanation=_felt(view.contact))
         if view.step == BEFORE_FIRST_STEP and view.obstruction is not None:
-            x, y, z = view.obstruction.position
             return Detection(
                 camera="head",
                 center=view.obstruction.center,
                 area_px=view.obstruction.area_px,
-                explanation=f"{view.obstruction.what} at ({x:.2f}, {y:.2f}, {z:.2f})",
+                explanation=view.obstruction.what,
             )
         return None
 

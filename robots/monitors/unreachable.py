@@ -46,7 +46,8 @@ class Unreachable(Monitor[UnreachableParameters]):
             reason = why_beyond_reach(name, view.sighting, view, self.settings.margin_m)
             if reason is not None:
                 return reason
-        return view.refusal
+        # What stands in the way can be cleared, and is told as that.
+        return view.refusal if view.obstruction is None else None
 
 
 def why_beyond_reach(

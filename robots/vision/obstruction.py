@@ -115,12 +115,17 @@ def obstruction_by(
     way = [(each.x, each.y) for each in waypoints]
     line = shapely.LineString(way) if len(way) > 1 else shapely.MultiPoint(way)
     nearest = min(boxes, key=lambda box: shapely.Polygon(box.corners()).distance(line))
-    top = (nearest.x, nearest.y, nearest.top_z)
+    return obstruction_at(nearest, image)
+
+
+def obstruction_at(box: SeenBox, image: CameraImage) -> Obstruction:
+    """A seen box as something in the way."""
+    top = (box.x, box.y, box.top_z)
     u, v = project(image, np.array([top]))[0]
     return Obstruction(
         position=top,
         center=(float(u), float(v)),
-        area_px=round(pixels_covered(image, top, nearest.size[:2])),
+        area_px=round(pixels_covered(image, top, box.size[:2])),
     )
 
 

@@ -1,5 +1,6 @@
 """What the robot looks for while a dialogue is open, and what each look is compared with."""
 
+from dataclasses import replace
 from uuid import UUID
 
 from dialogue.evidence import (
@@ -166,7 +167,10 @@ class DialogueLooks:
 
     def first_look(self, dialogue: DialogueState, side: RobotSide, fulfilled: bool) -> Look:
         """What the first look saw: everything later is compared with it."""
-        return self._seen(dialogue, side, self._expected_first(dialogue) if fulfilled else None)
+        first = self._seen(dialogue, side, self._expected_first(dialogue) if fulfilled else None)
+        if side.held is None or side.held != dialogue.raised.object:
+            return first
+        return replace(first, fulfilled=first.fulfilled | {Expectation.IN_GRIPPER})
 
     def contradicted(self, dialogue: DialogueState, first: Look) -> PutRight | None:
         """What the first look saw of that which the issue itself says not to be so."""
@@ -189,10 +193,12 @@ class DialogueLooks:
 
     def change_seen(self, dialogue: DialogueState, side: RobotSide, helped_with: Help) -> Change:
         """What a look that saw the promised help saw to change."""
+        base = self._base(dialogue)
         if helped_with is Help.HAND_OVER:
-            return Change.HANDED_OVER
+            held_before = base is not None and Expectation.IN_GRIPPER in base.fulfilled
+            return Change.NONE if held_before else Change.HANDED_OVER
         seen = Expectation(EXPECTED[helped_with])
-        return change_between(self._base(dialogue), self._seen(dialogue, side, seen))
+        return change_between(base, self._seen(dialogue, side, seen))
 
     def _base(self, dialogue: DialogueState) -> Look | None:
         if dialogue.id in self._compared_with:

@@ -77,6 +77,7 @@ class RobotSide:
     holds_execution: bool = False
     seen: dict[str, Sighting] = field(default_factory=dict)
     gripper: Point = (0.0, 0.0, 0.0)
+    held: str | None = None
     looked_at: float | None = None
     """When it last judged what is finished; None if that is out of date."""
     finished: list[FinishedResult] = field(default_factory=list)
@@ -189,6 +190,7 @@ class RobotSide:
     def take_look(self, looked: Looked, time: float) -> Purpose | None:
         """Note what a look saw; returns its purpose if it is the look that was last asked for."""
         self.seen = dict(looked.objects)
+        self.held = looked.held
         self.there = frozenset(looked.there)
         self.gripper = (looked.gripper.x, looked.gripper.y, looked.gripper.z)
         if looked.command != self.command or self.doing is not Doing.LOOKING:

@@ -156,8 +156,8 @@ def told(world: Moment = STARTS, issue: str = "missed") -> Told:
         ("I do not see the part 1 between my fingers yet. Hm?", STARTS, HELD),
         ("I cannot find the part 1. Hm?", GONE, STARTS),
         ("I cannot reach the part 1. The part 1 has toppled over. Hm?", TOPPLED, STARTS),
-        ("I see something in my way. Hm?", BLOCKED, STARTS),
-        ("I see something in my way. Hm?", CROWDED, STARTS),
+        ("I cannot go on with the top. Can you clear the way?", BLOCKED, STARTS),
+        ("I cannot go on with the top. Can you clear the way?", CROWDED, STARTS),
         ("I felt something hold up my arm and stopped. Hm?", BLOCKED, STARTS),
         ("I do not see my way free yet. Hm?", BLOCKED, STARTS),
         ("I see nothing in my way now.", STARTS, BLOCKED),
@@ -189,7 +189,7 @@ def test_what_has_lain_in_the_open_for_long_must_not_be_told_to_be_away() -> Non
 
 
 def test_what_is_waited_for_is_not_said_to_be_so() -> None:
-    assert told(BLOCKED).say("Please clear it away. I wait until I see my way free.").wrong() == []
+    assert told(BLOCKED).say("Please clear the way. I wait until I see it free.").wrong() == []
     assert told(BLOCKED).say("I see my way free. I go on.").wrong() != []
 
 

@@ -58,7 +58,8 @@ class PretendRobot:
     stolen, so often; with `in_reach` it is only elsewhere on the table then. `hidden_at_place`:
     what no look can judge. `returns`: once such an object is placed, all that was stolen is back at
     its place. `slow`: it is still at its first start until it is interrupted. `wrong`: what it
-    believes to have missed or dropped stands within its reach all the time.
+    believes to have missed or dropped stands within its reach all the time. `held` is between its
+    fingers all the time.
     """
 
     name: str
@@ -94,6 +95,7 @@ class PretendRobot:
     returns: set[str] = field(default_factory=set)
     in_reach: bool = False
     slow: bool = False
+    held: str | None = None
 
     def hello(self) -> Hello:
         return Hello(
@@ -282,7 +284,8 @@ class PretendRobots:
         if look.expect is not None:
             clear = look.expect == "way_clear" and not robot.obstructed
             there = robot.wrong and look.expect == "in_reach" and look.object not in robot.lost
-            fulfilled = (look.object or "") in robot.right or clear or there
+            held = look.expect == "in_gripper" and look.object == robot.held
+            fulfilled = (look.object or "") in robot.right or clear or there or held
             if not fulfilled and robot.patient and look.within_s > FIRST_LOOK_S:
                 return
             if not fulfilled:
@@ -304,5 +307,6 @@ class PretendRobots:
                 fulfilled=fulfilled,
                 there=[each for each in look.finished if self._verdict(robot, each) == "there"],
                 gone=[each for each in look.finished if self._verdict(robot, each) == "gone"],
+                held=robot.held,
             ),
         )

@@ -12,7 +12,7 @@ from scripted_body import GRIPPER, STARTS, ScriptedBody
 
 from robots.behaviors.assignment import Assignment, Findings
 from robots.behaviors.behavior import Move, SetGripper, Step
-from robots.behaviors.grasp_choice import clear_z, crowded, others, ways_to_grasp
+from robots.behaviors.grasp_choice import clear_z, crowding, others, ways_to_grasp
 from robots.behaviors.legs import held_boxes, legs_of
 from robots.behaviors.phase import Phase
 from robots.behaviors.pick_and_place import PickAndPlace, PickAndPlaceParameters
@@ -80,7 +80,8 @@ def test_a_part_wider_than_the_gripper_is_not_taken_from_a_person_either() -> No
 def test_room_is_needed_where_the_fingers_close_and_open(
     at: tuple[float, float], says: str | None
 ) -> None:
-    assert crowded(STEPS, GRIPPER, [box(*at)]) == says
+    found = crowding(STEPS, GRIPPER, [box(*at)])
+    assert (None if found is None else str(found)) == says
 
 
 def test_what_is_carried_is_part_of_the_legs_between_closing_and_opening() -> None:

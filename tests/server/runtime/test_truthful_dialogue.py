@@ -84,6 +84,21 @@ async def test_a_yes_without_a_change_is_no_help_and_the_attempt_has_failed() ->
     )
 
 
+async def test_nobody_is_thanked_for_handing_over_what_the_fingers_hold_already() -> None:
+    _, events = await run_with("unreachable", 1, ["yes"] * 50, held="part_1")
+    assert of_type(events, ev.FirstLook)[0].fulfilled == ["in_gripper"]
+    assert not any("Thank you" in each for each in said(events))
+    assert said(events)[2].startswith("I have the part 1 between my fingers.")
+    assert not any(each.helped for each in of_type(events, ev.Resolved))
+
+
+async def test_who_hands_it_over_is_thanked() -> None:
+    _, events = await run_with("unreachable", 1, ["yes"], times=1)
+    [resolved] = of_type(events, ev.Resolved)
+    assert resolved.helped
+    assert said(events)[-1] == "Thank you. I have the part 1 between my fingers. I go on."
+
+
 async def test_a_helper_has_time_before_a_look_that_could_not_tell_help_from_none() -> None:
     _, events = await run_with("missed", 4, ["yes"] * 50, wrong=True)
     awaited = of_type(events, ev.HelpAwaited)[0]
