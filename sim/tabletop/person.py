@@ -132,6 +132,10 @@ class Person(Acts[TablePart, PartPose]):
         self._state.settle()
 
     def _go_on_pulling(self, pull: Pull) -> None:
+        if self._is_held(pull.part):
+            # The fingers closed on it only after the hand had.
+            self._state.take_from_robot()
+            pull.part.give_to(Whereabouts.WITH_PERSON)
         step_m = PULL_M_PER_S * CONTROL_PERIOD_S
         pull.pulled_m += step_m
         pose = pull.part.pose

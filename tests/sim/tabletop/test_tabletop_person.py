@@ -53,6 +53,22 @@ def test_a_pulled_part_is_seen_sliding_out_before_it_is_gone(hands: Hands) -> No
     assert hands.world.held is None
 
 
+def test_fingers_that_close_on_a_part_that_is_pulled_away_hold_nothing(hands: Hands) -> None:
+    pose = hands.world.pose_of("red")
+    assert pose is not None
+    hands.open()
+    hands.go(pose.x, pose.y, TABLE_M + 0.025, pose.yaw + math.pi / 2)
+    hands.body.close_gripper()
+    while hands.body.gripper_opening_m() > 0.05:
+        hands.body.advance_cycle()
+    assert do(hands.world, Act.STEAL, "red", manner="pull") == ""
+    hands.settle()
+    hands.wait(1.5)
+    assert hands.world.held is None
+    assert hands.world.pose_of("red") is None
+    assert hands.body.gripper_opening_m() == 0.0
+
+
 def test_a_part_that_is_gone_cannot_be_stolen_again(world: TabletopWorld) -> None:
     do(world, Act.STEAL, "red")
     assert do(world, Act.STEAL, "red") == "'red' is gone already"
