@@ -18,7 +18,7 @@ from robots.gripper import GripperModel
 class HandReading:
     """What the hand's sensors say at one moment; the composition is None where it cannot tell.
 
-    `presses`: the fingers press on something; `pushed`: something pushes against the arm.
+    `presses`: the fingers press on something; `pushed`: something has pushed against the arm.
     """
 
     opening_m: float
@@ -34,7 +34,7 @@ class CueModel:
     The opening of fingers on the right part is normal around its width, with the encoder's noise
     and `grasp_sd_m`, what pads and parts give way. A part that is turned between them either lies
     the other way round or is jammed askew: flat fingers turn it straight unless the line between
-    the two corners that they touch is within the angle of their `friction`, or something pushes.
+    the two corners that they touch is within the angle of their `friction`, or something pushed.
     Fingers that closed on nothing are apart by the noise alone, in `moving_share` of the cases they
     are still on their way.
     """

@@ -8,6 +8,8 @@ from robots.grip.composition import Composition
 from robots.vision.blob import Blob
 
 _MM = 1e3
+_ALL_ITS_OWN = 0.8
+"""Where so much is seen of its colour it is not its looks that tell against it."""
 
 
 class GripState(StrEnum):
@@ -46,8 +48,8 @@ class GripReading:
     """One reading of opening, effort and picture, and the verdict with it.
 
     `probability` is how sure it is that `name` is held rightly. The fingers are `opening_m` apart
-    where the part is `width_m` wide; `presses`: they press on something, `pushed`: something pushes
-    against the arm. `composition` says which colours the picture shows where the
+    where the part is `width_m` wide; `presses`: they press on something, `pushed`: something has
+    pushed against the arm since they closed. `composition` says which colours the picture shows where the
     part must be seen; None where the fingers hide it or its colour cannot be told. `blob` are the
     pixels of its colours, `expected` the centre of its outline (pixels) and `overhang_px` how far
     the blob hangs over that, for a picture 160 pixels wide; `tolerance_px` of it are usual.
@@ -81,6 +83,6 @@ class GripReading:
         if seen is not None and seen.most_other is not None and seen.other > seen.own:
             other = seen.most_other.replace("_", " ")
             return f"what is between the fingers has the colours of the {other}, not the {name}"
-        if abs(opening - width) > width / 10:
+        if abs(opening - width) > width / 10 or (seen is not None and seen.own > _ALL_ITS_OWN):
             return f"the fingers are {opening:.0f} mm apart {wide}"
         return f"what is between the fingers does not look like the {name}"

@@ -82,6 +82,8 @@ class GripWatch:
         self._near = near_tool(part, grasp)
         self._belief = Belief()
         self._state = GripState.UNDECIDED
+        self._pushed = False
+        """Whether something has pushed against the arm since the fingers closed."""
         self._unsure = 0
         """So many readings on end left it unsure."""
         self._shift: NDArray[np.float64] = np.zeros(2)
@@ -110,6 +112,7 @@ class GripWatch:
             self._belief.predict(max(0.0, now_s - self._read_s))
         self._read_s = now_s
         self._belief.update(self._log_likelihoods(reading))
+        self._pushed = reading.pushed
         if self._state is GripState.UNDECIDED:
             self._learn(reading)
         self._judge()
@@ -140,7 +143,7 @@ class GripWatch:
             opening_m=hand.opening_m,
             width_m=self.grasp.width_m,
             presses=hand.effort_n >= _PRESSES_SHARE * self._gripper.grip_force_n,
-            pushed=hand.contact_n >= _PUSHED_N,
+            pushed=self._pushed or hand.contact_n >= _PUSHED_N,
             composition=self._composition(hand, segmentation),
             blob=blob,
             expected=_center(whole, project(image, hand.tool[None, :3, 3])[0]),

@@ -37,6 +37,7 @@ class ScriptedHand:
         presses: bool = True,
         shift: tuple[float, float, float] = (0.0, 0.0, 0.0),
         hidden: bool = False,
+        pushed: bool = False,
         size: tuple[int, int, float] = (160, 120, 80.0),
     ) -> Hand:
         """The hand with what it `shows`: the part itself, another by name, or None."""
@@ -60,7 +61,7 @@ class ScriptedHand:
         return Hand(
             image=image,
             tool=self.tool,
-            contact_n=0.0,
+            contact_n=20.0 if pushed else 0.0,
             opening_m=self.grasp.width_m if opening_m is None else opening_m,
             effort_n=GRIPPER.grip_force_n if presses else 0.0,
             fingers=[BIG_PLATE] if hidden else [],
@@ -139,6 +140,25 @@ def test_another_part_that_the_fingers_hide_is_told_by_its_width(off_m: float) -
         reading = hand.read(shows=None, hidden=True, opening_m=hand.grasp.width_m + off_m)
     assert reading.state is GripState.ABSENT
     assert f"{hand.grasp.width_m * 1e3:.0f} mm wide" in reading.reason
+
+
+def test_what_was_pushed_askew_stays_so_when_nothing_pushes_any_more() -> None:
+    hand = ScriptedHand("pink_bar")
+    askew_m = hand.grasp.width_m + 0.012
+    while hand.watch.state is GripState.UNDECIDED:
+        hand.read(opening_m=askew_m, pushed=True)
+    for _ in range(60):
+        reading = hand.read(opening_m=askew_m)
+    assert reading.state is GripState.HELD
+
+
+def test_of_what_shows_the_right_colours_the_width_is_told() -> None:
+    hand = ScriptedHand("pink_bar")
+    wider_m = hand.grasp.width_m * 1.08
+    for _ in range(30):
+        reading = hand.read(opening_m=wider_m)
+    assert "does not look like" not in reading.reason
+    assert hand.read(shows=None).reason.endswith("does not look like the pink bar")
 
 
 @pytest.mark.parametrize("period_s", [1 / 30, 0.1])
