@@ -75,6 +75,7 @@ class Looker:
         doubted = [each for each in results if verdicts[each.message] is Presence.GONE]
         if doubted:
             yield from self.arm.wait(LOOK_AGAIN_S)
+            self.senses.doubt()
             image = self.senses.look()
             for message, again in self._judge(image, doubted).items():
                 verdicts[message] = again
@@ -124,7 +125,7 @@ class AtPlace:
 
 
 class InReach:
-    """An object rests, standing, where the arm can grasp it and lift it and the fingers have room."""
+    """An object rests, standing, where the fingers have room and the arm can lift it."""
 
     def __init__(self, looker: Looker, part: Part) -> None:
         self._looker, self._part = looker, part
@@ -220,8 +221,11 @@ def look_until(
     yield from looker.free_view()
     end_s = looker.arm.body.time_s() + within_s
     while True:
-        fulfilled = expectation.is_fulfilled()
         left_s = end_s - looker.arm.body.time_s()
+        if left_s <= LOOK_PERIOD_S:
+            # That nothing changes is not enough to say that it is not so.
+            looker.senses.doubt()
+        fulfilled = expectation.is_fulfilled()
         if fulfilled or left_s <= 1e-9:
             return (yield from looker.answer_and_judge(command, fulfilled))
         yield from looker.arm.wait(min(LOOK_PERIOD_S, left_s))

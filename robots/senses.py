@@ -27,7 +27,7 @@ from robots.vision.obstruction import (
 from robots.vision.occupancy import Fit, Room, find_occupant, room_above, room_at_place
 from robots.vision.presence import Presence, is_at, judge_presence
 from robots.vision.projection import Points
-from robots.vision.scene_change import shows_change
+from robots.vision.scene_change import is_same, shows_change
 from robots.vision.seen_box import SeenBox
 from robots.vision.table_view import TableView, view_table
 from robots.vision.tracking import LastSeen
@@ -82,6 +82,7 @@ class Senses:
         self._clearance = clearance or Clearance()
         self._fit = fit or Fit()
         self._seen: _Seen | None = None
+        self._doubted = False
         self._last_seen = LastSeen(catalogue.starts)
         self.catalogue = catalogue
         self.grip: GripWatch | None = None
@@ -99,6 +100,10 @@ class Senses:
     def look(self) -> CameraImage:
         """A head picture."""
         return self._body.cameras[HEAD].capture()
+
+    def doubt(self) -> None:
+        """Understand the next head picture anew, even if nothing in it but noise has changed."""
+        self._doubted = True
 
     def sight(self, part: Part, image: CameraImage) -> HeadSighting | None:
         """Where a part is in a head picture; nowhere while it is held."""
@@ -276,7 +281,13 @@ class Senses:
     def _understand(self, image: CameraImage, stranger: Part | None = None) -> TableView | None:
         """What a head picture shows; `stranger` is looked for besides the catalogue's parts."""
         held, seen = self.held, self._seen
-        if seen is None or seen.held != held or shows_change(seen.image, image):
+        doubted, self._doubted = self._doubted, False
+        if (
+            seen is None
+            or seen.held != held
+            or shows_change(seen.image, image)
+            or (doubted and not is_same(seen.image, image))
+        ):
             self._seen = seen = _Seen(image, held)
         if stranger not in seen.views:
             parts = {

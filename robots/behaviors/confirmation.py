@@ -41,6 +41,7 @@ def look_at_outcome(part: Part, target: Location, arm: Arm, senses: Senses) -> R
         if outcome.presence is Presence.THERE:
             break
         yield from arm.wait(LOOK_AGAIN_S)
+        senses.doubt()
         outcome = _look(part, target, senses)
     return outcome
 

@@ -42,7 +42,7 @@ gripper model has to spare, as scenes are checked for more."""
 
 @dataclass(frozen=True, slots=True)
 class Crowding:
-    """What leaves the fingers no room: to grasp the object, or else to let go of it at its place."""
+    """What leaves the fingers no room to grasp the object, or to let go of it at its place."""
 
     by: SeenBox
     at_place: bool

@@ -60,6 +60,8 @@ def find(part: Part | None, arm: Arm, senses: Senses, findings: Findings) -> Rou
     for attempt in range(LOOKS):
         if attempt:
             yield from arm.wait(LOOK_AGAIN_S)
+            if findings.sighting is None:
+                senses.doubt()
         findings.image = senses.look()
         if part is None:
             return

@@ -49,10 +49,10 @@ class GripReading:
 
     `probability` is how sure it is that `name` is held rightly. The fingers are `opening_m` apart
     where the part is `width_m` wide; `presses`: they press on something, `pushed`: something has
-    pushed against the arm since they closed. `composition` says which colours the picture shows where the
-    part must be seen; None where the fingers hide it or its colour cannot be told. `blob` are the
-    pixels of its colours, `expected` the centre of its outline (pixels) and `overhang_px` how far
-    the blob hangs over that, for a picture 160 pixels wide; `tolerance_px` of it are usual.
+    pushed against the arm since they closed. `composition` says which colours the picture shows
+    where the part must be seen; None where the fingers hide it or its colour cannot be told. `blob`
+    are the pixels of its colours, `expected` the centre of its outline (pixels) and `overhang_px`
+    how far the blob hangs over that, for a picture 160 pixels wide; `tolerance_px` of it are usual.
     """
 
     name: str

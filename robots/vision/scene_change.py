@@ -34,7 +34,7 @@ def shows_change(before: CameraImage, now: CameraImage) -> bool:
         return False
     if before.bgr.shape != now.bgr.shape or not np.allclose(before.pose, now.pose, atol=1e-6):
         return True
-    if _equal(before, now):
+    if is_same(before, now):
         return False
     return _differ(*_equally_exposed(before, now), _LEAST_GREY) or (
         before.depth_m is not None
@@ -43,7 +43,8 @@ def shows_change(before: CameraImage, now: CameraImage) -> bool:
     )
 
 
-def _equal(before: CameraImage, now: CameraImage) -> bool:
+def is_same(before: CameraImage, now: CameraImage) -> bool:
+    """Whether two pictures are the same to the bit, noise and all."""
     if before.bgr is now.bgr and before.depth_m is now.depth_m:
         return True
     if not np.array_equal(before.bgr, now.bgr):

@@ -1,0 +1,56 @@
+"""A head picture is understood once, and anew if anything changed or what it shows is doubted."""
+
+import pytest
+from drawn_scene import PARTS, DrawnScene
+from scripted_body import STARTS, ScriptedBody, catalogue, trained_model
+
+import robots.senses
+from robots.body import CameraImage
+from robots.senses import Senses
+from robots.vision.table_view import TableView, view_table
+
+
+@pytest.fixture
+def understood(monkeypatch: pytest.MonkeyPatch) -> list[CameraImage]:
+    """The pictures that were understood."""
+    pictures = []
+
+    def view(image: CameraImage, *rest: object) -> TableView | None:
+        pictures.append(image)
+        return view_table(image, *rest)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(robots.senses, "view_table", view)
+    return pictures
+
+
+def picture(seed: int) -> CameraImage:
+    scene = DrawnScene({name: each.matrix() for name, each in STARTS.items()}, noise=2.0, seed=seed)
+    return scene.picture()
+
+
+def test_noise_alone_is_no_reason_to_understand_a_picture_anew(
+    understood: list[CameraImage],
+) -> None:
+    senses = Senses(ScriptedBody(STARTS), trained_model(), catalogue())
+    for seed in range(3):
+        assert senses.sight(PARTS["pink_bar"], picture(seed)) is not None
+    assert len(understood) == 1
+
+
+def test_what_is_doubted_is_understood_anew_once(understood: list[CameraImage]) -> None:
+    senses = Senses(ScriptedBody(STARTS), trained_model(), catalogue())
+    senses.sight(PARTS["pink_bar"], picture(0))
+    senses.doubt()
+    for seed in (1, 2):
+        senses.sight(PARTS["pink_bar"], picture(seed))
+    assert len(understood) == 2
+
+
+def test_the_very_same_picture_shows_the_same_however_much_it_is_doubted(
+    understood: list[CameraImage],
+) -> None:
+    senses = Senses(ScriptedBody(STARTS), trained_model(), catalogue())
+    for _ in range(2):
+        senses.sight(PARTS["pink_bar"], picture(0))
+        senses.doubt()
+    assert len(understood) == 1
