@@ -15,6 +15,7 @@ from robots.grip.cues import CueModel
 from robots.grip.reading import GripReading, GripState
 from robots.grip.watch import GripWatch, Hand
 from robots.link.messages import Location, Position, Sighting
+from robots.vision.blob import Blob
 from robots.vision.color_model import ColorModel
 from robots.vision.head import HeadSighting
 from robots.vision.obstruction import (
@@ -26,7 +27,7 @@ from robots.vision.obstruction import (
 )
 from robots.vision.occupancy import Fit, Room, find_occupant, room_above, room_at_place
 from robots.vision.presence import Presence, is_at, judge_presence
-from robots.vision.projection import Points
+from robots.vision.projection import Points, project
 from robots.vision.scene_change import is_same, shows_change
 from robots.vision.seen_box import SeenBox
 from robots.vision.table_view import TableView, view_table
@@ -112,6 +113,27 @@ class Senses:
         sighting = None if view is None else view.sightings.get(part.name)
         # What has not changed since an earlier picture is where it was, and seen now.
         return None if sighting is None else replace(sighting, time=image.time)
+
+    def recall(self, part: Part, image: CameraImage) -> HeadSighting | None:
+        """Where a part was when last seen whole, if something keeps the camera from seeing that."""
+        stood = self._last_seen.seen_whole(part.name)
+        if stood is None or self.presence(image, part, stood) is not Presence.HIDDEN:
+            return None
+        bottom_z = self.catalogue.height_of(stood)
+        at = stood.x, stood.y, bottom_z + part.size[2]
+        u, v = project(image, np.array([at]))[0]
+        nothing = np.zeros(image.bgr.shape[:2], np.uint8)
+        return HeadSighting(
+            x=stood.x,
+            y=stood.y,
+            z=bottom_z,
+            yaw=stood.yaw,
+            top_z=at[2],
+            complete=False,
+            shown=0.0,
+            blob=Blob((float(u), float(v)), 0, (round(u), round(v), 1, 1), nothing),
+            time=image.time,
+        )
 
     def sight_all(self, image: CameraImage) -> dict[str, Sighting]:
         """Where every part of the catalogue is that a head picture shows."""

@@ -56,7 +56,10 @@ def check_carrying(part: Part | None, arm: Arm, senses: Senses) -> Routine[bool]
 
 
 def find(part: Part | None, arm: Arm, senses: Senses, findings: Findings) -> Routine[None]:
-    """Look for the object, again if it is not wholly seen."""
+    """Look for the object, again if it is not wholly seen.
+
+    What something hides is taken to be where it was last seen whole: the fingers will tell.
+    """
     for attempt in range(LOOKS):
         if attempt:
             yield from arm.wait(LOOK_AGAIN_S)
@@ -68,6 +71,8 @@ def find(part: Part | None, arm: Arm, senses: Senses, findings: Findings) -> Rou
         findings.sighting = senses.sight(part, findings.image)
         if findings.sighting is not None and findings.sighting.complete:
             return
+    if part is not None and findings.sighting is None and findings.image is not None:
+        findings.sighting = senses.recall(part, findings.image)
 
 
 def make_plan(assignment: Assignment, arm: Arm, senses: Senses, findings: Findings) -> Plan | None:

@@ -1,7 +1,7 @@
 """What stands in the way: unknown things in the head's depth picture where the arm is to go."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import cv2
@@ -17,6 +17,9 @@ from robots.vision.table_view import TableView
 
 _BOTTOM_ERROR_M = 0.010
 """So well is it known how high a part stands."""
+
+_CARRIER_M = 0.012
+"""What carries a part, and is told by its sides alone, reaches so far beyond it."""
 
 Segment = tuple[NDArray[np.float64], NDArray[np.float64]]
 """Two ends in the base frame."""
@@ -57,9 +60,11 @@ def corridor(waypoints: Sequence[ToolPose]) -> list[Segment]:
 def find_obstruction(
     view: TableView, way: Sequence[Segment], clearance: Clearance, taking: str | None = None
 ) -> Obstruction | None:
-    """What is in `way` that is neither table nor known part, nor carries the part to be taken.
+    """What is in `way` that is neither table nor known part, nor carries one.
 
-    Of a stack only the uppermost parts can be told by name, but the arm goes no lower than them.
+    Of a stack only the uppermost parts can be told by name: what is seen below them, and hardly
+    farther out, belongs to it. What carries the part to be taken may be wide, as the arm goes no
+    lower than that part.
     """
     if not way:
         return None
@@ -71,12 +76,17 @@ def find_obstruction(
     us, vs, points = us[inside], vs[inside], points[inside]
     for box in view.boxes:
         if box.name is not None:
-            unknown = ~box.holds(points)
+            unknown = ~(box.holds(points) | _down_to_table(box).holds(points, _CARRIER_M))
             us, vs, points = us[unknown], vs[unknown], points[unknown]
     canvas = np.zeros(view.heights.height_m.shape, np.uint8)
     canvas[vs, us] = 255
     clean = np.asarray(cv2.morphologyEx(canvas, cv2.MORPH_OPEN, np.ones((3, 3), np.uint8)))
     return obstruction_of(us, vs, points, clean[vs, us] > 0, clearance.fewest_px)
+
+
+def _down_to_table(box: SeenBox) -> SeenBox:
+    """The room below a box."""
+    return replace(box, size=(*box.size[:2], box.bottom_z), bottom_z=0.0)
 
 
 def _carries(points: Points, taken: HeadSighting, clearance: Clearance) -> NDArray[np.bool_]:

@@ -7,6 +7,8 @@ from types import MappingProxyType
 from robots.link.messages import Location
 from robots.vision.head import HeadSighting
 
+_MOVED_M = 0.02
+
 Spot = tuple[float, float, float]
 """Where a part's bottom centre is, in the base frame, metres."""
 
@@ -38,7 +40,7 @@ class LastSeen:
         return min(names, key=distance_m)
 
     def seen_whole(self, name: str) -> Location | None:
-        """How a part stood when it was last seen whole."""
+        """How a part stood when it was last seen whole, unless it was moved since."""
         return self._whole.get(name)
 
     def note_sighting(self, name: str, seen: HeadSighting) -> None:
@@ -50,3 +52,6 @@ class LastSeen:
     def note(self, name: str, at: Spot) -> None:
         """A part was at a place, or was let go there."""
         self._spots[name] = at
+        stood = self._whole.get(name)
+        if stood is not None and math.hypot(stood.x - at[0], stood.y - at[1]) > _MOVED_M:
+            del self._whole[name]

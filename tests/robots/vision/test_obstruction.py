@@ -52,6 +52,19 @@ def test_what_carries_a_part_is_not_in_the_way_of_taking_it(taking: str | None) 
     assert (found is None) is (taking is not None)
 
 
+@pytest.mark.parametrize(("wider_m", "known"), [(0.008, True), (0.06, False)])
+def test_the_side_of_what_carries_another_part_is_nothing_unknown(
+    wider_m: float, known: bool
+) -> None:
+    on_top = Resting(0.5, -0.15, TABLE_Z + 0.10)
+    carrier = [((0.5, -0.15, TABLE_Z), (0.03 + wider_m, 0.20 + wider_m, 0.10))]
+    view = view_of(DrawnScene({"green_leg": on_top}, grey_boxes=carrier).picture())
+    beside = corridor(
+        [ToolPose(0.44, -0.15, TABLE_Z + 0.3, 0.0), ToolPose(0.44, -0.15, TABLE_Z + 0.05, 0.0)]
+    )
+    assert (find_obstruction(view, beside, Clearance()) is None) is known
+
+
 def test_something_beside_a_part_is_in_the_way_of_taking_it() -> None:
     wall = [((0.5, -0.10, TABLE_Z), (0.12, 0.02, 0.15))]
     parts = {"green_leg": Resting(0.5, -0.15, TABLE_Z)}
