@@ -16,6 +16,7 @@ from robots.grip.reading import GripReading, GripState
 from robots.grip.watch import GripWatch, Hand
 from robots.link.messages import Location, Position, Sighting
 from robots.vision.blob import Blob
+from robots.vision.carriers import unseen_carriers
 from robots.vision.color_model import ColorModel
 from robots.vision.head import HeadSighting
 from robots.vision.obstruction import (
@@ -147,9 +148,11 @@ class Senses:
         }
 
     def seen_boxes(self, image: CameraImage) -> Sequence[SeenBox]:
-        """Everything that a head picture shows on the table, known or not."""
+        """Everything that a head picture shows on the table, known or not, and what carries it."""
         view = self._understand(image)
-        return () if view is None else view.boxes
+        if view is None:
+            return ()
+        return [*view.boxes, *unseen_carriers(view.boxes, self.catalogue.table.height)]
 
     def shows_anything(
         self, image: CameraImage, at: tuple[float, float, float], but: Part | None = None

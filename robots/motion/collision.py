@@ -3,7 +3,8 @@
 Pinocchio places the links, coal tests the pairs.
 """
 
-from collections.abc import Mapping, Sequence
+import warnings
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -50,8 +51,10 @@ class CollisionModel:
         self._joints = list(joints)
         self._tool = self._model.frames[self._model.getFrameId(tool_frame)]
 
-    def among(self, boxes: Sequence[SeenBox], hand: Hand, margin_m: float) -> "Surrounded":
-        """The arm with its gripper so, amid boxes from which it keeps `margin_m` away."""
+    def among(
+        self, boxes: Sequence[SeenBox], hand: Hand, margin_m: Callable[[SeenBox], float]
+    ) -> "Surrounded":
+        """The arm with its gripper so, amid boxes from each of which it keeps `margin_m` away."""
         geometry = self._links.copy()
         moving = list(range(len(geometry.geometryObjects)))
         for number, held in enumerate(hand.held):
@@ -67,8 +70,9 @@ class CollisionModel:
                 geometry.addCollisionPair(pin.CollisionPair(link, index))
                 pairs.boxes.append(box)
         pairs.data = pin.GeometryData(geometry)
-        for request in pairs.data.collisionRequests:
-            request.security_margin = margin_m
+        for request, box in zip(pairs.data.collisionRequests, pairs.boxes, strict=True):
+            request.security_margin = margin_m(box)
+            _start_afresh(request)
         return Surrounded(self, pairs, hand)
 
     def configuration(self, joints: Joints, hand: Hand) -> Any:
@@ -83,17 +87,15 @@ class CollisionModel:
                 whole[joint.idx_q : joint.idx_q + 2] = np.cos(angle), np.sin(angle)
         return whole
 
-    def first_hit(self, pairs: _Pairs, whole: Any) -> SeenBox | None:
-        """The first box that anything touches."""
+    def hits(self, pairs: _Pairs, whole: Any, *, first: bool) -> list[SeenBox]:
+        """The boxes that anything touches, or the `first` of them only."""
         touched = pin.computeCollisions(
-            self._model, self._data, pairs.model, pairs.data, whole, True
+            self._model, self._data, pairs.model, pairs.data, whole, first
         )
         if not touched:
-            return None
-        for result, box in zip(pairs.data.collisionResults, pairs.boxes, strict=True):
-            if result.isCollision():
-                return box
-        return None
+            return []
+        results = zip(pairs.data.collisionResults, pairs.boxes, strict=True)
+        return [box for result, box in results if result.isCollision()]
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,9 +108,28 @@ class Surrounded:
 
     def hit(self, joints: Joints) -> SeenBox | None:
         """What the arm touches at these joint angles; None if nothing."""
+        return next(iter(self._hits(joints, first=True)), None)
+
+    def hits(self, joints: Joints) -> frozenset[SeenBox]:
+        """All that the arm touches at these joint angles."""
+        return frozenset(self._hits(joints, first=False))
+
+    def _hits(self, joints: Joints, *, first: bool) -> list[SeenBox]:
         if not self._pairs.boxes:
-            return None
-        return self.arm.first_hit(self._pairs, self.arm.configuration(joints, self._hand))
+            return []
+        whole = self.arm.configuration(joints, self._hand)
+        return self.arm.hits(self._pairs, whole, first=first)
+
+
+def _start_afresh(request: Any) -> None:
+    """Begin every test of a pair anew.
+
+    From where the last one ended coal 3.0 may not find a collision that is there.
+    """
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DeprecationWarning)
+        # Pinocchio sets this switch; the newer one of coal does not undo it.
+        request.enable_cached_gjk_guess = False
 
 
 def _placement(box: SeenBox) -> Any:

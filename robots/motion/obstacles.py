@@ -24,17 +24,25 @@ class PathObstacles:
 
     free: Sequence[Surrounded]
     straight: Sequence[Surrounded]
-    known: frozenset[SeenBox]
-    """What is touched where the path begins: it cannot be kept away from."""
 
     @classmethod
     def around(
         cls, arm: CollisionModel, boxes: Sequence[SeenBox], hands: Sequence[Hand], start: Joints
     ) -> "PathObstacles":
-        free = [arm.among(boxes, hand, FREE_MARGIN_M) for hand in hands]
-        straight = [arm.among(boxes, hand, 0.0) for hand in hands]
-        touching = free[0].hit(start) if free else None
-        return cls(free, straight, frozenset() if touching is None else frozenset({touching}))
+        """What is near where the path begins is kept away from less; what is touched there is left.
+
+        `start` are the joint angles of the beginning.
+        """
+        if not hands:
+            return cls([], [])
+        near = arm.among(boxes, hands[0], lambda _: FREE_MARGIN_M).hits(start)
+        touched = arm.among(boxes, hands[0], lambda _: 0.0).hits(start)
+        free, straight = [], []
+        for number, hand in enumerate(hands):
+            others = [box for box in boxes if number > 0 or box not in touched]
+            free.append(arm.among(others, hand, lambda b: 0.0 if b in near else FREE_MARGIN_M))
+            straight.append(arm.among(others, hand, lambda _: 0.0))
+        return cls(free, straight)
 
     def first_on(self, path: JointPath) -> str | None:
         """What the arm would touch first on a path; None if nothing."""
@@ -46,14 +54,13 @@ class PathObstacles:
         surrounded = (self.straight if way.straight else self.free)[number]
         for joints in samples(way.curve):
             hit = surrounded.hit(joints)
-            if hit is not None and hit not in self.known:
+            if hit is not None:
                 return hit.name or "something unknown"
         return None
 
     def is_free(self, number: int, joints: Joints) -> bool:
         """Whether it touches nothing at these joint angles on such a segment, by a free way."""
-        hit = self.free[number].hit(joints)
-        return hit is None or hit in self.known
+        return self.free[number].hit(joints) is None
 
 
 def samples(curve: JointCurve) -> list[Joints]:

@@ -1,7 +1,7 @@
 """What stands in the way: unknown things in the head's depth picture where the arm is to go."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 
 import cv2
@@ -10,6 +10,7 @@ import shapely
 from numpy.typing import NDArray
 
 from robots.body import CameraImage, ToolPose
+from robots.vision.carriers import below
 from robots.vision.head import HeadSighting
 from robots.vision.projection import Points, pixels_covered, project
 from robots.vision.seen_box import SeenBox
@@ -76,7 +77,8 @@ def find_obstruction(
     us, vs, points = us[inside], vs[inside], points[inside]
     for box in view.boxes:
         if box.name is not None:
-            unknown = ~(box.holds(points) | _down_to_table(box).holds(points, _CARRIER_M))
+            carrier = below(box, view.heights.table_z)
+            unknown = ~(box.holds(points) | carrier.holds(points, _CARRIER_M))
             us, vs, points = us[unknown], vs[unknown], points[unknown]
     canvas = np.zeros(view.heights.height_m.shape, np.uint8)
     canvas[vs, us] = 255
@@ -84,16 +86,11 @@ def find_obstruction(
     return obstruction_of(us, vs, points, clean[vs, us] > 0, clearance.fewest_px)
 
 
-def _down_to_table(box: SeenBox) -> SeenBox:
-    """The room below a box."""
-    return replace(box, size=(*box.size[:2], box.bottom_z), bottom_z=0.0)
-
-
 def _carries(points: Points, taken: HeadSighting, clearance: Clearance) -> NDArray[np.bool_]:
     """Which points are below the bottom of a part, and as near as the way down to it is wide."""
     aside_m = np.hypot(points[:, 0] - taken.x, points[:, 1] - taken.y)
-    below: NDArray[np.bool_] = points[:, 2] <= taken.z + _BOTTOM_ERROR_M
-    return below & (aside_m <= clearance.radius_m)
+    lower: NDArray[np.bool_] = points[:, 2] <= taken.z + _BOTTOM_ERROR_M
+    return lower & (aside_m <= clearance.radius_m)
 
 
 def obstruction_of(

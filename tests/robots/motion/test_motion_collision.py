@@ -46,6 +46,10 @@ def box(x: float, y: float, size: tuple[float, float, float], name: str = "box")
     return SeenBox(x, y, 0.0, size, 0.7, name, complete=True)
 
 
+def touching(_: SeenBox) -> float:
+    return 0.0
+
+
 def over(pose: ToolPose) -> ToolPose:
     return ToolPose(pose.x, pose.y, pose.z + LIFT_M, pose.yaw)
 
@@ -64,10 +68,10 @@ def test_what_the_fingers_go_around_is_not_touched_until_they_close(
     assert isinstance(path, JointPath)
     at_pick = path.ways[1].curve.end
     between = box(PICK.x, PICK.y, (0.03, 0.05, 0.06))
-    assert arm.among([between], hand(0.04), 0.0).hit(at_pick) is None
-    assert arm.among([between], hand(0.02), 0.0).hit(at_pick) == between
+    assert arm.among([between], hand(0.04), touching).hit(at_pick) is None
+    assert arm.among([between], hand(0.02), touching).hit(at_pick) == between
     aside = box(PICK.x + 0.04, PICK.y, (0.03, 0.05, 0.06))
-    assert arm.among([between, aside], hand(0.04), 0.0).hit(at_pick) == aside
+    assert arm.among([between, aside], hand(0.04), touching).hit(at_pick) == aside
 
 
 def test_what_is_held_is_part_of_the_arm(arm: CollisionModel, chain: KinematicChain) -> None:
@@ -76,10 +80,10 @@ def test_what_is_held_is_part_of_the_arm(arm: CollisionModel, chain: KinematicCh
     above = path.ways[0].curve.end
     below = box(PICK.x, PICK.y, (0.05, 0.05, 0.08))
     long = HeldBox((0.1, 0.02, 0.02), np.eye(4))
-    assert arm.among([below], hand(0.02), 0.0).hit(above) is None
+    assert arm.among([below], hand(0.02), touching).hit(above) is None
     hanging = HeldBox((0.16, 0.02, 0.02), np.eye(4))
-    assert arm.among([below], hand(0.02, long), 0.0).hit(above) is None
-    assert arm.among([below], hand(0.02, hanging), 0.0).hit(above) == below
+    assert arm.among([below], hand(0.02, long), touching).hit(above) is None
+    assert arm.among([below], hand(0.02, hanging), touching).hit(above) == below
 
 
 def test_a_path_goes_around_or_over_what_stands_there(
@@ -91,7 +95,7 @@ def test_a_path_goes_around_or_over_what_stands_there(
     ]
     path = plan(arm, chain, *posts)
     assert isinstance(path, JointPath)
-    around = arm.among(posts, hand(0.04), 0.0)
+    around = arm.among(posts, hand(0.04), touching)
     assert all(around.hit(joints) is None for way in path.ways for joints in samples(way.curve))
 
 
@@ -104,7 +108,7 @@ def test_where_every_straight_way_touches_something_one_around_it_is_found(
     boxes = [tower, table_box(Table())]
     path = plan(arm, chain, *boxes)
     assert isinstance(path, JointPath)
-    around = arm.among(boxes, hand(0.04), 0.0)
+    around = arm.among(boxes, hand(0.04), touching)
     for number, way in enumerate(path.ways):
         for joints in samples(way.curve):
             assert around.hit(joints) is None
@@ -114,6 +118,40 @@ def test_where_every_straight_way_touches_something_one_around_it_is_found(
     ):
         end = chain.pose(way.curve.end)[:3, 3]
         assert np.allclose(end, (waypoint.x, waypoint.y, waypoint.z), atol=2e-4)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_what_was_asked_before_changes_nothing(arm: CollisionModel, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    boxes = [
+        box(*rng.uniform((0.4, -0.6), (0.75, 0.2)), tuple(rng.uniform(0.012, 0.1, 3)))
+        for _ in range(20)
+    ]
+    around = arm.among(boxes, hand(0.04), touching)
+    start = np.array(PREFERRED_RAD) + rng.normal(0.0, 0.2, len(PREFERRED_RAD))
+    way = rng.normal(0.0, 0.4, len(PREFERRED_RAD))
+    for share in np.linspace(0.0, 1.0, 40):
+        joints = start + share * way
+        afresh = arm.among(boxes, hand(0.04), touching).hit(joints)
+        assert (around.hit(joints) is None) is (afresh is None)
+
+
+def test_what_is_near_or_touched_at_the_beginning_is_not_gone_through_later(
+    arm: CollisionModel, chain: KinematicChain
+) -> None:
+    free = plan(arm, chain)
+    assert isinstance(free, JointPath)
+    start = free.ways[1].curve.end
+    beside = box(PICK.x + 0.04, PICK.y, (0.03, 0.05, 0.06), "vase")
+    hands = [hand(0.04)] * 2
+    planner = PathPlanner(chain, np.array(PREFERRED_RAD))
+    rng = np.random.default_rng(0)
+    assert arm.among([beside], hands[0], touching).hit(start) == beside
+    obstacles = PathObstacles.around(arm, [beside], hands, start)
+    away = planner.plan(start, [over(PICK)], rng, obstacles)
+    assert isinstance(away, JointPath)
+    back = planner.plan(start, [over(PICK), PICK], rng, obstacles)
+    assert back == NoWay("would touch vase on the way")
 
 
 def test_what_no_path_keeps_away_from_is_named(arm: CollisionModel, chain: KinematicChain) -> None:
