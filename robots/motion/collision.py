@@ -26,6 +26,14 @@ class Hand:
     held: Sequence[HeldBox] = ()
 
 
+@dataclass(frozen=True, slots=True)
+class Margins:
+    """How far an arm keeps from something: its links, and its gripper with what that holds."""
+
+    arm_m: float
+    hand_m: float
+
+
 @dataclass(slots=True)
 class _Pairs:
     """A geometry model with what one hand could touch, and whose box each pair is about."""
@@ -49,29 +57,37 @@ class CollisionModel:
             link.geometry.buildConvexRepresentation(False)
             link.geometry = link.geometry.convex
         self._joints = list(joints)
+        wrist = self._model.getJointId(joints[-1])
+        self._beyond_wrist = [
+            wrist in self._model.supports[link.parentJoint] for link in self._links.geometryObjects
+        ]
         self._tool = self._model.frames[self._model.getFrameId(tool_frame)]
 
     def among(
-        self, boxes: Sequence[SeenBox], hand: Hand, margin_m: Callable[[SeenBox], float]
+        self, boxes: Sequence[SeenBox], hand: Hand, margins: Callable[[SeenBox], Margins]
     ) -> "Surrounded":
-        """The arm with its gripper so, amid boxes from each of which it keeps `margin_m` away."""
+        """The arm with its gripper so, amid boxes from each of which it keeps away."""
         geometry = self._links.copy()
         moving = list(range(len(geometry.geometryObjects)))
+        beyond_wrist = list(self._beyond_wrist)
         for number, held in enumerate(hand.held):
             placement = self._tool.placement * pin.SE3(held.in_tool)
             shape = coal.Box(*held.size)
             thing = pin.GeometryObject(f"held {number}", self._tool.parentJoint, placement, shape)
             moving.append(geometry.addGeometryObject(thing))
-        pairs = _Pairs(geometry, None)
+            beyond_wrist.append(True)
+        pairs, kept_m = _Pairs(geometry, None), []
         for number, box in enumerate(boxes):
             thing = pin.GeometryObject(f"box {number}", 0, _placement(box), coal.Box(*box.size))
             index = geometry.addGeometryObject(thing)
+            kept = margins(box)
             for link in moving:
                 geometry.addCollisionPair(pin.CollisionPair(link, index))
                 pairs.boxes.append(box)
+                kept_m.append(kept.hand_m if beyond_wrist[link] else kept.arm_m)
         pairs.data = pin.GeometryData(geometry)
-        for request, box in zip(pairs.data.collisionRequests, pairs.boxes, strict=True):
-            request.security_margin = margin_m(box)
+        for request, margin_m in zip(pairs.data.collisionRequests, kept_m, strict=True):
+            request.security_margin = margin_m
             _start_afresh(request)
         return Surrounded(self, pairs, hand)
 

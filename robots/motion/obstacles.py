@@ -5,14 +5,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from robots.motion.collision import CollisionModel, Hand, Surrounded
+from robots.motion.collision import CollisionModel, Hand, Margins, Surrounded
 from robots.motion.curve import JointCurve
 from robots.motion.kinematics import Joints
 from robots.motion.planner import JointPath, PathSegment
 from robots.vision.seen_box import SeenBox
 
-FREE_MARGIN_M = 0.008
-"""Kept from everything on free ways; on straight ones into and out of gaps nothing more."""
+FREE_M = 0.008
+"""Kept from everything on free ways."""
+_STRAIGHT_M = 0.005
+"""Kept by the arm on straight ways; by the gripper, that goes into and out of gaps, nothing."""
+
+_FREE = Margins(FREE_M, FREE_M)
+_STRAIGHT = Margins(_STRAIGHT_M, 0.0)
+_NONE = Margins(0.0, 0.0)
 
 _STEP_RAD = 0.06
 _FEWEST_SAMPLES = 6
@@ -35,13 +41,15 @@ class PathObstacles:
         """
         if not hands:
             return cls([], [])
-        near = arm.among(boxes, hands[0], lambda _: FREE_MARGIN_M).hits(start)
-        touched = arm.among(boxes, hands[0], lambda _: 0.0).hits(start)
+        near = arm.among(boxes, hands[0], lambda _: _FREE).hits(start)
+        touched = arm.among(boxes, hands[0], lambda _: _NONE).hits(start)
         free, straight = [], []
         for number, hand in enumerate(hands):
             others = [box for box in boxes if number > 0 or box not in touched]
-            free.append(arm.among(others, hand, lambda b: 0.0 if b in near else FREE_MARGIN_M))
-            straight.append(arm.among(others, hand, lambda _: 0.0))
+            free.append(arm.among(others, hand, lambda box: _NONE if box in near else _FREE))
+            straight.append(
+                arm.among(others, hand, lambda box: _NONE if box in near else _STRAIGHT)
+            )
         return cls(free, straight)
 
     def first_on(self, path: JointPath) -> str | None:

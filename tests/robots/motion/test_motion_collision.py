@@ -7,7 +7,7 @@ import pytest
 
 from robots.behaviors.legs import table_box
 from robots.body import HeldBox, NoWay, ToolPose
-from robots.motion.collision import CollisionModel, Hand
+from robots.motion.collision import CollisionModel, Hand, Margins
 from robots.motion.kinematics import KinematicChain
 from robots.motion.obstacles import PathObstacles, samples
 from robots.motion.planner import JointPath, PathPlanner
@@ -46,8 +46,8 @@ def box(x: float, y: float, size: tuple[float, float, float], name: str = "box")
     return SeenBox(x, y, 0.0, size, 0.7, name, complete=True)
 
 
-def touching(_: SeenBox) -> float:
-    return 0.0
+def touching(_: SeenBox) -> Margins:
+    return Margins(0.0, 0.0)
 
 
 def over(pose: ToolPose) -> ToolPose:
@@ -72,6 +72,18 @@ def test_what_the_fingers_go_around_is_not_touched_until_they_close(
     assert arm.among([between], hand(0.02), touching).hit(at_pick) == between
     aside = box(PICK.x + 0.04, PICK.y, (0.03, 0.05, 0.06))
     assert arm.among([between, aside], hand(0.04), touching).hit(at_pick) == aside
+
+
+def test_the_gripper_may_go_where_the_arm_keeps_away(
+    arm: CollisionModel, chain: KinematicChain
+) -> None:
+    path = plan(arm, chain)
+    assert isinstance(path, JointPath)
+    at_pick = path.ways[1].curve.end
+    between = box(PICK.x, PICK.y, (0.03, 0.05, 0.06))
+    for margins, hit in ((Margins(0.0, 0.01), between), (Margins(0.01, 0.0), None)):
+        found = arm.among([between], hand(0.04), lambda _, each=margins: each).hit(at_pick)
+        assert found == hit
 
 
 def test_what_is_held_is_part_of_the_arm(arm: CollisionModel, chain: KinematicChain) -> None:
