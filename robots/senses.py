@@ -1,6 +1,6 @@
 """What one robot perceives: its cameras' pictures, and what they show."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 
@@ -31,7 +31,7 @@ from robots.vision.presence import Presence, is_at, judge_presence
 from robots.vision.projection import Points, project
 from robots.vision.scene_change import is_same, shows_change
 from robots.vision.seen_box import SeenBox
-from robots.vision.table_view import TableView, view_table
+from robots.vision.table_view import TableView, boxes_of, view_table
 from robots.vision.tracking import LastSeen
 
 HEAD = "head"
@@ -117,8 +117,9 @@ class Senses:
 
     def recall(self, part: Part, image: CameraImage) -> HeadSighting | None:
         """Where a part was when last seen whole, if something keeps the camera from seeing that."""
-        stood = self._last_seen.seen_whole(part.name)
-        if stood is None or self.presence(image, part, stood) is not Presence.HIDDEN:
+        view = self._understand(image)
+        stood = None if view is None else self._hidden_at(part, view)
+        if stood is None:
             return None
         bottom_z = self.catalogue.height_of(stood)
         at = stood.x, stood.y, bottom_z + part.size[2]
@@ -152,7 +153,8 @@ class Senses:
         view = self._understand(image)
         if view is None:
             return ()
-        return [*view.boxes, *unseen_carriers(view.boxes, self.catalogue.table.height)]
+        boxes = [*view.boxes, *view.recalled]
+        return [*boxes, *unseen_carriers(boxes, self.catalogue.table.height)]
 
     def shows_anything(
         self, image: CameraImage, at: tuple[float, float, float], but: Part | None = None
@@ -328,10 +330,32 @@ class Senses:
                 self._last_seen,
                 self._is_own_arm,
             )
+            if view is not None:
+                for name, each in view.sightings.items():
+                    self._last_seen.note_sighting(name, each)
+                view = replace(view, recalled=self._recalled(parts.values(), view))
             seen.views[stranger] = view
-            for name, each in view.sightings.items() if view is not None else ():
-                self._last_seen.note_sighting(name, each)
         return seen.views[stranger]
+
+    def _recalled(self, parts: Iterable[Part], view: TableView) -> list[SeenBox]:
+        """What is not seen, but hidden where it was last seen whole."""
+        found = []
+        for part in parts:
+            at = None if part.name in view.sightings else self._hidden_at(part, view)
+            if at is not None:
+                found += boxes_of(part, at, self.catalogue.height_of(at), complete=False)
+        return found
+
+    def _hidden_at(self, part: Part, view: TableView) -> Location | None:
+        """Where a part was last seen whole, if something hides that now."""
+        at = self._last_seen.seen_whole(part.name)
+        if at is None:
+            return None
+        equals, bottom_z = self._equals_of(part), self.catalogue.height_of(at)
+        presence = judge_presence(view, part, equals, at, bottom_z)
+        if presence is Presence.GONE:
+            self._last_seen.note_gone(part.name)
+        return at if presence is Presence.HIDDEN else None
 
     def _is_own_arm(self, points: Points) -> NDArray[np.bool_]:
         """Which points are the arm: near the lines from the tool point back.

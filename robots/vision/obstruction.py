@@ -75,11 +75,10 @@ def find_obstruction(
     if taken is not None:
         inside &= ~_carries(points, taken, clearance)
     us, vs, points = us[inside], vs[inside], points[inside]
-    for box in view.boxes:
-        if box.name is not None:
-            carrier = below(box, view.heights.table_z)
-            unknown = ~(box.holds(points) | carrier.holds(points, _CARRIER_M))
-            us, vs, points = us[unknown], vs[unknown], points[unknown]
+    for box in view.known:
+        carrier = below(box, view.heights.table_z)
+        unknown = ~(box.holds(points) | carrier.holds(points, _CARRIER_M))
+        us, vs, points = us[unknown], vs[unknown], points[unknown]
     canvas = np.zeros(view.heights.height_m.shape, np.uint8)
     canvas[vs, us] = 255
     clean = np.asarray(cv2.morphologyEx(canvas, cv2.MORPH_OPEN, np.ones((3, 3), np.uint8)))

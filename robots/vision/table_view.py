@@ -21,7 +21,7 @@ from robots.vision.level_surfaces import Pixels, Surface, Surfaces, find_surface
 from robots.vision.naming import Match, Namer, Top
 from robots.vision.projection import Points, unproject
 from robots.vision.rectangle import Fitted, Rectangle, fit_any, fit_sized, gather
-from robots.vision.seen_box import SeenBox, Size
+from robots.vision.seen_box import SeenBox
 from robots.vision.tracking import LastSeen
 from tasks.scene import Table
 
@@ -38,11 +38,20 @@ _OWN_M = 0.004
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TableView:
-    """What a head picture shows; `sightings` by name, `boxes` of the known and the unknown."""
+    """What a head picture shows; `sightings` by name, `boxes` of the known and the unknown.
+
+    `recalled` are boxes of what is hidden where it was last seen.
+    """
 
     heights: HeightMap
     sightings: Mapping[str, HeadSighting]
     boxes: Sequence[SeenBox]
+    recalled: Sequence[SeenBox] = ()
+
+    @property
+    def known(self) -> list[SeenBox]:
+        """The boxes of parts, seen or recalled."""
+        return [*(each for each in self.boxes if each.name is not None), *self.recalled]
 
     def standing_out(self, over_z: float) -> tuple[Pixels, Pixels, Points]:
         """The pixels (us, vs) that show something higher than `over_z`, and their points."""
@@ -183,20 +192,21 @@ def _corners(at: Rectangle, extents: tuple[float, float]) -> NDArray[np.float64]
     return SeenBox(at.x, at.y, at.yaw, (*extents, 0.0), 0.0, None, complete=True).corners()
 
 
-def _boxes(match: Match, sighting: HeadSighting) -> list[SeenBox]:
-    """The part's box, and on a plate its knob's: beside that there is room over the plate."""
-    part = match.part
-    if not match.upright:
-        size = (*match.extents, match.height_m)
-        return [_named(match, sighting, size, match.top.surface.top_z - match.height_m)]
-    boxes = [_named(match, sighting, part.size, sighting.z)]
+def _boxes(match: Match, at: HeadSighting) -> list[SeenBox]:
+    if match.upright:
+        stands = Location(x=at.x, y=at.y, z=at.z, yaw=at.yaw)
+        return boxes_of(match.part, stands, at.z, complete=at.complete)
+    bottom_z = match.top.surface.top_z - match.height_m
+    size = (*match.extents, match.height_m)
+    return [SeenBox(at.x, at.y, at.yaw, size, bottom_z, match.part.name, at.complete)]
+
+
+def boxes_of(part: Part, at: Location, bottom_z: float, *, complete: bool) -> list[SeenBox]:
+    """A part's box, and on a plate its knob's: beside that there is room over the plate."""
+    levels = [(part.size, bottom_z)]
     if part.knob is not None:
-        boxes.append(_named(match, sighting, part.knob, sighting.z + part.size[2]))
-    return boxes
-
-
-def _named(match: Match, at: HeadSighting, size: Size, bottom_z: float) -> SeenBox:
-    return SeenBox(at.x, at.y, at.yaw, size, bottom_z, match.part.name, at.complete)
+        levels.append((part.knob, bottom_z + part.size[2]))
+    return [SeenBox(at.x, at.y, at.yaw, size, z, part.name, complete) for size, z in levels]
 
 
 def _unknown_box(top: Top, table_z: float) -> SeenBox:

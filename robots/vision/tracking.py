@@ -49,6 +49,10 @@ class LastSeen:
         if seen.complete:
             self._whole[name] = Location(x=seen.x, y=seen.y, z=seen.z, yaw=seen.yaw)
 
+    def note_gone(self, name: str) -> None:
+        """A part was seen not to be where it stood any more."""
+        self._whole.pop(name, None)
+
     def note(self, name: str, at: Spot) -> None:
         """A part was at a place, or was let go there."""
         self._spots[name] = at

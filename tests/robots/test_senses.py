@@ -1,7 +1,7 @@
 """A head picture is understood once, and anew if anything changed or what it shows is doubted."""
 
 import pytest
-from drawn_scene import PARTS, DrawnScene
+from drawn_scene import PARTS, TABLE_Z, DrawnScene
 from scripted_body import STARTS, ScriptedBody, catalogue, trained_model
 
 import robots.senses
@@ -54,3 +54,27 @@ def test_the_very_same_picture_shows_the_same_however_much_it_is_doubted(
         senses.sight(PARTS["pink_bar"], picture(0))
         senses.doubt()
     assert len(understood) == 1
+
+
+BEFORE_PINK = [((0.36, -0.25, TABLE_Z), (0.05, 0.2, 0.2))]
+"""Something tall between the camera and the pink bar."""
+
+
+def names_seen(senses: Senses, *, without: str = "", hidden: bool) -> set[str | None]:
+    parts = {name: each.matrix() for name, each in STARTS.items() if name != without}
+    image = DrawnScene(parts, grey_boxes=BEFORE_PINK if hidden else []).picture()
+    return {box.name for box in senses.seen_boxes(image)}
+
+
+def test_what_is_hidden_is_taken_to_stand_where_it_was_seen() -> None:
+    senses = Senses(ScriptedBody(STARTS), trained_model(), catalogue())
+    assert names_seen(senses, hidden=True) == (set(STARTS) - {"pink_bar"}) | {None}
+    assert names_seen(senses, hidden=False) == set(STARTS)
+    assert names_seen(senses, hidden=True) == set(STARTS) | {None}
+
+
+def test_what_is_seen_gone_is_not_recalled_any_more() -> None:
+    senses = Senses(ScriptedBody(STARTS), trained_model(), catalogue())
+    names_seen(senses, hidden=False)
+    assert "pink_bar" not in names_seen(senses, without="pink_bar", hidden=False)
+    assert "pink_bar" not in names_seen(senses, without="pink_bar", hidden=True)
