@@ -3,7 +3,6 @@
 Pinocchio places the links, coal tests the pairs.
 """
 
-import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -16,6 +15,9 @@ import pinocchio as pin
 from robots.body import HeldBox
 from robots.motion.kinematics import Joints
 from robots.vision.seen_box import SeenBox
+
+_QHULL_OPTIONS = "Qt"
+"""Triangles: what coal calls the convex representation of a mesh is that only if it is convex."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +56,7 @@ class CollisionModel:
             self._model, str(urdf), pin.GeometryType.COLLISION, package_dirs=[str(urdf.parent)]
         )
         for link in self._links.geometryObjects:
-            link.geometry.buildConvexRepresentation(False)
+            link.geometry.buildConvexHull(True, _QHULL_OPTIONS)
             link.geometry = link.geometry.convex
         self._joints = list(joints)
         wrist = self._model.getJointId(joints[-1])
@@ -88,7 +90,6 @@ class CollisionModel:
         pairs.data = pin.GeometryData(geometry)
         for request, margin_m in zip(pairs.data.collisionRequests, kept_m, strict=True):
             request.security_margin = margin_m
-            _start_afresh(request)
         return Surrounded(self, pairs, hand)
 
     def configuration(self, joints: Joints, hand: Hand) -> Any:
@@ -135,17 +136,6 @@ class Surrounded:
             return []
         whole = self.arm.configuration(joints, self._hand)
         return self.arm.hits(self._pairs, whole, first=first)
-
-
-def _start_afresh(request: Any) -> None:
-    """Begin every test of a pair anew.
-
-    From where the last one ended coal 3.0 may not find a collision that is there.
-    """
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", DeprecationWarning)
-        # Pinocchio sets this switch; the newer one of coal does not undo it.
-        request.enable_cached_gjk_guess = False
 
 
 def _placement(box: SeenBox) -> Any:

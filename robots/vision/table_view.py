@@ -123,8 +123,8 @@ def _fit_match(match: Match, surfaces: Surfaces, stood: Location | None) -> Fitt
     start = Rectangle(x, y, at.yaw, match.extents)
     evidence = gather(match.top.surface, surfaces)
     fits = [fit_sized(evidence, start)]
-    if all(rough.sides_seen):
-        # A rectangle of a few pixels, fitted without its size, may lie any way round.
+    if all(rough.sides_seen) and match.top.knob is None:
+        # A rectangle of a few pixels, fitted without its size, may lie any way round; a knob tells.
         fits += [fit_sized(evidence, replace(start, yaw=at.yaw + turn)) for turn in _TURNS_RAD]
     best = min(fits, key=lambda each: each.misfit)
     if all(rough.sides_seen) or stood is None or not _is_so_high(match, stood, surfaces):

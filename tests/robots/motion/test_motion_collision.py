@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.spatial import ConvexHull
 
 from robots.behaviors.legs import table_box
 from robots.body import HeldBox, NoWay, ToolPose
@@ -130,6 +131,24 @@ def test_where_every_straight_way_touches_something_one_around_it_is_found(
     ):
         end = chain.pose(way.curve.end)[:3, 3]
         assert np.allclose(end, (waypoint.x, waypoint.y, waypoint.z), atol=2e-4)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_link_is_touched_up_to_its_hull(arm: CollisionModel, seed: int) -> None:
+    """Of the forearm's mesh only a part of the points are corners of its hull."""
+    mesh = robot_urdf().parent / "meshes" / "forearm_v0" / "forearm.stl"
+    triangles = np.frombuffer(
+        mesh.read_bytes()[84:], np.dtype([("n", "<3f4"), ("v", "<9f4"), ("a", "<u2")])
+    )
+    hull = ConvexHull(triangles["v"].reshape(-1, 3).astype(float))
+    joints = np.array(PREFERRED_RAD)
+    roll = KinematicChain(robot_urdf(), "r_forearm_link", ARM_JOINTS[:5]).pose(joints[:5])
+    rng = np.random.default_rng(seed)
+    for _ in range(100):
+        inside = rng.dirichlet(np.ones(3)) @ hull.points[rng.choice(hull.vertices, 3)]
+        x, y, z = (float(each) for each in roll[:3, :3] @ inside + roll[:3, 3])
+        crumb = SeenBox(x, y, 0.0, (0.002, 0.002, 0.002), z - 0.001, "crumb", complete=True)
+        assert arm.among([crumb], hand(0.04), touching).hit(joints) == crumb
 
 
 @pytest.mark.parametrize("seed", range(6))
