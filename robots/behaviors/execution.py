@@ -10,6 +10,7 @@ from robots.behaviors.confirmation import look_at_outcome
 from robots.behaviors.execution_state import ExecutionState, ExecutionTransitionError, is_over
 from robots.behaviors.phase import Phase
 from robots.behaviors.preparation import (
+    LOOK_AGAIN_S,
     Plan,
     check_carrying,
     find,
@@ -177,6 +178,8 @@ class Execution:
                 watch.judge(progress.felt)
             self._picked_at = None
             progress.plan = make_plan(self._assignment, arm, senses, seen)
+            if seen.sighting is not None and (progress.plan is None or seen.obstruction):
+                yield from self._plan_anew()
         if progress.plan is None and progress.inexact and self._in_place():
             # There is no way to place it better.
             return None
@@ -190,6 +193,15 @@ class Execution:
             )
         self._picked_at = progress.plan.picked_at or self._picked_at
         return progress.plan
+
+    def _plan_anew(self) -> Routine[None]:
+        """Look and plan once more: what one picture shows may be wrong."""
+        progress = self._progress
+        progress.start_again()
+        self._senses.doubt()
+        yield from self._arm.wait(LOOK_AGAIN_S)
+        yield from find(self._assignment.part, self._arm, self._senses, progress.seen)
+        progress.plan = make_plan(self._assignment, self._arm, self._senses, progress.seen)
 
     def _in_place(self) -> bool:
         seen, target = self._progress.seen, self._assignment.target

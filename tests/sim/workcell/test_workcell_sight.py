@@ -53,6 +53,31 @@ def test_it_is_seen_which_side_of_a_small_part_is_the_longer_one(
     assert max(errors_rad) < math.radians(25)
 
 
+def test_a_knob_tells_which_way_round_a_square_plate_lies() -> None:
+    noisy = WorkcellOptions(camera_noise=3.0, light=1.0, depth_noise=1.0)
+    rng = np.random.default_rng(3)
+    for seed in range(6):
+        yaw = float(rng.uniform(-1.5, 1.5))
+        plate = SceneObject(
+            color=(0.2, 0.3, 0.6),
+            size=(0.063, 0.063, 0.014),
+            knob=(0.021, 0.027, 0.029),
+            mass_kg=0.05,
+            pose=Pose(x=0.43, y=-0.47, yaw=yaw),
+        )
+        scene = Scene(name="plate", objects={"plate": plate}, places={})
+        world = WorkcellWorld(scene, seed, noisy)
+        catalogue = Catalogue.from_scene(scene)
+        model = learn_colors(scene, noisy.camera_noise)
+        view = view_table(
+            world.head.capture(), scene.table, catalogue.parts, model, LastSeen(catalogue.starts)
+        )
+        world.close()
+        assert view is not None
+        turn = math.remainder(view.sightings["plate"].yaw - yaw, math.pi)
+        assert abs(turn) < math.radians(10)
+
+
 @pytest.mark.parametrize("both_there", [True, False])
 def test_the_two_sides_of_one_plate_are_not_two_plates(both_there: bool) -> None:
     """Its own knob hides the middle of it; an equal one is elsewhere, or out of sight."""
