@@ -44,7 +44,8 @@ def _somewhere(record: RunRecord, index: int, event: ev.Prompt, _: re.Match[str]
 def _nowhere(record: RunRecord, _: int, event: ev.Prompt, __: re.Match[str]) -> str | None:
     index = record.raised_at(event.node)
     moment = record.moment(index)
-    gone = moment.resting.get(event.object or "") is None
+    # Of equal parts any may be the one that is gone.
+    gone = any(moment.resting.get(each) is None for each in record.equals(event.object))
     hidden = moment.blocked or record.buried(index, event.object)
     return None if gone or hidden else "it lies on the table"
 

@@ -16,6 +16,7 @@ from server.journal import events as ev
 from server.journal.untruths import Rest
 from sim.tabletop.layout import lay_out
 from tasks.intervention import Act, Intervention
+from tasks.scene import Scene
 
 NAMES = [("part_1", "spot_1"), ("part_2", "spot_2")]
 SCENE = lay_out(NAMES, seed=1)
@@ -72,12 +73,12 @@ class Told:
         self.moments.append(self.world)
         return self
 
-    def begin(self) -> "Told":
+    def begin(self, scene: Scene = SCENE) -> "Told":
         self.add(
             ev.RunStarted,
             tree_name="tree",
             tree=definition_of({"then": LEAVES}).model_dump(mode="json"),
-            scene=SCENE.model_dump(mode="json"),
+            scene=scene.model_dump(mode="json"),
             world="tabletop",
             robots=["robot"],
             seed=1,
@@ -142,9 +143,19 @@ class Told:
         return [each.why for each in DialogueJudge(self.events, self.moments).judge()]
 
 
-def told(world: Moment = STARTS, issue: str = "missed") -> Told:
+def told(world: Moment = STARTS, issue: str = "missed", scene: Scene = SCENE) -> Told:
     """A run in which part_1 has just met an issue, while the world was so."""
-    return Told().begin().now(world, 10.0).alarm(issue)
+    return Told().begin(scene).now(world, 10.0).alarm(issue)
+
+
+@pytest.mark.parametrize("equal", [True, False])
+def test_of_equal_parts_any_may_be_the_one_that_is_gone(equal: bool) -> None:
+    like = SCENE.objects["part_1"] if equal else SCENE.objects["part_2"]
+    second = like.model_copy(update={"pose": SCENE.objects["part_2"].pose})
+    scene = SCENE.model_copy(update={"objects": {**SCENE.objects, "part_2": second}})
+    other_gone = replace(STARTS, resting={**STARTS.resting, "part_2": None})
+    judged = told(other_gone, "missing", scene).say("I cannot find the part 1. Hm?").wrong()
+    assert (judged == []) is equal
 
 
 @pytest.mark.parametrize(
