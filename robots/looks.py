@@ -155,10 +155,14 @@ class InReach:
             (each.tool_pose(at.x, at.y, at.z, at.yaw), each.opening_m)
             for each in grasps_of(self._part, body.gripper)
         ]
-        return any(
-            body.plan_path([replace(pick, z=pick.z + lift_m), pick]) is not None
+        roomy = dict.fromkeys(
+            pick
             for pick, opening_m in picks
             if in_the_way(body.gripper, pick, opening_m, around, MARGIN_M) is None
+        )
+        return any(
+            body.plan_path([replace(pick, z=pick.z + lift_m), pick]) is not None
+            for pick in roomy
             for lift_m in LIFTS_M
         )
 
