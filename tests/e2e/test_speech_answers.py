@@ -60,6 +60,7 @@ async def spoken(tmp_path: Path) -> AsyncIterator[Spoken]:
             assert isinstance(runs, PlayedDialogues)
             run = await runs.start_run(RunRequest(tree="eket", world="tabletop"))
             dialogue = await runs.open(run.id, "dropped")
+            await page.locator(".fault-picture .overlay").wait_for()
             await page.get_by_role("button", name="Listen and speak").click()
             return runs, dialogue, page
 

@@ -24,7 +24,14 @@ export function FaultPicture({ question }: { question: Question }) {
   return (
     <figure class="fault">
       <div class="fault-picture">
-        <img src={picturePath(shown)} alt={`What the robot's ${camera} camera saw`} onLoad={measure} />
+        <img
+          src={picturePath(shown)}
+          alt={`What the robot's ${camera} camera saw`}
+          // Room for it before it is there, so that nothing moves away from under a finger.
+          width={detection?.size_px?.[0]}
+          height={detection?.size_px?.[1]}
+          onLoad={measure}
+        />
         {earlier === undefined && detection !== null && size !== null && (
           <DetectionOverlay detection={detection} size={size} />
         )}
