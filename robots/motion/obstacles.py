@@ -11,12 +11,12 @@ from robots.motion.kinematics import Joints
 from robots.motion.planner import JointPath, PathSegment
 from robots.vision.seen_box import SeenBox
 
-FREE_M = 0.008
+_FREE_M = 0.008
 """Kept from everything on free ways."""
 _STRAIGHT_M = 0.005
 """Kept by the arm on straight ways; by the gripper, that goes into and out of gaps, nothing."""
 
-_FREE = Margins(FREE_M, FREE_M)
+_FREE = Margins(_FREE_M, _FREE_M)
 _STRAIGHT = Margins(_STRAIGHT_M, 0.0)
 _NONE = Margins(0.0, 0.0)
 

@@ -9,7 +9,7 @@ from scipy.spatial import ConvexHull
 from robots.behaviors.legs import table_box
 from robots.body import HeldBox, NoWay, ToolPose
 from robots.motion.collision import CollisionModel, Hand, Margins
-from robots.motion.kinematics import KinematicChain
+from robots.motion.kinematics import Joints, KinematicChain
 from robots.motion.obstacles import PathObstacles, samples
 from robots.motion.planner import JointPath, PathPlanner
 from robots.vision.seen_box import SeenBox
@@ -62,12 +62,17 @@ def plan(arm: CollisionModel, chain: KinematicChain, *boxes: SeenBox) -> JointPa
     return planner.plan(START, waypoints, np.random.default_rng(0), obstacles)
 
 
-def test_what_the_fingers_go_around_is_not_touched_until_they_close(
-    arm: CollisionModel, chain: KinematicChain
-) -> None:
+@pytest.fixture(scope="module")
+def at_pick(arm: CollisionModel, chain: KinematicChain) -> Joints:
+    """With the fingers around what is picked."""
     path = plan(arm, chain)
     assert isinstance(path, JointPath)
-    at_pick = path.ways[1].curve.end
+    return path.ways[1].curve.end
+
+
+def test_what_the_fingers_go_around_is_not_touched_until_they_close(
+    arm: CollisionModel, at_pick: Joints
+) -> None:
     between = box(PICK.x, PICK.y, (0.03, 0.05, 0.06))
     assert arm.among([between], hand(0.04), touching).hit(at_pick) is None
     assert arm.among([between], hand(0.02), touching).hit(at_pick) == between
@@ -75,12 +80,7 @@ def test_what_the_fingers_go_around_is_not_touched_until_they_close(
     assert arm.among([between, aside], hand(0.04), touching).hit(at_pick) == aside
 
 
-def test_the_gripper_may_go_where_the_arm_keeps_away(
-    arm: CollisionModel, chain: KinematicChain
-) -> None:
-    path = plan(arm, chain)
-    assert isinstance(path, JointPath)
-    at_pick = path.ways[1].curve.end
+def test_the_gripper_may_go_where_the_arm_keeps_away(arm: CollisionModel, at_pick: Joints) -> None:
     between = box(PICK.x, PICK.y, (0.03, 0.05, 0.06))
     for margins, hit in ((Margins(0.0, 0.01), between), (Margins(0.01, 0.0), None)):
         found = arm.among([between], hand(0.04), lambda _, each=margins: each).hit(at_pick)
@@ -168,11 +168,9 @@ def test_what_was_asked_before_changes_nothing(arm: CollisionModel, seed: int) -
 
 
 def test_what_is_near_or_touched_at_the_beginning_is_not_gone_through_later(
-    arm: CollisionModel, chain: KinematicChain
+    arm: CollisionModel, chain: KinematicChain, at_pick: Joints
 ) -> None:
-    free = plan(arm, chain)
-    assert isinstance(free, JointPath)
-    start = free.ways[1].curve.end
+    start = at_pick
     beside = box(PICK.x + 0.04, PICK.y, (0.03, 0.05, 0.06), "vase")
     hands = [hand(0.04)] * 2
     planner = PathPlanner(chain, np.array(PREFERRED_RAD))
