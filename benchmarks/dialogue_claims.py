@@ -62,10 +62,20 @@ def _held(record: RunRecord, index: int, event: ev.Prompt, _: re.Match[str]) -> 
     )
 
 
-def _in_the_way(record: RunRecord, _: int, event: ev.Prompt, __: re.Match[str]) -> str | None:
+def _in_the_way(record: RunRecord, _: int, event: ev.Prompt, said: re.Match[str]) -> str | None:
+    named = _part_named(record, event, said[1])
+    if named is not None:
+        # How the arm gets past it only a planner could tell: at least it has to be there.
+        return None if record.at_issue(event.node).resting.get(named) else "it is not there"
     there = record.at_issue(event.node).blocked or record.crowded(event.node, event.object)
     covered = record.buried(record.raised_at(event.node), event.object)
     return None if there or covered else "nothing is in its way"
+
+
+def _part_named(record: RunRecord, event: ev.Prompt, said: str | None) -> str | None:
+    spoken = (said or "").lower()
+    parts = record.at_issue(event.node).resting
+    return next((each for each in parts if each.replace("_", " ").lower() == spoken), None)
 
 
 def _held_up(record: RunRecord, _: int, event: ev.Prompt, __: re.Match[str]) -> str | None:
@@ -197,7 +207,10 @@ CHECKS: Sequence[tuple[str, Check]] = (
     (r"I missed the|I lost hold of|failed .* to (pick up|hold)", _not_held),
     (r"I have the .* between my fingers", _held),
     (r"I do not see the .* between my fingers", _not_held_yet),
-    (r"I cannot go on with the .*Can you clear", _in_the_way),
+    (
+        r"I cannot go on with the [^.]*\.(?: (.*?) is in the arm's way\.)?.*Can you clear",
+        _in_the_way,
+    ),
     (r"I felt something hold up my arm", _held_up),
     (r"(?<!until )I see my way free|I see nothing in my way", _way_free),
     (r"I do not see my way free|I still see or feel something", _not_free),

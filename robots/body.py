@@ -95,9 +95,13 @@ class Leg:
 
 @dataclass(frozen=True, slots=True)
 class NoWay:
-    """Why there is no path, as the end of a sentence: "the arm does not ..."."""
+    """Why there is no path, as the end of a sentence: "the arm does not ...".
+
+    `touched` is what the first of the paths that were tried would touch.
+    """
 
     reason: str
+    touched: SeenBox | None = None
 
 
 class ArmPath(Protocol):

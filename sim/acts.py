@@ -3,7 +3,6 @@
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import replace
 from typing import Generic, Protocol, TypeVar
 
 import numpy as np
@@ -19,8 +18,6 @@ HAND_OVER_S = 15.0
 PULL_M_PER_S = 0.4
 
 _SPOT_STEP_M = 0.05
-_HAND_M = 0.06
-_MISPLACED_M = 0.01
 _IN_THE_WAY_M = 0.008
 """What reaches less than this over the floor of a place is what the place stands on."""
 
@@ -164,7 +161,7 @@ class Acts(ABC, Generic[P, At]):
         in_the_way = self._stands_in_the_way()
         if in_the_way:
             self._step_aside()
-        lying = self._lying_at(intervention) or self._crowding(intervention)
+        lying = self._to_put_aside(intervention)
         for part in lying:
             self._put_aside(part, intervention)
         if not in_the_way and not lying:
@@ -185,10 +182,12 @@ class Acts(ABC, Generic[P, At]):
             raise Impossible(f"the scene has no place '{name}'")
         return place
 
-    def _lying_at(self, intervention: Intervention) -> list[P]:
-        """What lies on the object, or at the place where that is to go."""
-        if intervention.place is None or intervention.object is None:
+    def _to_put_aside(self, intervention: Intervention) -> list[P]:
+        """The object itself; or, with a place for it, what lies on it or at that place."""
+        if intervention.object is None:
             return []
+        if intervention.place is None:
+            return [self._part(intervention)]
         belongs = self._part(intervention)
         rooms = [self._room_at(intervention.place, belongs)]
         own = self._footprint(belongs)
@@ -201,22 +200,6 @@ class Acts(ABC, Generic[P, At]):
                 covered.overlaps(room) and self._top_z(part) > low_z + _IN_THE_WAY_M
                 for room, low_z in rooms
             )
-        ]
-
-    def _crowding(self, intervention: Intervention) -> list[P]:
-        """What stands a hand's breadth from where the object is to go, and belongs elsewhere."""
-        if intervention.place is None or intervention.object is None:
-            return []
-        belongs = self._part(intervention)
-        room, low_z = self._room_at(intervention.place, belongs)
-        wide = replace(room, length=room.length + 2 * _HAND_M, width=room.width + 2 * _HAND_M)
-        places = [each.pose for each in self._scene.places.values()]
-        return [
-            part
-            for part, covered in self._resting(belongs)
-            if covered.overlaps(wide)
-            and self._top_z(part) > low_z + _IN_THE_WAY_M
-            and all(math.dist((covered.x, covered.y), (at.x, at.y)) > _MISPLACED_M for at in places)
         ]
 
     def _room_at(self, place: str, belongs: P) -> tuple[Footprint, float]:
@@ -235,9 +218,9 @@ class Acts(ABC, Generic[P, At]):
     def _put_aside(self, part: P, intervention: Intervention) -> None:
         """Put a part back to where it started, or else to the nearest free spot of the table.
 
-        It does not go to what is to be cleared.
+        It goes neither to what is to be cleared nor where it is now.
         """
-        others = [covered for _, covered in self._resting(part)]
+        others = [covered for each in self._parts.values() if (covered := self._footprint(each))]
         if intervention.place is not None:
             belongs = self._part(intervention)
             others.append(self._room_at(intervention.place, belongs)[0])

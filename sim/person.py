@@ -20,11 +20,15 @@ _ACTS = {
 
 @dataclass(frozen=True, slots=True)
 class Promise:
-    """What was promised: `help` is a dialogue's word for it (`place`, `put_back`, ...)."""
+    """What was promised: `help` is a dialogue's word for it (`place`, `put_back`, ...).
+
+    `in_the_way` is the part that is to be cleared out of the way, if it is one.
+    """
 
     help: str
     object: str | None
     place: str | None
+    in_the_way: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,6 +60,8 @@ def deed(
     if not person.acts or never < person.never:
         return None
     delay_s = person.delay_s + (person.late_s if late < person.late else 0.0)
+    if act is Act.RELEASE and promise.in_the_way is not None:
+        return Deed(Intervention(act=act, object=promise.in_the_way), delay_s)
     if act is Act.RELEASE:
         return Deed(Intervention(act=act, object=promise.object, place=promise.place), delay_s)
     if promise.object is None:

@@ -24,16 +24,16 @@ class Act(StrEnum):
     BLOCK = "block"
     """Stand in the way of the arm."""
     RELEASE = "release"
-    """Get out of the way, and put aside what lies at the place where the object is to go."""
+    """Get out of the way, and put aside the object, or what lies at the place where it is to go."""
 
 
 class Intervention(StrictModel):
     """One thing that a person does in a world.
 
     `object` is required by every act but `block` and `release`; `place` (a name of the scene) by
-    `place`; `to` by `move`. A `release` with both `object` and `place` frees that place as well.
-    `manner` says how `steal` takes the object: `vanish` at once, or `pull` it out of the gripper
-    by force.
+    `place`; `to` by `move`. A `release` with both `object` and `place` frees that place as well,
+    one with an `object` alone puts that aside. `manner` says how `steal` takes the object: `vanish`
+    at once, or `pull` it out of the gripper by force.
     """
 
     act: Annotated[Act, Field(strict=False)]

@@ -9,14 +9,8 @@ from robots.behaviors.backing_off import get_out_of_view
 from robots.behaviors.confirmation import look_at_outcome
 from robots.behaviors.execution_state import ExecutionState, ExecutionTransitionError, is_over
 from robots.behaviors.phase import Phase
-from robots.behaviors.preparation import (
-    LOOK_AGAIN_S,
-    Plan,
-    check_carrying,
-    find,
-    goes_on_carrying,
-    make_plan,
-)
+from robots.behaviors.plan import Plan, make_plan
+from robots.behaviors.preparation import LOOK_AGAIN_S, check_carrying, find, goes_on_carrying
 from robots.behaviors.progress import Progress
 from robots.behaviors.put_down import put_down, set_down
 from robots.behaviors.step_walk import StepWalk

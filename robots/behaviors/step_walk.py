@@ -11,7 +11,7 @@ from robots.behaviors.behavior import Move, Step
 from robots.behaviors.contact import Contact, ContactWatch, Track, Try, hindering_n, is_arrival
 from robots.behaviors.execution_state import ExecutionState, ExecutionTransitionError
 from robots.behaviors.phase import Phase
-from robots.behaviors.preparation import Plan
+from robots.behaviors.plan import Plan
 from robots.behaviors.progress import Progress
 from robots.behaviors.watch import Watch
 from robots.body import ToolPose

@@ -68,7 +68,8 @@ class Detection(Message):
 
     `size_px` is the width and height of the camera's picture that the pixels count in; the picture
     that is sent along may be an enlarged one. `felt`: by force, not by a camera, so that no camera
-    can tell that it is over. `explanation` is a clause that people are told: what the robot sensed.
+    can tell that it is over. `part` is what is in the way, if that is a known one. `explanation`
+    is a clause that people are told: what the robot sensed.
     """
 
     camera: str
@@ -78,6 +79,7 @@ class Detection(Message):
     tolerance_px: float | None = None
     area_px: int = 0
     felt: bool = False
+    part: str | None = None
     explanation: str = ""
 
 

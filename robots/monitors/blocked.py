@@ -62,6 +62,7 @@ class Blocked(Monitor[BlockedParameters]):
                 camera="head",
                 center=view.obstruction.center,
                 area_px=view.obstruction.area_px,
+                part=view.obstruction.part,
                 explanation=view.obstruction.what,
             )
         return None

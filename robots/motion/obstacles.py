@@ -52,18 +52,18 @@ class PathObstacles:
             )
         return cls(free, straight)
 
-    def first_on(self, path: JointPath) -> str | None:
+    def first_on(self, path: JointPath) -> SeenBox | None:
         """What the arm would touch first on a path; None if nothing."""
         hits = (self.on(number, way) for number, way in enumerate(path.ways))
         return next((hit for hit in hits if hit is not None), None)
 
-    def on(self, number: int, way: PathSegment) -> str | None:
+    def on(self, number: int, way: PathSegment) -> SeenBox | None:
         """What it would touch on segment `number` of a path; None if nothing."""
         surrounded = (self.straight if way.straight else self.free)[number]
         for joints in samples(way.curve):
             hit = surrounded.hit(joints)
             if hit is not None:
-                return hit.name or "something unknown"
+                return hit
         return None
 
     def is_free(self, number: int, joints: Joints) -> bool:

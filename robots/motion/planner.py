@@ -12,6 +12,7 @@ from robots.body import Matrix4, NoWay, ToolPose
 from robots.motion.curve import JointCurve
 from robots.motion.kinematics import Joints, KinematicChain
 from robots.motion.rrt_connect import connect
+from robots.vision.seen_box import SeenBox
 
 _LINE_STEPS = 8
 """Postures along a straight line; between them the tool strays less than 0.1 mm."""
@@ -55,11 +56,11 @@ class JointPath:
 class Obstacles(Protocol):
     """What a path may not touch."""
 
-    def first_on(self, path: JointPath) -> str | None:
+    def first_on(self, path: JointPath) -> SeenBox | None:
         """What the arm would touch first on a path; None if nothing."""
         ...
 
-    def on(self, number: int, way: PathSegment) -> str | None:
+    def on(self, number: int, way: PathSegment) -> SeenBox | None:
         """What it would touch on segment `number` of a path; None if nothing."""
         ...
 
@@ -108,7 +109,7 @@ class PathPlanner:
         if not waypoints:
             raise ValueError("a path needs at least one waypoint")
         best: tuple[float, JointPath] | None = None
-        hit: str | None = None
+        hit: SeenBox | None = None
         obstructed: list[JointPath] = []
         for tried, (seed, yaw_offset) in enumerate(self._attempts(start, rng)):
             found = self._try(start, waypoints, seed, yaw_offset)
@@ -130,7 +131,7 @@ class PathPlanner:
             around = self._detour(path, obstacles, rng)
             if around is not None:
                 return around
-        return NoWay(f"would touch {hit} on the way")
+        return NoWay(f"would touch {hit.name or 'something unknown'} on the way", hit)
 
     def plan_to_joints(self, start: Joints, end: Joints) -> JointPath:
         """The straight way in joint space."""

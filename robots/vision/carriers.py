@@ -24,6 +24,13 @@ def unseen_carriers(boxes: Sequence[SeenBox], table_z: float) -> list[SeenBox]:
     return [below(box, table_z) for box in high if not any(_holds_up(o, box) for o in boxes)]
 
 
+def bears(box: SeenBox, spot: tuple[float, float, float], radius_m: float) -> bool:
+    """Whether what stands there (its bottom's middle), and is so wide, may rest on a box."""
+    x, y, z = spot
+    apart_m = shapely.Polygon(box.corners()).distance(shapely.Point(x, y))
+    return abs(box.top_z - z) <= _RESTS_M and apart_m < radius_m
+
+
 def _holds_up(lower: SeenBox, box: SeenBox) -> bool:
     if lower is box or abs(lower.top_z - box.bottom_z) > _RESTS_M:
         return False

@@ -6,7 +6,6 @@ from itertools import pairwise
 
 import cv2
 import numpy as np
-import shapely
 from numpy.typing import NDArray
 
 from robots.body import CameraImage, ToolPose
@@ -43,12 +42,13 @@ class Clearance:
 class Obstruction:
     """Something in the way: its middle in the base frame and in the picture.
 
-    `what` says what it is and of what it is in the way.
+    `part` is its name if it is a known part; `what` says what it is and of what it is in the way.
     """
 
     position: tuple[float, float, float]
     center: tuple[float, float]
     area_px: int
+    part: str | None = None
     what: str = "something unknown is in the arm's way"
 
 
@@ -111,19 +111,6 @@ def obstruction_of(
     )
 
 
-def obstruction_by(
-    boxes: Sequence[SeenBox], waypoints: Sequence[ToolPose], image: CameraImage
-) -> Obstruction:
-    """That of some unknown things which is nearest to the way through `waypoints`.
-
-    Raises `ValueError` without any.
-    """
-    way = [(each.x, each.y) for each in waypoints]
-    line = shapely.LineString(way) if len(way) > 1 else shapely.MultiPoint(way)
-    nearest = min(boxes, key=lambda box: shapely.Polygon(box.corners()).distance(line))
-    return obstruction_at(nearest, image)
-
-
 def obstruction_at(box: SeenBox, image: CameraImage) -> Obstruction:
     """A seen box as something in the way."""
     top = (box.x, box.y, box.top_z)
@@ -132,6 +119,7 @@ def obstruction_at(box: SeenBox, image: CameraImage) -> Obstruction:
         position=top,
         center=(float(u), float(v)),
         area_px=round(pixels_covered(image, top, box.size[:2])),
+        part=box.name,
     )
 
 

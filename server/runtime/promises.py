@@ -32,7 +32,9 @@ class Promises:
         self._sent.add(command)
         rng = np.random.default_rng([state.started.seed, state.helps])
         raised = dialogue.raised
-        promise = Promise(str(awaiting.help), raised.object, raised.place)
+        part = None if raised.detection is None else raised.detection.part
+        in_the_way = part if part in state.scene.objects else None
+        promise = Promise(str(awaiting.help), raised.object, raised.place, in_the_way)
         finished = {
             state.tree.leaf_definition(leaf).object
             for leaf in state.tree.leaves

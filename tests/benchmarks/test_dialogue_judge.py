@@ -169,6 +169,11 @@ def test_of_equal_parts_any_may_be_the_one_that_is_gone(equal: bool) -> None:
         ("I cannot reach the part 1. The part 1 has toppled over. Hm?", TOPPLED, STARTS),
         ("I cannot go on with the top. Can you clear the way?", BLOCKED, STARTS),
         ("I cannot go on with the top. Can you clear the way?", CROWDED, STARTS),
+        (
+            "I cannot go on with the top. Part 1 is in the arm's way. Can you clear the way?",
+            STARTS,
+            GONE,
+        ),
         ("I felt something hold up my arm and stopped. Hm?", BLOCKED, STARTS),
         ("I do not see my way free yet. Hm?", BLOCKED, STARTS),
         ("I see nothing in my way now.", STARTS, BLOCKED),

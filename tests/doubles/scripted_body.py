@@ -90,7 +90,8 @@ class ScriptedBody:
     def __init__(self, parts: dict[str, Resting], period_s: float = 1 / 30) -> None:
         self.parts: dict[str, Resting] = {name: replace(each) for name, each in parts.items()}
         self.grey_boxes: list = []
-        self.avoids_the_unknown = False
+        self.bars: frozenset[str | None] = frozenset()
+        """Around which things no path leads, by their names; None is something unknown."""
         """Whether it finds no path while anything unknown is seen."""
         self.in_hand: tuple[str, np.ndarray] | None = None
         self.held_out: tuple[str, np.ndarray] | None = None
@@ -162,8 +163,9 @@ class ScriptedBody:
         return None if self.unplannable else ScriptedPath(list(waypoints))
 
     def plan_among(self, legs, boxes) -> ScriptedPath | NoWay:
-        if self.avoids_the_unknown and any(box.name is None for box in boxes[1:]):
-            return NoWay("would touch something unknown on the way")
+        bars = [box for box in boxes[1:] if box.name in self.bars]
+        if bars:
+            return NoWay("would touch something on the way", bars[0])
         path = self.plan_path([leg.to for leg in legs])
         return NoWay("finds no path") if path is None else path
 

@@ -87,6 +87,11 @@ def test_a_person_gets_out_of_the_way_even_without_an_object() -> None:
     assert done == Deed(Intervention(act=Act.RELEASE), 3.0)
 
 
+def test_a_part_in_the_way_is_what_is_put_aside() -> None:
+    done = kept(Promise("clear_way", "red_cup", "left", in_the_way="blue_cup"), Person())
+    assert done == Deed(Intervention(act=Act.RELEASE, object="blue_cup"), 3.0)
+
+
 def test_nothing_can_be_placed_where_no_object_was_spoken_of() -> None:
     assert kept(Promise("place", None, None), Person()) is None
 

@@ -180,9 +180,9 @@ def test_what_is_near_or_touched_at_the_beginning_is_not_gone_through_later(
     away = planner.plan(start, [over(PICK)], rng, obstacles)
     assert isinstance(away, JointPath)
     back = planner.plan(start, [over(PICK), PICK], rng, obstacles)
-    assert back == NoWay("would touch vase on the way")
+    assert back == NoWay("would touch vase on the way", beside)
 
 
 def test_what_no_path_keeps_away_from_is_named(arm: CollisionModel, chain: KinematicChain) -> None:
-    found = plan(arm, chain, box(PLACE.x, PLACE.y, (0.1, 0.1, 0.2), "vase"))
-    assert found == NoWay("would touch vase on the way")
+    vase = box(PLACE.x, PLACE.y, (0.1, 0.1, 0.2), "vase")
+    assert plan(arm, chain, vase) == NoWay("would touch vase on the way", vase)
