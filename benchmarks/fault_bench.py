@@ -45,6 +45,8 @@ _CARRYING = range(3, 7)
 _LIFTED = 4
 _SLID_M = 0.01
 _STACK_M = 0.12
+_PUSHES_N = 10.0
+"""Less than this is what a part weighs, and what friction does."""
 
 
 class Moment(NamedTuple):
@@ -341,8 +343,11 @@ class Bench:
                 return False
 
     def is_obstructed(self, name: str) -> bool:
-        """Whether somebody stands in the way, or another part on this one or at its place."""
-        if not self.world.shown_poses()[-1].gone:
+        """Whether something pushes against the arm or stands in its way.
+
+        That is somebody, or another part on this one or at its place.
+        """
+        if not self.world.shown_poses()[-1].gone or self.world.contact_n > _PUSHES_N:
             return True
         here = self.world.parts[name].pose().position
         target = self.scene.places[place_of(name)].pose

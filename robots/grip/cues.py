@@ -75,9 +75,9 @@ class CueModel:
     def _opening_on_turned(
         self, opening_m: float, grasp: Grasp, gripper: GripperModel, *, pushed: bool
     ) -> float:
-        narrower_m = min(grasp.width_m, grasp.across_m)
         if pushed:
-            return self._opening_within(opening_m, narrower_m, gripper.max_opening_m)
+            # By a corner, too, where it is narrower than any of its sides.
+            return self._opening_within(opening_m, 0.0, gripper.max_opening_m)
         jammed_m = grasp.diagonal_m / math.hypot(1.0, self.friction)
         askew = self._opening_within(opening_m, jammed_m, grasp.diagonal_m)
         other_way_round = _normal(opening_m - grasp.across_m, self._sd_m)

@@ -73,11 +73,10 @@ class Bench:
 
     def remember_rests(self, pr2: Pr2, in_hand: Callable[[Part], bool]) -> None:
         """Where parts lie still, touched by nobody, is where they last rested."""
+        touched = pr2.touched()
         for part in self.parts.values():
-            if part.stolen or in_hand(part) or any(pr2.touched_by(part.body_id)):
-                continue
-            if part.at_rest():
-                part.last_rest = part.pose()
+            if part.body_id not in touched and not part.stolen and not in_hand(part):
+                part.remember_rest()
 
     def _start_pose(self, part: Part, rng: np.random.Generator | None) -> PartPose:
         pose, scatter = part.definition.pose, self.scene.scatter

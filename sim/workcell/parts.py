@@ -71,6 +71,8 @@ class Part:
         self.start = self._away
         self.last_rest = self._away
         """Where it rested last, for a world that is rebuilt while it is in the air."""
+        self._rested: tuple[Point, Quaternion] | None = None
+        """The same as the engine has it."""
 
     @property
     def _middle_m(self) -> float:
@@ -101,6 +103,12 @@ class Part:
     def at_rest(self) -> bool:
         linear, angular = self._client.getBaseVelocity(self.body_id)
         return all(abs(each) < _AT_REST for each in (*linear, *angular))
+
+    def remember_rest(self) -> None:
+        """Where it lies still is where it last rested."""
+        now = self._client.getBasePositionAndOrientation(self.body_id)
+        if now != self._rested and self.at_rest():
+            self._rested, self.last_rest = now, self.pose()
 
     def body_pose(self, pose: PartPose) -> tuple[Point, Quaternion]:
         """The engine's frame of the body when its bottom centre is at `pose`."""

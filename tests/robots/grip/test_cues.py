@@ -107,6 +107,15 @@ def test_what_something_pushes_may_be_askew_however_long_it_is(width_m, wider_m)
     assert logs[Between.TURNED] > logs[Between.OTHER]
 
 
+@given(width_m=st.floats(0.02, 0.07), share=st.floats(0.3, 1.0))
+def test_what_something_pushes_may_be_held_by_a_corner(width_m, share) -> None:
+    belief = Belief()
+    for _ in range(12):
+        reading = HandReading(share * width_m, True, OWN, pushed=True)
+        belief.update(CUES.log_likelihoods(reading, grasp(width_m), GRIPPER))
+    assert belief.probability > 0.9
+
+
 @given(width_m=WIDTHS)
 def test_fingers_that_close_tell_that_it_is_gone_even_while_something_pushes(width_m) -> None:
     belief = Belief()
