@@ -3,7 +3,8 @@
 A discrete Bayes filter (Thrun, Burgard & Fox, Probabilistic Robotics, 2005, ch. 4.1). What is
 there stays what it is: a part that fingers hold turned is turned in every picture, so that many
 readings of one grasp do not make a stranger of it. It can change in two ways only: what is held
-may turn, and whatever is there may get lost, which does not come back by itself.
+may turn, most of all when it is pushed, and whatever is there may get lost, which does not come
+back by itself.
 """
 
 import math
@@ -37,6 +38,9 @@ _LOST_PER_S = 0.02
 _TURNS_PER_S = 0.005
 """How often something held gets lost or turns, as the filter expects it."""
 
+_TURNS_IF_PUSHED = 0.6
+"""How often something held turns if it, or the hand, is pushed."""
+
 _LEAST = math.exp(-7.0)
 """Readings of one grasp are not independent: however many agree, they leave so much doubt."""
 
@@ -55,10 +59,17 @@ class Belief:
         """Time has passed in which it may have been lost or have turned."""
         shares = {each: share * math.exp(-_LOST_PER_S * elapsed_s) for each, share in self._all()}
         shares[Between.NOTHING] += 1.0 - sum(shares.values())
-        turns = shares[Between.STRAIGHT] * -math.expm1(-_TURNS_PER_S * elapsed_s)
-        shares[Between.STRAIGHT] -= turns
-        shares[Between.TURNED] += turns
         self._shares = shares
+        self._turn(-math.expm1(-_TURNS_PER_S * elapsed_s))
+
+    def push(self) -> None:
+        """Something has pushed against what is held."""
+        self._turn(_TURNS_IF_PUSHED)
+
+    def _turn(self, share: float) -> None:
+        turns = self._shares[Between.STRAIGHT] * share
+        self._shares[Between.STRAIGHT] -= turns
+        self._shares[Between.TURNED] += turns
 
     def update(self, log_likelihoods: Mapping[Between, float]) -> None:
         """Take a reading into account: log p(reading | what is there)."""

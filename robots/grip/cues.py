@@ -62,7 +62,7 @@ class CueModel:
             + math.log(self._opening_on_turned(opening_m, grasp, gripper, pushed=reading.pushed)),
             Between.OTHER: on_something
             + _log_looks(seen, "other")
-            + math.log(self._opening_on_other(opening_m, gripper)),
+            + math.log(self._opening_on_other(opening_m, gripper, pushed=reading.pushed)),
             Between.NOTHING: on_nothing
             + _log_looks(seen, "nothing")
             + math.log(self._opening_on_nothing(opening_m, gripper)),
@@ -76,8 +76,7 @@ class CueModel:
         self, opening_m: float, grasp: Grasp, gripper: GripperModel, *, pushed: bool
     ) -> float:
         if pushed:
-            # By a corner, too, where it is narrower than any of its sides.
-            return self._opening_within(opening_m, 0.0, gripper.max_opening_m)
+            return self._opening_on_other(opening_m, gripper, pushed=True)
         jammed_m = grasp.diagonal_m / math.hypot(1.0, self.friction)
         askew = self._opening_within(opening_m, jammed_m, grasp.diagonal_m)
         other_way_round = _normal(opening_m - grasp.across_m, self._sd_m)
@@ -94,8 +93,10 @@ class CueModel:
         closed = 2.0 * _normal(opening_m, sd_m)
         return (1.0 - self.moving_share) * closed + self.moving_share / gripper.max_opening_m
 
-    def _opening_on_other(self, opening_m: float, gripper: GripperModel) -> float:
-        return self._opening_within(opening_m, gripper.min_width_m, gripper.max_opening_m)
+    def _opening_on_other(self, opening_m: float, gripper: GripperModel, *, pushed: bool) -> float:
+        # What is pushed they may have by a corner, narrower than any of its sides.
+        least_m = 0.0 if pushed else gripper.min_width_m
+        return self._opening_within(opening_m, least_m, gripper.max_opening_m)
 
     def _log_pressing(self, presses: bool, share: float) -> float:
         return math.log(share if presses else 1.0 - share)

@@ -111,6 +111,8 @@ class GripWatch:
         if self._read_s is not None:
             self._belief.predict(max(0.0, now_s - self._read_s))
         self._read_s = now_s
+        if reading.pushed and not self._pushed:
+            self._belief.push()
         self._belief.update(self._log_likelihoods(reading))
         self._pushed = reading.pushed
         if self._state is GripState.UNDECIDED:

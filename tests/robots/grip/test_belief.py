@@ -63,3 +63,13 @@ def test_a_part_may_turn_while_it_is_held() -> None:
         belief.predict(1 / 30)
         belief.update(likelihoods(-8.0, 1.0, 0.0, -8.0))
     assert belief.probability > 0.9
+
+
+def test_what_is_pushed_may_well_be_turned() -> None:
+    calm, pushed = Belief(), Belief()
+    pushed.push()
+    assert pushed.probability == pytest.approx(calm.probability)
+    for belief in (calm, pushed):
+        belief.update(likelihoods(-20.0, 0.0, 0.0, -20.0))
+    assert calm.probability < 0.1
+    assert pushed.probability > 0.5
