@@ -42,14 +42,13 @@ serve: console  ## The service with the helper console on http://127.0.0.1:8080
 screenshots: console  ## The console's pictures in docs/images, from situations that are played
 	$(BIN)/python scripts/screenshots.py
 
-# One more at a time than two cores: tests in a browser, and of processes, wait a good deal.
-test: console  ## Every test, in random order
+test: console  ## Every test, in random order; one in a browser that fails is run once more
 	cd web && PATH="$(CURDIR)/$(BIN):$$PATH" npm test --silent
 	@command -v chromium google-chrome >/dev/null || echo 'There is no Chromium on this machine: the tests in a browser are skipped.'
 	@# The kernels of vision and kinematics are compiled once here, not by many processes at a time.
 	$(BIN)/mend check tasks/library/eket.yaml --world workcell
 	$(BIN)/mend run eket --world tabletop --speed max --seed 1 --answers yes >/dev/null
-	$(BIN)/pytest -n 3 --dist worksteal -rs
+	$(BIN)/python scripts/run_tests.py
 
 REPEAT := 30
 steady: console  ## The tests in a browser 30 times over (or REPEAT=n), to find one that fails now and then
