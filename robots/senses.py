@@ -190,18 +190,24 @@ class Senses:
         x, y, z = (float(each) for each in self._body.tool_pose()[:3, 3])
         return Position(x=x, y=y, z=z)
 
-    def new_watch(self, part: Part, grasp: Grasp | None = None) -> GripWatch:
+    def new_watch(
+        self, part: Part, grasp: Grasp | None = None, *, regrasp: bool = False
+    ) -> GripWatch:
         """A grip watch that knows nothing yet; without `grasp`, for the best one."""
-        grasp = grasp or grasp_of(part, self._body.gripper)
-        return GripWatch(part, grasp, self._model, self._body.gripper, self._cues)
+        gripper = self._body.gripper
+        grasp = grasp or grasp_of(part, gripper)
+        return GripWatch(part, grasp, self._model, gripper, self._cues, regrasp=regrasp)
 
-    def watch_grip(self, part: Part, grasp: Grasp | None = None) -> None:
-        """The fingers have closed on a part: follow it from now on."""
-        self.grip = self.new_watch(part, grasp)
+    def watch_grip(self, part: Part, grasp: Grasp | None = None, *, regrasp: bool = False) -> None:
+        """The fingers have closed on a part: follow it from now on.
+
+        `regrasp`: where it is found askew it can be grasped anew.
+        """
+        self.grip = self.new_watch(part, grasp, regrasp=regrasp)
 
     def let_go(self) -> None:
         """The fingers open: there is nothing to follow any more."""
-        if self.grip is not None:
+        if self.grip is not None and self.grip.state is not GripState.ASKEW:
             at = self.gripper()
             bottom_z = at.z - self.grip.grasp.height_m
             self._last_seen.note(self.grip.part.name, (at.x, at.y, bottom_z))
@@ -244,6 +250,11 @@ class Senses:
         image = self._body.cameras[FOREARM].capture()
         self.clip.note(image)
         return image
+
+    @property
+    def has_askew(self) -> bool:
+        """Whether something was pushed so that it has to be grasped anew."""
+        return self.grip is not None and self.grip.state is GripState.ASKEW
 
     @property
     def held(self) -> str | None:

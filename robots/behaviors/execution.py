@@ -128,6 +128,7 @@ class Execution:
 
     def _attempt(self, resumed: bool) -> Routine[None]:
         self._progress.felt, self._progress.inexact = None, False
+        self._progress.regrasps = 0
         try:
             there = False
             while not there:

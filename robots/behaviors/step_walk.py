@@ -18,6 +18,9 @@ from robots.body import ToolPose
 from robots.link.messages import ReportBody, StepStarted
 from robots.senses import Senses
 
+_MOST_REGRASPS = 2
+"""Who pushes a part aside more often than this is told that it was missed."""
+
 
 @dataclass(frozen=True, slots=True)
 class _Felt:
@@ -60,8 +63,8 @@ class StepWalk:
     def _take(self, number: int) -> Routine[bool]:
         """One step, tried again more gently while something is felt. Raises `Interruption`.
 
-        False where an empty hand on its way to the object felt something: the head camera can
-        tell what it was once the arm is out of its view.
+        False where the head camera has to tell, once the arm is out of its view, what an empty hand
+        felt on its way to the object, or what the fingers have closed on askew.
         """
         progress, watch = self._progress, self._watch
         progress.step, progress.was_done = number, None
@@ -75,7 +78,10 @@ class StepWalk:
         for count, each in enumerate(tries[begin:], start=begin + 1):
             felt = yield from self._try(number, each)
             if felt is None:
-                return True
+                askew = self._senses.has_askew
+                if askew:
+                    yield from self._let_go_to_regrasp()
+                return not askew
             contact = Contact(felt.force_n, count)
             yield from back_off(progress, felt.way_back, self._arm, watch)
             if looks:
@@ -84,6 +90,15 @@ class StepWalk:
                 return False
             try_again(progress, contact, self._arm, watch, last=count == len(tries))
         raise ExecutionTransitionError(f"expected a try of step {number}, got none")
+
+    def _let_go_to_regrasp(self) -> Routine[None]:
+        self._progress.regrasps += 1
+        self._progress.move_to(ExecutionState.BACKING_OFF)
+        self._senses.let_go()
+        grasp = self._progress.planned.grasp
+        yield from self._arm.open_gripper(None if grasp is None else grasp.opening_m)
+        yield from self._arm.lift()
+        self._progress.move_to(ExecutionState.PREPARING)
 
     def _try(self, number: int, attempt: Try) -> Routine[_Felt | None]:
         """One try of a step, checked at the camera's period; what was felt if something was.
@@ -120,7 +135,8 @@ class StepWalk:
                 self._arm.start(plan.path, plan.segment_of(number), step.action.speed * speed)
         elif step.action.to == "closed":
             if part is not None and step.phase is Phase.GRASP:
-                self._senses.watch_grip(part, plan.grasp)
+                regrasp = self._progress.regrasps < _MOST_REGRASPS
+                self._senses.watch_grip(part, plan.grasp, regrasp=regrasp)
             self._arm.start_closing()
         else:
             self._senses.let_go()

@@ -55,6 +55,10 @@ class Belief:
     def probability(self) -> float:
         return sum(self._shares[each] for each in HELD)
 
+    def of(self, between: Between) -> float:
+        """How likely it is that this is between the fingers."""
+        return self._shares[between]
+
     def predict(self, elapsed_s: float) -> None:
         """Time has passed in which it may have been lost or have turned."""
         shares = {each: share * math.exp(-_LOST_PER_S * elapsed_s) for each, share in self._all()}

@@ -19,14 +19,17 @@ class GripState(StrEnum):
     HELD = "held"
     ABSENT = "absent"
     """The object never was between the fingers."""
+    ASKEW = "askew"
+    """Something was pushed so that the fingers have not closed on the object as they were to."""
     LOST = "lost"
-    """It was, and is not any more."""
+    """It was held, and is not any more."""
 
 
 _NEXT = {
-    GripState.UNDECIDED: {GripState.HELD, GripState.ABSENT},
+    GripState.UNDECIDED: {GripState.HELD, GripState.ABSENT, GripState.ASKEW},
     GripState.HELD: {GripState.LOST},
     GripState.ABSENT: set[GripState](),
+    GripState.ASKEW: set[GripState](),
     GripState.LOST: set[GripState](),
 }
 

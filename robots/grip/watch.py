@@ -72,12 +72,16 @@ class GripWatch:
         model: ColorModel,
         gripper: GripperModel,
         cues: CueModel | None = None,
+        *,
+        regrasp: bool = False,
     ) -> None:
+        """`regrasp`: what was pushed may be grasped anew, so that it need be no other verdict."""
         self.part = part
         self.grasp = grasp
         self._model = model
         self._gripper = gripper
         self._cues = cues or CueModel()
+        self._regrasp = regrasp
         self._boxes = corners_in_tool(part, grasp)
         self._near = near_tool(part, grasp)
         self._belief = Belief()
@@ -170,10 +174,15 @@ class GripWatch:
         sure = self.probability >= _SURE or self.probability <= 1.0 - _SURE
         self._unsure = 0 if sure else self._unsure + 1
         if self._state is GripState.UNDECIDED and (sure or self._unsure >= _LONGEST_DOUBT):
-            held = self.probability >= 0.5
-            self._state = follow(self._state, GripState.HELD if held else GripState.ABSENT)
+            self._state = follow(self._state, self._first_verdict())
         elif self._state is GripState.HELD and self.probability <= 1.0 - _SURE:
             self._state = follow(self._state, GripState.LOST)
+
+    def _first_verdict(self) -> GripState:
+        as_planned = max(self._belief.of(Between.STRAIGHT), self._belief.of(Between.NOTHING))
+        if self._regrasp and self._pushed and as_planned < 0.5:
+            return GripState.ASKEW
+        return GripState.HELD if self.probability >= 0.5 else GripState.ABSENT
 
 
 def _center(canvas: Mask, fallback: NDArray[np.float64]) -> tuple[float, float]:

@@ -92,10 +92,11 @@ class ScriptedBody:
         self.grey_boxes: list = []
         self.bars: frozenset[str | None] = frozenset()
         """Around which things no path leads, by their names; None is something unknown."""
-        """Whether it finds no path while anything unknown is seen."""
         self.in_hand: tuple[str, np.ndarray] | None = None
         self.held_out: tuple[str, np.ndarray] | None = None
         self.force_n = 0.0
+        self.askew_m = 0.0
+        """So much wider than they should the fingers close on what they take."""
         self.unplannable = False
         self.at_cycle: Callable[[], None] = lambda: None
         self.cycles = 0
@@ -226,7 +227,9 @@ class ScriptedBody:
     def gripper_opening_m(self) -> float:
         if not self._gripper_closed:
             return self._opened_m
-        return 0.0 if self.in_hand is None else grasp_of(PARTS[self.in_hand[0]], GRIPPER).width_m
+        if self.in_hand is None:
+            return 0.0
+        return grasp_of(PARTS[self.in_hand[0]], GRIPPER).width_m + self.askew_m
 
     def gripper_effort_n(self) -> float:
         return GRIPPER.grip_force_n if self.in_hand is not None and self._gripper_closed else 0.0

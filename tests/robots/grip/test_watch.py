@@ -152,6 +152,23 @@ def test_what_was_pushed_askew_stays_so_when_nothing_pushes_any_more() -> None:
     assert reading.state is GripState.HELD
 
 
+@pytest.mark.parametrize("shows", ["itself", "green_leg"])
+def test_what_was_pushed_is_askew_where_it_can_be_grasped_anew(shows: str) -> None:
+    hand = ScriptedHand("pink_bar")
+    hand.watch = GripWatch(hand.part, hand.grasp, MODEL, GRIPPER, regrasp=True)
+    while hand.watch.state is GripState.UNDECIDED:
+        hand.read(shows=shows, opening_m=hand.grasp.width_m + 0.012, pushed=True)
+    assert hand.watch.state is GripState.ASKEW
+
+
+def test_what_is_held_as_planned_is_not_askew_however_it_was_pushed() -> None:
+    hand = ScriptedHand("pink_bar")
+    hand.watch = GripWatch(hand.part, hand.grasp, MODEL, GRIPPER, regrasp=True)
+    while hand.watch.state is GripState.UNDECIDED:
+        hand.read(pushed=True)
+    assert hand.watch.state is GripState.HELD
+
+
 def test_of_what_shows_the_right_colours_the_width_is_told() -> None:
     hand = ScriptedHand("pink_bar")
     wider_m = hand.grasp.width_m * 1.08
