@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
@@ -33,6 +34,8 @@ _MOST_COLOR_COST = 40.0
 _MOST_SHARE_COST = 4.0
 _OVEREXPOSED = 250.0
 _KNOB_WITHIN_M = 0.005
+_MOST_HIDDEN_M = 0.1
+_LEAST_HIGHER_M = 0.005
 _TRACKING_COST = 2.0
 _TRACKED_WITHIN_M = 0.05
 """Among equals a name costs nothing where it was last, and this much from so far away on."""
@@ -110,9 +113,9 @@ class Namer:
         costs = np.empty((len(tops), len(self._parts) + len(tops)))
         costs[:, len(self._parts) :] = _NEVER
         choices: list[tuple[NDArray[np.intp], NDArray[np.bool_]]] = []
-        for row, top in enumerate(tops):
+        for row, (top, supports) in enumerate(zip(tops, _supports(tops, surfaces), strict=True)):
             at = pixel_m[top.surface.vs[0], top.surface.us[0]]
-            by_way, swapped = self._geometry_costs(top, _supports(top, tops, surfaces), float(at))
+            by_way, swapped = self._geometry_costs(top, supports, float(at))
             chosen = np.empty(len(self._parts), np.intp)
             for index in range(len(self._parts)):
                 ways = np.flatnonzero(self._owner == index)
@@ -255,18 +258,18 @@ def _ways_of(part: Part) -> list[_Way]:
     return ways
 
 
-def _supports(top: Top, tops: Sequence[Top], surfaces: Surfaces) -> NDArray[np.float64]:
-    """The heights on which something can stand there: the table's, and those of tops below."""
-    heights = [surfaces.heights.table_z]
-    at = top.fitted.rectangle
-    reach = max(at.extents) / 2
-    for other in tops:
-        below = other.fitted.rectangle
-        if other.surface.top_z >= top.surface.top_z - 0.005:
-            continue
-        if math.hypot(at.x - below.x, at.y - below.y) <= reach + max(below.extents) / 2:
-            heights.append(other.surface.top_z)
-    return np.array(heights)
+def _supports(tops: Sequence[Top], surfaces: Surfaces) -> list[NDArray[np.float64]]:
+    """For each top the heights on which a part can stand there: the table's, and lower tops'.
+
+    Tops of which an end is hidden may reach under one another though that is not seen.
+    """
+    outlines = [each.fitted.outline(_MOST_HIDDEN_M) for each in tops]
+    heights = np.array([each.surface.top_z for each in tops])
+    found = []
+    for outline, height in zip(outlines, heights, strict=True):
+        lower = (heights < height - _LEAST_HIGHER_M) & shapely.intersects(outline, outlines)
+        found.append(np.array([surfaces.heights.table_z, *heights[lower]]))
+    return found
 
 
 def _tracking_cost(top: Top, bottom_z: float, last: Spot | None) -> float:

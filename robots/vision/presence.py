@@ -6,6 +6,7 @@ from collections.abc import Set as AbstractSet
 from enum import StrEnum
 
 import numpy as np
+import shapely
 
 from robots.catalogue import Part
 from robots.link.messages import Location
@@ -66,17 +67,25 @@ def _stands_at(box: SeenBox, room: SeenBox) -> bool:
 
 
 def _keeps_out(box: SeenBox, room: SeenBox, equals: Collection[str]) -> bool:
-    """Whether something else fills the middle of the room, so that the part cannot be in it.
+    """Whether something else fills so much of the room that the part cannot be in it.
 
     Something unknown of the part's own height may be the part, badly seen.
     """
     if box.name in equals or not box.complete:
         return False
     overlap_m = min(box.top_z, room.top_z) - max(box.bottom_z, room.bottom_z)
-    middle = np.array([[room.x, room.y, (box.bottom_z + box.top_z) / 2]])
-    if overlap_m < AT_PLACE_HEIGHT_M / 2 or not box.holds(middle, margin_m=0.0)[0]:
+    if overlap_m < AT_PLACE_HEIGHT_M / 2 or not _fills(box, room):
         return False
     return box.name is not None or abs(box.top_z - room.top_z) > AT_PLACE_HEIGHT_M
+
+
+def _fills(box: SeenBox, room: SeenBox) -> bool:
+    """Whether a box has the middle of the room, or reaches farther in than a part may be off."""
+    middle = np.array([[room.x, room.y, (box.bottom_z + box.top_z) / 2]])
+    if box.holds(middle, margin_m=0.0)[0]:
+        return True
+    outlines = [shapely.Polygon(each.corners()).buffer(-AT_PLACE_M / 2) for each in (box, room)]
+    return bool(outlines[0].intersects(outlines[1]))
 
 
 def _share_seen_through(view: TableView, room: SeenBox) -> float:

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 
 from maps.compiled import compiled
@@ -81,6 +82,18 @@ class Fitted:
             self,
             rectangle=Rectangle(old.x, old.y, old.yaw + math.pi / 2, (width, length)),
             sides_seen=(*self.sides_seen[2:], self.sides_seen[1], self.sides_seen[0]),
+        )
+
+    def outline(self, hidden_m: float = 0.0) -> shapely.Polygon:
+        """From above, and as far beyond each side that is not seen."""
+        at, more = self.rectangle, [0.0 if seen else hidden_m for seen in self.sides_seen]
+        length, width = at.extents
+        xs = (-length / 2 - more[0], length / 2 + more[1])
+        ys = (-width / 2 - more[2], width / 2 + more[3])
+        around = ((xs[0], ys[0]), (xs[1], ys[0]), (xs[1], ys[1]), (xs[0], ys[1]))
+        cos, sin = math.cos(at.yaw), math.sin(at.yaw)
+        return shapely.Polygon(
+            [(at.x + cos * x - sin * y, at.y + sin * x + cos * y) for x, y in around]
         )
 
     @property
