@@ -129,11 +129,13 @@ def _before_the_next_try(state: RunState, side: RobotSide, tree: TaskTree, leaf:
     others = [int(each) for each in able if int(each) != leaf]
     mine = tree.attempts(leaf)
     rivals = [each for each in others if _excludes(tree, each, leaf)]
+    first = [each for each in others if tree.attempts(each) < mine and each not in rivals]
     if sooner := [each for each in rivals if tree.attempts(each) < mine]:
-        return Sequel(Next.INSTEAD, _names(tree, sooner))
+        # What else belongs to this alternative may be nearer, and decide for it.
+        open_still = any(_excludes(tree, each, rival) for each in first for rival in sooner)
+        return Sequel(Next.EITHER if open_still else Next.INSTEAD, _names(tree, sooner))
     if as_soon := [each for each in rivals if tree.attempts(each) == mine]:
         return Sequel(Next.EITHER, _names(tree, as_soon))
-    first = [each for each in others if tree.attempts(each) < mine and each not in rivals]
     return Sequel(Next.OTHERS_FIRST, _names(tree, first)) if first else Sequel()
 
 

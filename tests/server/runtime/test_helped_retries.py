@@ -83,3 +83,23 @@ async def test_the_other_alternative_is_taken_instead() -> None:
     assert [each.node for each in of_type(events, ev.NodeDone)] == ["/1"]
     last = [each.text for each in of_type(events, ev.Prompt) if each.kind == "say"][-1]
     assert last == "All right. I take the part 2 instead."
+
+
+async def test_an_alternative_is_not_promised_that_a_neighbour_may_decide_against() -> None:
+    both = [*NAMES, ("part_3", "spot_3")]
+    first, second, third = (
+        {"behavior": "pick_and_place", "object": part, "place": spot} for part, spot in both
+    )
+    async with pretend_service(
+        definition_of({"or": [{"and": [first, third]}, second]}),
+        {"part_1": [("missed", 4)]},
+        scene=lay_out(both, seed=1),
+        settings=RunSettings(max_helped_retries=0),
+        stubborn=True,
+    ) as service:
+        view, events = await service.run_to_end(answers=["no"] * FOR_EVER)
+    assert view.status is RunStatus.FINISHED
+    started = [each.node for each in of_type(events, ev.NodeStarted)]
+    assert started[0] == "/0/0"
+    said = [each.text for each in of_type(events, ev.Prompt) if each.kind == "say"]
+    assert said[0] == "All right. I try again (attempt 2 of 3), or I take the part 2 instead."
