@@ -145,10 +145,6 @@ class InReach:
 
     def _can_grasp(self, at: HeadSighting, around: Sequence[SeenBox]) -> bool:
         body = self._looker.arm.body
-        reach = body.reach
-        distance_m = math.hypot(at.x - reach.origin[0], at.y - reach.origin[1])
-        if not reach.min_m <= distance_m <= reach.max_m:
-            return False
         if not can_grasp(self._part, body.gripper):
             return False
         picks = [

@@ -7,7 +7,7 @@ from pydantic import Field
 from robots.behaviors.phase import Phase
 from robots.link.messages import Detection
 from robots.monitors.monitor import ANY_BEHAVIOR, Meanwhile, Monitor, MonitorView
-from robots.monitors.unreachable import why_beyond_reach
+from robots.monitors.unreachable import why_beyond_reach, why_lying
 from robots.vision.head import HeadSighting
 from robots.vision.presence import AT_PLACE_HEIGHT_M, Presence
 from tasks.scene import StrictModel
@@ -54,7 +54,7 @@ class Undone(Monitor[UndoneParameters]):
 
     def _before_the_first_step(self, name: str, view: MonitorView) -> Detection | None:
         if view.sighting is not None and (
-            view.refusal is not None or why_beyond_reach(name, view.sighting, view) is not None
+            view.refusal is not None or why_lying(name, view.sighting, view) is not None
         ):
             # Where it is now is what people have to hear of: `unreachable` tells them.
             return None

@@ -13,7 +13,7 @@ from tasks.scene import StrictModel
 
 
 class UnreachableParameters(StrictModel):
-    """`margin_m` is kept from both ends of the graspable range."""
+    """`margin_m`, if any, is kept from both ends of the graspable range, whatever was planned."""
 
     margin_m: float = Field(default=0.0, ge=0.0, le=0.5)
 
@@ -42,23 +42,33 @@ class Unreachable(Monitor[UnreachableParameters]):
 
     def _reason(self, view: MonitorView) -> str | None:
         name = "the place" if view.part is None else view.part.name
-        if view.sighting is not None:
-            reason = why_beyond_reach(name, view.sighting, view, self.settings.margin_m)
-            if reason is not None:
-                return reason
+        margin_m = self.settings.margin_m
         # What stands in the way can be cleared, and is told as that.
-        return view.refusal if view.obstruction is None else None
+        refusal = view.refusal if view.obstruction is None else None
+        if view.sighting is None:
+            return refusal
+        if refusal is not None or margin_m > 0.0:
+            return why_beyond_reach(name, view.sighting, view, margin_m) or refusal
+        return why_lying(name, view.sighting, view)
 
 
 def why_beyond_reach(
     name: str, sighting: HeadSighting, view: MonitorView, margin_m: float = 0.0
 ) -> str | None:
-    """Why the arm cannot grasp what is seen there, as far as distance and posture tell."""
+    """Why the arm can hardly grasp what is seen there, as far as distance and posture tell.
+
+    Only a plan can tell for sure.
+    """
     origin = view.reach.origin
     distance = math.hypot(sighting.x - origin[0], sighting.y - origin[1])
     low, high = view.reach.min_m + margin_m, view.reach.max_m - margin_m
     if not low <= distance <= high:
         return f"{name} is {distance:.2f} m away; the arm grasps {low:.2f} to {high:.2f} m"
+    return why_lying(name, sighting, view)
+
+
+def why_lying(name: str, sighting: HeadSighting, view: MonitorView) -> str | None:
+    """Why the arm cannot grasp what is seen there as it lies."""
     if not sighting.upright(view.table_z):
         return f"{name} has toppled over; the arm grasps it standing only"
     return None

@@ -161,7 +161,12 @@ class ScriptedBody:
                 self._end_gripper_motion()
 
     def plan_path(self, waypoints) -> ScriptedPath | None:
-        return None if self.unplannable else ScriptedPath(list(waypoints))
+        beyond = any(
+            math.hypot(each.x - self.reach.origin[0], each.y - self.reach.origin[1])
+            > self.reach.max_m
+            for each in waypoints
+        )
+        return None if self.unplannable or beyond else ScriptedPath(list(waypoints))
 
     def plan_among(self, legs, boxes) -> ScriptedPath | NoWay:
         bars = [box for box in boxes[1:] if box.name in self.bars]

@@ -96,12 +96,15 @@ def test_missing_speaks_of_what_is_nowhere_but_not_of_what_is_in_the_gripper() -
     assert Missing.create({}).check(replace(VIEW, sighting=None, part=None)) is None
 
 
+NO_PATH = "the arm finds no path for it"
+
+
 @pytest.mark.parametrize(
     ("x", "z", "refusal", "says"),
     [
-        (0.95, TABLE_Z, None, "0.97 m away; the arm grasps 0.30 to 0.80 m"),
-        (0.1, TABLE_Z, None, "0.22 m away"),
-        (0.5, TABLE_Z, "the arm finds no path for it", "finds no path"),
+        (0.95, TABLE_Z, NO_PATH, "0.97 m away; the arm grasps 0.30 to 0.80 m"),
+        (0.1, TABLE_Z, NO_PATH, "0.22 m away"),
+        (0.5, TABLE_Z, NO_PATH, "finds no path"),
         (0.5, TABLE_Z - 0.05, None, "toppled over"),
     ],
 )
@@ -111,6 +114,11 @@ def test_unreachable_says_why(x, z, refusal, says) -> None:
     assert detection is not None
     assert says in detection.explanation
     assert detection.center == BLOB.center
+
+
+def test_what_a_plan_was_found_for_is_not_out_of_reach() -> None:
+    far = replace(VIEW, sighting=replace(SEEN, x=0.95))
+    assert Unreachable.create({}).check(far) is None
 
 
 def test_unreachable_keeps_its_margin() -> None:

@@ -67,7 +67,6 @@ def test_once_somebody_was_asked_and_it_is_there_nothing_more_is_said() -> None:
     [
         {"was_done": None},
         {"part": None},
-        {"sighting": replace(SEEN, x=0.95)},
         {"sighting": replace(SEEN, z=TABLE_Z - 0.05)},
         {"refusal": "the arm finds no path for it"},
     ],
