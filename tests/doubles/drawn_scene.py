@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass, field
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -98,6 +99,8 @@ class DrawnScene:
         )
 
     def _expose(self, bgr: NDArray[np.uint8]) -> NDArray[np.uint8]:
+        if self.noise == 0.0 and self.light == 1.0:
+            return bgr
         noise = np.random.default_rng(self.seed).normal(0, self.noise, bgr.shape)
         return np.clip(bgr * self.light + noise, 0, 255).astype(np.uint8)
 
@@ -106,41 +109,49 @@ class _Canvas:
     def __init__(self, pose, width, height, focal_px) -> None:
         self._pose, self._focal = pose, focal_px
         self._center = np.array([width / 2 - 0.5, height / 2 - 0.5])
-        us, vs = np.meshgrid(np.arange(width), np.arange(height))
-        rays = np.stack(
-            [
-                (us - self._center[0]) / focal_px,
-                (vs - self._center[1]) / focal_px,
-                np.ones_like(us, float),
-            ],
-            axis=2,
-        )
-        self._rays = rays @ pose[:3, :3].T
+        self._rays = _rays(width, height, focal_px)
         self.bgr = np.full((height, width, 3), 120, np.uint8)
         self.depth = np.full((height, width), 3.0)
 
     def box(self, matrix, size, bgr) -> None:
         signs = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (0, 1)])
         corners = (signs * np.array(size)) @ matrix[:3, :3].T + matrix[:3, 3]
-        for index, face in enumerate(_FACES):
-            self._face(corners[list(face)], np.array(bgr) * (0.6 + 0.08 * index))
-
-    def _face(self, corners, bgr) -> None:
         optical = (corners - self._pose[:3, 3]) @ self._pose[:3, :3]
         if optical[:, 2].min() < 0.01:
             return
-        pixels = optical[:, :2] / optical[:, 2:] * self._focal + self._center
+        middle = optical.mean(axis=0)
+        for index, face in enumerate(_FACES):
+            self._face(optical[list(face)], middle, np.array(bgr) * (0.6 + 0.08 * index))
+
+    def _face(self, corners, middle, bgr) -> None:
+        """One side of a box around `middle`, in the optical frame; nothing if it faces away."""
+        first, second = corners[1] - corners[0], corners[3] - corners[0]
+        normal = np.cross(first, second)
+        away = corners[0] @ normal
+        if away * ((corners[0] - middle) @ normal) >= 0.0:
+            return
+        pixels = corners[:, :2] / corners[:, 2:] * self._focal + self._center
         height, width = self.depth.shape
         low = np.clip(np.floor(pixels.min(axis=0)), 0, (width, height)).astype(int)
         high = np.clip(np.ceil(pixels.max(axis=0)) + 1, 0, (width, height)).astype(int)
-        vs, us = (each.ravel() for each in np.mgrid[low[1] : high[1], low[0] : high[0]])
-        first, second = corners[1] - corners[0], corners[3] - corners[0]
-        normal = np.cross(first, second)
+        seen = slice(low[1], high[1]), slice(low[0], high[0])
+        rays, depths = self._rays[seen], self.depth[seen]
         with np.errstate(divide="ignore", invalid="ignore"):
-            depth = ((corners[0] - self._pose[:3, 3]) @ normal) / (self._rays[vs, us] @ normal)
-            hit = self._pose[:3, 3] + self._rays[vs, us] * depth[:, None] - corners[0]
-            along, across = hit @ first / (first @ first), hit @ second / (second @ second)
+            depth = away / (rays @ normal)
+            along, across = (
+                depth * (rays @ side) - corners[0] @ side
+                for side in (first / (first @ first), second / (second @ second))
+            )
             inside = (np.abs(along - 0.5) <= 0.5) & (np.abs(across - 0.5) <= 0.5)
-            front = inside & (depth > 0.01) & (depth < self.depth[vs, us])
-        self.depth[vs[front], us[front]] = depth[front]
-        self.bgr[vs[front], us[front]] = np.clip(bgr, 0, 255)
+            front = inside & (depth > 0.01) & (depth < depths)
+        depths[front] = depth[front]
+        self.bgr[seen][front] = np.clip(bgr, 0, 255)
+
+
+@lru_cache(maxsize=8)
+def _rays(width: int, height: int, focal_px: float) -> NDArray[np.float64]:
+    """Through each pixel (height, width, 3), in the optical frame, 1 m deep."""
+    us, vs = np.meshgrid(np.arange(width), np.arange(height))
+    center = (width / 2 - 0.5, height / 2 - 0.5)
+    aside, down = (us - center[0]) / focal_px, (vs - center[1]) / focal_px
+    return np.stack([aside, down, np.ones_like(aside)], axis=2)
