@@ -12,7 +12,7 @@ from robots.grasp import Grasp, corners_in_tool
 from robots.grip.composition import Composition
 from robots.vision.blob import Mask
 from robots.vision.color_model import ColorModel, Segmentation
-from robots.vision.projection import project
+from robots.vision.projection import NEAR_M, project
 from robots.vision.seen_box import SeenBox
 
 REFERENCE_WIDTH_PX = 160
@@ -24,8 +24,11 @@ _NEAR_M = 0.04
 _RIM_PX = 2.0
 """Projections are that exact: the tool point's and the grasp's error, seen from the forearm."""
 
-_LEAST_AHEAD_M = 0.02
-"""What is nearer, or beside the camera, has no outline in the picture."""
+_BOX_EDGES = [
+    *((2 * side, 2 * side + 1) for side in range(4)),
+    *((2 * side + end, 2 * ((side + 1) % 4) + end) for side in range(4) for end in range(2)),
+]
+"""Of corners that go around, each at the bottom and then at the top."""
 
 _TELLING_SHARE = 0.5
 """Of a part without a hue nothing is seen but that much of another's colour is not its own."""
@@ -75,9 +78,9 @@ def visible_region(
 def in_front(
     image: CameraImage, tool: Matrix4, boxes: Sequence[SeenBox]
 ) -> list[NDArray[np.float64]]:
-    """The corners (8, 3), in the tool frame, of boxes between the camera and what the tool holds.
+    """The corners (n, 3), in the tool frame, of boxes between the camera and what the tool holds.
 
-    `boxes` are in the base frame.
+    `boxes` are in the base frame; one that reaches beside the camera is cut off there.
     """
     eye, at = image.pose[:3, 3], tool[:3, 3]
     away_m = float(np.linalg.norm(at - eye))
@@ -85,11 +88,22 @@ def in_front(
     for box in boxes:
         outline = box.corners()
         corners = np.array([(x, y, z) for x, y in outline for z in (box.bottom_z, box.top_z)])
-        ahead_m = (corners - eye) @ image.pose[:3, 2]
-        nearer = float(np.linalg.norm(corners.mean(axis=0) - eye)) < away_m
-        if nearer and ahead_m.min() > _LEAST_AHEAD_M:
-            hiding.append((corners - at) @ tool[:3, :3])
+        if float(np.linalg.norm(corners.mean(axis=0) - eye)) >= away_m:
+            continue
+        ahead = _ahead(corners, (corners - eye) @ image.pose[:3, 2] - NEAR_M)
+        if len(ahead) > 0:
+            hiding.append((ahead - at) @ tool[:3, :3])
     return hiding
+
+
+def _ahead(corners: NDArray[np.float64], beyond_m: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The corners of what is left of a box beyond a plane; `beyond_m` (8,) is below 0 before it."""
+    left = [corners[beyond_m > 0.0]]
+    for one, other in _BOX_EDGES:
+        if beyond_m[one] * beyond_m[other] < 0.0:
+            share = beyond_m[one] / (beyond_m[one] - beyond_m[other])
+            left.append((corners[one] + share * (corners[other] - corners[one]))[None])
+    return np.concatenate(left)
 
 
 def composition(

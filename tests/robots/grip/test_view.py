@@ -1,10 +1,19 @@
-"""What the colours in a region say of one part among all that the robot knows."""
+"""What the colours in a region say of a part, and what stands before the camera hides of it."""
 
+import math
+
+import cv2
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scripted_body import forearm_pose, tool_matrix
 
-from robots.grip.view import composition
+from robots.body import CameraImage, ToolPose
+from robots.grip.view import composition, in_front, outline
 from robots.vision.color_model import ColorModel, Sample
+from robots.vision.projection import NEAR_M, project
+from robots.vision.seen_box import SeenBox
 
 DARK, BRIGHT = (13.0, 18.0, 33.0), (80.0, 140.0, 240.0)
 """BGR of one hue; the first is hardly bright enough to have one."""
@@ -35,3 +44,48 @@ def test_a_part_that_hardly_has_a_hue_is_not_taken_for_one_that_has(
     assert swapped is not None
     assert swapped.other > 0.5
     assert swapped.most_other == "green"
+
+
+TOOL = tool_matrix(ToolPose(0.5, 0.1, 0.76, math.pi / 2))
+POSE = forearm_pose(TOOL)
+IMAGE = CameraImage(
+    bgr=np.zeros((120, 160, 3), np.uint8),
+    depth_m=None,
+    pose=POSE,
+    focal_px=80.0,
+    center_px=(79.5, 59.5),
+    time=0.0,
+)
+
+
+@given(
+    aside_m=st.floats(-0.05, 0.05),
+    ahead_m=st.floats(-0.03, 0.1),
+    height_m=st.floats(0.02, 0.15),
+    side_m=st.floats(0.02, 0.08),
+    yaw=st.floats(-1.5, 1.5),
+)
+def test_whatever_stands_before_the_camera_hides_what_is_behind_it(
+    aside_m, ahead_m, height_m, side_m, yaw
+) -> None:
+    """Also a box that reaches beside the camera, or behind it."""
+    eye, forward = POSE[:3, 3], POSE[:3, 2] * (1.0, 1.0, 0.0)
+    forward = forward / np.linalg.norm(forward)
+    x, y = (eye + ahead_m * forward + aside_m * np.cross(forward, (0.0, 0.0, 1.0)))[:2]
+    top_z = eye[2] - 0.02
+    size = (side_m, side_m, height_m)
+    box = SeenBox(x, y, yaw, size, top_z - height_m, "tower", complete=True)
+    hidden = cv2.dilate(outline(IMAGE, TOOL, in_front(IMAGE, TOOL, [box])), np.ones((3, 3)))
+    grid = np.linspace(-0.5, 0.5, 7) * 0.98
+    local = np.array(
+        [(a * side_m, b * side_m, c * height_m) for a in grid for b in grid for c in grid]
+    )
+    cos, sin = math.cos(yaw), math.sin(yaw)
+    points = local @ np.array([[cos, sin, 0], [-sin, cos, 0], [0, 0, 1.0]])
+    points += (x, y, top_z - height_m / 2)
+    seen = points[(points - eye) @ POSE[:3, 2] > NEAR_M]
+    if len(seen) == 0:
+        return
+    us, vs = np.rint(project(IMAGE, seen)).astype(int).T
+    inside = (us >= 0) & (us < 160) & (vs >= 0) & (vs < 120)
+    assert hidden[vs[inside], us[inside]].all()
