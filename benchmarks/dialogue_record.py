@@ -162,24 +162,28 @@ class RunRecord:
 
         When its issue was raised, or at an event.
         """
-        place = self._place(node)
-        if place is None:
+        moment = self.at_issue(node) if index is None else self._moments[index]
+        return any(self._crowds(moment, node, each) for each in moment.resting if each != name)
+
+    def _crowds(self, moment: Moment, node: str, other: str | None) -> bool:
+        """Whether a part lies near the place of a leaf."""
+        place, rest = self._place(node), moment.resting.get(other or "")
+        if place is None or rest is None or other is None:
             return False
         pose = self._scene.places[place].pose
-        moment = self.at_issue(node) if index is None else self._moments[index]
-        return any(
-            rest is not None
-            and other != name
-            and math.hypot(rest.x - pose.x, rest.y - pose.y) < self._together_m(name or "", other)
-            for other, rest in moment.resting.items()
-        )
+        together_m = self._together_m(self._leaves[node].object or "", other)
+        return math.hypot(rest.x - pose.x, rest.y - pose.y) < together_m
 
     def deeds(self, index: int, event: ev.DialogueEvent) -> Iterator[ev.InterventionDone]:
-        """What people really did for a dialogue's object, or about the way, since it opened."""
+        """What people really did for a dialogue's object, or about the way, since it opened.
+
+        Who takes another part away from its place, as it may be by mistake, helps as well.
+        """
         for each in self.since_opened(index, event):
             if not isinstance(each, ev.InterventionDone) or not each.ok or each.act not in GIVEN:
                 continue
-            if each.object == event.object or each.act == "release":
+            about_it = each.object == event.object or each.act == "release"
+            if about_it or self._crowds(self.at_issue(event.node), event.node, each.object):
                 yield each
 
     def issues_so_far(self, index: int, event: ev.DialogueEvent) -> int:

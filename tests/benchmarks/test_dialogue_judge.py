@@ -225,6 +225,12 @@ def test_thanks_need_a_deed_for_the_part_since_the_question_was_put() -> None:
     assert Told().begin().deed(Act.PUT_BACK).alarm().say(thanks).wrong() != []
 
 
+def test_who_takes_away_what_crowded_its_place_has_helped_as_well() -> None:
+    thanks = "Thank you. I see the part 1 at its place."
+    assert told(CROWDED).deed(Act.PUT_BACK, "part_2").now(PLACED).say(thanks).wrong() == []
+    assert told().deed(Act.PUT_BACK, "part_2").now(PLACED).say(thanks).wrong() != []
+
+
 @pytest.mark.parametrize(("said", "times"), [("once", 1), ("twice", 2), ("three times", 3)])
 def test_how_often_something_happened_is_counted(said: str, times: int) -> None:
     run = Told().begin()
