@@ -10,9 +10,9 @@ from tasks.scenario import ScriptedIntervention, Trigger
 from tasks.scene import StrictModel
 
 SCENARIO = "scenario"
+"""In whose name scripted interventions happen."""
 HELPER = "helper"
 """Who acts where a promise is kept."""
-"""In whose name scripted interventions happen."""
 
 _EPSILON = 1e-9
 

@@ -99,6 +99,7 @@ def _bar(
         if _carries(touched, assignment, senses, findings):
             return None
         first = first or touched
+        # A plate and its knob have one name; pieces of something unknown have none, and go at once.
         boxes = [each for each in boxes if each.name != touched.name]
         without = _plan_amid(boxes, assignment, arm, senses, findings)
         if isinstance(without, Plan):

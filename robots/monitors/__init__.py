@@ -1,4 +1,4 @@
-"""Fault monitors: each watches for one kind of issue between two steps of a behavior."""
+"""Fault monitors: each watches for one kind of issue in some phases of some behaviors."""
 
 from robots.monitors.monitor import Meanwhile, Monitor, MonitorView
 

@@ -1,1 +1,1 @@
-"""What a robot sees: colour models, blobs, objects in head and forearm pictures."""
+"""What a robot sees: colour models, blobs, what stands on the table in head pictures."""

@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import Field
 
-from robots.body import Reach, ToolPose
+from robots.body import Reach
 from robots.link.messages import ShownObject, ShownPose
 from sim.depth_noise import DepthNoise
 from sim.lighting import Lighting
@@ -147,10 +147,6 @@ class TabletopWorld:
     def held(self) -> str | None:
         """What the fingers really hold; for tests and benchmarks to judge by."""
         return self._state.held.name if self._state.held else None
-
-    def show_tool_at(self, tool: ToolPose) -> None:
-        """Put the arm somewhere at once, for training pictures and tests."""
-        self._state.arm.jump(tool)
 
     def _is_lost(self, part: TablePart) -> bool:
         return part.whereabouts is Whereabouts.GONE or self._person.is_pulling(part)

@@ -3,8 +3,6 @@
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from robots.body import Matrix4
 from sim.workcell.quiet import silenced
@@ -60,12 +58,6 @@ def to_matrix(position: Point, quaternion: Quaternion) -> Matrix4:
     matrix[2, 2] = 1 - 2 * (x * x + y * y)
     matrix[:3, 3] = position
     return matrix
-
-
-def to_quaternion(rotation: NDArray[np.float64]) -> Quaternion:
-    """A rotation matrix as a quaternion (x, y, z, w)."""
-    x, y, z, w = Rotation.from_matrix(rotation).as_quat()
-    return float(x), float(y), float(z), float(w)
 
 
 def yaw_quaternion(yaw: float) -> Quaternion:

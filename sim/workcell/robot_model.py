@@ -66,6 +66,9 @@ _TIP_MASS_KG = 0.2
 """Stands for the drive's inertia, which fingers feel through their gears. Much lighter than what
 they hold, the engine's solver would not converge, and what they hold would creep."""
 
+_MODULES = {"ruckig": "ruckig", "pinocchio": "Pinocchio", "coal": "coal"}
+"""What the arm plans and moves by, as it is imported and as it is called."""
+
 _LAYOUT = 4
 """Raised whenever this module makes different files from the same package."""
 
@@ -77,10 +80,11 @@ def check_installed() -> None:
             "the workcell world needs PyBullet, which has wheels for Python 3.10 and 3.11 only: "
             "run Mend with Python 3.11 and install it as 'mend[workcell]'"
         )
-    if importlib.util.find_spec("ruckig") is None:
-        raise WorldUnavailableError(
-            "the workcell world needs ruckig: install Mend as 'mend[workcell]'"
-        )
+    for module, called in _MODULES.items():
+        if importlib.util.find_spec(module) is None:
+            raise WorldUnavailableError(
+                f"the workcell world needs {called}: install Mend as 'mend[workcell]'"
+            )
     _find_description()
 
 

@@ -117,6 +117,17 @@ def test_a_missing_engine_is_told_with_what_to_install(monkeypatch: pytest.Monke
         check_installed()
 
 
+@pytest.mark.parametrize("missing", ["ruckig", "pinocchio", "coal"])
+def test_a_missing_library_is_told_with_what_to_install(
+    monkeypatch: pytest.MonkeyPatch, missing: str
+) -> None:
+    monkeypatch.setattr(
+        robot_model.importlib.util, "find_spec", lambda name: name != missing or None
+    )
+    with pytest.raises(WorldUnavailableError, match=rf"(?i)needs {missing}: .*mend\[workcell\]"):
+        check_installed()
+
+
 def test_a_missing_description_is_told_with_what_to_install(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
