@@ -86,7 +86,7 @@ CLOSINGS: dict[CloseReason, str] = {
     CloseReason.ABORTED: "the question lapses: it no longer matters",
 }
 
-DOERS = {
+DOERS: dict[ev.DoneBy, str] = {
     "robot": " by the robot",
     "human": " by the human",
     "both": " by robot and human together",

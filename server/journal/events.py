@@ -308,12 +308,16 @@ class InterventionDone(Event):
     command: str | None = None
 
 
+DoneBy = Literal["robot", "human", "both", "found"]
+"""Who brought a result about; `found`: it was there already."""
+
+
 class NodeDone(NodeEvent):
     """A leaf is done: `by` the robot, a human, or both; `found`: its result was there already."""
 
     type: Literal["node_done"] = "node_done"
     robot: str | None
-    by: Literal["robot", "human", "both", "found"]
+    by: DoneBy
 
 
 class NodeReset(NodeEvent):

@@ -8,7 +8,12 @@ from server.report.tree_drawing import NodeFate, NodeState
 from tasks.definition import NodeKind, TaskTreeDefinition
 from tasks.task_tree import TaskTree
 
-DOERS = {"robot": "by the robot", "human": "by the human", "both": "by robot and human"}
+DOERS: dict[ev.DoneBy, str] = {
+    "robot": "by the robot",
+    "human": "by the human",
+    "both": "by robot and human",
+    "found": "found in place",
+}
 
 
 def node_states(record: RunRecord) -> list[NodeState]:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from datetime import UTC, datetime
 from html.parser import HTMLParser
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 from uuid import UUID
 
 import pytest
@@ -213,6 +213,17 @@ def test_tree_state_is_what_the_events_say() -> None:
     early = {each.path: each.fate for each in node_states(RunRecord(until(ev.NodeStarted, 2)))}
     assert early["/0"] == "done"
     assert early["/1/0"] == "active"
+
+
+@pytest.mark.parametrize("by", get_args(ev.DoneBy))
+def test_whoever_brought_a_result_about_is_told(by: ev.DoneBy) -> None:
+    events = [
+        each.model_copy(update={"by": by}) if isinstance(each, ev.NodeDone) else each
+        for each in recorded()
+    ]
+    words = {"both": "by robot and human", "found": "found in place"}.get(by, f"by the {by}")
+    details = [each.detail for each in node_states(RunRecord(events)) if each.fate == "done"]
+    assert any(words in each for each in details)
 
 
 # --- The timeline -----------------------------------------------------------------------------
