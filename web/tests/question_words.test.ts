@@ -32,6 +32,7 @@ describe("a detection on a picture", () => {
     tolerance_px: 10,
     area_px: 314,
     felt: false,
+    part: null,
     explanation: "",
   };
 
