@@ -195,6 +195,8 @@ def look_as_told(
     """The routine of a `look` command. Raises `CommandError`."""
     if look.expect is None:
         return look_once(looker, command)
+    if look.expect != "way_clear":
+        looker.senses.want(understanding.object_of(look))
     if look.expect == "in_gripper":
         part = understanding.object_of(look)
         return take_from_person(looker, command, part, look.within_s)

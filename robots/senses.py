@@ -85,6 +85,7 @@ class Senses:
         self._fit = fit or Fit()
         self._seen: _Seen | None = None
         self._doubted = False
+        self._wanted: str | None = None
         self._last_seen = LastSeen(catalogue.starts)
         self.catalogue = catalogue
         self.grip: GripWatch | None = None
@@ -102,6 +103,12 @@ class Senses:
     def look(self) -> CameraImage:
         """A head picture."""
         return self._body.cameras[HEAD].capture()
+
+    def want(self, part: Part | None) -> None:
+        """Of equal parts the one that is handled, or asked for, is what is brought back."""
+        wanted = None if part is None or len(self._equals_of(part)) < 2 else part.name
+        if wanted != self._wanted:
+            self._wanted, self._seen = wanted, None
 
     def doubt(self) -> None:
         """Understand the next head picture anew, even if nothing in it but noise has changed."""
@@ -340,6 +347,7 @@ class Senses:
                 self._model,
                 self._last_seen,
                 self._is_own_arm,
+                self._wanted,
             )
             if view is not None:
                 for name, each in view.sightings.items():

@@ -153,6 +153,7 @@ class Execution:
         earlier, before = progress.plan, progress.seen.sighting
         progress.start_again()
         part, arm, senses, seen = self._assignment.part, self._arm, self._senses, progress.seen
+        senses.want(part)
         carrying = yield from check_carrying(part, arm, senses)
         seen.carrying = carrying and goes_on_carrying(self._assignment, arm, senses)
         if seen.carrying:

@@ -39,6 +39,8 @@ _LEAST_HIGHER_M = 0.005
 _TRACKING_COST = 2.0
 _TRACKED_WITHIN_M = 0.05
 """Among equals a name costs nothing where it was last, and this much from so far away on."""
+_WANTED_COST = -0.5
+"""What is brought back among equals is the one that is wanted, if that is gone as well."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -101,10 +103,12 @@ class Namer:
         surfaces: Surfaces,
         segmentation: Segmentation,
         last_seen: Mapping[str, Spot],
+        wanted: str | None = None,
     ) -> tuple[list[Match], list[Top]]:
         """The parts that are seen, and what stays unknown.
 
-        `last_seen` is where each name was last; names of equal parts go by that.
+        `last_seen` is where each name was last; names of equal parts go by that, and then by which
+        of them is `wanted`.
         """
         tops = self._with_knobs(tops, surfaces)
         if not tops or not self._ways:
@@ -127,6 +131,7 @@ class Namer:
                 costs[row, index] += self._hue_cost(name, top.surface, segmentation)
                 bottom_z = top.surface.top_z - float(self._heights[chosen[index]])
                 costs[row, index] += _tracking_cost(top, bottom_z, last_seen.get(name))
+                costs[row, index] += _WANTED_COST if name == wanted else 0.0
             costs[row, len(self._parts) + row] = UNKNOWN_COST
             choices.append((chosen, swapped))
         matches, unknown = [], []

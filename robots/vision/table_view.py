@@ -70,11 +70,13 @@ def view_table(
     model: ColorModel,
     last_seen: LastSeen,
     own_arm: Callable[[NDArray[np.float64]], NDArray[np.bool_]] | None = None,
+    wanted: str | None = None,
 ) -> TableView | None:
     """Understand a head picture; None for one without depth.
 
     `parts` are those that can be on the table, by name; `last_seen` is what earlier pictures say
-    of them; `own_arm` says of points (n, 3) which belong to the robot.
+    of them; `own_arm` says of points (n, 3) which belong to the robot. `wanted` is the part that
+    the robot is about to handle, or asked for.
     """
     heights = measure_heights(image, table, own_arm)
     if heights is None:
@@ -85,7 +87,7 @@ def view_table(
     namer, segmentation = Namer(known, model), model.segment(image.bgr)
     pieces: list[Top] = []
     while True:
-        matches, unknown = namer.name(tops, surfaces, segmentation, last_seen.spots)
+        matches, unknown = namer.name(tops, surfaces, segmentation, last_seen.spots, wanted)
         found = []
         for match in matches:
             fitted = _fit_match(match, surfaces, last_seen.seen_whole(match.part.name))

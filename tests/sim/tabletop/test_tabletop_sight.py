@@ -93,6 +93,36 @@ def test_a_stolen_equal_is_the_one_that_is_missing_and_comes_back_as_itself() ->
     assert all(near(where, spots[name]) for name, where in seen.items())
 
 
+@pytest.mark.parametrize("wanted", ["bolt_1", "bolt_3"])
+@pytest.mark.parametrize("brought", ["bolt_1", "bolt_3"])
+def test_of_equals_that_are_gone_the_one_that_is_wanted_is_brought_back(
+    wanted: str, brought: str
+) -> None:
+    spots = {f"bolt_{i}": (0.42 + 0.05 * i, -0.3) for i in range(5)}
+    watcher = Watcher(scene_of({name: at(*spot) for name, spot in spots.items()}))
+    watcher.seen()
+    for gone in ("bolt_1", "bolt_3"):
+        watcher.do(Act.STEAL, gone)
+    assert set(watcher.seen()) == {"bolt_0", "bolt_2", "bolt_4"}
+    watcher.senses.want(watcher.catalogue.parts[wanted])
+    watcher.do(Act.MOVE, brought, to=Pose(x=0.6, y=0.1))
+    seen = watcher.seen()
+    assert near(seen.pop(wanted), (0.6, 0.1))
+    assert set(seen) == {"bolt_0", "bolt_2", "bolt_4"}
+    assert all(near(where, spots[name]) for name, where in seen.items())
+
+
+def test_what_is_wanted_takes_no_equal_from_where_that_stands() -> None:
+    spots = {f"bolt_{i}": (0.42 + 0.05 * i, -0.3) for i in range(5)}
+    watcher = Watcher(scene_of({name: at(*spot) for name, spot in spots.items()}))
+    watcher.seen()
+    watcher.do(Act.STEAL, "bolt_2")
+    watcher.senses.want(watcher.catalogue.parts["bolt_2"])
+    seen = watcher.seen()
+    assert set(seen) == set(spots) - {"bolt_2"}
+    assert all(near(where, spots[name]) for name, where in seen.items())
+
+
 @settings(max_examples=15, deadline=None)
 @given(
     moves=st.lists(st.tuples(st.integers(0, 4), st.integers(0, 11)), min_size=1, max_size=6),
