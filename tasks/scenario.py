@@ -1,8 +1,8 @@
 """Scenarios: scripted interventions, helper answers and a simulated person's reliability."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from tasks.intervention import Intervention
 from tasks.scene import Name, Pose, StrictModel
@@ -29,6 +29,13 @@ class ScriptedIntervention(StrictModel):
     when: Trigger | None = None
     at_s: Seconds | None = None
     do: Intervention
+
+    @model_validator(mode="after")
+    def _require_one_moment(self) -> Self:
+        if (self.when is None) == (self.at_s is None):
+            given = "neither" if self.when is None else "both"
+            raise ValueError(f"an intervention needs 'when' or 'at_s' (got {given})")
+        return self
 
 
 class Person(StrictModel):

@@ -17,6 +17,7 @@ from tasks.scenario_file import (
 )
 from tasks.scene import Place, Pose, Scene, SceneObject
 
+WHEN = "when: {object: pink_bar, step: 5, fraction: 0.5}"
 GOOD = """\
 name: short
 tree: eket
@@ -91,6 +92,15 @@ def test_every_mistake_is_told_with_its_line() -> None:
         "mine.yaml:8: unknown key 'helpers'; known are 'answer_delay_s', 'answers', "
         "'description', 'interventions', 'name', 'person', 'scene', 'tree'",
     ]
+
+
+@pytest.mark.parametrize(
+    ("moment", "given"), [("at_s: null", "neither"), (f"{WHEN}\n    at_s: 3.0", "both")]
+)
+def test_an_intervention_happens_at_one_moment(moment: str, given: str) -> None:
+    text = GOOD.replace(WHEN, moment)
+    said = f"an intervention needs 'when' or 'at_s' (got {given})"
+    assert problems_of(text) == [f"mine.yaml:4: 'interventions.0': {said}"]
 
 
 def test_an_act_without_what_it_needs_is_told() -> None:
