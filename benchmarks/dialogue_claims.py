@@ -65,8 +65,8 @@ def _held(record: RunRecord, index: int, event: ev.Prompt, _: re.Match[str]) -> 
 def _in_the_way(record: RunRecord, _: int, event: ev.Prompt, said: re.Match[str]) -> str | None:
     named = _part_named(record, event, said[1])
     if named is not None:
-        # How the arm gets past it only a planner could tell: at least it has to be there.
-        return None if record.at_issue(event.node).resting.get(named) else "it is not there"
+        there = record.stands_by(event.node, event.object or "", named)
+        return None if there else f"{named} stands nowhere near its way"
     there = record.at_issue(event.node).blocked or record.crowded(event.node, event.object)
     covered = record.buried(record.raised_at(event.node), event.object)
     return None if there or covered else "nothing is in its way"

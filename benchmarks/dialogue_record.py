@@ -13,6 +13,9 @@ from tasks.scene import Scene
 NEAR_M = 0.06
 """Room that the fingers need: a part this near to another, or to its place, may be in the way."""
 
+_ARM_PASSES_M = 0.3
+"""So far behind the fingers a forearm may still touch something."""
+
 SAME_SPOT_M = 0.02
 """What is this near to a pose of the scene is there."""
 
@@ -183,8 +186,24 @@ class RunRecord:
             if not isinstance(each, ev.InterventionDone) or not each.ok or each.act not in GIVEN:
                 continue
             about_it = each.object == event.object or each.act == "release"
-            if about_it or self._crowds(self.at_issue(event.node), event.node, each.object):
+            if about_it or self._cleared(index, event.node, each.object):
                 yield each
+
+    def _cleared(self, index: int, node: str, other: str | None) -> bool:
+        """Whether a part lay near the place of a leaf at its issue, and does not by an event."""
+        before, now = self.at_issue(node), self._moments[index]
+        return self._crowds(before, node, other) and not self._crowds(now, node, other)
+
+    def stands_by(self, node: str, name: str, other: str) -> bool:
+        """Whether a part was where the arm passes over on its way to another or to its place."""
+        moment, place = self.at_issue(node), self._place(node)
+        rest, own = moment.resting.get(other), moment.resting.get(name)
+        ends = [] if own is None else [(own.x, own.y)]
+        if place is not None:
+            ends.append((self._scene.places[place].pose.x, self._scene.places[place].pose.y))
+        return rest is not None and any(
+            math.hypot(rest.x - x, rest.y - y) <= _ARM_PASSES_M for x, y in ends
+        )
 
     def issues_so_far(self, index: int, event: ev.DialogueEvent) -> int:
         return sum(

@@ -45,8 +45,6 @@ _CARRYING = range(3, 7)
 _LIFTED = 4
 _SLID_M = 0.01
 _STACK_M = 0.12
-_PUSHES_N = 10.0
-"""Less than this is what a part weighs, and what friction does."""
 
 
 class Moment(NamedTuple):
@@ -343,11 +341,8 @@ class Bench:
                 return False
 
     def is_obstructed(self, name: str) -> bool:
-        """Whether something pushes against the arm or stands in its way.
-
-        That is somebody, or another part on this one or at its place.
-        """
-        if not self.world.shown_poses()[-1].gone or self.world.contact_n > _PUSHES_N:
+        """Whether somebody stands in the way, or another part on this one or at its place."""
+        if not self.world.shown_poses()[-1].gone:
             return True
         here = self.world.parts[name].pose().position
         target = self.scene.places[place_of(name)].pose

@@ -212,10 +212,7 @@ KINDS = {
     "stolen while placing": Kind(_stolen_while_placing, frozenset({"dropped", "undone"})),
     "stolen after done": Kind(_stolen_after_done, frozenset({"undone"})),
     "swapped": Kind(_swapped, frozenset({"missing", "missed"})),
-    # A part under the fingers that come down is felt; one that they have by a corner slips.
-    "pushed aside": Kind(
-        _pushed_aside, frozenset({"missed", "dropped", "blocked", "unreachable", "undone"})
-    ),
+    "pushed aside": Kind(_pushed_aside, frozenset({"missed", "unreachable", "undone"})),
     # A known part at the place leaves no room there, which is as true and names it.
     "in the way": Kind(_in_the_way, frozenset({"blocked", "unreachable"})),
     "wrong hand-over": Kind(_wrong_hand_over, frozenset({REFUSED})),

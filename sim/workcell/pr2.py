@@ -175,15 +175,6 @@ class Pr2:
         contacts = self._client.getContactPoints(self.body_id)
         return {contact[2] for contact in contacts if contact[3] in left | right}
 
-    def contact_n(self) -> float:
-        """The force with which everything that touches it pushes it one way, as the engine has it.
-
-        What the fingers squeeze pushes both ways, and so does not count.
-        """
-        contacts = self._client.getContactPoints(self.body_id)
-        pushes = [np.array(contact[7]) * contact[9] for contact in contacts]
-        return float(np.linalg.norm(np.sum(pushes, axis=0))) if pushes else 0.0
-
     def arm_motion(self) -> tuple[Joints, Joints, Joints]:
         """The arm joints' angles (rad), velocities (rad/s) and motor torques (N m)."""
         states = self._client.getJointStates(self.body_id, self._arm)

@@ -173,11 +173,6 @@ class WorkcellWorld:
         part = self._bench.held(self._pr2)
         return part.name if part else None
 
-    @property
-    def contact_n(self) -> float:
-        """How hard things really push against the robot; for tests and benchmarks to judge by."""
-        return self._pr2.contact_n()
-
     def _step(self) -> None:
         self._person.act()
         self._choose_iterations()

@@ -225,10 +225,20 @@ def test_thanks_need_a_deed_for_the_part_since_the_question_was_put() -> None:
     assert Told().begin().deed(Act.PUT_BACK).alarm().say(thanks).wrong() != []
 
 
+def test_what_is_far_from_the_way_is_not_in_it() -> None:
+    said = "I cannot go on with the top. Part 2 is in the arm's way. Can you clear the way?"
+    far = replace(STARTS, resting={**STARTS.resting, "part_2": Rest(5.0, 5.0, 0.7)})
+    near = replace(STARTS, resting={**STARTS.resting, "part_2": place_of("part_1")})
+    assert told(far).say(said).wrong() == ["part_2 stands nowhere near its way"]
+    assert told(near).say(said).wrong() == []
+
+
 def test_who_takes_away_what_crowded_its_place_has_helped_as_well() -> None:
     thanks = "Thank you. I see the part 1 at its place."
     assert told(CROWDED).deed(Act.PUT_BACK, "part_2").now(PLACED).say(thanks).wrong() == []
     assert told().deed(Act.PUT_BACK, "part_2").now(PLACED).say(thanks).wrong() != []
+    still = replace(PLACED, resting={**PLACED.resting, "part_2": place_of("part_1")})
+    assert told(CROWDED).deed(Act.PLACE, "part_2").now(still).say(thanks).wrong() != []
 
 
 @pytest.mark.parametrize(("said", "times"), [("once", 1), ("twice", 2), ("three times", 3)])
