@@ -340,6 +340,8 @@ def deed_text(intervention: Intervention) -> str:
     text = DEEDS[intervention.act].format(object=intervention.object)
     if intervention.act is Act.STEAL and intervention.manner == "pull":
         text = f"pulls {intervention.object} out of the gripper"
+    if intervention.act is Act.RELEASE and intervention.object and intervention.place is None:
+        text = f"puts {intervention.object} aside"
     return text
 
 

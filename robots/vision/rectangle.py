@@ -12,6 +12,7 @@ import cv2
 import numpy as np
 import shapely
 from numpy.typing import NDArray
+from shapely.affinity import rotate, translate
 
 from maps.compiled import compiled
 from robots.body import CameraImage
@@ -90,11 +91,8 @@ class Fitted:
         length, width = at.extents
         xs = (-length / 2 - more[0], length / 2 + more[1])
         ys = (-width / 2 - more[2], width / 2 + more[3])
-        around = ((xs[0], ys[0]), (xs[1], ys[0]), (xs[1], ys[1]), (xs[0], ys[1]))
-        cos, sin = math.cos(at.yaw), math.sin(at.yaw)
-        return shapely.Polygon(
-            [(at.x + cos * x - sin * y, at.y + sin * x + cos * y) for x, y in around]
-        )
+        turned = rotate(shapely.box(xs[0], ys[0], xs[1], ys[1]), at.yaw, (0, 0), use_radians=True)
+        return translate(turned, at.x, at.y)
 
     @property
     def whole(self) -> tuple[bool, bool]:

@@ -153,6 +153,14 @@ def test_a_vain_intervention_says_why() -> None:
     ]
 
 
+def test_who_clears_the_way_of_a_part_puts_that_aside() -> None:
+    aside = Intervention(act=Act.RELEASE, object="pink_bar")
+    event = ev.InterventionDone(
+        **EVENT, act="release", object="pink_bar", intervention=aside, by="helper"
+    )
+    assert told(event) == ["person (helper) puts pink_bar aside"]
+
+
 @pytest.mark.parametrize("act", Act)
 def test_every_act_has_words(act: Act) -> None:
     object_name = None if act in (Act.BLOCK, Act.RELEASE) else "pink_bar"

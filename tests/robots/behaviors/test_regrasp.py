@@ -40,4 +40,7 @@ def test_what_is_pushed_askew_is_grasped_anew_and_placed() -> None:
 
 
 def test_after_two_new_grasps_the_verdict_stands() -> None:
-    assert closings(bench_where_it_is_pushed(times=9)) == 3
+    bench = bench_where_it_is_pushed(times=9)
+    assert closings(bench) == 3
+    assert [each.issue for each in bench.of(IssueDetected)] == []
+    assert bench.of(Finished) == [Finished(execution="e1")]

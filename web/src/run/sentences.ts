@@ -78,8 +78,11 @@ const CHANGES: Readonly<Record<Change, string>> = {
 
 /** What a person does, as the end of a sentence that begins with who it is. */
 export function deed(intervention: Intervention): string {
-  const { act, object, manner } = intervention;
+  const { act, object, place, manner } = intervention;
   const name = plain(object ?? "");
+  if (act === "release" && object !== null && place === null) {
+    return `puts ${name} aside`;
+  }
   return act === "steal" && manner === "pull" ? `pulls ${name} out of the gripper` : about(DEEDS[act], name);
 }
 
