@@ -51,11 +51,12 @@ class GripReading:
     """One reading of opening, effort and picture, and the verdict with it.
 
     `probability` is how sure it is that `name` is held rightly. The fingers are `opening_m` apart
-    where the part is `width_m` wide; `presses`: they press on something, `pushed`: something has
-    pushed against the arm since they closed. `composition` says which colours the picture shows
-    where the part must be seen; None where the fingers hide it or its colour cannot be told. `blob`
-    are the pixels of its colours, `expected` the centre of its outline (pixels) and `overhang_px`
-    how far the blob hangs over that, for a picture 160 pixels wide; `tolerance_px` of it are usual.
+    where the part, or its knob if it is held `by_knob`, is `width_m` wide; `presses`: they press on
+    something, `pushed`: something has pushed against the arm since they closed. `composition` says
+    which colours the picture shows where the part must be seen; None where the fingers hide it or
+    its colour cannot be told. `blob` are the pixels of its colours, `expected` the centre of its
+    outline (pixels) and `overhang_px` how far the blob hangs over that, for a picture 160 pixels
+    wide; `tolerance_px` of it are usual.
     """
 
     name: str
@@ -63,6 +64,7 @@ class GripReading:
     probability: float
     opening_m: float
     width_m: float
+    by_knob: bool
     presses: bool
     pushed: bool
     composition: Composition | None
@@ -74,18 +76,19 @@ class GripReading:
 
     @property
     def reason(self) -> str:
-        """Why it is not held, if it is not: the strongest sign of it."""
+        """Why it was not held at that moment, if it was not: the strongest sign of it."""
         name = self.name.replace("_", " ")
         opening, width = self.opening_m * _MM, self.width_m * _MM
         seen = self.composition
-        wide = f"where the {name} is {width:.0f} mm wide"
+        held = f"the knob of the {name}" if self.by_knob else f"the {name}"
+        wide = f"where {held} is {width:.0f} mm wide"
         if abs(opening - width) > width / 3 or not self.presses:
             if opening < width:
                 return f"the fingers closed to {opening:.0f} mm {wide}"
-            return f"the fingers are {opening:.0f} mm apart {wide}"
+            return f"the fingers were {opening:.0f} mm apart {wide}"
         if seen is not None and seen.most_other is not None and seen.other > seen.own:
             other = seen.most_other.replace("_", " ")
-            return f"what is between the fingers has the colours of the {other}, not the {name}"
+            return f"what was between the fingers had the colours of the {other}, not the {name}"
         if abs(opening - width) > width / 10 or (seen is not None and seen.own > _ALL_ITS_OWN):
-            return f"the fingers are {opening:.0f} mm apart {wide}"
-        return f"what is between the fingers does not look like the {name}"
+            return f"the fingers were {opening:.0f} mm apart {wide}"
+        return f"what was between the fingers did not look like the {name}"

@@ -148,6 +148,7 @@ class GripWatch:
             probability=0.5,
             opening_m=hand.opening_m,
             width_m=self.grasp.width_m,
+            by_knob=self.part.knob is not None,
             presses=hand.effort_n >= _PRESSES_SHARE * self._gripper.grip_force_n,
             pushed=self._pushed or hand.contact_n >= _PUSHED_N,
             composition=self._composition(hand, segmentation),

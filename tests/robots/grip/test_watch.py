@@ -100,8 +100,18 @@ def test_fingers_that_closed_on_nothing_have_missed(name: str, hidden: bool) -> 
     reading = hand.read(shows=None, opening_m=0.0005, presses=False, hidden=hidden)
     assert reading.state is GripState.ABSENT
     assert reading.probability < 0.01
-    assert reading.reason.startswith("the fingers closed to 0 mm where the ")
-    assert reading.reason.endswith(f"is {hand.grasp.width_m * 1e3:.0f} mm wide")
+    spoken = name.replace("_", " ")
+    held = f"the {spoken}" if PARTS[name].knob is None else f"the knob of the {spoken}"
+    assert reading.reason == (
+        f"the fingers closed to 0 mm where {held} is {hand.grasp.width_m * 1e3:.0f} mm wide"
+    )
+
+
+def test_why_it_was_not_held_is_told_of_the_moment_of_the_reading() -> None:
+    hand = ScriptedHand("pink_bar")
+    for _ in range(4):
+        reading = hand.read(shows=None, hidden=True, opening_m=hand.grasp.width_m + 0.02)
+    assert reading.reason.startswith("the fingers were ")
 
 
 def test_a_known_part_between_camera_and_hand_hides_what_is_held() -> None:
@@ -130,7 +140,7 @@ def test_another_part_of_the_same_width_is_told_by_its_colours() -> None:
     for _ in range(4):
         reading = hand.read(shows="yellow_bar")
     assert reading.state is GripState.ABSENT
-    assert "has the colours of the yellow bar, not the pink bar" in reading.reason
+    assert "had the colours of the yellow bar, not the pink bar" in reading.reason
 
 
 @pytest.mark.parametrize("off_m", [-0.008, 0.02])
@@ -174,8 +184,8 @@ def test_of_what_shows_the_right_colours_the_width_is_told() -> None:
     wider_m = hand.grasp.width_m * 1.08
     for _ in range(30):
         reading = hand.read(opening_m=wider_m)
-    assert "does not look like" not in reading.reason
-    assert hand.read(shows=None).reason.endswith("does not look like the pink bar")
+    assert "did not look like" not in reading.reason
+    assert hand.read(shows=None).reason.endswith("did not look like the pink bar")
 
 
 @pytest.mark.parametrize("period_s", [1 / 30, 0.1])

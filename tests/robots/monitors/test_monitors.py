@@ -31,6 +31,7 @@ def grip(state: GripState) -> GripReading:
         probability=0.999 if held else 0.0002,
         opening_m=0.03 if held else 0.003,
         width_m=0.03,
+        by_knob=False,
         presses=held,
         pushed=False,
         composition=None,
