@@ -142,6 +142,7 @@ class Watch:
             phase=progress.phase,
             part=self._assignment.part,
             needs_help=self._assignment.needs_help,
+            target=self._assignment.target,
             was_done=progress.was_done,
             reach=self._arm.body.reach,
             table_z=self._senses.catalogue.table.height,

@@ -11,7 +11,7 @@ from robots.behaviors.phase import Phase
 from robots.body import CameraImage, Reach
 from robots.catalogue import Part
 from robots.grip import GripReading
-from robots.link.messages import Detection, WasDone
+from robots.link.messages import Detection, Location, WasDone
 from robots.vision.head import HeadSighting
 from robots.vision.obstruction import Obstruction
 from robots.vision.presence import Presence
@@ -47,7 +47,8 @@ class MonitorView:
     """What the robot senses at one moment; nothing in it comes from a simulator.
 
     `step` counts from 1 and is 0 before the first; `phase` is what it is for. `part` is the
-    behavior's object, `was_done` what is known of one whose leaf was done before. `sighting`
+    behavior's object and `target` where it is to be, `was_done` what is known of one whose leaf
+    was done before. `sighting`
     is where the head camera saw it, `refusal` why the arm cannot grasp and place it, and
     `obstruction` what it saw in the way; all three are from before the first step. `grip` is what
     the newest forearm picture says, from when the gripper has closed on the object until it opens.
@@ -63,6 +64,7 @@ class MonitorView:
     needs_help: bool
     reach: Reach
     table_z: float
+    target: Location | None = None
     was_done: WasDone | None = None
     sighting: HeadSighting | None = None
     refusal: str | None = None

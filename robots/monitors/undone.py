@@ -1,5 +1,6 @@
 """`undone`: what was placed is not at its place, or no longer."""
 
+import math
 from typing import ClassVar
 
 from pydantic import Field
@@ -9,8 +10,10 @@ from robots.link.messages import Detection
 from robots.monitors.monitor import ANY_BEHAVIOR, Meanwhile, Monitor, MonitorView
 from robots.monitors.unreachable import why_beyond_reach, why_lying
 from robots.vision.head import HeadSighting
-from robots.vision.presence import AT_PLACE_HEIGHT_M, Presence
+from robots.vision.presence import AT_PLACE_HEIGHT_M, AT_PLACE_M, Presence, is_at
 from tasks.scene import StrictModel
+
+_MM = 1e3
 
 
 class UndoneParameters(StrictModel):
@@ -58,11 +61,11 @@ class Undone(Monitor[UndoneParameters]):
         ):
             # Where it is now is what people have to hear of: `unreachable` tells them.
             return None
-        if view.sighting is not None and self._asked:
+        if view.sighting is not None and (self._asked or _is_at_place(view.sighting, view)):
             return None
         self._goes_on = _stands_on_the_table(view.sighting, view)
         self._asked = True
-        return _detection(f"{name} is no longer at its place", view.sighting)
+        return _detection(f"{name} is no longer at its place", view.sighting, view)
 
     def _after_the_last_step(self, name: str, view: MonitorView) -> Detection | None:
         if view.presence is not Presence.GONE:
@@ -71,7 +74,7 @@ class Undone(Monitor[UndoneParameters]):
         free = graspable and _stands_on_the_table(view.placed, view)
         self._goes_on = free and self._again > 0
         self._again -= 1
-        return _detection(f"{name} was placed, but is not at its place", view.placed)
+        return _detection(f"{name} was placed, but is not at its place", view.placed, view)
 
 
 def _stands_on_the_table(sighting: HeadSighting | None, view: MonitorView) -> bool:
@@ -79,13 +82,39 @@ def _stands_on_the_table(sighting: HeadSighting | None, view: MonitorView) -> bo
     return sighting is not None and abs(sighting.z - view.table_z) <= AT_PLACE_HEIGHT_M
 
 
-def _detection(what: str, sighting: HeadSighting | None) -> Detection:
+def _target_z(view: MonitorView) -> float:
+    """How high (m) the bottom of the object is at its place."""
+    target_z = None if view.target is None else view.target.z
+    return view.table_z if target_z is None else target_z
+
+
+def _is_at_place(sighting: HeadSighting, view: MonitorView) -> bool:
+    return view.target is not None and is_at(sighting, view.target, _target_z(view))
+
+
+def _detection(what: str, sighting: HeadSighting | None, view: MonitorView) -> Detection:
     if sighting is None:
         return Detection(camera="head", explanation=f"{what} and nowhere in the head picture")
-    where = f"{what} but at ({sighting.x:.2f}, {sighting.y:.2f})"
     return Detection(
         camera="head",
         center=sighting.blob.center,
         area_px=sighting.blob.area_px,
-        explanation=where,
+        explanation=f"{what}{_what_differs(sighting, view)}",
     )
+
+
+def _what_differs(sighting: HeadSighting, view: MonitorView) -> str:
+    """In what it is seen to be otherwise than at its place, as the end of a clause."""
+    at = f"at ({sighting.x:.2f}, {sighting.y:.2f})"
+    if not sighting.upright(view.table_z):
+        return f": it has toppled over, {at}"
+    if view.target is None:
+        return f": it is {at}"
+    off_m = math.hypot(sighting.x - view.target.x, sighting.y - view.target.y)
+    if off_m > AT_PLACE_M:
+        return f": it is {off_m * _MM:.0f} mm away from it, {at}"
+    above_m = sighting.z - _target_z(view)
+    if abs(above_m) > AT_PLACE_HEIGHT_M:
+        side = "high" if above_m > 0 else "low"
+        return f": it stands {abs(above_m) * _MM:.0f} mm too {side} there"
+    return ""

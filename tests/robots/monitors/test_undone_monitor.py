@@ -8,6 +8,7 @@ from drawn_scene import TABLE_Z
 from monitor_view import BLOB, SEEN, VIEW
 
 from robots.behaviors.phase import Phase
+from robots.link.messages import Location
 from robots.monitors.missing import Missing
 from robots.monitors.monitor import Meanwhile, Monitor
 from robots.monitors.undone import Undone
@@ -45,9 +46,41 @@ def test_what_was_done_and_stands_elsewhere_in_reach_is_told_while_it_goes_on() 
     monitor = Undone.create({})
     detection = monitor.check(BEFORE)
     assert detection is not None
-    assert "no longer at its place but at (0.50, -0.20)" in detection.explanation
+    assert detection.explanation == "pink_bar is no longer at its place: it is at (0.50, -0.20)"
     assert detection.center == BLOB.center
     assert not monitor.interrupts
+
+
+@pytest.mark.parametrize(
+    ("target", "differs"),
+    [
+        (Location(x=0.50, y=-0.143), "it is 57 mm away from it, at (0.50, -0.20)"),
+        (Location(x=0.50, y=-0.20, z=TABLE_Z + 0.057), "it stands 57 mm too low there"),
+        (Location(x=0.49, y=-0.20, z=TABLE_Z - 0.02), "it stands 20 mm too high there"),
+    ],
+)
+def test_it_says_in_what_the_object_differs_from_what_was_placed(
+    target: Location, differs: str
+) -> None:
+    before = Undone.create({}).check(replace(BEFORE, target=target))
+    assert before is not None
+    assert before.explanation == f"pink_bar is no longer at its place: {differs}"
+    after = Undone.create({}).check(replace(AFTER, target=target))
+    assert after is not None
+    assert after.explanation == f"pink_bar was placed, but is not at its place: {differs}"
+
+
+def test_what_has_toppled_over_at_its_place_is_not_said_to_be_elsewhere() -> None:
+    lying = replace(SEEN, z=TABLE_Z - 0.02)
+    target = Location(x=lying.x, y=lying.y)
+    detection = Undone.create({}).check(replace(AFTER, placed=lying, target=target))
+    assert detection is not None
+    assert detection.explanation.endswith(": it has toppled over, at (0.50, -0.20)")
+
+
+def test_what_is_at_its_place_and_only_placed_better_is_not_said_to_be_gone() -> None:
+    view = replace(BEFORE, target=Location(x=SEEN.x + 0.01, y=SEEN.y))
+    assert Undone.create({}).check(view) is None
 
 
 def test_what_hangs_on_others_is_asked_about_though_it_is_seen() -> None:
