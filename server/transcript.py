@@ -215,7 +215,7 @@ class Transcript:
 
     @lines.register
     def _(self, event: ev.IssueRaised) -> list[Line]:
-        where = f"in step {event.step}" if event.step else "before the first step"
+        where = f"in step {event.step}" if event.step else "while it looks and plans"
         subject = event.object or event.name
         explanation = event.detection.explanation if event.detection else ""
         because = f" ({explanation})" if explanation else ""

@@ -134,7 +134,7 @@ def test_an_issue_says_where_and_why() -> None:
     )
     assert told(raised) == ["issue: dropped pink_bar in step 5 (no blob of pink_bar)"]
     before = raised.model_copy(update={"step": 0, "detection": None, "issue": "missing"})
-    assert told(before) == ["issue: missing pink_bar before the first step"]
+    assert told(before) == ["issue: missing pink_bar while it looks and plans"]
 
 
 def test_a_vain_intervention_says_why() -> None:

@@ -145,7 +145,7 @@ export function linesOf(event: Event): Line[] {
       );
     }
     case "issue_raised": {
-      const where = event.step > 0 ? `in step ${event.step}` : "before the first step";
+      const where = event.step > 0 ? `in step ${event.step}` : "while it looks and plans";
       return line("fault", `notices: ${plain(event.issue)}, ${plain(event.object ?? event.name)}, ${where}.`, event.robot);
     }
     case "prompt": {
