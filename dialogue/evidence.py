@@ -78,6 +78,16 @@ def change_between(first: Look | None, now: Look) -> Change:
     return Change.MOVED if has_moved(first.position, now.position) else Change.NONE
 
 
+def change_since(looks: Sequence[Look], now: Look) -> Change:
+    """What a look sees changed since the earlier ones, told by the first that it differs from.
+
+    What has come back to where it was at one of them has moved all the same.
+    """
+    changes = [change_between(each, now) for each in looks]
+    made = [each for each in changes if each.by_a_person]
+    return next(iter([*made, *changes]), Change.UNKNOWN)
+
+
 def put_right(watched: Sequence[Expectation], first: Look, now: Look) -> PutRight | None:
     """What has put an issue right since the first look; `watched`: the most telling first."""
     change = change_between(first, now)

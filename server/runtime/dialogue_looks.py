@@ -8,7 +8,7 @@ from dialogue.evidence import (
     Look,
     Point,
     PutRight,
-    change_between,
+    change_since,
     contradiction,
     has_moved,
     put_right,
@@ -198,13 +198,17 @@ class DialogueLooks:
             held_before = base is not None and Expectation.IN_GRIPPER in base.fulfilled
             return Change.NONE if held_before else Change.HANDED_OVER
         seen = Expectation(EXPECTED[helped_with])
-        return change_between(base, self._seen(dialogue, side, seen))
+        return change_since(self._earlier(dialogue), self._seen(dialogue, side, seen))
 
     def _base(self, dialogue: DialogueState) -> Look | None:
-        if dialogue.id in self._compared_with:
-            return self._compared_with[dialogue.id]
-        first = dialogue.first_look
-        return None if first is None else Look(frozenset(first.fulfilled), first.position)
+        """What a look is compared with to see whether anything is right that was not."""
+        return next(reversed(self._earlier(dialogue)), None)
+
+    def _earlier(self, dialogue: DialogueState) -> list[Look]:
+        """The first look, and a later one that saw what was right to be so no more."""
+        first, later = dialogue.first_look, self._compared_with.get(dialogue.id)
+        looks = [] if first is None else [Look(frozenset(first.fulfilled), first.position)]
+        return looks if later is None else [*looks, later]
 
     def _seen(self, dialogue: DialogueState, side: RobotSide, expected: Expectation | None) -> Look:
         fulfilled = set() if expected is None else {expected}

@@ -11,6 +11,7 @@ from dialogue.evidence import (
     Look,
     PutRight,
     change_between,
+    change_since,
     contradiction,
     put_right,
 )
@@ -28,6 +29,14 @@ def test_a_part_that_never_left_puts_nothing_right() -> None:
     seen = look(Expectation.IN_REACH)
     assert put_right(LOST, seen, seen) is None
     assert change_between(seen, seen) is Change.NONE
+
+
+def test_a_part_that_moved_since_the_question_has_though_not_since_the_last_look() -> None:
+    asked, later = look(Expectation.IN_REACH), look(at=THERE)
+    assert change_since([asked, later], look(Expectation.IN_REACH, at=THERE)) is Change.MOVED
+    assert change_since([asked, later], look(Expectation.IN_REACH)) is Change.MOVED
+    assert change_since([asked], look(Expectation.IN_REACH)) is Change.NONE
+    assert change_since([], look(Expectation.IN_REACH)) is Change.UNKNOWN
 
 
 def test_a_part_that_came_back_does() -> None:
