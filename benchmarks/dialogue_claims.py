@@ -203,7 +203,7 @@ CHECKS: Sequence[tuple[str, Check]] = (
     (r"I see the (?!.* at its place)", _somewhere),
     (r"I do not see the .* where I can reach it yet", _not_in_reach),
     (r"has toppled over", _toppled),
-    (r"I cannot find the|cannot find it", _nowhere),
+    (r"I cannot find the|cannot find it|I see it nowhere", _nowhere),
     (r"I missed the|I lost hold of|failed .* to (pick up|hold)", _not_held),
     (r"I have the .* between my fingers", _held),
     (r"I do not see the .* between my fingers", _not_held_yet),

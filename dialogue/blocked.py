@@ -6,6 +6,7 @@ person's word and a look.
 
 from dialogue.offer import Offer, offer_script
 from dialogue.script import Expectation, Help
+from tasks.issue import Sensed
 from tasks.resolution import Resolution
 
 SEEN = Offer(
@@ -35,4 +36,4 @@ FELT = Offer(
     put_right={},
 )
 
-script = offer_script(SEEN, felt=FELT)
+script = offer_script(SEEN, {Sensed.FELT: FELT})

@@ -81,7 +81,7 @@ class Conversation:
         outlook: Outlook,
         said_with: Outlook | None = None,
     ) -> None:
-        self._script = script.felt if issue.felt and script.felt is not None else script
+        self._script = script.variants.get(issue.sensed, script)
         self._issue = issue
         self._outlook = outlook
         self._said_with = said_with or outlook

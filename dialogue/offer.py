@@ -16,6 +16,7 @@ from dialogue.script import (
     Script,
     ScriptWithParameters,
 )
+from tasks.issue import Sensed
 from tasks.resolution import Resolution
 
 FAILED = "failed"
@@ -44,19 +45,24 @@ class Offer:
     denied: frozenset[Expectation] = frozenset()
 
 
-def offer_script(offer: Offer, felt: Offer | None = None) -> ScriptWithParameters[Patience]:
+def offer_script(
+    offer: Offer, variants: Mapping[Sensed, Offer] | None = None
+) -> ScriptWithParameters[Patience]:
     """The script of an offer; a helper who refuses it is asked to place the object.
 
-    `felt` is what is offered instead for an issue that was felt and not seen.
+    `variants` are what is offered instead for what was sensed otherwise than by seeing it.
     """
 
     def make(patience: Patience) -> Script:
-        return _script(offer, patience, None if felt is None else _script(felt, patience, None))
+        others = (variants or {}).items()
+        return _script(
+            offer, patience, {sensed: _script(each, patience, {}) for sensed, each in others}
+        )
 
     return ScriptWithParameters(Patience, make)
 
 
-def _script(offer: Offer, patience: Patience, felt: Script | None) -> Script:
+def _script(offer: Offer, patience: Patience, variants: Mapping[Sensed, Script]) -> Script:
     return Script(
         opening="question",
         failed_opening=FAILED,
@@ -90,5 +96,5 @@ def _script(offer: Offer, patience: Patience, felt: Script | None) -> Script:
         put_right=offer.put_right,
         denied=offer.denied,
         reasks=patience.reasks,
-        felt=felt,
+        variants=variants,
     )

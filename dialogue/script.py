@@ -11,6 +11,7 @@ from typing import Generic, TypeVar
 
 from pydantic import BaseModel
 
+from tasks.issue import Sensed
 from tasks.resolution import Resolution
 
 
@@ -173,8 +174,8 @@ class Script:
     the robot goes on by itself, so that there is nothing to ask. `put_right` says what the
     robot may see happen before anyone answers, the most telling first, and how the issue is then
     resolved; `denied` what of it the issue itself says not to be so. `reasks` is how often promised
-    help that is not seen is asked about again. `felt` is the script for an issue that was felt and
-    not seen, if that has one of its own.
+    help that is not seen is asked about again. `variants` are the scripts that take its place for
+    what was sensed otherwise than by seeing it.
     """
 
     opening: str
@@ -184,7 +185,7 @@ class Script:
     failed_opening: str | None = None
     on_the_way: str | None = None
     denied: frozenset[Expectation] = frozenset()
-    felt: "Script | None" = None
+    variants: Mapping[Sensed, "Script"] = field(default_factory=dict)
 
     @property
     def openings(self) -> tuple[str, ...]:

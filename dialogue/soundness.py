@@ -34,8 +34,8 @@ def _problems(script: Script) -> list[str]:
         problems.append(f"it asks again {script.reasks} times; 0 is the least")
     for each in sorted(script.denied - set(script.put_right)):
         problems.append(f"it denies '{each}', for which it does not watch")
-    if script.felt is not None:
-        problems += [f"if it was felt: {each}" for each in _problems(script.felt)]
+    for sensed, variant in script.variants.items():
+        problems += [f"if it was {sensed}: {each}" for each in _problems(variant)]
     return problems
 
 

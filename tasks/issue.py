@@ -1,6 +1,18 @@
 """An issue: one fault that a robot detected while it worked on a leaf."""
 
 from dataclasses import dataclass
+from enum import StrEnum
+
+
+class Sensed(StrEnum):
+    """How a robot came to know of an issue."""
+
+    SEEN = "seen"
+    """It saw what is wrong, or does not say how it knows."""
+    FELT = "felt"
+    """By force, and not by a camera."""
+    NOWHERE = "nowhere"
+    """It looked for the object and saw it nowhere."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -11,7 +23,7 @@ class Issue:
     (`missed`, `dropped`, `unreachable`, `positioning`, `missing`, `blocked`, ...).
     `node` is the leaf's path (`/0/2`); `step` is the behavior's step in which it was seen,
     0 before the first. `reason` is a clause that says what the robot sensed, empty if it does not
-    say; `felt`: by force, and not by a camera. `interrupts`: the robot does not go on by itself.
+    say; `sensed` how it came to know. `interrupts`: the robot does not go on by itself.
     """
 
     kind: str
@@ -22,5 +34,5 @@ class Issue:
     place: str | None
     step: int
     reason: str = ""
-    felt: bool = False
+    sensed: Sensed = Sensed.SEEN
     interrupts: bool = True

@@ -12,12 +12,13 @@ from dialogue.conversation import Conversation
 from dialogue.evidence import Change, PutRight
 from dialogue.outlook import Outlook
 from dialogue.script import CloseReason, Expectation, Help, Script, Turn
+from robots.link.messages import Detection
 from server.journal import events as ev
 from server.runtime.requests import RunRequest
 from server.runtime.views import RunResult, RunStatus
 from server.transcript import finished_text
 from tasks.definition import TaskTreeDefinition
-from tasks.issue import Issue
+from tasks.issue import Issue, Sensed
 from tasks.resolution import Resolution
 from tasks.scenario import Scenario
 from tasks.scenario_file import built_in_scenario
@@ -153,8 +154,16 @@ def issue_of(raised: ev.IssueRaised) -> Issue:
         step=raised.step,
         interrupts=raised.interrupts,
         reason="" if raised.detection is None else raised.detection.explanation,
-        felt=raised.detection is not None and raised.detection.felt,
+        sensed=_sensed(raised.detection),
     )
+
+
+def _sensed(detection: Detection | None) -> Sensed:
+    if detection is None:
+        return Sensed.SEEN
+    if detection.felt:
+        return Sensed.FELT
+    return Sensed.NOWHERE if detection.center is None else Sensed.SEEN
 
 
 RETRIES = (Resolution.ROBOT_RETRY, Resolution.ROBOT_FINISH)

@@ -20,7 +20,7 @@ from dialogue.script import (
     Say,
     Turn,
 )
-from tasks.issue import Issue
+from tasks.issue import Issue, Sensed
 from tasks.resolution import Resolution
 
 SCRIPTS = load_scripts()
@@ -72,7 +72,7 @@ def conversation_about(
         object="pink_bar",
         place="pink_bar_place",
         step=5,
-        felt=felt,
+        sensed=Sensed.FELT if felt else Sensed.SEEN,
         reason=reason,
     )
     return Conversation(SCRIPTS[kind], issue, outlook)

@@ -6,15 +6,23 @@ from dialogue.conversation import Conversation, Phase
 from dialogue.evidence import Change
 from dialogue.outlook import Next, Outlook, Sequel
 from dialogue.registry import load_scripts
-from dialogue.script import Ask, Close, CloseReason, Say, Turn
-from tasks.issue import Issue
+from dialogue.script import Ask, Close, CloseReason, Expectation, Say, Turn
+from tasks.issue import Issue, Sensed
 from tasks.resolution import Resolution
 
 LAST_CHANCE = Outlook(attempt=3, attempts=3, failed=Sequel(Next.RUN_FAILS))
 
 
-def about(*, interrupts: bool = True, outlook: Outlook | None = None) -> Conversation:
-    issue = Issue("undone", "pr2", "/0", "pink_bar", "pink_bar", "left", 0, interrupts=interrupts)
+def about(
+    *,
+    interrupts: bool = True,
+    outlook: Outlook | None = None,
+    sensed: Sensed = Sensed.SEEN,
+    reason: str = "",
+) -> Conversation:
+    issue = Issue(
+        "undone", "pr2", "/0", "pink_bar", "pink_bar", "left", 0, reason, sensed, interrupts
+    )
     return Conversation(load_scripts()["undone"], issue, outlook or Outlook())
 
 
@@ -32,6 +40,38 @@ def test_it_is_placed_again_once_it_is_brought() -> None:
     conversation.answer("yes")
     close = closing(conversation.help_seen(Change.APPEARED))
     assert (close.resolution, close.helped) == (Resolution.ROBOT_FINISH, True)
+
+
+def test_what_is_seen_elsewhere_is_told_with_what_is_wrong() -> None:
+    [ask] = about(reason="pink_bar was placed, but it stands 57 mm too low").open()
+    assert isinstance(ask, Ask)
+    assert ask.text == (
+        "The pink bar is not at its place. The pink bar was placed, but it stands 57 mm too low. "
+        "Shall I place it again?"
+    )
+
+
+def test_what_is_seen_nowhere_somebody_is_asked_to_bring_back() -> None:
+    conversation = about(sensed=Sensed.NOWHERE)
+    [ask] = conversation.open()
+    assert isinstance(ask, Ask)
+    assert ask.text == (
+        "The pink bar is not at its place, and I see it nowhere. Can you bring it back?"
+    )
+    assert ask.yes_effect == (
+        "You put the pink bar on the table where I can reach it; I place it again (attempt 1 of 3)."
+    )
+    [asked, _] = conversation.answer("yes")
+    assert asked == Say("Please put the pink bar on the table where I can reach it.")
+    close = closing(conversation.help_seen(Change.APPEARED))
+    assert (close.resolution, close.helped) == (Resolution.ROBOT_FINISH, True)
+
+
+def test_what_was_seen_nowhere_and_then_is_seen_the_robot_places_with_nobody_asked() -> None:
+    conversation = about(sensed=Sensed.NOWHERE)
+    conversation.open()
+    assert conversation.denied == {Expectation.AT_PLACE, Expectation.IN_REACH}
+    assert about().denied == frozenset()
 
 
 def test_a_helper_may_put_it_back_at_its_place() -> None:
