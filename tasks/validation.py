@@ -9,6 +9,7 @@ from pydantic_core import ErrorDetails
 
 from tasks.document import LinedMapping, LinedSequence
 from tasks.problem import Problem, list_names
+from tasks.unit import unit_at
 
 _MAX_VALUE_CHARACTERS = 60
 
@@ -48,6 +49,8 @@ def describe_mistake(mistake: ErrorDetails, model: type[BaseModel]) -> str:
     if mistake["type"] == "string_pattern_mismatch":
         message = "must be a name: a letter, then at most 63 letters, digits, '_' or '-'"
     message = message.replace("Input should be", "must be", 1)
+    if unit := unit_at(model, mistake["loc"]):
+        message += f" (in {unit})"
     return f"'{where}' {message}, but it is {_show(mistake['input'])}"
 
 

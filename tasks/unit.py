@@ -1,0 +1,52 @@
+"""Units: what a number of a model is in, and which one a place in a document asks for."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from types import UnionType
+from typing import Annotated, Any, Union, get_args, get_origin
+
+from pydantic import BaseModel
+
+
+@dataclass(frozen=True, slots=True)
+class Unit:
+    """Stands in the type of a number: `name` says what it is in, as in `metres`."""
+
+    name: str
+
+
+def unit_at(model: type[BaseModel], location: Sequence[int | str]) -> str | None:
+    """What the number at a location of a model's document is in; None if that is not said."""
+    found: list[Any] = [model]
+    for step in location:
+        found = [inner for each in found for inner in _inside(each, step)]
+    return next((each.name for each in found if isinstance(each, Unit)), None)
+
+
+def _inside(kind: Any, step: int | str) -> Iterator[Any]:
+    """What may stand at a key or an index of a kind of value, and what its type says of it."""
+    origin, inner = get_origin(kind), get_args(kind)
+    if isinstance(kind, type) and issubclass(kind, BaseModel):
+        if step in kind.model_fields:
+            field = kind.model_fields[str(step)]
+            yield from field.metadata
+            yield from _said_of(field.annotation)
+    elif origin is dict:
+        yield from _said_of(inner[1])
+    elif origin is list:
+        yield from _said_of(inner[0])
+    elif origin is tuple and isinstance(step, int) and step < len(inner):
+        yield from _said_of(inner[step])
+
+
+def _said_of(kind: Any) -> Iterator[Any]:
+    """The alternatives of a type, and everything that stands beside them in it."""
+    if get_origin(kind) is Annotated:
+        plain, *beside = get_args(kind)
+        yield from beside
+        yield from _said_of(plain)
+    elif get_origin(kind) in (Union, UnionType):
+        for each in get_args(kind):
+            yield from _said_of(each)
+    else:
+        yield kind
