@@ -54,7 +54,12 @@ def check_task_file(
 
     def find_beside(name: str) -> Scene:
         beside = path.parent / "scenes" / f"{name}.yaml"
-        return check_scene_file(beside) if beside.is_file() else built_in_scene(name)
+        if beside.is_file():
+            return check_scene_file(beside)
+        try:
+            return built_in_scene(name)
+        except NotInLibraryError as error:
+            raise NotInLibraryError(f"{error}, nor is there a file '{beside}'") from error
 
     return check_task_text(
         text,

@@ -177,6 +177,18 @@ def test_a_scene_beside_the_file_comes_before_the_library(tmp_path: Path) -> Non
         check_task_file(tmp_path / "t.yaml", BEHAVIORS)
 
 
+def test_of_a_scene_that_is_nowhere_it_is_told_which_file_was_looked_for(tmp_path: Path) -> None:
+    path = tmp_path / "t.yaml"
+    path.write_text(f"name: t\nscene: moon\ntree: {LEAF}")
+    with pytest.raises(TaskFileError) as caught:
+        check_task_file(path, BEHAVIORS)
+    [problem] = caught.value.problems
+    assert problem.line == 2
+    assert problem.message.startswith("there is no scene 'moon' in the library; it has ")
+    beside = tmp_path / "scenes" / "moon.yaml"
+    assert problem.message.endswith(f", nor is there a file '{beside}'")
+
+
 def test_a_deep_tree_is_read_without_recursion() -> None:
     depth = 5_000
     text = "{name: t, tree: " + "{then: [" * depth + LEAF + "]}" * depth + "}"
