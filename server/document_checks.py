@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from server.behaviors import behavior_parameters
+from server.behaviors import behavior_parameters, behavior_step_counts
 from server.documents import (
     SPOKEN,
     CheckedDocument,
@@ -19,7 +19,13 @@ from tasks.definition import BehaviorNode, TaskTreeDefinition
 from tasks.library import NotInLibraryError
 from tasks.problem import InvalidFileError, Problem
 from tasks.scenario import Scenario
-from tasks.scenario_file import check_scenario_text, scene_problems
+from tasks.scenario_file import (
+    Misfit,
+    ReadScenario,
+    check_scenario_text,
+    find_misfits,
+    read_scenario_text,
+)
 from tasks.scene import Scene
 from tasks.scene_file import ReadScene, check_scene_text, read_scene_text
 from tasks.scene_problem import SceneProblem
@@ -182,23 +188,25 @@ class ScenarioChecker(_Checker):
     def _read(self, text: str, uploaded: Uploaded) -> tuple[Scenario, CheckedTask]:
         finder = Finder(self._fixed, uploaded)
         try:
-            scenario = check_scenario_text(text)
+            read = read_scenario_text(text)
         except InvalidFileError as error:
             raise self._wrong(error, text) from error
+        scenario = read.scenario
         try:
             task = finder.task(scenario.tree)
         except (NotInLibraryError, InvalidFileError) as error:
-            raise self._in_words([str(error).splitlines()[0]]) from error
-        problems = scene_problems(scenario, task.scene) if task.scene else []
-        if problems:
-            raise self._in_words(problems)
+            misfit = Misfit(("tree",), str(error).splitlines()[0])
+            raise self._unfit(read, [misfit], text) from error
+        misfits = find_misfits(scenario, task.definition, task.scene, behavior_step_counts())
+        if misfits:
+            raise self._unfit(read, misfits, text)
         return scenario, task
 
-    def _in_words(self, sentences: Iterable[str]) -> WrongDocumentError:
-        mistakes = [
-            DocumentMistake(line=None, column=None, node=None, message=each) for each in sentences
-        ]
-        return WrongDocumentError(self._what(), mistakes)
+    def _unfit(
+        self, read: ReadScenario, misfits: Sequence[Misfit], text: str
+    ) -> WrongDocumentError:
+        problems = [read.problem(each) for each in misfits]
+        return WrongDocumentError(self._what(), _mistakes(problems, text))
 
     def _checked(self, scenario: Scenario, task: CheckedTask) -> CheckedDocument:
         uses = {(DocumentKind.TREE, scenario.tree)}

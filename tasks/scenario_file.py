@@ -1,29 +1,50 @@
 """Scenario files: reading and checking them."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any
 
+from tasks.definition import BehaviorNode, TaskTreeDefinition
 from tasks.document import DocumentError, LinedMapping, read_document, read_text
 from tasks.library import SCENARIOS
 from tasks.problem import InvalidFileError, Problem
-from tasks.scenario import Scenario
+from tasks.scenario import Scenario, Trigger
 from tasks.scene import Scene
-from tasks.validation import show_kind, validate_part
+from tasks.validation import find_line, show_kind, validate_part
 
 
 class ScenarioFileError(InvalidFileError):
     """A scenario file has mistakes; raised by every function that reads one."""
 
 
+@dataclass(frozen=True, slots=True)
+class Misfit:
+    """What a scenario expects of its tree or scene and does not get.
+
+    `where` are the keys to it in the scenario's document.
+    """
+
+    where: tuple[int | str, ...]
+    message: str
+
+
+@dataclass(frozen=True, slots=True)
+class ReadScenario:
+    """A scenario, and the document that it was read from."""
+
+    scenario: Scenario
+    document: LinedMapping
+
+    def problem(self, misfit: Misfit) -> Problem:
+        """A misfit with its line."""
+        return Problem(find_line(self.document, misfit.where), None, misfit.message)
+
+
 def check_scenario_file(path: Path) -> Scenario:
     """Read and check a scenario file (YAML or JSON). Raises `ScenarioFileError`."""
-    try:
-        text = read_text(path)
-    except DocumentError as error:
-        raise ScenarioFileError(str(path), [error.problem]) from error
-    return check_scenario_text(text, source=str(path))
+    return read_scenario_file(path).scenario
 
 
 def check_scenario_text(text: str, *, source: str = "scenario") -> Scenario:
@@ -31,6 +52,23 @@ def check_scenario_text(text: str, *, source: str = "scenario") -> Scenario:
 
     Raises `ScenarioFileError`.
     """
+    return read_scenario_text(text, source=source).scenario
+
+
+def read_scenario_file(path: Path) -> ReadScenario:
+    """Read and check a scenario file, and keep the line of everything.
+
+    Raises `ScenarioFileError`.
+    """
+    try:
+        text = read_text(path)
+    except DocumentError as error:
+        raise ScenarioFileError(str(path), [error.problem]) from error
+    return read_scenario_text(text, source=str(path))
+
+
+def read_scenario_text(text: str, *, source: str = "scenario") -> ReadScenario:
+    """As `read_scenario_file`, for the text of one. Raises `ScenarioFileError`."""
     try:
         document, problems = read_document(text)
     except DocumentError as error:
@@ -42,7 +80,7 @@ def check_scenario_text(text: str, *, source: str = "scenario") -> Scenario:
     problems += mistakes
     if scenario is None or problems:
         raise ScenarioFileError(source, problems)
-    return scenario
+    return ReadScenario(scenario, document)
 
 
 @cache
@@ -51,23 +89,66 @@ def built_in_scenario(name: str) -> Scenario:
     return check_scenario_text(SCENARIOS.read(name), source=f"scenarios/{name}.yaml")
 
 
-def scene_problems(scenario: Scenario, scene: Scene) -> list[str]:
-    """One sentence for each object or place of a scenario that the scene does not have."""
+def find_misfits(
+    scenario: Scenario,
+    tree: TaskTreeDefinition,
+    scene: Scene | None,
+    step_counts: Mapping[str, int | None],
+) -> list[Misfit]:
+    """What a scenario names and the tree's behaviors or the scene, where it is known, have not.
 
-    def unknown(kind: str, name: str | None, known: Any, where: str) -> Iterator[str]:
-        if name is not None and name not in known:
-            yield f"{where} names the {kind} '{name}', which the scene '{scene.name}' has not"
-
-    problems: list[str] = []
-    for name in scenario.scene:
-        problems += unknown("object", name, scene.objects, "scene")
+    `step_counts` says by the name of a behavior how many steps it has, None where that depends.
+    """
+    misfits = [] if scene is None else _missing_in_scene(scenario, scene)
     for index, each in enumerate(scenario.interventions):
-        where = f"interventions[{index}]"
         if each.when is not None:
-            problems += unknown("object", each.when.object, scene.objects, f"{where}.when")
-        problems += unknown("object", each.do.object, scene.objects, f"{where}.do")
-        problems += unknown("place", each.do.place, scene.places, f"{where}.do")
-    return problems
+            misfits += _missing_steps(each.when, index, tree, step_counts)
+    return misfits
+
+
+def _missing_in_scene(scenario: Scenario, scene: Scene) -> list[Misfit]:
+    def unknown(kind: str, name: str | None, known: Any, *where: int | str) -> Iterator[Misfit]:
+        if name is not None and name not in known:
+            has_not = f"'{name}', which the scene '{scene.name}' has not"
+            key = name if where == ("scene",) else kind
+            yield Misfit((*where, key), f"{_spoken(where)} names the {kind} {has_not}")
+
+    misfits: list[Misfit] = []
+    for name in scenario.scene:
+        misfits += unknown("object", name, scene.objects, "scene")
+    for index, each in enumerate(scenario.interventions):
+        where = ("interventions", index)
+        if each.when is not None:
+            misfits += unknown("object", each.when.object, scene.objects, *where, "when")
+        misfits += unknown("object", each.do.object, scene.objects, *where, "do")
+        misfits += unknown("place", each.do.place, scene.places, *where, "do")
+    return misfits
+
+
+def _missing_steps(
+    when: Trigger, index: int, tree: TaskTreeDefinition, step_counts: Mapping[str, int | None]
+) -> Iterator[Misfit]:
+    """A step that none of the behaviors has that handle the object."""
+    behaviors = {
+        each.behavior
+        for each in tree.nodes
+        if isinstance(each, BehaviorNode) and each.object == when.object
+    }
+    counts = {each: step_counts.get(each) for each in sorted(behaviors)}
+    if not counts or any(count is None or count >= when.step for count in counts.values()):
+        return
+    where = ("interventions", index, "when")
+    have = " and ".join(f"'{name}' has the steps 1 to {count}" for name, count in counts.items())
+    yield Misfit(
+        (*where, "step"),
+        f"{_spoken(where)} names step {when.step} for '{when.object}', but {have}",
+    )
+
+
+def _spoken(where: Sequence[int | str]) -> str:
+    """Where something stands, as in `interventions[0].when`."""
+    spoken = "".join(f"[{each}]" if isinstance(each, int) else f".{each}" for each in where)
+    return spoken.removeprefix(".")
 
 
 def moved_scene(scene: Scene, scenario: Scenario) -> Scene:

@@ -75,13 +75,15 @@ class Behavior(ABC):
     whose parameters have an `object` is given that part, with a `place` that target.
     `monitored_as` is the behavior whose monitors watch it: its own name unless it says otherwise.
     `carry_from` is the step (from 1) at which to go on with the object already in the gripper;
-    None for the first that carries.
+    None for the first that carries. `step_count` is how many steps it always has; None where that
+    depends on its parameters or on the situation.
     """
 
     name: ClassVar[str]
     parameters: ClassVar[type[StrictModel]]
     monitored_as: ClassVar[str]
     carry_from: ClassVar[int | None] = None
+    step_count: ClassVar[int | None] = None
 
     def __init_subclass__(cls, **given: object) -> None:
         super().__init_subclass__(**given)

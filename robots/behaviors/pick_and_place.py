@@ -25,6 +25,7 @@ class PickAndPlace(Behavior):
 
     name: ClassVar[str] = "pick_and_place"
     parameters: ClassVar[type[StrictModel]] = PickAndPlaceParameters
+    step_count: ClassVar[int | None] = 8
 
     def steps(self, parameters: StrictModel, situation: Situation) -> Sequence[Step]:  # noqa: ARG002
         """Raises `ValueError` where the part, its grasp or the target is not known."""

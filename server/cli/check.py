@@ -10,7 +10,9 @@ import typer
 
 from server.cli.failures import NOT_FINISHED, CommandLineError, told_plainly
 from server.cli.mistakes import (
+    Checked,
     delivery_mistakes,
+    in_worlds,
     scenario_mistakes,
     scene_mistakes,
     task_mistakes,
@@ -18,7 +20,7 @@ from server.cli.mistakes import (
 from server.cli.task_files import read_text
 from server.scene_checks import WorldChecks, load_world_checks
 
-CHECKERS: Mapping[str, Callable[[Path, WorldChecks], list[str]]] = {
+CHECKERS: Mapping[str, Callable[[Path, WorldChecks], Checked]] = {
     "task": task_mistakes,
     "scene": scene_mistakes,
     "scenario": scenario_mistakes,
@@ -55,10 +57,11 @@ def check(
     with told_plainly():
         kind = kind_of_file(read_text(file))
         worlds = load_world_checks()
-        mistakes = CHECKERS[kind](file, worlds if world is None else worlds.only(world))
-    if mistakes:
-        raise CommandLineError("\n".join(mistakes), NOT_FINISHED)
-    typer.echo(f"{file}: a {kind} file without mistakes")
+        checked = CHECKERS[kind](file, worlds if world is None else worlds.only(world))
+    if checked.mistakes:
+        raise CommandLineError("\n".join(checked.mistakes), NOT_FINISHED)
+    where = f" {in_worlds(checked.worlds)}" if checked.worlds else ""
+    typer.echo(f"{file}: a {kind} file without mistakes{where}")
 
 
 def kind_of_file(text: str) -> str:

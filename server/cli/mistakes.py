@@ -1,8 +1,10 @@
 """Every mistake of a file, one `file:line: sentence` each, also what no robot could do."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
+from server.behaviors import behavior_step_counts
 from server.cli.task_files import (
     SceneSource,
     read_task,
@@ -12,7 +14,7 @@ from server.cli.task_files import (
 from server.scene_checks import WorldChecks
 from tasks.library import NotInLibraryError
 from tasks.problem import InvalidFileError, Problem
-from tasks.scenario_file import check_scenario_file, scene_problems
+from tasks.scenario_file import Misfit, find_misfits, read_scenario_file
 from tasks.scene_file import read_scene_file
 from tasks.scene_problem import SceneProblem
 
@@ -20,42 +22,51 @@ InWorlds = Mapping[str, Iterable[SceneProblem]]
 """What each world's robot cannot do."""
 
 
-def task_mistakes(path: Path, worlds: WorldChecks) -> list[str]:
+@dataclass(frozen=True, slots=True)
+class Checked:
+    """What is wrong with a file, and the `worlds` that were asked about it."""
+
+    mistakes: Sequence[str]
+    worlds: Sequence[str] = ()
+
+
+def task_mistakes(path: Path, worlds: WorldChecks) -> Checked:
     """Every mistake of a task file, and what a robot cannot do in its scene."""
     try:
         task = read_task(path)
         name = task.definition.scene
         found = scene_of_task_file(path, name) if name else None
     except InvalidFileError as error:
-        return str(error).splitlines()
+        return Checked(str(error).splitlines())
     if found is None:
-        return []
+        return Checked([])
     return _in_scene(worlds.try_tree(found.read.scene, task.definition), found)
 
 
-def scene_mistakes(path: Path, worlds: WorldChecks) -> list[str]:
+def scene_mistakes(path: Path, worlds: WorldChecks) -> Checked:
     """Every mistake of a scene file, and what a robot cannot do with its objects."""
     try:
         found = SceneSource(read_scene_file(path), str(path))
     except InvalidFileError as error:
-        return str(error).splitlines()
+        return Checked(str(error).splitlines())
     return _in_scene(worlds.try_scene(found.read.scene), found)
 
 
-def scenario_mistakes(path: Path, worlds: WorldChecks) -> list[str]:  # noqa: ARG001
+def scenario_mistakes(path: Path, worlds: WorldChecks) -> Checked:  # noqa: ARG001
     """Every mistake of a scenario file, also what it expects of its tree and does not get."""
     try:
-        scenario = check_scenario_file(path)
-        task = task_of_scenario_file(path, scenario.tree)
+        read = read_scenario_file(path)
+        task = task_of_scenario_file(path, read.scenario.tree)
     except InvalidFileError as error:
-        return str(error).splitlines()
+        return Checked(str(error).splitlines())
     except NotInLibraryError as error:
-        return [f"{path}: tree: {error}"]
-    problems = scene_problems(scenario, task.scene) if task.scene else []
-    return [f"{path}: {each}" for each in problems]
+        misfits = [Misfit(("tree",), str(error))]
+    else:
+        misfits = find_misfits(read.scenario, task.definition, task.scene, behavior_step_counts())
+    return Checked([read.problem(each).describe(str(path)) for each in misfits])
 
 
-def delivery_mistakes(path: Path, worlds: WorldChecks) -> list[str]:  # noqa: ARG001
+def delivery_mistakes(path: Path, worlds: WorldChecks) -> Checked:  # noqa: ARG001
     """Every mistake of a delivery file, else what contradicts itself in it."""
     # Imported only here: schedulers would make every other command wait.
     from fleet.scheduling.problem_file import read_delivery_file
@@ -63,11 +74,11 @@ def delivery_mistakes(path: Path, worlds: WorldChecks) -> list[str]:  # noqa: AR
     try:
         delivery = read_delivery_file(path)
     except InvalidFileError as error:
-        return str(error).splitlines()
-    return [each.describe(str(path)) for each in delivery.contradictions]
+        return Checked(str(error).splitlines())
+    return Checked([each.describe(str(path)) for each in delivery.contradictions])
 
 
-def _in_scene(problems: InWorlds, scene: SceneSource) -> list[str]:
+def _in_scene(problems: InWorlds, scene: SceneSource) -> Checked:
     """Problems with the lines of the scene's file; one that all worlds have is told once."""
     told: dict[Problem, list[str]] = {}
     for world, found in problems.items():
@@ -75,14 +86,16 @@ def _in_scene(problems: InWorlds, scene: SceneSource) -> list[str]:
             problem = Problem(scene.read.line_of(each.where), None, each.message)
             told.setdefault(problem, []).append(world)
     ordered = sorted(told.items(), key=lambda item: item[0].line or 0)
-    return [
-        Problem(problem.line, None, f"{_in_worlds(worlds)}: {problem.message}").describe(
+    mistakes = [
+        Problem(problem.line, None, f"{in_worlds(worlds)}: {problem.message}").describe(
             scene.source
         )
         for problem, worlds in ordered
     ]
+    return Checked(mistakes, sorted(problems))
 
 
-def _in_worlds(worlds: list[str]) -> str:
+def in_worlds(worlds: Sequence[str]) -> str:
+    """Where something is so, for a sentence."""
     names = " and ".join(f"'{world}'" for world in worlds)
     return f"in the world {names}" if len(worlds) == 1 else f"in the worlds {names}"

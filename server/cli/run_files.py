@@ -3,15 +3,22 @@
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from server.behaviors import behavior_parameters, behavior_step_counts
 from server.cli.failures import CommandLineError
 from server.cli.task_files import read_task, read_text
 from server.documents import DocumentKind
 from server.fixed_documents import GivenFiles
 from tasks.library import TREES
 from tasks.scenario import Scenario
-from tasks.scenario_file import built_in_scenario, check_scenario_file
+from tasks.scenario_file import (
+    ScenarioFileError,
+    built_in_scenario,
+    find_misfits,
+    read_scenario_file,
+)
 from tasks.scene import Scene
 from tasks.scene_file import built_in_scene, check_scene_file
+from tasks.task_file import CheckedTask, check_built_in_task
 
 SUFFIXES = (".yaml", ".yml", ".json")
 
@@ -38,8 +45,8 @@ def read_run_files(tree: str, scene: str | None, scenario: str | None) -> RunFil
     """
     texts: dict[DocumentKind, dict[str, str]] = {}
     chosen = _read_scene(scene, Path(tree), texts) if scene else None
-    name, scenes = _read_tree(tree, chosen, texts)
-    script = _read_scenario(scenario, texts) if scenario else None
+    name, task, scenes = _read_tree(tree, chosen, texts)
+    script = _read_scenario(scenario, task, chosen, texts) if scenario else None
     return RunFiles(name, chosen.name if chosen else None, script, GivenFiles(texts), scenes)
 
 
@@ -50,20 +57,23 @@ def is_file(argument: str) -> bool:
 
 def _read_tree(
     argument: str, scene: Scene | None, texts: dict[DocumentKind, dict[str, str]]
-) -> tuple[str, Path | None]:
-    """The tree's name, and the folder with its scenes."""
+) -> tuple[str, CheckedTask | None, Path | None]:
+    """The tree's name, the tree where it is to be had, and the folder with its scenes."""
     if not is_file(argument):
-        return argument, None
+        built_in = argument in TREES.names()
+        task = check_built_in_task(argument, behavior_parameters()) if built_in else None
+        return argument, task, None
     path = Path(argument)
     text = read_text(path)
-    name = read_task(path, scene).definition.name
+    task = read_task(path, scene)
+    name = task.definition.name
     if name in TREES.names() and text != TREES.read(name):
         raise CommandLineError(
             f"'{path}' has the name of a built-in task tree, '{name}': give it another name"
         )
     texts[DocumentKind.TREE] = {name: text}
     scenes = path.parent / "scenes"
-    return name, scenes if scenes.is_dir() else None
+    return name, task, scenes if scenes.is_dir() else None
 
 
 def _read_scene(argument: str, tree: Path, texts: dict[DocumentKind, dict[str, str]]) -> Scene:
@@ -78,9 +88,19 @@ def _read_scene(argument: str, tree: Path, texts: dict[DocumentKind, dict[str, s
     return scene
 
 
-def _read_scenario(argument: str, texts: dict[DocumentKind, dict[str, str]]) -> Scenario:
+def _read_scenario(
+    argument: str,
+    task: CheckedTask | None,
+    scene: Scene | None,
+    texts: dict[DocumentKind, dict[str, str]],
+) -> Scenario:
     if not is_file(argument):
         return built_in_scenario(argument)
-    scenario = check_scenario_file(Path(argument))
+    read = read_scenario_file(Path(argument))
+    scenario = read.scenario
+    if task is not None and task.definition.name == scenario.tree:
+        found = find_misfits(scenario, task.definition, scene or task.scene, behavior_step_counts())
+        if found:
+            raise ScenarioFileError(argument, [read.problem(each) for each in found])
     texts[DocumentKind.SCENARIO] = {scenario.name: read_text(Path(argument))}
     return scenario

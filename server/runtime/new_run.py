@@ -5,12 +5,14 @@ from collections.abc import Callable
 from datetime import datetime
 from uuid import uuid4
 
+from server.behaviors import behavior_step_counts
 from server.errors import InvalidError
 from server.journal import events as ev
 from server.runtime.ports import LIVE, ScenarioSource, TreeSource, Worlds
 from server.runtime.requests import RunRequest
+from tasks.definition import TaskTreeDefinition
 from tasks.scenario import Scenario
-from tasks.scenario_file import moved_scene, scene_problems
+from tasks.scenario_file import find_misfits, moved_scene
 from tasks.scene import Scene
 
 
@@ -53,7 +55,7 @@ class NewRuns:
             refuse = self._worlds.refuse_impossible
             await asyncio.to_thread(refuse, request.world, scene, tree)
         if scenario is not None:
-            scene = _moved(scene, scenario)
+            scene = _moved(scene, scenario, tree.definition)
         run = uuid4()
         return ev.RunStarted(
             time=0.0,
@@ -72,9 +74,10 @@ class NewRuns:
         )
 
 
-def _moved(scene: Scene, scenario: Scenario) -> Scene:
+def _moved(scene: Scene, scenario: Scenario, tree: TaskTreeDefinition) -> Scene:
     """The scene as the scenario begins it. Raises `InvalidError` where the two do not fit."""
-    problems = scene_problems(scenario, scene)
-    if problems:
+    misfits = find_misfits(scenario, tree, scene, behavior_step_counts())
+    if misfits:
+        problems = [each.message for each in misfits]
         raise InvalidError(f"scenario '{scenario.name}' does not fit this run", problems)
     return moved_scene(scene, scenario)

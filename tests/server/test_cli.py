@@ -338,8 +338,52 @@ def test_check_tells_the_kinds_of_file_apart(
 ) -> None:
     file = write_file(tmp_path, text)
     outcome = mend("check", str(file))
-    assert (outcome.code, outcome.out) == (0, f"{file}: a {kind} file without mistakes\n")
+    assert outcome.code == 0
+    assert outcome.out.startswith(f"{file}: a {kind} file without mistakes")
     assert kind_of_file(text) == kind
+
+
+@pytest.mark.parametrize(
+    ("text", "world", "asked"),
+    [
+        (TASK, "tabletop", " in the world 'tabletop'"),
+        (SCENE, "tabletop", " in the world 'tabletop'"),
+        (TASK, None, " in the worlds 'tabletop' and 'workcell'"),
+        (SCENARIO, None, ""),
+    ],
+)
+def test_check_names_the_worlds_that_were_asked(
+    mend: Mend, tmp_path: Path, text: str, world: str | None, asked: str
+) -> None:
+    file = write_file(tmp_path, text)
+    outcome = mend("check", str(file), *(("--world", world) if world else ()))
+    assert outcome.out.endswith(f"file without mistakes{asked}\n")
+
+
+STEP_TWELVE = """\
+name: late
+tree: eket
+interventions:
+  - when: {object: pink_bar, step: 12}
+    do: {act: steal, object: pink_bar}
+"""
+
+
+@pytest.mark.parametrize("command", ["check {file}", "run eket --scenario {file}"])
+def test_a_scenario_that_waits_for_a_step_that_there_is_not_is_refused_with_its_line(
+    mend: Mend, tmp_path: Path, command: str
+) -> None:
+    file = write_file(tmp_path, STEP_TWELVE)
+    outcome = mend(*command.format(file=file).split())
+    assert outcome.code != 0
+    assert f"{file}:4: interventions[0].when names step 12 for 'pink_bar', but " in outcome.err
+
+
+def test_a_scenario_for_a_tree_that_there_is_not_is_refused_with_its_line(
+    mend: Mend, tmp_path: Path
+) -> None:
+    file = write_file(tmp_path, STEP_TWELVE.replace("eket", "moon"))
+    assert f"{file}:2: there is no task tree 'moon'" in mend("check", str(file)).err
 
 
 @pytest.mark.parametrize(

@@ -222,6 +222,10 @@ async def test_a_scenario_for_what_is_not_there_is_refused(client: httpx.AsyncCl
     unknown = SCENARIO.replace("object: cup}}", "object: mug}}").replace("clumsy", "mugs")
     refused = await client.post("/api/scenarios", content=unknown, headers=YAML)
     assert "the object 'mug', which the scene 'bench' has not" in refused.json()["errors"][0]
+    late = SCENARIO.replace("step: 4", "step: 12").replace("clumsy", "late")
+    refused = await client.post("/api/scenarios", content=late, headers=YAML)
+    assert refused.status_code == 422
+    assert "names step 12 for 'cup'" in refused.json()["errors"][0]
 
 
 async def test_what_only_some_worlds_can_do_is_kept_and_said(client: httpx.AsyncClient) -> None:

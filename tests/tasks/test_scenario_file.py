@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from tasks.definition import BehaviorNode, TaskTreeDefinition
 from tasks.intervention import Act
 from tasks.library import SCENARIOS, NotInLibraryError
 from tasks.scenario import Scenario, Trigger
@@ -13,7 +14,8 @@ from tasks.scenario_file import (
     built_in_scenario,
     check_scenario_file,
     check_scenario_text,
-    scene_problems,
+    find_misfits,
+    read_scenario_text,
 )
 from tasks.scene import Place, Pose, Scene, SceneObject
 
@@ -27,6 +29,14 @@ interventions:
 answers: [no, yes, silence]
 person: {acts: false}
 """
+
+LEAF = BehaviorNode(
+    parent=None,
+    name="pink_bar",
+    behavior="pick_and_place",
+    parameters={"object": "pink_bar", "place": "left"},
+)
+TREE = TaskTreeDefinition(name="eket", nodes=[LEAF])
 
 
 def problems_of(text: str) -> list[str]:
@@ -127,12 +137,44 @@ def test_names_that_the_scene_has_not_are_told() -> None:
             }
         )
     )
-    assert scene_problems(scenario, scene) == [
+    assert [each.message for each in find_misfits(scenario, TREE, scene, {})] == [
         "scene names the object 'pot', which the scene 'tea' has not",
         "interventions[0].when names the object 'milk', which the scene 'tea' has not",
         "interventions[0].do names the object 'jug', which the scene 'tea' has not",
         "interventions[0].do names the place 'shelf', which the scene 'tea' has not",
     ]
+
+
+@pytest.mark.parametrize(
+    ("step", "counts", "misfits"),
+    [
+        (8, {"pick_and_place": 8}, []),
+        (
+            12,
+            {"pick_and_place": 8},
+            [
+                "mine.yaml:4: interventions[0].when names step 12 for 'pink_bar', but "
+                "'pick_and_place' has the steps 1 to 8"
+            ],
+        ),
+        (12, {"pick_and_place": None}, []),
+        (12, {}, []),
+    ],
+)
+def test_a_step_that_no_behavior_of_the_object_has_is_told_with_its_line(
+    step: int, counts: dict[str, int | None], misfits: list[str]
+) -> None:
+    read = read_scenario_text(GOOD.replace("step: 5", f"step: {step}"))
+    found = find_misfits(read.scenario, TREE, None, counts)
+    assert [read.problem(each).describe("mine.yaml") for each in found] == misfits
+
+
+def test_what_the_scene_has_not_is_told_with_its_line() -> None:
+    scene = Scene(name="bare", objects={}, places={})
+    text = GOOD + "scene:\n  pink_bar: {x: 0.5, y: 0.1}\n"
+    read = read_scenario_text(text)
+    found = [read.problem(each) for each in find_misfits(read.scenario, TREE, scene, {})]
+    assert [each.line for each in found] == [9, 4, 5]
 
 
 def test_the_papers_thefts_are_those_of_its_section_4_1() -> None:

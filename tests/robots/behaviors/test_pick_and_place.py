@@ -23,6 +23,7 @@ def lay_out(found=FOUND, target=TARGET, part=PARTS["pink_bar"], clear_z=TABLE_Z)
 
 def test_the_eight_steps_have_their_names_and_actions() -> None:
     steps = lay_out()
+    assert len(steps) == PickAndPlace.step_count
     assert [each.name for each in steps] == [
         "above pick",
         "pick",
