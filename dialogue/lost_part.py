@@ -21,8 +21,8 @@ def lost_part_script(what_happened: str, failed: str) -> ScriptWithParameters[Pa
             request="Please put the {object} back where it was on the table.",
             resolution=Resolution.ROBOT_RETRY,
             thanks="Thank you. I see the {object} back on the table.",
-            unchanged="I see the {object} on the table, where it was when I asked: {attempt} has "
-            "failed.",
+            unchanged="I see the {object} on the table, where I saw it after I asked: "
+            "{attempt} has failed.",
             not_seen="I do not see the {object} where I can reach it yet. "
             "Are you still putting it back?",
             put_right={

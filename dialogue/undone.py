@@ -22,7 +22,7 @@ _SEEN = Offer(
     request="Please put the {object} on the table where I can reach it.",
     resolution=Resolution.ROBOT_FINISH,
     thanks="Thank you. I see the {object}.",
-    unchanged="I see the {object}, where it was when I asked.",
+    unchanged="I see the {object}, where I saw it after I asked.",
     not_seen="I do not see the {object} where I can reach it yet. Are you still bringing it?",
     put_right=PUT_RIGHT,
 )

@@ -185,7 +185,7 @@ def test_of_equal_parts_any_may_be_the_one_that_is_gone(equal: bool) -> None:
         ("I have now seen once that the part 1 is not at its place.", GONE, PLACED),
         ("I see the part 1 within my reach now.", STARTS, GONE),
         ("I see the part 1. I go on.", STARTS, GONE),
-        ("I see the part 1, where it was when I asked.", STARTS, HELD),
+        ("I see the part 1, where I saw it after I asked.", STARTS, HELD),
     ],
 )
 def test_what_is_said_of_the_world_is_compared_with_it(

@@ -79,7 +79,7 @@ async def test_a_yes_without_a_change_is_no_help_and_the_attempt_has_failed() ->
     assert not any("Thank you" in each for each in said(events))
     assert not any(each.helped for each in of_type(events, ev.Resolved))
     assert said(events)[2] == (
-        "I see the part 1 on the table, where it was when I asked: attempt 1 of 3 has failed. "
+        "I see the part 1 on the table, where I saw it after I asked: attempt 1 of 3 has failed. "
         "I try again (attempt 2 of 3)."
     )
 

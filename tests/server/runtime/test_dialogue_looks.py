@@ -1,0 +1,47 @@
+"""What a look is compared with: with every one that was taken since the question was put."""
+
+from types import SimpleNamespace
+from typing import Any
+from uuid import UUID
+
+import pytest
+
+from dialogue.evidence import Change
+from dialogue.script import Expectation, Help
+from robots.link.messages import Sighting
+from server.runtime.dialogue_looks import DialogueLooks
+
+HERE, THERE = (0.5, 0.1), (0.5, 0.3)
+
+
+def about_cup() -> Any:
+    """A dialogue whose first look saw the cup within reach."""
+    raised = SimpleNamespace(object="cup", place=None, detection=None, interrupts=True)
+    first = SimpleNamespace(fulfilled=["in_reach"], position=(*HERE, 0.7))
+    watched = SimpleNamespace(watched_for=(Expectation.IN_REACH,))
+    return SimpleNamespace(id=UUID(int=1), raised=raised, first_look=first, conversation=watched)
+
+
+def seeing(at: tuple[float, float]) -> Any:
+    cup = Sighting(x=at[0], y=at[1], z=0.7, yaw=0.0, time=1.0)
+    return SimpleNamespace(seen={"cup": cup}, there=frozenset(), held=None)
+
+
+@pytest.mark.parametrize(
+    ("by_and_by", "change"),
+    [
+        ([HERE], Change.NONE),
+        ([THERE], Change.MOVED),
+        # It was seen out of reach there, and was set upright there or brought back since.
+        ([THERE, THERE], Change.MOVED),
+        ([THERE, HERE], Change.MOVED),
+    ],
+)
+def test_what_moved_since_the_question_has_moved_whenever_that_was(
+    by_and_by: list[tuple[float, float]], change: Change
+) -> None:
+    context: Any = None
+    looks, dialogue = DialogueLooks(context, None), about_cup()
+    for at in by_and_by[:-1]:
+        assert looks.put_right(dialogue, seeing(at), fulfilled=False) is None
+    assert looks.change_seen(dialogue, seeing(by_and_by[-1]), Help.PUT_BACK) is change
