@@ -5,7 +5,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 
-.PHONY: help setup demo types console screenshots serve test steady lint bench lock clean
+.PHONY: help setup demo types console screenshots serve test console-tests arm-kernels fleet-kernels steady lint bench lock clean
 
 help:  ## Say what there is
 	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 10
@@ -43,12 +43,25 @@ screenshots: console  ## The console's pictures in docs/images, from situations 
 	$(BIN)/python scripts/screenshots.py
 
 test: console  ## Every test, in random order; one in a browser that fails is run once more
-	cd web && PATH="$(CURDIR)/$(BIN):$$PATH" npm test --silent
+	@# The kernels are compiled once here, not by many processes at a time.
+	$(MAKE) --no-print-directory -j -O console-tests arm-kernels fleet-kernels
 	@command -v chromium google-chrome >/dev/null || echo 'There is no Chromium on this machine: the tests in a browser are skipped.'
-	@# The kernels of vision and kinematics are compiled once here, not by many processes at a time.
+	$(BIN)/python scripts/run_tests.py
+
+console-tests:
+	cd web && PATH="$(CURDIR)/$(BIN):$$PATH" npm test --silent
+
+# Vision, kinematics, drawing and localization.
+arm-kernels:
 	$(BIN)/mend check tasks/library/eket.yaml --world workcell
 	$(BIN)/mend run eket --world tabletop --speed max --seed 1 --answers yes >/dev/null
-	$(BIN)/python scripts/run_tests.py
+	for method in enml cgr mcl; do \
+	    $(BIN)/mend localize examples/localization/drive.csv --method "$$method" \
+	        --map examples/localization/floor.vectormap.txt >/dev/null; \
+	done
+
+fleet-kernels:
+	$(BIN)/mend schedule examples/deliveries/corridor.yaml >/dev/null
 
 REPEAT := 30
 steady: console  ## The tests in a browser 30 times over (or REPEAT=n), to find one that fails now and then

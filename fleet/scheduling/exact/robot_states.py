@@ -88,10 +88,14 @@ class _ItemWays:
         places = np.array(transfers.places, dtype=np.int64)
         # Where one leaves an item for the other, giving is over before taking begins.
         apart_s = 0.0 if transfers.together else transfers.service_s
+        give_by_s = (
+            drop_by_s[:, None] - ways_s[np.ix_(places, drops)].T - apart_s - transfers.service_s
+        )
         return cls(
             drop_by_s,
             ways_s[np.ix_(np.array(_node_places(problem)), drops)],
-            drop_by_s[:, None] - ways_s[np.ix_(places, drops)].T - apart_s - transfers.service_s,
+            # The kernels are compiled for rows one after the other, as all else has them.
+            np.ascontiguousarray(give_by_s),
             pick_from_s[:, None] + ways_s[np.ix_(origins, places)] + apart_s,
         )
 

@@ -53,8 +53,9 @@ def prepare() -> None:
     """Compile the kernels, or load them from the disk; once in a process."""
     travel = Travel.euclidean(((0.0, 0.0), (1.0, 0.0)))
     items = tuple(Item(name, 1.0, Visit(0), Visit(1)) for name in ("one", "two"))
-    robots = tuple(Robot(name, 0, 0, 1.0) for name in ("a", "b"))
-    small = Problem("warm-up", ("a", "b"), travel, robots, items, weights=Weights(robots=1.0))
+    robots = tuple(Robot(name, 0, None, 1.0) for name in ("a", "b"))
+    # Two robots cost less than the way that they save, so that there is one to be freed.
+    small = Problem("warm-up", ("a", "b"), travel, robots, items, weights=Weights(robots=0.5))
     rounds = Rounds(routing_arrays(small), 0, lambda: 0.0)
     rounds.place(inf)
     rounds.free_robots(inf)
