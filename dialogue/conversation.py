@@ -14,7 +14,6 @@ from dialogue.script import (
     CloseReason,
     CloseState,
     Expectation,
-    Help,
     HelpState,
     LeaveState,
     Say,
@@ -92,13 +91,6 @@ class Conversation:
     @property
     def phase(self) -> Phase:
         return self._phase
-
-    @property
-    def awaited_help(self) -> Help | None:
-        """The help that is being watched for, if any."""
-        if self._phase is Phase.AWAITING_HELP and isinstance(self._at, HelpState):
-            return self._at.help
-        return None
 
     @property
     def watched_for(self) -> tuple[Expectation, ...]:

@@ -52,11 +52,6 @@ class RenderedImage:
     ids: NDArray[np.int32]
 
 
-def focal_from_fov(vertical_fov_rad: float, height: int) -> float:
-    """The focal length in pixels of a picture `height` pixels high."""
-    return height / 2 / math.tan(vertical_fov_rad / 2)
-
-
 def box_triangles(size: Sequence[float], center: Sequence[float] = (0.0, 0.0, 0.0)) -> Triangles:
     """The 12 triangles of an upright box with full extents `size`."""
     signs = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=float)

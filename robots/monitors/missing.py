@@ -20,7 +20,7 @@ class Missing(Monitor[NoParameters]):
     issue: ClassVar[str] = "missing"
     behaviors: ClassVar[frozenset[str]] = ANY_BEHAVIOR
     phases: ClassVar[frozenset[Phase]] = frozenset({Phase.PREPARE})
-    meanwhile: ClassVar[Meanwhile] = Meanwhile.DO_NOT_START
+    meanwhile: ClassVar[Meanwhile] = Meanwhile.STOP_IN_PLACE
     camera: ClassVar[str | None] = "head"
     parameters: ClassVar[type[StrictModel]] = NoParameters
 

@@ -32,12 +32,10 @@ class NoParameters(StrictModel):
 class Meanwhile(StrEnum):
     """What the robot does once the issue is raised."""
 
-    DO_NOT_START = "do_not_start"
-    """It stays at neutral and holds."""
     GO_TO_NEUTRAL = "go_to_neutral"
     """It stops, lets go, moves to neutral and holds."""
     STOP_IN_PLACE = "stop_in_place"
-    """It stops where it is and holds."""
+    """It stops where it is, before the first step at neutral, and holds."""
     SLOW_DOWN = "slow_down"
     """It goes on, slowly, until the behavior's last step is done."""
 

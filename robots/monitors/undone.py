@@ -31,7 +31,7 @@ class Undone(Monitor[UndoneParameters]):
     issue: ClassVar[str] = "undone"
     behaviors: ClassVar[frozenset[str]] = ANY_BEHAVIOR
     phases: ClassVar[frozenset[Phase]] = frozenset({Phase.PREPARE, Phase.CONFIRM})
-    meanwhile: ClassVar[Meanwhile] = Meanwhile.DO_NOT_START
+    meanwhile: ClassVar[Meanwhile] = Meanwhile.STOP_IN_PLACE
     camera: ClassVar[str | None] = "head"
     parameters: ClassVar[type[StrictModel]] = UndoneParameters
 

@@ -24,7 +24,7 @@ class Unreachable(Monitor[UnreachableParameters]):
     issue: ClassVar[str] = "unreachable"
     behaviors: ClassVar[frozenset[str]] = ANY_BEHAVIOR
     phases: ClassVar[frozenset[Phase]] = frozenset({Phase.PREPARE})
-    meanwhile: ClassVar[Meanwhile] = Meanwhile.DO_NOT_START
+    meanwhile: ClassVar[Meanwhile] = Meanwhile.STOP_IN_PLACE
     camera: ClassVar[str | None] = "head"
     parameters: ClassVar[type[StrictModel]] = UnreachableParameters
 

@@ -9,10 +9,10 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from robots.body import Matrix4
-from sim.raster import Light, Mesh, Rasterizer, box_triangles, focal_from_fov
+from sim.raster import Light, Mesh, Rasterizer, box_triangles
 
 SIZE = (160, 120)
-FOCAL = focal_from_fov(math.radians(60), SIZE[1])
+FOCAL = SIZE[1] / 2 / math.tan(math.radians(60) / 2)
 CENTER = ((SIZE[0] - 1) / 2, (SIZE[1] - 1) / 2)
 
 

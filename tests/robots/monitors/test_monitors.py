@@ -46,8 +46,8 @@ def grip(state: GripState) -> GripReading:
 @pytest.mark.parametrize(
     ("kind", "phases", "meanwhile"),
     [
-        (Missing, "prepare", Meanwhile.DO_NOT_START),
-        (Unreachable, "prepare", Meanwhile.DO_NOT_START),
+        (Missing, "prepare", Meanwhile.STOP_IN_PLACE),
+        (Unreachable, "prepare", Meanwhile.STOP_IN_PLACE),
         (Missed, "approach grasp lift", Meanwhile.GO_TO_NEUTRAL),
         (Dropped, "lift carry", Meanwhile.GO_TO_NEUTRAL),
         (Positioning, "carry", Meanwhile.SLOW_DOWN),

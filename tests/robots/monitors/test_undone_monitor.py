@@ -28,7 +28,7 @@ def test_it_watches_before_the_first_step_and_after_the_last_of_any_behavior() -
         Phase.PREPARE,
         Phase.CONFIRM,
     ]
-    assert monitor.meanwhile is Meanwhile.DO_NOT_START
+    assert monitor.meanwhile is Meanwhile.STOP_IN_PLACE
 
 
 @pytest.mark.parametrize("was_done", ["gone", "there"])
