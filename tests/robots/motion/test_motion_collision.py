@@ -183,6 +183,36 @@ def test_what_is_near_or_touched_at_the_beginning_is_not_gone_through_later(
     assert back == NoWay("would touch vase on the way", beside)
 
 
+def not_touched_beside(arm: CollisionModel, joints: Joints) -> SeenBox:
+    """A box 1 mm beside the gripper, or a little more."""
+    boxes = (
+        box(PICK.x + off_m, PICK.y, (0.03, 0.05, 0.06)) for off_m in np.arange(0.02, 0.15, 0.001)
+    )
+    *_, last = (each for each in boxes if arm.among([each], hand(0.04), touching).hit(joints))
+    return box(last.x + 0.002, last.y, last.size)
+
+
+def test_what_is_near_at_the_beginning_is_kept_away_from_less(
+    arm: CollisionModel, at_pick: Joints
+) -> None:
+    beside = not_touched_beside(arm, at_pick)
+    hands = [hand(0.04)] * 2
+    from_elsewhere = PathObstacles.around(arm, [beside], hands, START)
+    from_there = PathObstacles.around(arm, [beside], hands, at_pick)
+    for number in range(len(hands)):
+        assert not from_elsewhere.is_free(number, at_pick)
+        assert from_there.is_free(number, at_pick)
+
+
+def test_only_the_first_segment_leaves_out_what_is_touched_at_the_beginning(
+    arm: CollisionModel, at_pick: Joints
+) -> None:
+    touched = box(PICK.x + 0.04, PICK.y, (0.03, 0.05, 0.06))
+    obstacles = PathObstacles.around(arm, [touched], [hand(0.04)] * 2, at_pick)
+    assert obstacles.is_free(0, at_pick)
+    assert not obstacles.is_free(1, at_pick)
+
+
 def test_what_no_path_keeps_away_from_is_named(arm: CollisionModel, chain: KinematicChain) -> None:
     vase = box(PLACE.x, PLACE.y, (0.1, 0.1, 0.2), "vase")
     assert plan(arm, chain, vase) == NoWay("would touch vase on the way", vase)
