@@ -6,7 +6,9 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
-from fault_bench import Bench, Moment, NotNowError, Said, Trial, alone, place_of, width_m
+from fault_bench import Bench, alone, width_m
+from fault_judge import place_of
+from fault_trial import Moment, NotNowError, Said, Trial
 
 from tasks.intervention import Act
 from tasks.scene import Pose
@@ -192,7 +194,7 @@ def _other(bench: Bench, name: str, rng: np.random.Generator) -> str:
         its = bench.scene.objects[each]
         as_wide = abs(width_m(bench, name) - width_m(bench, each)) < _TOLD_APART_M
         same = as_wide and np.allclose(mine.color, its.color, atol=0.15)
-        if each not in bench.alike[name] and not same:
+        if each not in bench.judge.alike[name] and not same:
             others.append(each)
     if not others:
         raise NotNowError("there is no part that is unlike it")

@@ -25,8 +25,9 @@ from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
-from fault_bench import Bench, Moment, NotNowError, Said, Trial, alone, benches, width_m
+from fault_bench import Bench, alone, benches, width_m
 from fault_kinds import KINDS, Verdict, latency_ms, verdict
+from fault_trial import Moment, NotNowError, Said, Trial
 
 CLEAN = "clean"
 FAULTS_FROM = 100_000

@@ -1,8 +1,8 @@
 """What a trial with a fault is counted as: by what is said first, if that is so, and in time."""
 
 import pytest
-from fault_bench import Moment, Said, Trial
 from fault_kinds import KINDS, Verdict, latency_ms, verdict
+from fault_trial import Moment, Said, Trial
 
 
 def trial(kind: str, *said: Said, **known: object) -> Trial:

@@ -1,0 +1,47 @@
+"""A naive watch beside the robot's own, which looks at the same forearm pictures."""
+
+import numpy as np
+
+from robots.grip import GripReading, GripState
+from robots.senses import Senses
+
+
+class PlainWatch:
+    """The naive way: the blob's centre stays within a fixed range of the image."""
+
+    RANGE_PX = 8.0
+
+    def __init__(self) -> None:
+        self.reset()
+
+    def reset(self) -> None:
+        self._center: np.ndarray | None = None
+        self._outside = 0
+        self.alarm_s: float | None = None
+
+    def update(self, reading: GripReading) -> None:
+        if reading.state is GripState.UNDECIDED:
+            return
+        seen = None if reading.blob is None else np.array(reading.blob.center)
+        if self._center is None:
+            self._center = seen
+        inside = (
+            seen is not None
+            and self._center is not None
+            and bool(np.abs(seen - self._center).max() <= self.RANGE_PX)
+        )
+        self._outside = 0 if inside else self._outside + 1
+        if self._outside >= 2 and self.alarm_s is None:
+            self.alarm_s = reading.image.time
+
+
+class SharedSenses(Senses):
+    """The robot's senses, whose forearm pictures the plain watch sees too."""
+
+    plain: PlainWatch
+
+    def read_grip(self) -> GripReading | None:
+        reading = super().read_grip()
+        if reading is not None:
+            self.plain.update(reading)
+        return reading
