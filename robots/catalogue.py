@@ -8,10 +8,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from robots.link.messages import Location
+from tasks.part_boxes import Size, boxes_of, height_of
 from tasks.scene import Scene, Table
-
-Size = tuple[float, float, float]
-"""Full extents along x, y and z in metres."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,13 +24,17 @@ class Part:
     @property
     def height(self) -> float:
         """From its bottom to its highest point, in metres."""
-        return self.size[2] + (self.knob[2] if self.knob is not None else 0.0)
+        return height_of(self.size, self.knob)
+
+    @property
+    def boxes(self) -> list[tuple[float, Size]]:
+        """Each of its boxes: how high its bottom is above the part's, and its extents."""
+        return boxes_of(self.size, self.knob)
 
     @property
     def off_square_m(self) -> float:
         """By how much, at most, its sides differ from what they are after a quarter of a turn."""
-        sizes = [self.size] if self.knob is None else [self.size, self.knob]
-        return max(abs(length - width) for length, width, _ in sizes)
+        return max(abs(length - width) for _, (length, width, _) in self.boxes)
 
     def equals(self, other: "Part") -> bool:
         """Whether another part has exactly its measures."""

@@ -75,7 +75,7 @@ def grasps_of(part: Part, gripper: GripperModel) -> list[Grasp]:
     Across the thinner side before the other one; with much room before little; deep before
     shallow. Raises `UngraspableError` where there is none.
     """
-    low_m, held = (0.0, part.size) if part.knob is None else (part.size[2], part.knob)
+    low_m, held = part.boxes[-1]
     length_m, width_m, high_m = held
     widths = sorted([(length_m, width_m, 0.0), (width_m, length_m, math.pi / 2)])
     fitting = [each for each in widths if gripper.min_width_m <= each[0] <= gripper.max_width_m]
@@ -145,10 +145,7 @@ def corners_in_tool(part: Part, grasp: Grasp) -> list[NDArray[np.float64]]:
     Tool frame: x is the approach direction (down), y the opening direction of the fingers.
     """
     axes = _part_axes(grasp)
-    boxes = [(0.0, part.size)]
-    if part.knob is not None:
-        boxes.append((part.size[2], part.knob))
-    return [_corners(bottom_m - grasp.height_m, size) @ axes for bottom_m, size in boxes]
+    return [_corners(bottom_m - grasp.height_m, size) @ axes for bottom_m, size in part.boxes]
 
 
 def part_in_tool(grasp: Grasp) -> Matrix4:

@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sim.workcell.gripper import PR2_GRIPPER
+from tasks.part_boxes import Size, height_of
 from tasks.scene import Pose, SceneObject
 
-Size = tuple[float, float, float]
 Color = tuple[float, float, float]
 
 
@@ -59,7 +59,7 @@ class PartLook:
     @property
     def height_m(self) -> float:
         """From its bottom to its highest point."""
-        return self.size[2] + (self.knob[2] if self.knob else 0.0)
+        return height_of(self.size, self.knob)
 
     def at(self, pose: Pose) -> SceneObject:
         """The part of a scene that starts at a pose."""

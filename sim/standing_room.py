@@ -64,9 +64,8 @@ def standing(part: Part, x: float, y: float, bottom_z: float, yaw: float) -> Sta
     # The one that needs the least room; the others are there where they have room as well.
     grasp = max(grasps_of(part, PR2_GRIPPER), key=lambda each: (each.height_m, -each.opening_m))
     tool_z = bottom_z + grasp.height_m
-    top = bottom_z + part.size[2] + (part.knob[2] if part.knob else 0.0)
     return Standing(
-        Solid(Footprint(x, y, yaw, part.size[0], part.size[1]), bottom_z, top),
+        Solid(Footprint(x, y, yaw, part.size[0], part.size[1]), bottom_z, bottom_z + part.height),
         [
             Solid(Footprint(x, y, yaw + grasp.yaw, length_m, width_m), tool_z + bottom_m)
             for bottom_m, length_m, width_m in _levels(PR2_GRIPPER.boxes(grasp.opening_m))

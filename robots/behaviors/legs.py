@@ -45,12 +45,9 @@ def legs_of(
 
 def held_boxes(part: Part, grasp: Grasp) -> list[HeldBox]:
     """A grasped part, a little smaller than it is."""
-    boxes = [(0.0, part.size)]
-    if part.knob is not None:
-        boxes.append((part.size[2], part.knob))
     in_tool = part_in_tool(grasp)
     found = []
-    for bottom_m, size in boxes:
+    for bottom_m, size in part.boxes:
         middle = np.eye(4)
         middle[2, 3] = bottom_m + size[2] / 2
         x, y, z = (max(extent - 2 * _LESS_M, extent / 2) for extent in size)

@@ -7,6 +7,7 @@ import numpy as np
 
 from robots.vision.color_model import ColorModel
 from tasks.definition import BehaviorNode, GoalNode
+from tasks.part_boxes import boxes_of
 from tasks.scene import Scene, SceneObject
 from tasks.scene_problem import SceneProblem
 
@@ -71,8 +72,8 @@ def _look_alike(scene: Scene, one: str, other: str, model: ColorModel) -> bool:
 
 def _measures(each: SceneObject) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
     """All that is seen of a box or plate from above, whichever way it is turned."""
-    boxes = [each.size] if each.knob is None else [each.size, each.knob]
-    return np.array([side for box in boxes for side in (*sorted(box[:2]), box[2])])
+    boxes = boxes_of(each.size, each.knob)
+    return np.array([side for _, box in boxes for side in (*sorted(box[:2]), box[2])])
 
 
 def _lookalike(scene: Scene, one: str, other: str) -> SceneProblem:

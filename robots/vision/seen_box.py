@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-Size = tuple[float, float, float]
+from tasks.part_boxes import Size
 
 
 @dataclass(frozen=True, slots=True)

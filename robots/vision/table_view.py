@@ -205,10 +205,10 @@ def _boxes(match: Match, at: HeadSighting) -> list[SeenBox]:
 
 def boxes_of(part: Part, at: Location, bottom_z: float, *, complete: bool) -> list[SeenBox]:
     """A part's box, and on a plate its knob's: beside that there is room over the plate."""
-    levels = [(part.size, bottom_z)]
-    if part.knob is not None:
-        levels.append((part.knob, bottom_z + part.size[2]))
-    return [SeenBox(at.x, at.y, at.yaw, size, z, part.name, complete) for size, z in levels]
+    return [
+        SeenBox(at.x, at.y, at.yaw, size, bottom_z + above_m, part.name, complete)
+        for above_m, size in part.boxes
+    ]
 
 
 def _unknown_box(top: Top, table_z: float) -> SeenBox:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from tasks.footprint import Footprint
+from tasks.part_boxes import boxes_of, height_of
 from tasks.scene import SceneObject
 
 
@@ -88,7 +89,7 @@ class TablePart:
     @property
     def height(self) -> float:
         """From its bottom to its highest point."""
-        return self.size[2] + (self.knob[2] if self.knob else 0.0)
+        return height_of(self.size, self.knob)
 
     @property
     def footprint(self) -> Footprint:
@@ -101,9 +102,8 @@ class TablePart:
 
     @property
     def grasp_box(self) -> GraspBox:
-        if self.knob is None:
-            return GraspBox(self.size[0], self.size[1], 0.0, self.size[2])
-        return GraspBox(self.knob[0], self.knob[1], self.size[2], self.height)
+        low_m, (extent_x, extent_y, _) = boxes_of(self.size, self.knob)[-1]
+        return GraspBox(extent_x, extent_y, low_m, self.height)
 
     def give_to(self, whereabouts: Whereabouts, *, shown: bool = True) -> None:
         """Change who has the part. Raises `ValueError` when it cannot pass between these two."""

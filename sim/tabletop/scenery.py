@@ -15,6 +15,7 @@ from sim.tabletop.blocker import SIZE_M as BLOCKER_SIZE_M
 from sim.tabletop.gripper_shape import FINGER, PALM, finger_offset_m
 from sim.tabletop.part import PartPose, TablePart
 from sim.tabletop.state import CONTROL_PERIOD_S, TabletopState
+from tasks.part_boxes import boxes_of
 
 HEAD_SIZE = (640, 480)
 HEAD_FOCAL_PX = 526.0
@@ -253,11 +254,10 @@ def _optical_frame(
 
 
 def _triangles_of(part: TablePart) -> NDArray[np.float64]:
-    body = box_triangles(part.size, (0.0, 0.0, part.size[2] / 2))
-    if part.knob is None:
-        return body
-    knob = box_triangles(part.knob, (0.0, 0.0, part.size[2] + part.knob[2] / 2))
-    return np.concatenate([body, knob])
+    boxes = boxes_of(part.size, part.knob)
+    return np.concatenate(
+        [box_triangles(size, (0.0, 0.0, bottom_m + size[2] / 2)) for bottom_m, size in boxes]
+    )
 
 
 def _set_upright(transform: Matrix4, x: float, y: float, z: float, yaw: float) -> None:
