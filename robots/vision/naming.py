@@ -16,8 +16,9 @@ from scipy.optimize import linear_sum_assignment
 
 from robots.catalogue import Part
 from robots.vision.color_model import ColorModel, Segmentation, tint_sigma
+from robots.vision.level_rectangle import Rectangle
 from robots.vision.level_surfaces import Surface, Surfaces
-from robots.vision.rectangle import Fitted, Rectangle
+from robots.vision.rectangle import Fitted
 from robots.vision.tracking import Spot
 from tasks.part_boxes import Size
 

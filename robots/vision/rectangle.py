@@ -16,6 +16,7 @@ from shapely.affinity import rotate, translate
 
 from maps.compiled import compiled
 from robots.body import CameraImage
+from robots.vision.level_rectangle import Rectangle
 from robots.vision.level_surfaces import Surface, Surfaces
 from robots.vision.projection import pixel_area_m2
 
@@ -32,16 +33,6 @@ _SAME_HUE = 0.25
 """A surface in another shade has all channels changed by the same factor, so far."""
 _SEEN_SIDE = 0.5
 """A side is seen if just outside more than this share of it nothing hides the view."""
-
-
-@dataclass(frozen=True, slots=True)
-class Rectangle:
-    """A horizontal rectangle in the base frame: `yaw` of its x axis, extents along x and y."""
-
-    x: float
-    y: float
-    yaw: float
-    extents: tuple[float, float]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -219,7 +210,7 @@ def _cut_to_seen(evidence: Evidence, found: Fitted) -> Fitted:
     if all(found.sides_seen):
         return found
     old = found.rectangle
-    local = _local(evidence.points[evidence.inside > 0], old)
+    local = old.local(evidence.points[evidence.inside > 0])
     ends = []
     for axis in range(2):
         half, margin = old.extents[axis] / 2, evidence.pixel_m / 2
@@ -229,15 +220,14 @@ def _cut_to_seen(evidence: Evidence, found: Fitted) -> Fitted:
         ends.append((float(low), float(high)))
     (left, right), (near, far) = ends
     dx, dy = (left + right) / 2, (near + far) / 2
-    cos, sin = math.cos(old.yaw), math.sin(old.yaw)
-    x, y = old.x + cos * dx - sin * dy, old.y + sin * dx + cos * dy
+    x, y = old.point(dx, dy)
     return replace(found, rectangle=Rectangle(x, y, old.yaw, (right - left, far - near)))
 
 
 def _sides_seen(evidence: Evidence, found: Rectangle) -> tuple[bool, bool, bool, bool]:
     """Whether it can be told that the surface ends at each side."""
-    local = _local(evidence.points, found)
-    rim = _local(evidence.rim[None] + (found.x, found.y), found)[0]
+    local = found.local(evidence.points)
+    rim = found.local(evidence.rim[None] + (found.x, found.y))[0]
     half_x, half_y = found.extents[0] / 2, found.extents[1] / 2
     reach = 2.0 * evidence.pixel_m
     answers = []
@@ -253,17 +243,9 @@ def _sides_seen(evidence: Evidence, found: Rectangle) -> tuple[bool, bool, bool,
 
 
 def _shown(evidence: Evidence, found: Rectangle) -> float:
-    local = np.abs(_local(evidence.points, found))
-    within = (local[:, 0] <= found.extents[0] / 2) & (local[:, 1] <= found.extents[1] / 2)
+    within = found.holds(evidence.points, 0.0)
     seen_m2 = float(evidence.inside[within].sum()) * evidence.pixel_m2
     return min(seen_m2 / (found.extents[0] * found.extents[1]), 1.0)
-
-
-def _local(points: NDArray[np.float64], frame: Rectangle) -> NDArray[np.float64]:
-    cos, sin = math.cos(frame.yaw), math.sin(frame.yaw)
-    offset = points - (frame.x, frame.y)
-    local: NDArray[np.float64] = offset @ np.array([[cos, -sin], [sin, cos]])
-    return local
 
 
 @compiled

@@ -17,10 +17,11 @@ from robots.vision.blob import Blob
 from robots.vision.color_model import ColorModel
 from robots.vision.head import HeadSighting
 from robots.vision.height_map import IN_FRONT_M, HeightMap, measure_heights
+from robots.vision.level_rectangle import Rectangle
 from robots.vision.level_surfaces import Pixels, Surface, Surfaces, find_surfaces
 from robots.vision.naming import Match, Namer, Top
 from robots.vision.projection import Points, unproject
-from robots.vision.rectangle import Fitted, Rectangle, fit_any, fit_sized, gather
+from robots.vision.rectangle import Fitted, fit_any, fit_sized, gather
 from robots.vision.seen_box import SeenBox
 from robots.vision.tracking import LastSeen
 from tasks.scene import Table
@@ -120,9 +121,7 @@ def _fit_match(match: Match, surfaces: Surfaces, stood: Location | None) -> Fitt
         hidden[axis] / 2 * (int(low) - int(high))
         for axis, (low, high) in enumerate((rough.sides_seen[:2], rough.sides_seen[2:]))
     ]
-    cos, sin = math.cos(at.yaw), math.sin(at.yaw)
-    x, y = at.x + cos * shifts[0] - sin * shifts[1], at.y + sin * shifts[0] + cos * shifts[1]
-    start = Rectangle(x, y, at.yaw, match.extents)
+    start = Rectangle(*at.point(*shifts), at.yaw, match.extents)
     evidence = gather(match.top.surface, surfaces)
     fits = [fit_sized(evidence, start)]
     if all(rough.sides_seen) and match.top.knob is None:
@@ -180,18 +179,14 @@ def _visible_share(match: Match, found: Rectangle, image: CameraImage) -> float:
         return 1.0
     base_z = match.top.surface.top_z
     eye = image.pose[:3, 3]
-    base = _corners(found, (knob[0], knob[1]))
+    base = replace(found, extents=knob[:2]).corners()
     stretch = (eye[2] - base_z) / (eye[2] - base_z - knob[2])
     hidden = cv2.convexHull(
         np.concatenate([base, eye[:2] + (base - eye[:2]) * stretch]).astype(np.float32)
     )
-    plate = _corners(found, match.extents).astype(np.float32)
+    plate = replace(found, extents=match.extents).corners().astype(np.float32)
     covered, _ = cv2.intersectConvexConvex(hidden, cv2.convexHull(plate))
     return max(1.0 - covered / (match.extents[0] * match.extents[1]), 0.1)
-
-
-def _corners(at: Rectangle, extents: tuple[float, float]) -> NDArray[np.float64]:
-    return SeenBox(at.x, at.y, at.yaw, (*extents, 0.0), 0.0, None, complete=True).corners()
 
 
 def _boxes(match: Match, at: HeadSighting) -> list[SeenBox]:
@@ -267,10 +262,8 @@ def _is_of(top: Top, box: SeenBox, tolerance_m: float) -> bool:
     """Whether a surface is a piece of a box that is known already."""
     if top.surface.top_z > box.top_z + tolerance_m:
         return False
-    cos, sin = math.cos(box.yaw), math.sin(box.yaw)
-    dx, dy = top.fitted.rectangle.x - box.x, top.fitted.rectangle.y - box.y
-    across, along = abs(cos * dx + sin * dy), abs(cos * dy - sin * dx)
-    return across <= box.size[0] / 2 + _OWN_M and along <= box.size[1] / 2 + _OWN_M
+    middle = top.fitted.rectangle
+    return bool(box.outline.holds(np.array([[middle.x, middle.y]]), _OWN_M)[0])
 
 
 def _blob(surface: Surface, image: CameraImage) -> Blob:

@@ -4,7 +4,8 @@ import math
 
 import pytest
 
-from robots.vision.rectangle import Fitted, Rectangle
+from robots.vision.level_rectangle import Rectangle
+from robots.vision.rectangle import Fitted
 
 YAWS = (0.0, 0.4, math.pi / 2, -1.2)
 
