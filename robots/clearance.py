@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import shapely
@@ -14,28 +15,60 @@ from robots.vision.seen_box import SeenBox
 _SIGNS = np.array([[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]])
 
 
+ROOM_M = 0.002
+"""Enough between the gripper and what stands beside it: scenes are checked for so much. It is more
+than what is seen may be off by."""
+
+
+@dataclass(frozen=True, slots=True)
+class Room:
+    """How much room there is between a gripper and what is nearest to it, beside or under it."""
+
+    room_m: float
+    to: SeenBox
+
+
+def room_around(
+    gripper: GripperModel,
+    tool: ToolPose,
+    opening_m: float,
+    boxes: Sequence[SeenBox],
+    *,
+    closed_m: float | None = None,
+    stray_m: float = 0.0,
+) -> Room | None:
+    """The room that `boxes` leave a gripper coming straight down to `tool`; None without any.
+
+    Its fingers are `opening_m` apart, and close to `closed_m` there, or open from it. Boxes may be
+    `stray_m` nearer, in the plane, than they are said to be. Where they meet the gripper the room
+    is 0 or less.
+    """
+    if not boxes:
+        return None
+    rooms = gripper.swept_boxes(opening_m if closed_m is None else closed_m, opening_m)
+    outlines = np.asarray(shapely.polygons(np.array([_outline(room, tool) for room in rooms])))
+    others = np.asarray(shapely.polygons(np.array([box.corners() for box in boxes])))
+    apart = np.asarray(shapely.distance(outlines[:, None], others[None, :])) - stray_m
+    tops = np.array([box.top_z for box in boxes])
+    bottoms = np.array([tool.z + room.bottom_m for room in rooms])
+    left = np.maximum(apart, bottoms[:, None] - tops[None, :]).min(axis=0)
+    nearest = int(left.argmin())
+    return Room(float(left[nearest]), boxes[nearest])
+
+
 def in_the_way(
     gripper: GripperModel,
     tool: ToolPose,
     opening_m: float,
     boxes: Sequence[SeenBox],
     margin_m: float,
+    *,
+    closed_m: float | None = None,
+    stray_m: float = 0.0,
 ) -> SeenBox | None:
-    """The first of `boxes` that a gripper coming straight down to `tool` would come too near to.
-
-    `margin_m` is kept around fingers that are `opening_m` apart, and under them.
-    """
-    if not boxes:
-        return None
-    rooms = gripper.boxes(opening_m)
-    outlines = np.asarray(shapely.polygons(np.array([_outline(room, tool) for room in rooms])))
-    others = np.asarray(shapely.polygons(np.array([box.corners() for box in boxes])))
-    near = np.asarray(shapely.distance(outlines[:, None], others[None, :]) < margin_m)
-    tops = np.array([box.top_z for box in boxes])
-    bottoms = np.array([tool.z + room.bottom_m for room in rooms])
-    touched = near & (tops[None, :] > bottoms[:, None] - margin_m)
-    found = np.flatnonzero(touched.any(axis=0))
-    return boxes[int(found[0])] if len(found) else None
+    """Which of `boxes` leaves least room, where that is less than `margin_m` (`room_around`)."""
+    room = room_around(gripper, tool, opening_m, boxes, closed_m=closed_m, stray_m=stray_m)
+    return room.to if room is not None and room.room_m < margin_m else None
 
 
 def beside(box: SeenBox, others: Sequence[SeenBox], margin_m: float) -> bool:

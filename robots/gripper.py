@@ -3,6 +3,12 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+_STAGES = 4
+"""A movement of the fingers is taken in so many stages, each as one room."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,20 +80,38 @@ class GripperModel:
 
     def boxes(self, opening_m: float) -> list[ToolBox]:
         """The room that fingers so far apart take, and the palm."""
-        tip_m = -self.reach_below_m(opening_m)
-        boxes = [
+        return [*self._fingers_between(opening_m, opening_m), *self._palm()]
+
+    def swept_boxes(self, closed_m: float, opening_m: float) -> list[ToolBox]:
+        """The room that fingers take while they close to `closed_m`, or open from it; the palm.
+
+        Fingers on links come down as they close: onto what they pass over when they are open.
+        """
+        if closed_m >= opening_m:
+            return self.boxes(opening_m)
+        stages = pairwise(np.linspace(closed_m, opening_m, _STAGES + 1).tolist())
+        fingers = [box for near, far in stages for box in self._fingers_between(near, far)]
+        return [*fingers, *self._palm()]
+
+    def _fingers_between(self, closed_m: float, opening_m: float) -> list[ToolBox]:
+        """As low as they are at `closed_m`, as far out as at `opening_m`."""
+        tip_m = -self.reach_below_m(closed_m)
+        out_m = (opening_m - closed_m) / 2
+        return [
             ToolBox(
-                along_m=side * (opening_m + slab.thickness_m) / 2,
+                along_m=side * (closed_m + slab.thickness_m + out_m) / 2,
                 aside_m=0.0,
                 bottom_m=tip_m + slab.bottom_m,
-                length_m=slab.thickness_m,
+                length_m=slab.thickness_m + out_m,
                 width_m=slab.width_m,
             )
             for slab in self.fingers
             for side in (1.0, -1.0)
         ]
+
+    def _palm(self) -> list[ToolBox]:
         palm_m = -self.tip_reach_m
-        return boxes + [
+        return [
             ToolBox(0.0, 0.0, palm_m + slab.bottom_m, slab.thickness_m, slab.width_m)
             for slab in self.palm
         ]

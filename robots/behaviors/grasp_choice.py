@@ -13,7 +13,7 @@ from robots.behaviors.assignment import Assignment, Findings
 from robots.behaviors.behavior import Move, SetGripper, Situation, Step
 from robots.body import ToolPose
 from robots.catalogue import Part
-from robots.clearance import in_the_way
+from robots.clearance import ROOM_M, room_around
 from robots.grasp import Grasp, grasps_of, half_turn
 from robots.gripper import GripperModel
 from robots.link.messages import Location
@@ -36,16 +36,22 @@ _HARDLY_M = 0.0015
 """Sides that differ by no more are now and then taken for one another by the head camera."""
 
 MARGIN_M = 0.0005
-"""Kept between the gripper and what stands beside an object, as it is seen: hardly more than the
-gripper model has to spare, as scenes are checked for more."""
+"""The least between the gripper and what stands beside an object, as it is seen: hardly more than
+the gripper model has to spare, as scenes are checked for more."""
 
 
 @dataclass(frozen=True, slots=True)
 class Crowding:
-    """What leaves the fingers no room to grasp the object, or to let go of it at its place."""
+    """What leaves the fingers least room to grasp the object, or to let go of it at its place."""
 
     by: SeenBox
     at_place: bool
+    room_m: float
+
+    @property
+    def is_too_much(self) -> bool:
+        """Whether the fingers do not fit at all."""
+        return self.room_m < MARGIN_M
 
     def __str__(self) -> str:
         where = "at its place" if self.at_place else "to grasp it"
@@ -78,12 +84,21 @@ def others(part: Part | None, boxes: Sequence[SeenBox]) -> list[SeenBox]:
     return [box for box in boxes if part is None or box.name != part.name]
 
 
+def roominess_m(tight: Crowding | None) -> float:
+    """By how much room one way of grasping is better than another: more than enough is no better.
+
+    What is seen is never exact, so that the least that fits may touch.
+    """
+    return ROOM_M if tight is None else min(tight.room_m, ROOM_M)
+
+
 def crowding(
-    steps: Sequence[Step], gripper: GripperModel, boxes: Sequence[SeenBox]
+    steps: Sequence[Step], grasp: Grasp | None, gripper: GripperModel, boxes: Sequence[SeenBox]
 ) -> Crowding | None:
-    """What stands too close to where the fingers close or open; None if nothing does."""
+    """What stands closest to where the fingers close or open; None if nothing is seen."""
+    found: Crowding | None = None
     pose: ToolPose | None = None
-    opening_m = 0.0
+    opening_m, closed_m = 0.0, (0.0 if grasp is None else grasp.width_m)
     for step in steps:
         if isinstance(step.action, Move):
             pose = step.action.to
@@ -94,10 +109,10 @@ def crowding(
             opening_m = step.action.opening_m or gripper.max_opening_m
         if pose is None or opening_m == 0.0:
             continue
-        near = in_the_way(gripper, pose, opening_m, boxes, MARGIN_M)
-        if near is not None:
-            return Crowding(near, at_place=not closing)
-    return None
+        room = room_around(gripper, pose, opening_m, boxes, closed_m=closed_m)
+        if room is not None and (found is None or room.room_m < found.room_m):
+            found = Crowding(room.to, not closing, room.room_m)
+    return found
 
 
 def _grasps(

@@ -6,8 +6,14 @@ from dataclasses import dataclass, replace
 
 from robots.arm import Arm
 from robots.behaviors.assignment import Assignment, Findings
-from robots.behaviors.behavior import Move, Step
-from robots.behaviors.grasp_choice import Crowding, crowding, others, ways_to_grasp
+from robots.behaviors.behavior import Move, Situation, Step
+from robots.behaviors.grasp_choice import (
+    Crowding,
+    crowding,
+    others,
+    roominess_m,
+    ways_to_grasp,
+)
 from robots.behaviors.legs import legs_of, table_box
 from robots.body import ArmPath, NoWay, ToolPose
 from robots.catalogue import Part
@@ -46,12 +52,27 @@ class Plan:
         return None
 
 
+@dataclass(frozen=True, slots=True)
+class _Way:
+    """One way of doing it: its steps, the first that is to walk, and what leaves it least room."""
+
+    steps: Sequence[Step]
+    first: int
+    grasp: Grasp | None
+    tight: Crowding | None
+
+    @property
+    def left(self) -> Sequence[Step]:
+        return self.steps[self.first - 1 :]
+
+
 def make_plan(assignment: Assignment, arm: Arm, senses: Senses, findings: Findings) -> Plan | None:
     """Lay out the steps and plan their path; None if there is none, or the object is not seen.
 
-    The first way of grasping the object is taken for which there is room and a path. What it
-    finds out about the way goes to `findings`. What keeps the arm from it is in the way if there is
-    one without it, or if it leaves no room at the place; everything else is a reason to refuse.
+    Of the ways of grasping the object for which there is a path the one with most room is taken, up
+    to enough; of equals the first. What it finds out about the way goes to `findings`. What keeps
+    the arm from it is in the way if there is one without it, or if it leaves no room at the place;
+    everything else is a reason to refuse.
     """
     part = assignment.part
     if part is not None and findings.sighting is None and not findings.carrying:
@@ -132,29 +153,41 @@ def _plan_amid(
     part = assignment.part
     obstacles = [table_box(senses.catalogue.table), *boxes]
     refusals: list[NoWay | Crowding] = []
-    for situation in ways_to_grasp(assignment, arm, senses, findings, boxes):
-        steps = assignment.behavior.steps(assignment.parameters, situation)
-        first = assignment.behavior.first_carrying(steps) if findings.carrying else None
-        first = 1 if first is None else first
-        left = steps[first - 1 :]
+    ways = [
+        _laid_out(situation, assignment, arm, findings, boxes)
+        for situation in ways_to_grasp(assignment, arm, senses, findings, boxes)
+    ]
+    for way in sorted(ways, key=lambda each: -roominess_m(each.tight)):
         if not refusals:
-            _judge_way(waypoints_of(left), assignment, senses, findings)
-        tight = crowding(left, arm.body.gripper, boxes)
-        if tight is not None:
-            refusals.append(tight)
+            _judge_way(waypoints_of(way.left), assignment, senses, findings)
+        if way.tight is not None and way.tight.is_too_much:
+            refusals.append(way.tight)
             continue
-        gripper, grasp = arm.body.gripper, situation.grasp
-        legs = legs_of(left, part, grasp, gripper, carrying=findings.carrying)
+        legs = legs_of(way.left, part, way.grasp, arm.body.gripper, carrying=findings.carrying)
         path = arm.body.plan_among(legs, obstacles) if legs else None
         if isinstance(path, NoWay):
             refusals.append(path)
             continue
         if refusals:
             # What stands in a way that is not taken is in nobody's way.
-            _judge_way(waypoints_of(left), assignment, senses, findings)
-        return Plan(steps, first, path, situation.grasp)
+            _judge_way(waypoints_of(way.left), assignment, senses, findings)
+        return Plan(way.steps, way.first, path, way.grasp)
     # Where there was room, that there is none in another way is no reason.
     return next((each for each in refusals if isinstance(each, NoWay)), refusals[0])
+
+
+def _laid_out(
+    situation: Situation,
+    assignment: Assignment,
+    arm: Arm,
+    findings: Findings,
+    boxes: Sequence[SeenBox],
+) -> _Way:
+    steps = assignment.behavior.steps(assignment.parameters, situation)
+    first = assignment.behavior.first_carrying(steps) if findings.carrying else None
+    first = 1 if first is None else first
+    tight = crowding(steps[first - 1 :], situation.grasp, arm.body.gripper, boxes)
+    return _Way(steps, first, situation.grasp, tight)
 
 
 def _name(part: Part | None) -> str:

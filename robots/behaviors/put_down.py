@@ -94,7 +94,10 @@ def _free_spots(
             continue
         if beside(stands, boxes, _APART_M):
             continue
-        if in_the_way(gripper, spot, grasp.opening_m, boxes, MARGIN_M) is None:
+        blocked = in_the_way(
+            gripper, spot, grasp.opening_m, boxes, MARGIN_M, closed_m=grasp.width_m
+        )
+        if blocked is None:
             yield spot
 
 

@@ -9,8 +9,8 @@ from robots.behaviors.behavior import Move, Situation
 from robots.behaviors.grasp_choice import LIFTS_M, clear_z
 from robots.behaviors.pick_and_place import PickAndPlace, PickAndPlaceParameters
 from robots.body import ToolPose
-from robots.clearance import in_the_way
-from robots.feasibility.standing import Standing
+from robots.clearance import ROOM_M, in_the_way
+from robots.feasibility.standing import Standing, beneath
 from robots.grasp import Grasp, grasps_of
 from robots.gripper import GripperModel
 from robots.link.messages import Location
@@ -21,9 +21,6 @@ from tasks.scene_problem import SceneProblem
 Reachable = Callable[[Sequence[ToolPose]], bool]
 """Whether the arm can go through all these poses from neutral, by the planner that it uses."""
 
-ROOM_M = 0.002
-"""Kept between the gripper and what stands beside a part: more than a robot keeps from what it
-sees, as that is never exact."""
 _SEEN_M = 0.0015
 """A part may be seen so far away from where it is."""
 _SIDES = (-1.0, 1.0)
@@ -95,31 +92,44 @@ class ArmCheck:
         if place is not None:
             sites.append((place, around.place, 0.0))
         for standing, others, more_m in sites:
-            near = self._near(standing, grasp, others, more_m)
+            tool = _tool(_at_rest(standing, others), standing.pose, grasp)
+            near = self._near(tool, grasp, others, more_m)
             if near is not None:
-                lacking_m = self._lacking_m(standing, grasp, near, more_m)
+                lacking_m = self._lacking_m(tool, grasp, near, more_m)
                 return _Tight(standing, near.name or "something", lacking_m, standing is start)
         return None
 
-    def _lacking_m(self, standing: Standing, grasp: Grasp, near: SeenBox, more_m: float) -> float:
+    def _lacking_m(self, tool: ToolPose, grasp: Grasp, near: SeenBox, more_m: float) -> float:
         """How much further away from the part its neighbour would leave room."""
-        tool = _tool(standing, standing.pose, grasp)
         dx, dy = near.x - tool.x, near.y - tool.y
         away_m = math.hypot(dx, dy)
         cos, sin = (dx / away_m, dy / away_m) if away_m > 0.0 else (1.0, 0.0)
         for step in range(1, _STEPS):
             shift_m = step * _STEP_M
             moved = replace(near, x=near.x + cos * shift_m, y=near.y + sin * shift_m)
-            if in_the_way(self.gripper, tool, grasp.opening_m, [moved], ROOM_M + more_m) is None:
+            if self._in_the_way(tool, grasp, [moved], more_m) is None:
                 return shift_m
         return _STEPS * _STEP_M
 
     def _near(
-        self, standing: Standing, grasp: Grasp, others: Sequence[Standing], more_m: float
+        self, tool: ToolPose, grasp: Grasp, others: Sequence[Standing], more_m: float
     ) -> SeenBox | None:
-        tool = _tool(standing, standing.pose, grasp)
         boxes = [box for each in others for box in each.boxes]
-        return in_the_way(self.gripper, tool, grasp.opening_m, boxes, ROOM_M + more_m)
+        return self._in_the_way(tool, grasp, boxes, more_m)
+
+    def _in_the_way(
+        self, tool: ToolPose, grasp: Grasp, boxes: Sequence[SeenBox], more_m: float
+    ) -> SeenBox | None:
+        """What comes too near to the fingers while they close or open; `more_m` nearer at worst."""
+        return in_the_way(
+            self.gripper,
+            tool,
+            grasp.opening_m,
+            boxes,
+            ROOM_M,
+            closed_m=grasp.width_m,
+            stray_m=more_m,
+        )
 
     def _reaches(
         self, start: Standing, place: Standing | None, grasp: Grasp, around: Surroundings
@@ -199,6 +209,12 @@ class ArmCheck:
             f"the arm does not reach ({pose.x:.3f}, {pose.y:.3f}, {standing.bottom_z:.3f}), where "
             f"{name} {verb}, with the gripper pointing down"
         )
+
+
+def _at_rest(standing: Standing, others: Sequence[Standing]) -> Standing:
+    """On top of what carries it, where the height that is given for it is hardly lower."""
+    tops = [each.deck_z for each in beneath(standing, others)]
+    return replace(standing, bottom_z=max([standing.bottom_z, *tops]))
 
 
 def _tool(standing: Standing, pose: Pose, grasp: Grasp) -> ToolPose:

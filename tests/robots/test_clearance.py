@@ -9,8 +9,9 @@ from hypothesis import strategies as st
 from scripted_body import GRIPPER
 
 from robots.body import ToolPose
-from robots.clearance import beside, in_the_way
+from robots.clearance import beside, in_the_way, room_around
 from robots.vision.seen_box import SeenBox
+from sim.workcell.gripper import PR2_GRIPPER
 
 TOOL = ToolPose(0.5, -0.2, 0.73, 0.0)
 OPENING_M = 0.05
@@ -67,6 +68,49 @@ def test_a_gripper_that_is_higher_touches_no_more(
     box = replace(NEIGHBOUR, x=TOOL.x + along, y=TOOL.y + aside)
     if touches(box, replace(TOOL, z=TOOL.z + higher)):
         assert touches(box)
+
+
+@pytest.mark.parametrize(
+    ("along_m", "height_m", "room_m"),
+    [
+        # A finger reaches from 25 to 35 mm along; the box is 30 mm wide.
+        (0.055, 0.05, 0.005),
+        (0.030, 0.014, 0.006),
+        (0.055, 0.014, 0.006),
+        (0.030, 0.05, 0.0),
+    ],
+)
+def test_room_is_what_is_left_beside_or_under_the_fingers(
+    along_m: float, height_m: float, room_m: float
+) -> None:
+    near = replace(NEIGHBOUR, x=TOOL.x + along_m, size=(0.03, 0.03, height_m))
+    far = replace(near, x=near.x + 0.2)
+    found = room_around(GRIPPER, TOOL, OPENING_M, [far, near])
+    assert found is not None
+    assert found.to == near
+    assert found.room_m == pytest.approx(room_m)
+
+
+def test_without_anything_around_there_is_all_the_room() -> None:
+    assert room_around(GRIPPER, TOOL, OPENING_M, []) is None
+
+
+def test_what_may_stray_leaves_less_room_beside_the_fingers_but_not_under_them() -> None:
+    aside = replace(NEIGHBOUR, x=TOOL.x + 0.055)
+    under = replace(NEIGHBOUR, x=TOOL.x + 0.030, size=(0.03, 0.03, 0.014))
+    room = [room_around(GRIPPER, TOOL, OPENING_M, [box], stray_m=0.003) for box in (aside, under)]
+    assert [each.room_m for each in room if each] == pytest.approx([0.002, 0.006])
+
+
+def test_fingers_that_come_down_as_they_close_touch_what_they_pass_over_open() -> None:
+    width_m, opening_m = 0.021, 0.045
+    open_z = TOOL.z - PR2_GRIPPER.reach_below_m(opening_m)
+    closed_z = TOOL.z - PR2_GRIPPER.reach_below_m(width_m)
+    assert open_z - closed_z > 0.002
+    plate = replace(NEIGHBOUR, x=TOOL.x + 0.035, size=(0.03, 0.03, (open_z + closed_z) / 2 - 0.7))
+    apart = in_the_way(PR2_GRIPPER, TOOL, opening_m, [plate], 0.0005)
+    closing = in_the_way(PR2_GRIPPER, TOOL, opening_m, [plate], 0.0005, closed_m=width_m)
+    assert (apart, closing) == (None, plate)
 
 
 def test_boxes_are_beside_each_other_by_the_gap_between_their_sides() -> None:

@@ -12,12 +12,19 @@ from scripted_body import GRIPPER, STARTS, ScriptedBody
 
 from robots.behaviors.assignment import Assignment, Findings
 from robots.behaviors.behavior import Move, SetGripper, Step
-from robots.behaviors.grasp_choice import clear_z, crowding, others, ways_to_grasp
+from robots.behaviors.grasp_choice import (
+    clear_z,
+    crowding,
+    others,
+    roominess_m,
+    ways_to_grasp,
+)
 from robots.behaviors.legs import held_boxes, legs_of
 from robots.behaviors.phase import Phase
 from robots.behaviors.pick_and_place import PickAndPlace, PickAndPlaceParameters
 from robots.body import ToolPose
 from robots.catalogue import Part
+from robots.clearance import ROOM_M
 from robots.grasp import grasp_of, half_turn
 from robots.gripper import GripperModel
 from robots.link.messages import IssueDetected, Location, Look, Looked
@@ -28,6 +35,7 @@ from robots.vision.seen_box import SeenBox
 PLATE = Part("plate", (0.10, 0.10, 0.012), knob=(0.03, 0.03, 0.04))
 PART = Part("part", (0.03, 0.05, 0.05))
 PICK, PLACE = ToolPose(0.5, -0.4, 0.725, 0.0), ToolPose(0.5, 0.0, 0.725, 0.0)
+GRASP = grasp_of(PART, GRIPPER)
 STEPS = (
     Step("pick", Move(PICK, 1.0, 0.05), Phase.APPROACH),
     Step("close", SetGripper("closed"), Phase.GRASP),
@@ -80,8 +88,26 @@ def test_a_part_wider_than_the_gripper_is_not_taken_from_a_person_either() -> No
 def test_room_is_needed_where_the_fingers_close_and_open(
     at: tuple[float, float], says: str | None
 ) -> None:
-    found = crowding(STEPS, GRIPPER, [box(*at)])
-    assert (None if found is None else str(found)) == says
+    found = crowding(STEPS, GRASP, GRIPPER, [box(*at)])
+    assert found is not None
+    assert (str(found) if found.is_too_much else None) == says
+
+
+def test_what_leaves_least_room_is_told() -> None:
+    near, nearer = box(PICK.x + 0.054, PICK.y), box(PLACE.x - 0.052, PLACE.y, name="nearer")
+    found = crowding(STEPS, GRASP, GRIPPER, [near, nearer])
+    assert found is not None
+    assert (found.by.name, found.at_place) == ("nearer", True)
+    assert found.room_m == pytest.approx(0.002)
+
+
+def test_more_room_is_better_until_there_is_enough() -> None:
+    rooms = [
+        roominess_m(crowding(STEPS, GRASP, GRIPPER, [box(PICK.x + 0.05 + room_m, PICK.y)]))
+        for room_m in (0.0, 0.001, 0.003, 0.2)
+    ]
+    assert rooms == pytest.approx([0.0, 0.001, ROOM_M, ROOM_M])
+    assert roominess_m(crowding(STEPS, GRASP, GRIPPER, [])) == ROOM_M
 
 
 def test_what_is_carried_is_part_of_the_legs_between_closing_and_opening() -> None:

@@ -2,9 +2,12 @@
 
 import math
 
-from drawn_scene import TABLE_Z
+import pytest
+from drawn_scene import PARTS, TABLE_Z, Resting
 from robot_bench import RobotBench
+from scripted_body import PLACES
 
+from robots.grasp import OPEN_BESIDE_M, OPEN_LEAST_M
 from robots.link.messages import Finished, IssueDetected, Looked, Resume
 
 BESIDE = ((0.75, -0.45, TABLE_Z), (0.06, 0.06, 0.2))
@@ -78,3 +81,16 @@ def test_what_the_object_stands_on_cannot_be_cleared_out_of_its_way() -> None:
     bench.run()
     (issue,) = bench.of(IssueDetected)
     assert issue.issue == "unreachable"
+
+
+@pytest.mark.parametrize(("gap_m", "beside_m"), [(0.0235, OPEN_LEAST_M), (0.035, OPEN_BESIDE_M)])
+def test_the_gripper_opens_as_wide_as_there_is_room_to_spare(gap_m: float, beside_m: float) -> None:
+    """Opened wide, the fingers reach 22 mm beyond the part."""
+    bench = RobotBench()
+    place, width_m = PLACES["left"], PARTS["pink_bar"].size[1]
+    y = place.y + width_m / 2 + gap_m + PARTS["green_leg"].size[0] / 2
+    bench.body.parts["green_leg"] = Resting(place.x, y, yaw=math.pi / 2)
+    bench.start("pink_bar")
+    bench.run()
+    assert bench.of(Finished) == [Finished(execution="e1")]
+    assert bench.body.gripper_opening_m() == pytest.approx(width_m + 2 * beside_m)

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from robots.feasibility.doing import ROOM_M
+from robots.clearance import ROOM_M
 from robots.feasibility.standing import RESTS_M
 from robots.feasibility.support import FIRM_M
 from robots.grasp import OPEN_BESIDE_M, OPEN_LEAST_M, least_height_m

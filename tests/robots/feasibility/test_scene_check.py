@@ -201,3 +201,23 @@ def test_what_may_be_placed_before_is_in_the_way_of_the_fingers() -> None:
     (found,) = problems_of(made, goal("and"), one, tall)
     assert "tall stands too close to one" in found.message
     assert problems_of(made, goal("then"), one, tall) == []
+
+
+@pytest.mark.parametrize(("height_m", "possible"), [(0.032, True), (0.0345, False)])
+def test_what_open_fingers_pass_over_must_not_be_met_as_they_close(
+    height_m: float, possible: bool
+) -> None:
+    """35 mm above the table the closed tips end, 1 to 3 mm lower than open ones."""
+    parts = {"peg": box(0.5, -0.4, (0.021, 0.021, 0.049))}
+    for number, (dx, dy) in enumerate([(1, 0), (-1, 0), (0, 1), (0, -1)]):
+        low = (0.03, 0.03, height_m)
+        parts[f"low_{number}"] = box(0.5 + 0.03 * dx, -0.4 + 0.03 * dy, low)
+    found = problems_of(scene(parts, target=FREE), leaf("peg", "target", None))
+    assert (found == []) is possible
+    assert all("stands too close to peg for the fingers" in each.message for each in found)
+
+
+def test_a_height_that_is_given_hardly_too_low_takes_the_fingers_no_room() -> None:
+    parts = {"base": box(0.5, -0.4, (0.1, 0.1, 0.02))}
+    parts["low"] = box(0.5, -0.4, (0.03, 0.03, 0.02), z=0.715)
+    assert problems_of(scene(parts, target=FREE), leaf("low", "target", None)) == []

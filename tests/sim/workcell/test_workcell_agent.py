@@ -21,11 +21,11 @@ from sim.simulated_agent import SimulatedAgent
 from sim.workcell.adapter import adapter
 from sim.workcell.parts import PartPose
 from sim.workcell.world import WorkcellWorld
-from sim.world import WorldSetup
+from sim.world import SceneChecker, WorldSetup
 from tasks.intervention import Act, Intervention
 from tasks.plugins import load_plugins
 from tasks.scenario import ScriptedIntervention, Trigger
-from tasks.scene import Scene
+from tasks.scene import Place, Pose, Scene, SceneObject
 
 pytestmark = pytest.mark.slow
 
@@ -48,6 +48,13 @@ def place_bar(
         interventions=list(interventions),
     )
     agent = adapter.create_agent(setup)
+    return agent, do(agent, "bar", beforehand)
+
+
+def do(
+    agent: SimulatedAgent, name: str, beforehand: Sequence[Intervention] = ()
+) -> list[ReportBody]:
+    """Let a robot place a part; what it reports, then and later."""
     reports: list[ReportBody] = []
     agent.attach(lambda body, _time, _world: reports.append(body), lambda _picture: None)
     for number, each in enumerate(beforehand):
@@ -58,13 +65,13 @@ def place_bar(
             execution="e",
             node="/",
             behavior="pick_and_place",
-            parameters={"object": "bar", "place": "left"},
+            parameters={"object": name, "place": "left"},
             target=Location(x=0.55, y=0.0),
         ),
     )
     while agent.advance(1.0):
         pass
-    return agent, reports
+    return reports
 
 
 def world_of(agent: SimulatedAgent) -> WorkcellWorld:
@@ -157,3 +164,37 @@ def test_the_workcell_is_offered_to_runs() -> None:
     assert found.own_process
     assert not found.lays_out_anything
     found.check_available()
+
+
+def test_fingers_that_close_beside_a_part_leave_it_where_it_is() -> None:
+    """They pass over the plate when they are open, and come down as they close."""
+    base, top, peg = (0.141, 0.067, 0.036), (0.017, 0.084, 0.031), (0.021, 0.029, 0.049)
+    made = Scene(
+        name="beside",
+        objects={
+            "base": SceneObject(
+                color=(0.79, 0.69, 0.91), size=base, mass_kg=0.162, pose=Pose(x=0.6507, y=-0.3)
+            ),
+            "top": SceneObject(
+                color=(0.1, 0.6, 0.1),
+                size=top,
+                mass_kg=0.034,
+                pose=Pose(x=0.6836, y=-0.3, z=TABLE_M + base[2]),
+            ),
+            "peg": SceneObject(
+                color=(0.9, 0.1, 0.1), size=peg, mass_kg=0.015, pose=Pose(x=0.5552, y=-0.266)
+            ),
+        },
+        places={"left": Place(pose=Pose(x=0.55, y=0.0))},
+    )
+    setup = WorldSetup(robot="r1", scene=made, seed=2, speed=None)
+    assert isinstance(adapter, SceneChecker)
+    assert adapter.check_scene(made, []) == []
+    agent = adapter.create_agent(setup)
+    parts = world_of(agent).parts
+    before = {name: parts[name].pose() for name in ("base", "top")}
+    reports = do(agent, "peg")
+    assert isinstance(reports[-1], Finished)
+    for name, pose in before.items():
+        assert distance_m(parts[name].pose(), pose) < 0.0005
+        assert parts[name].pose().tilt_rad < 0.01

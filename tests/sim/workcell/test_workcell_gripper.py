@@ -62,6 +62,20 @@ def test_fingers_and_palm_are_within_the_room_that_is_kept_for_them(angle_rad: f
         )
 
 
+def test_fingers_that_close_stay_within_the_room_that_is_kept_for_that() -> None:
+    closed_rad, open_rad = 0.1, 0.4
+    closed_m, opening_m = 2 * inner_side_m(closed_rad), 2 * inner_side_m(open_rad)
+    rooms = PR2_GRIPPER.swept_boxes(closed_m, opening_m)
+    for angle_rad in np.linspace(closed_rad, open_rad, 7):
+        inner_m = inner_side_m(angle_rad)
+        outside = [each for each in corners(angle_rad, "gripper") if abs(each[1]) >= inner_m]
+        assert all(any(_holds(room, -x, y, z) for room in rooms) for x, y, z in outside)
+
+
+def test_the_room_of_fingers_that_stay_apart_is_that_of_the_opening() -> None:
+    assert PR2_GRIPPER.swept_boxes(0.05, 0.05) == PR2_GRIPPER.boxes(0.05)
+
+
 def test_a_gripper_never_opens_or_closes_further_than_it_goes() -> None:
     assert finger_angle_rad(1.0) == FINGERS_OPEN_RAD
     assert finger_angle_rad(-0.1) == 0.0
