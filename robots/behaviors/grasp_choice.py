@@ -41,6 +41,16 @@ the gripper model has to spare, as scenes are checked for more."""
 
 
 @dataclass(frozen=True, slots=True)
+class Grip:
+    """Fingers that close from `opening_m` to `closed_m`, or `at_place` open the other way."""
+
+    tool: ToolPose
+    opening_m: float
+    closed_m: float
+    at_place: bool
+
+
+@dataclass(frozen=True, slots=True)
 class Crowding:
     """What leaves the fingers least room to grasp the object, or to let go of it at its place."""
 
@@ -92,11 +102,9 @@ def roominess_m(tight: Crowding | None) -> float:
     return ROOM_M if tight is None else min(tight.room_m, ROOM_M)
 
 
-def crowding(
-    steps: Sequence[Step], grasp: Grasp | None, gripper: GripperModel, boxes: Sequence[SeenBox]
-) -> Crowding | None:
-    """What stands closest to where the fingers close or open; None if nothing is seen."""
-    found: Crowding | None = None
+def grips(steps: Sequence[Step], grasp: Grasp | None, gripper: GripperModel) -> tuple[Grip, ...]:
+    """Where on a way the fingers close or open."""
+    found = []
     pose: ToolPose | None = None
     opening_m, closed_m = 0.0, (0.0 if grasp is None else grasp.width_m)
     for step in steps:
@@ -107,11 +115,20 @@ def crowding(
         closing = step.action == SetGripper("closed")
         if not closing:
             opening_m = step.action.opening_m or gripper.max_opening_m
-        if pose is None or opening_m == 0.0:
-            continue
-        room = room_around(gripper, pose, opening_m, boxes, closed_m=closed_m)
+        if pose is not None and opening_m > 0.0:
+            found.append(Grip(pose, opening_m, closed_m, at_place=not closing))
+    return tuple(found)
+
+
+def crowding(
+    grips: Sequence[Grip], gripper: GripperModel, boxes: Sequence[SeenBox]
+) -> Crowding | None:
+    """What stands closest to where the fingers close or open; None if nothing is seen."""
+    found: Crowding | None = None
+    for each in grips:
+        room = room_around(gripper, each.tool, each.opening_m, boxes, closed_m=each.closed_m)
         if room is not None and (found is None or room.room_m < found.room_m):
-            found = Crowding(room.to, not closing, room.room_m)
+            found = Crowding(room.to, each.at_place, room.room_m)
     return found
 
 

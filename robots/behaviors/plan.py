@@ -1,7 +1,7 @@
 """The plan of a behavior: its steps, how to grasp the object, and a path amid what is seen."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 from robots.arm import Arm
@@ -9,7 +9,9 @@ from robots.behaviors.assignment import Assignment, Findings
 from robots.behaviors.behavior import Move, Situation, Step
 from robots.behaviors.grasp_choice import (
     Crowding,
+    Grip,
     crowding,
+    grips,
     others,
     roominess_m,
     ways_to_grasp,
@@ -153,10 +155,8 @@ def _plan_amid(
     part = assignment.part
     obstacles = [table_box(senses.catalogue.table), *boxes]
     refusals: list[NoWay | Crowding] = []
-    ways = [
-        _laid_out(situation, assignment, arm, findings, boxes)
-        for situation in ways_to_grasp(assignment, arm, senses, findings, boxes)
-    ]
+    situations = ways_to_grasp(assignment, arm, senses, findings, boxes)
+    ways = _lay_out(situations, assignment, arm, findings, boxes)
     for way in sorted(ways, key=lambda each: -roominess_m(each.tight)):
         if not refusals:
             _judge_way(waypoints_of(way.left), assignment, senses, findings)
@@ -176,18 +176,26 @@ def _plan_amid(
     return next((each for each in refusals if isinstance(each, NoWay)), refusals[0])
 
 
-def _laid_out(
-    situation: Situation,
+def _lay_out(
+    situations: Iterable[Situation],
     assignment: Assignment,
     arm: Arm,
     findings: Findings,
     boxes: Sequence[SeenBox],
-) -> _Way:
-    steps = assignment.behavior.steps(assignment.parameters, situation)
-    first = assignment.behavior.first_carrying(steps) if findings.carrying else None
-    first = 1 if first is None else first
-    tight = crowding(steps[first - 1 :], situation.grasp, arm.body.gripper, boxes)
-    return _Way(steps, first, situation.grasp, tight)
+) -> list[_Way]:
+    """The ways that begin in some situations, in their order."""
+    gripper, ways = arm.body.gripper, []
+    known: dict[Sequence[Grip], Crowding | None] = {}
+    for situation in situations:
+        steps = assignment.behavior.steps(assignment.parameters, situation)
+        first = assignment.behavior.first_carrying(steps) if findings.carrying else None
+        first = 1 if first is None else first
+        # Ways that only pass higher grasp and let go alike.
+        closings = grips(steps[first - 1 :], situation.grasp, gripper)
+        if closings not in known:
+            known[closings] = crowding(closings, gripper, boxes)
+        ways.append(_Way(steps, first, situation.grasp, known[closings]))
+    return ways
 
 
 def _name(part: Part | None) -> str:

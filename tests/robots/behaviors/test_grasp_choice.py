@@ -15,6 +15,7 @@ from robots.behaviors.behavior import Move, SetGripper, Step
 from robots.behaviors.grasp_choice import (
     clear_z,
     crowding,
+    grips,
     others,
     roominess_m,
     ways_to_grasp,
@@ -43,6 +44,7 @@ STEPS = (
     Step("open", SetGripper("open", 0.05), Phase.RELEASE),
     Step("leave", Move(PICK, 1.0, 0.05), Phase.RETREAT),
 )
+GRIPS = grips(STEPS, GRASP, GRIPPER)
 
 
 def box(x: float, y: float, height_m: float = 0.05, name: str | None = "other") -> SeenBox:
@@ -88,14 +90,14 @@ def test_a_part_wider_than_the_gripper_is_not_taken_from_a_person_either() -> No
 def test_room_is_needed_where_the_fingers_close_and_open(
     at: tuple[float, float], says: str | None
 ) -> None:
-    found = crowding(STEPS, GRASP, GRIPPER, [box(*at)])
+    found = crowding(GRIPS, GRIPPER, [box(*at)])
     assert found is not None
     assert (str(found) if found.is_too_much else None) == says
 
 
 def test_what_leaves_least_room_is_told() -> None:
     near, nearer = box(PICK.x + 0.054, PICK.y), box(PLACE.x - 0.052, PLACE.y, name="nearer")
-    found = crowding(STEPS, GRASP, GRIPPER, [near, nearer])
+    found = crowding(GRIPS, GRIPPER, [near, nearer])
     assert found is not None
     assert (found.by.name, found.at_place) == ("nearer", True)
     assert found.room_m == pytest.approx(0.002)
@@ -103,11 +105,11 @@ def test_what_leaves_least_room_is_told() -> None:
 
 def test_more_room_is_better_until_there_is_enough() -> None:
     rooms = [
-        roominess_m(crowding(STEPS, GRASP, GRIPPER, [box(PICK.x + 0.05 + room_m, PICK.y)]))
+        roominess_m(crowding(GRIPS, GRIPPER, [box(PICK.x + 0.05 + room_m, PICK.y)]))
         for room_m in (0.0, 0.001, 0.003, 0.2)
     ]
     assert rooms == pytest.approx([0.0, 0.001, ROOM_M, ROOM_M])
-    assert roominess_m(crowding(STEPS, GRASP, GRIPPER, [])) == ROOM_M
+    assert roominess_m(crowding(GRIPS, GRIPPER, [])) == ROOM_M
 
 
 def test_what_is_carried_is_part_of_the_legs_between_closing_and_opening() -> None:
