@@ -49,6 +49,7 @@ _SEEN_NOW = {
     Expectation.AT_PLACE: "I see the {object} at its place now.",
     Expectation.IN_REACH: "I see the {object} within my reach now.",
     Expectation.WAY_CLEAR: "I see nothing in my way now.",
+    Expectation.VIEW_CLEAR: "I see the table now.",
 }
 
 

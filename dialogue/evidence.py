@@ -11,6 +11,8 @@ part within reach, a seen obstruction gone) is new even if it is so at the first
 robot may well have been wrong before, so that nobody is thanked for it. What was felt is never put
 right by a camera: it takes a person's word and a look.
 
+A camera may come to see again by itself, so that nobody is thanked for it who has not promised it.
+
 A person has helped if a change was seen that only a person can have made: the object appeared,
 moved, or came between the fingers, or what was in the way is gone. A promise alone is not help, nor
 is a look that sees no more than the first one did.
@@ -41,7 +43,7 @@ class Change(StrEnum):
     HANDED_OVER = "handed_over"
     """The object came between the fingers."""
     CLEARED = "cleared"
-    """What was in the way is gone."""
+    """What was in the way, or hid the table from the camera, is gone."""
 
     @property
     def by_a_person(self) -> bool:
@@ -69,7 +71,7 @@ def change_between(first: Look | None, now: Look) -> Change:
     """What a look sees changed since the first one."""
     if first is None:
         return Change.UNKNOWN
-    if Expectation.WAY_CLEAR in now.fulfilled - first.fulfilled:
+    if {Expectation.WAY_CLEAR, Expectation.VIEW_CLEAR} & (now.fulfilled - first.fulfilled):
         return Change.CLEARED
     if now.position is None:
         return Change.NONE
@@ -94,7 +96,7 @@ def put_right(watched: Sequence[Expectation], first: Look, now: Look) -> PutRigh
     moved = change in (Change.APPEARED, Change.MOVED)
     for each in watched:
         if each in now.fulfilled and (moved or each not in first.fulfilled):
-            return PutRight(each, change)
+            return PutRight(each, Change.NONE if each is Expectation.VIEW_CLEAR else change)
     return None
 
 

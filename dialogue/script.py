@@ -26,6 +26,8 @@ class Help(StrEnum):
     """Hand the object to the robot."""
     CLEAR_WAY = "clear_way"
     """Get what blocks the arm out of its way."""
+    CLEAR_VIEW = "clear_view"
+    """Get what hides the table from the head camera out of its view."""
 
 
 class CloseReason(StrEnum):
@@ -98,6 +100,8 @@ class Expectation(StrEnum):
     """The object is between the robot's fingers."""
     WAY_CLEAR = "way_clear"
     """Nothing is in the arm's way."""
+    VIEW_CLEAR = "view_clear"
+    """The head camera shows the table."""
 
 
 ATTEMPT_FAILED = "{attempt} has failed, and {later}."

@@ -37,9 +37,10 @@ class ToolPose:
 class CameraImage:
     """One picture with what is needed to measure in it.
 
-    `bgr`: (height, width, 3) uint8. `depth_m`: (height, width) float32 along the optical axis, or
-    None for a camera without depth. `pose`: the optical frame (z forward, x right, y down) in the
-    base frame. A pixel (u, v) is at ((u - cx) / f * d, (v - cy) / f * d, d) in the optical frame.
+    `bgr`: (height, width, 3) uint8. `depth_m`: (height, width) float32 along the optical axis, NaN
+    or 0 where none was measured, or None for a camera without depth. `pose`: the optical frame
+    (z forward, x right, y down) in the base frame. A pixel (u, v) is at ((u - cx) / f * d,
+    (v - cy) / f * d, d) in the optical frame.
     """
 
     bgr: NDArray[np.uint8]

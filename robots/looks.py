@@ -66,24 +66,31 @@ class Looker:
     def answer_and_judge(self, command: str, fulfilled: bool | None) -> Routine[Looked]:
         """All that the head camera sees, and what became of the finished results.
 
-        What seems gone has to be gone in a second picture as well: a hand may pass by. With the
-        arm in view it judges none.
+        What seems gone, or a picture that shows no table, has to be so in a second picture as
+        well: a hand may pass by. With the arm in view it judges none.
         """
         image = self.senses.look()
         results = self.finished if self.arm.at_neutral else ()
         verdicts = self._judge(image, results)
         doubted = [each for each in results if verdicts[each.message] is Presence.GONE]
-        if doubted:
+        blind = self.senses.why_blind(image) is not None
+        if doubted or blind:
             yield from self.arm.wait(LOOK_AGAIN_S)
             self.senses.doubt()
             image = self.senses.look()
-            for message, again in self._judge(image, doubted).items():
-                verdicts[message] = again
+            verdicts |= self._judge(image, results if blind else doubted)
         return self._looked(command, fulfilled, image, verdicts)
+
+    def look_at_table(self) -> CameraImage | None:
+        """A head picture; None if it shows nothing of the table."""
+        image = self.senses.look()
+        return image if self.senses.why_blind(image) is None else None
 
     def _judge(
         self, image: CameraImage, results: Sequence[Result]
     ) -> dict[FinishedResult, Presence]:
+        if self.senses.why_blind(image) is not None:
+            return {each.message: Presence.HIDDEN for each in results}
         presence = self.senses.presence
         return {each.message: presence(image, each.part, each.target) for each in results}
 
@@ -94,14 +101,16 @@ class Looker:
         image: CameraImage,
         verdicts: Mapping[FinishedResult, Presence],
     ) -> Looked:
+        blind = self.senses.why_blind(image)
         return Looked(
             command=command,
-            objects=self.senses.sight_all(image),
+            objects=self.senses.sight_all(image) if blind is None else {},
             gripper=self.senses.gripper(),
             fulfilled=fulfilled,
             there=[each for each, so in verdicts.items() if so is Presence.THERE],
             gone=[each for each, so in verdicts.items() if so is Presence.GONE],
             held=self.senses.held,
+            blind=blind,
         )
 
 
@@ -120,8 +129,10 @@ class AtPlace:
         self._looker, self._part, self._target = looker, part, target
 
     def is_fulfilled(self) -> bool:
-        senses = self._looker.senses
-        return senses.recognize_at(senses.look(), self._part, self._target)
+        image = self._looker.look_at_table()
+        if image is None:
+            return False
+        return self._looker.senses.recognize_at(image, self._part, self._target)
 
 
 class InReach:
@@ -132,8 +143,9 @@ class InReach:
         self._before: HeadSighting | None = None
 
     def is_fulfilled(self) -> bool:
-        senses = self._looker.senses
-        image = senses.look()
+        senses, image = self._looker.senses, self._looker.look_at_table()
+        if image is None:
+            return False
         before, self._before = self._before, senses.sight(self._part, image)
         now = self._before
         if before is None or now is None or not now.upright(senses.catalogue.table.height):
@@ -176,7 +188,9 @@ class WayClear:
         here = arm.tool_pose()
         if here is not None and not arm.at_neutral:
             way = [here, *way]
-        image = senses.look()
+        image = self._looker.look_at_table()
+        if image is None:
+            return False
         part, target = self._looker.destination or (None, None)
         before = self._looker.obstruction
         if before is not None and senses.shows_anything(image, before.position, but=part):
@@ -189,13 +203,23 @@ class WayClear:
         return senses.occupant(image, part, sighting, target) is None
 
 
+class ViewClear:
+    """The head camera shows the table."""
+
+    def __init__(self, looker: Looker) -> None:
+        self._looker = looker
+
+    def is_fulfilled(self) -> bool:
+        return self._looker.look_at_table() is not None
+
+
 def look_as_told(
     looker: Looker, command: str, look: Look, understanding: Understanding
 ) -> Routine[Looked]:
     """The routine of a `look` command. Raises `CommandError`."""
     if look.expect is None:
         return look_once(looker, command)
-    if look.expect != "way_clear":
+    if look.expect not in ("way_clear", "view_clear"):
         looker.senses.want(understanding.object_of(look))
     if look.expect == "in_gripper":
         part = understanding.object_of(look)
@@ -206,6 +230,7 @@ def look_as_told(
         ),
         "in_reach": lambda: InReach(looker, understanding.object_of(look)),
         "way_clear": lambda: WayClear(looker),
+        "view_clear": lambda: ViewClear(looker),
     }
     return look_until(looker, command, make[look.expect](), look.within_s)
 

@@ -312,7 +312,7 @@ class Robot:
                 raise CommandError(f"cannot look for '{look.expect}' while a behavior is under way")
             self._report(self._looker().answer(command_id, None))
             return
-        results = self._understanding.results_of(look)
+        results = self._understanding.results_of(look.finished)
         routine = look_as_told(self._looker(results), command_id, look, self._understanding)
         self._drop_look()
         self._activity, self._looking = self._report_look(routine), True
@@ -393,7 +393,7 @@ class Robot:
             images = self._senses.clip.images()
             if images:
                 self._owed_clip = _OwedClip(body.execution, body.issue, self.time_s(), images)
-        if isinstance(body, Looked):
+        if isinstance(body, Looked) and body.blind is None:
             self._display.located = dict(body.objects)
         if self._emit is not None:
             self._emit(body, self.time_s(), None)

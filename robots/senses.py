@@ -15,10 +15,13 @@ from robots.grip.cues import CueModel
 from robots.grip.reading import GripReading, GripState
 from robots.grip.watch import GripWatch, Hand
 from robots.link.messages import Location, Position, Sighting
+from robots.result import Result
+from robots.vision.blindness import why_blind, why_outdated
 from robots.vision.blob import Blob
 from robots.vision.carriers import unseen_carriers
 from robots.vision.color_model import ColorModel
 from robots.vision.head import HeadSighting
+from robots.vision.height_map import measure_heights
 from robots.vision.obstruction import (
     Clearance,
     Obstruction,
@@ -27,9 +30,15 @@ from robots.vision.obstruction import (
     near,
 )
 from robots.vision.occupancy import Fit, Room, find_occupant, room_above, room_at_place
-from robots.vision.presence import Presence, is_at, judge_presence
+from robots.vision.presence import (
+    Presence,
+    is_at,
+    is_seen_through,
+    judge_presence,
+    room_of,
+)
 from robots.vision.projection import Points, project
-from robots.vision.scene_change import is_same, shows_change
+from robots.vision.scene_change import is_same, shows_change, still_measures
 from robots.vision.seen_box import SeenBox
 from robots.vision.table_view import TableView, boxes_of, view_table
 from robots.vision.tracking import LastSeen
@@ -53,12 +62,13 @@ _Way = tuple[tuple[ToolPose, ...], str | None]
 class _Seen:
     """A head picture, and what was understood of it, by what else was looked for.
 
-    It was taken while `held` was in the gripper. `in_the_way` is what was found on ways and in
-    rooms.
+    It was taken while `held` was in the gripper. `blind` says why it shows nothing of the table.
+    `in_the_way` is what was found on ways and in rooms.
     """
 
     image: CameraImage
     held: str | None
+    blind: str | None
     views: dict[Part | None, TableView | None] = field(default_factory=dict)
     in_the_way: dict[_Way | Room, Obstruction | None] = field(default_factory=dict)
 
@@ -84,6 +94,7 @@ class Senses:
         self._clearance = clearance or Clearance()
         self._fit = fit or Fit()
         self._seen: _Seen | None = None
+        self._boxes: Sequence[SeenBox] = ()
         self._doubted = False
         self._wanted: str | None = None
         self._last_seen = LastSeen(catalogue.starts)
@@ -113,6 +124,10 @@ class Senses:
     def doubt(self) -> None:
         """Understand the next head picture anew, even if nothing in it but noise has changed."""
         self._doubted = True
+
+    def why_blind(self, image: CameraImage) -> str | None:
+        """Why a head picture just taken tells nothing of the table, as a clause; or None."""
+        return why_outdated(image, self._body.time_s()) or self._take_in(image).blind
 
     def sight(self, part: Part, image: CameraImage) -> HeadSighting | None:
         """Where a part is in a head picture; nowhere while it is held."""
@@ -156,12 +171,16 @@ class Senses:
         }
 
     def seen_boxes(self, image: CameraImage) -> Sequence[SeenBox]:
-        """Everything that a head picture shows on the table, known or not, and what carries it."""
+        """Everything that a head picture shows on the table, known or not, and what carries it.
+
+        Of one that shows no table, what the last one showed that did.
+        """
         view = self._understand(image)
-        if view is None:
-            return ()
-        boxes = [*view.boxes, *view.recalled]
-        return [*boxes, *unseen_carriers(boxes, self.catalogue.table.height)]
+        if view is not None:
+            boxes = [*view.boxes, *view.recalled]
+            carriers = unseen_carriers(boxes, self.catalogue.table.height)
+            self._boxes = [*boxes, *carriers]
+        return self._boxes
 
     def shows_anything(
         self, image: CameraImage, at: tuple[float, float, float], but: Part | None = None
@@ -179,6 +198,18 @@ class Senses:
         return judge_presence(
             view, part, self._equals_of(part), target, self.catalogue.height_of(target)
         )
+
+    def seen_gone(self, image: CameraImage, results: Iterable[Result]) -> list[Result]:
+        """Of some results those whose part a picture shows, past the arm, not to be there."""
+        heights = measure_heights(image, self.catalogue.table, self._is_own_arm)
+        if heights is None:
+            return []
+        height_of = self.catalogue.height_of
+        return [
+            each
+            for each in results
+            if is_seen_through(heights, room_of(each.part, each.target, height_of(each.target)))
+        ]
 
     def recognize_at(self, image: CameraImage, part: Part, target: Location) -> bool:
         """Whether a part, or one that looks the same, stands at a place; then that is the part."""
@@ -323,38 +354,55 @@ class Senses:
             known[where] = find()
         return known[where]
 
-    def _understand(self, image: CameraImage, stranger: Part | None = None) -> TableView | None:
-        """What a head picture shows; `stranger` is looked for besides the catalogue's parts."""
+    def _take_in(self, image: CameraImage) -> _Seen:
+        """What is known of a head picture: all that was of an earlier one, if that still holds."""
         held, seen = self.held, self._seen
         doubted, self._doubted = self._doubted, False
+        if seen is not None and seen.held == held and is_same(seen.image, image):
+            return seen
+        blind = why_blind(image, self.catalogue.table, self._is_own_arm)
         if (
             seen is None
+            or doubted
             or seen.held != held
+            or seen.blind is not None
+            or blind is not None
             or shows_change(seen.image, image)
-            or (doubted and not is_same(seen.image, image))
+            or not _still_measures_all(seen, image)
         ):
-            self._seen = seen = _Seen(image, held)
+            self._seen = seen = _Seen(image, held, blind)
+        return seen
+
+    def _understand(self, image: CameraImage, stranger: Part | None = None) -> TableView | None:
+        """What a head picture shows; `stranger` is looked for besides the catalogue's parts.
+
+        None for one that shows no table.
+        """
+        seen = self._take_in(image)
+        if seen.blind is not None:
+            return None
         if stranger not in seen.views:
-            parts = {
-                name: part for name, part in self.catalogue.parts.items() if not self.holds(name)
-            }
-            if stranger is not None:
-                parts[stranger.name] = stranger
-            view = view_table(
-                image,
-                self.catalogue.table,
-                parts,
-                self._model,
-                self._last_seen,
-                self._is_own_arm,
-                self._wanted,
-            )
-            if view is not None:
-                for name, each in view.sightings.items():
-                    self._last_seen.note_sighting(name, each)
-                view = replace(view, recalled=self._recalled(parts.values(), view))
-            seen.views[stranger] = view
+            seen.views[stranger] = self._view(image, stranger)
         return seen.views[stranger]
+
+    def _view(self, image: CameraImage, stranger: Part | None) -> TableView | None:
+        parts = {name: part for name, part in self.catalogue.parts.items() if not self.holds(name)}
+        if stranger is not None:
+            parts[stranger.name] = stranger
+        view = view_table(
+            image,
+            self.catalogue.table,
+            parts,
+            self._model,
+            self._last_seen,
+            self._is_own_arm,
+            self._wanted,
+        )
+        if view is None:
+            return None
+        for name, each in view.sightings.items():
+            self._last_seen.note_sighting(name, each)
+        return replace(view, recalled=self._recalled(parts.values(), view))
 
     def _recalled(self, parts: Iterable[Part], view: TableView) -> list[SeenBox]:
         """What is not seen, but hidden where it was last seen whole."""
@@ -402,3 +450,13 @@ class Senses:
             and part.name in self._model.names
             and self._model.look_alike(name, part.name)
         }
+
+
+def _still_measures_all(seen: _Seen, image: CameraImage) -> bool:
+    """Whether a later picture measures whatever was recognized in an earlier one."""
+    return all(
+        still_measures(seen.image, image, each.blob.mask)
+        for view in seen.views.values()
+        if view is not None
+        for each in view.sightings.values()
+    )

@@ -1,13 +1,13 @@
 """What commands mean to one robot: which behavior, part and place their names stand for."""
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping
 
 from pydantic import ValidationError
 
 from robots.behaviors.assignment import Assignment
 from robots.behaviors.behavior import Behavior
 from robots.catalogue import Catalogue, Part
-from robots.link.messages import Location, Look, Start
+from robots.link.messages import FinishedResult, Location, Look, Start
 from robots.result import Result
 
 
@@ -51,6 +51,7 @@ class Understanding:
             target=target,
             needs_help=needs_help or (part is not None and part.needs_help),
             was_done=start.was_done,
+            finished=self.results_of(start.finished),
         )
 
     def part(self, name: str | None, size: tuple[float, float, float] | None) -> Part | None:
@@ -82,12 +83,12 @@ class Understanding:
             raise CommandError(f"a look for '{look.expect}' needs an object")
         return part
 
-    def results_of(self, look: Look) -> list[Result]:
-        """The finished results that a look is to judge, as far as this robot knows them."""
+    def results_of(self, finished: Iterable[FinishedResult]) -> list[Result]:
+        """Finished results, as far as this robot knows them."""
         parts, places = self._catalogue.parts, self._catalogue.places
         return [
             Result(each, parts[each.object], places[each.place])
-            for each in look.finished
+            for each in finished
             if each.object in self._known_colors and each.object in parts and each.place in places
         ]
 

@@ -64,6 +64,8 @@ DEEDS: dict[Act, str] = {
     Act.MOVE: "moves {object}",
     Act.BLOCK: "stands in the arm's way",
     Act.RELEASE: "gets out of the arm's way",
+    Act.COVER: "covers the head camera",
+    Act.UNCOVER: "clears the head camera's view",
 }
 
 PROMISES: dict[Help, str] = {
@@ -71,6 +73,7 @@ PROMISES: dict[Help, str] = {
     Help.PUT_BACK: "{object} back within reach",
     Help.HAND_OVER: "{object} between the fingers",
     Help.CLEAR_WAY: "the way clear",
+    Help.CLEAR_VIEW: "the table again",
 }
 
 RESOLUTIONS: dict[Resolution, str] = {
@@ -156,7 +159,7 @@ class Transcript:
     @lines.register
     def _(self, event: ev.RunFinished) -> list[Line]:
         lines = [_line(event, "", told_missing(each), Tone.SETBACK) for each in event.missing]
-        text = f"the run has finished: {finished_text(event.missing)}"
+        text = f"the run has finished: {finished_text(event.missing, event.unseen)}"
         return [*lines, _line(event, "", text, Tone.FINISHED)]
 
     @lines.register
@@ -345,8 +348,13 @@ def deed_text(intervention: Intervention) -> str:
     return text
 
 
-def finished_text(missing: Sequence[ev.MissingPart]) -> str:
-    """What a finished run came to: the task is done, perhaps without what was left out."""
+def finished_text(missing: Sequence[ev.MissingPart], unseen: Sequence[ev.UnseenPart] = ()) -> str:
+    """What a finished run came to: what was left out, and what nobody can see now."""
+    hidden = joined([each.object for each in unseen])
+    return _without(missing) + (f"; something hides {hidden} from the last look" if hidden else "")
+
+
+def _without(missing: Sequence[ev.MissingPart]) -> str:
     if not missing:
         return "the task is done"
     said: dict[str | None, list[str]] = {}

@@ -7,6 +7,7 @@ from typing import Generic, Protocol, TypeVar
 
 import numpy as np
 
+from sim.camera_cover import CameraCover
 from sim.free_pose import PLACE_RADIUS_M, radius_m
 from tasks.footprint import Footprint
 from tasks.intervention import Act, Intervention
@@ -41,6 +42,7 @@ class Acts(ABC, Generic[P, At]):
     """Everybody who is not the robot; a world says how parts (`P`) come to be at a pose (`At`)."""
 
     def __init__(self, scene: Scene, parts: Mapping[str, P]) -> None:
+        self.head_cover = CameraCover()
         self._scene = scene
         self._parts = parts
         self._ways: dict[Act, Callable[[Intervention], None]] = {
@@ -51,6 +53,8 @@ class Acts(ABC, Generic[P, At]):
             Act.MOVE: self._move,
             Act.BLOCK: self._block,
             Act.RELEASE: self._release,
+            Act.COVER: self._cover,
+            Act.UNCOVER: self._uncover,
         }
 
     def intervene(self, intervention: Intervention) -> str:
@@ -167,6 +171,16 @@ class Acts(ABC, Generic[P, At]):
         if not in_the_way and not lying:
             nothing = f" and '{intervention.place}' is free" if intervention.place else ""
             raise Impossible(f"nobody stands in the way{nothing}")
+
+    def _cover(self, _: Intervention) -> None:
+        if self.head_cover.on:
+            raise Impossible("the head camera is covered already")
+        self.head_cover.on = True
+
+    def _uncover(self, _: Intervention) -> None:
+        if not self.head_cover.on:
+            raise Impossible("nothing covers the head camera")
+        self.head_cover.on = False
 
     # --- How ----------------------------------------------------------------------------------
 

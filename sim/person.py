@@ -15,6 +15,7 @@ _ACTS = {
     "put_back": Act.PUT_BACK,
     "hand_over": Act.HAND_OVER,
     "clear_way": Act.RELEASE,
+    "clear_view": Act.UNCOVER,
 }
 
 
@@ -64,6 +65,8 @@ def deed(
         return Deed(Intervention(act=act, object=promise.in_the_way), delay_s)
     if act is Act.RELEASE:
         return Deed(Intervention(act=act, object=promise.object, place=promise.place), delay_s)
+    if act is Act.UNCOVER:
+        return Deed(Intervention(act=act), delay_s)
     if promise.object is None:
         return None
     handled = promise.object

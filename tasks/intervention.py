@@ -25,15 +25,22 @@ class Act(StrEnum):
     """Stand in the way of the arm."""
     RELEASE = "release"
     """Get out of the way, and put aside the object, or what lies at the place where it is to go."""
+    COVER = "cover"
+    """Cover the head camera."""
+    UNCOVER = "uncover"
+    """Clear the view of the head camera."""
+
+
+_WITHOUT_OBJECT = (Act.BLOCK, Act.RELEASE, Act.COVER, Act.UNCOVER)
 
 
 class Intervention(StrictModel):
     """One thing that a person does in a world.
 
-    `object` is required by every act but `block` and `release`; `place` (a name of the scene) by
-    `place`; `to` by `move`. A `release` with both `object` and `place` frees that place as well,
-    one with an `object` alone puts that aside. `manner` says how `steal` takes the object: `vanish`
-    at once, or `pull` it out of the gripper by force.
+    `object` is required by every act but `block`, `release`, `cover` and `uncover`; `place` (a name
+    of the scene) by `place`; `to` by `move`. A `release` with both `object` and `place` frees that
+    place as well, one with an `object` alone puts that aside. `manner` says how `steal` takes the
+    object: `vanish` at once, or `pull` it out of the gripper by force.
     """
 
     act: Annotated[Act, Field(strict=False)]
@@ -44,7 +51,7 @@ class Intervention(StrictModel):
 
     @model_validator(mode="after")
     def _require_what_the_act_needs(self) -> Self:
-        if self.act not in (Act.BLOCK, Act.RELEASE) and self.object is None:
+        if self.act not in _WITHOUT_OBJECT and self.object is None:
             raise ValueError(f"act '{self.act}' needs an 'object'")
         if self.act is Act.MOVE and self.to is None:
             raise ValueError("act 'move' needs a pose 'to'")

@@ -7,6 +7,7 @@ from robots.behaviors.behavior import Behavior
 from robots.body import CameraImage, ToolPose
 from robots.catalogue import Part
 from robots.link.messages import Location, WasDone
+from robots.result import Result
 from robots.vision.head import HeadSighting
 from robots.vision.obstruction import Obstruction
 from tasks.scene import StrictModel
@@ -14,7 +15,10 @@ from tasks.scene import StrictModel
 
 @dataclass(frozen=True, slots=True)
 class Assignment:
-    """What is to be executed, under which id; `was_done` as a `start` command has it."""
+    """What is to be executed, under which id; `was_done` as a `start` command has it.
+
+    `finished` are the results that there are already.
+    """
 
     execution: str
     behavior: Behavior
@@ -23,18 +27,21 @@ class Assignment:
     target: Location | None
     needs_help: bool
     was_done: WasDone | None = None
+    finished: Sequence[Result] = ()
 
 
 @dataclass(slots=True)
 class Findings:
     """What was seen before the first step; `carrying`: the object is in the gripper already.
 
-    `refusal` says why the object cannot be grasped and placed as it was seen. `obstruction` is what
-    stands in `way`, through which the tool point is to go.
+    `blind` says why the head camera shows nothing of the table, `refusal` why the object cannot be
+    grasped and placed as it was seen. `obstruction` is what stands in `way`, through which the tool
+    point is to go.
     """
 
     carrying: bool = False
     image: CameraImage | None = None
+    blind: str | None = None
     sighting: HeadSighting | None = None
     refusal: str | None = None
     obstruction: Obstruction | None = None

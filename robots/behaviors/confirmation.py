@@ -23,6 +23,8 @@ class Outcome:
     image: CameraImage
     sighting: HeadSighting | None
     presence: Presence
+    blind: str | None = None
+    """Why the picture shows nothing of the table."""
 
     def is_inexact(self, target: Location) -> bool:
         """Whether it is wholly seen at its place, but farther off than arm and camera err."""
@@ -48,4 +50,7 @@ def look_at_outcome(part: Part, target: Location, arm: Arm, senses: Senses) -> R
 
 def _look(part: Part, target: Location, senses: Senses) -> Outcome:
     image = senses.look()
+    blind = senses.why_blind(image)
+    if blind is not None:
+        return Outcome(image, None, Presence.HIDDEN, blind)
     return Outcome(image, senses.sight(part, image), senses.presence(image, part, target))

@@ -7,10 +7,17 @@ from robots.arm import Arm, Routine
 from robots.behaviors.assignment import Assignment
 from robots.behaviors.backing_off import get_out_of_view
 from robots.behaviors.confirmation import look_at_outcome
+from robots.behaviors.covering import CoveredResultGone
 from robots.behaviors.execution_state import ExecutionState, ExecutionTransitionError, is_over
 from robots.behaviors.phase import Phase
 from robots.behaviors.plan import Plan, make_plan
-from robots.behaviors.preparation import LOOK_AGAIN_S, check_carrying, find, goes_on_carrying
+from robots.behaviors.preparation import (
+    LOOK_AGAIN_S,
+    check_carrying,
+    check_sight,
+    find,
+    goes_on_carrying,
+)
 from robots.behaviors.progress import Progress
 from robots.behaviors.put_down import put_down, set_down
 from robots.behaviors.step_walk import StepWalk
@@ -134,8 +141,10 @@ class Execution:
             while not there:
                 plan = yield from self._prepare()
                 if plan is None:
-                    self._finish(found_in_place=not self._progress.inexact)
+                    own = self._progress.inexact or self._progress.unconfirmed
+                    self._finish(found_in_place=not own)
                     return
+                self._progress.unconfirmed = False
                 self._progress.move_to(ExecutionState.RUNNING)
                 if resumed:
                     self._report(Resumed(execution=self.id, step=plan.first))
@@ -144,6 +153,9 @@ class Execution:
             self._finish(found_in_place=False)
         except Interruption as interruption:
             yield from self._react(interruption.monitor.meanwhile)
+        except CoveredResultGone:
+            # The service has every result looked at before it lets this go on.
+            yield from self.retreat(end=False)
 
     # --- Before the first step ----------------------------------------------------------------
 
@@ -157,6 +169,8 @@ class Execution:
         carrying = yield from check_carrying(part, arm, senses)
         seen.carrying = carrying and goes_on_carrying(self._assignment, arm, senses)
         if seen.carrying:
+            yield from check_sight(arm, senses, seen)
+            self._require_sight()
             progress.plan = make_plan(self._assignment, arm, senses, seen)
             refused = progress.plan is None and seen.refusal is not None
             if refused and (yield from set_down(arm, senses, self._picked_at)):
@@ -167,6 +181,7 @@ class Execution:
             yield from put_down(arm, senses, self._picked_at)
             yield from get_out_of_view(progress, arm, watch)
             yield from find(part, arm, senses, seen)
+            self._require_sight()
             if self._in_place() and not progress.inexact:
                 return None
             if progress.felt is not None and self._is_hidden(before):
@@ -197,7 +212,15 @@ class Execution:
         self._senses.doubt()
         yield from self._arm.wait(LOOK_AGAIN_S)
         yield from find(self._assignment.part, self._arm, self._senses, progress.seen)
+        self._require_sight()
         progress.plan = make_plan(self._assignment, self._arm, self._senses, progress.seen)
+
+    def _require_sight(self) -> None:
+        """Raises `Interruption` where the head camera shows nothing of the table."""
+        blind = self._progress.seen.blind
+        if blind is not None:
+            self._watch.check(None)
+            raise ExecutionTransitionError(f"expected an issue, as {blind}, got none")
 
     def _in_place(self) -> bool:
         seen, target = self._progress.seen, self._assignment.target
@@ -233,6 +256,7 @@ class Execution:
         self._arm.be_careful(1.0)
         outcome = yield from look_at_outcome(part, target, self._arm, self._senses)
         self._progress.outcome = outcome
+        self._progress.unconfirmed = outcome.blind is not None
         self._watch.check(None)
         if outcome.presence is not Presence.GONE:
             if self._progress.inexact or not outcome.is_inexact(target):

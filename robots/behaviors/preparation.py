@@ -22,7 +22,7 @@ def check_carrying(part: Part | None, arm: Arm, senses: Senses) -> Routine[bool]
 
 
 def find(part: Part | None, arm: Arm, senses: Senses, findings: Findings) -> Routine[None]:
-    """Look for the object, again if it is not wholly seen.
+    """Look for the object, again if it, or the table, is not wholly seen.
 
     What something hides is taken to be where it was last seen whole: the fingers will tell.
     """
@@ -32,13 +32,27 @@ def find(part: Part | None, arm: Arm, senses: Senses, findings: Findings) -> Rou
             if findings.sighting is None:
                 senses.doubt()
         findings.image = senses.look()
+        findings.blind = senses.why_blind(findings.image)
+        if findings.blind is not None:
+            continue
         if part is None:
             return
         findings.sighting = senses.sight(part, findings.image)
         if findings.sighting is not None and findings.sighting.complete:
             return
-    if part is not None and findings.sighting is None and findings.image is not None:
+    unseen = part is not None and findings.sighting is None and findings.blind is None
+    if part is not None and unseen and findings.image is not None:
         findings.sighting = senses.recall(part, findings.image)
+
+
+def check_sight(arm: Arm, senses: Senses, findings: Findings) -> Routine[None]:
+    """Whether the head camera shows the table past the arm; again while it does not."""
+    for attempt in range(LOOKS):
+        if attempt:
+            yield from arm.wait(LOOK_AGAIN_S)
+        findings.blind = senses.why_blind(senses.look())
+        if findings.blind is None:
+            return
 
 
 def goes_on_carrying(assignment: Assignment, arm: Arm, senses: Senses) -> bool:

@@ -19,7 +19,8 @@ class Progress:
 
     `step` counts from 1 and is 0 before the first; `contact` is what the monitors are to judge,
     `felt` what the empty hand felt last on its way to the object. `inexact`: the object is at its
-    place, but so far off that it is placed once more. `regrasps`: so often it was let go of, as
+    place, but so far off that it is placed once more; `unconfirmed`: it was let go of there, and
+    nothing could be seen. `regrasps`: so often it was let go of, as
     something had pushed it askew, to be grasped anew.
     """
 
@@ -32,6 +33,7 @@ class Progress:
     contact: Contact | None = None
     felt: Contact | None = None
     inexact: bool = False
+    unconfirmed: bool = False
     regrasps: int = 0
 
     def move_to(self, state: ExecutionState) -> None:

@@ -9,6 +9,7 @@ from robots.behaviors.assignment import Assignment
 from robots.behaviors.backing_off import back_off, try_again
 from robots.behaviors.behavior import Move, Step
 from robots.behaviors.contact import Contact, ContactWatch, Track, Try, hindering_n, is_arrival
+from robots.behaviors.covering import Covering
 from robots.behaviors.execution_state import ExecutionState, ExecutionTransitionError
 from robots.behaviors.phase import Phase
 from robots.behaviors.plan import Plan
@@ -48,11 +49,12 @@ class StepWalk:
         self._arm = arm
         self._senses = senses
         self._report = report
+        self._covering = Covering(assignment, senses)
 
     def take_all(self, plan: Plan) -> Routine[bool]:
         """All steps; False if what they were planned for has to be looked at again.
 
-        Raises `Interruption`.
+        Raises `Interruption`, and `CoveredResultGone`.
         """
         for number in range(plan.first, len(plan.steps) + 1):
             taken = yield from self._take(number)
@@ -114,6 +116,7 @@ class StepWalk:
         while True:
             self._watch.check_if_due()
             now_s = self._arm.body.time_s()
+            self._covering.look_if_due(self._progress.phase, now_s)
             if not self._arm.body.moving:
                 arrived_s = now_s if arrived_s is None else arrived_s
                 settled = now_s - arrived_s >= step.settle_s - 1e-9

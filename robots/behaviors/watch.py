@@ -81,6 +81,8 @@ class Watch:
         for monitor in self._watching(self._progress.phase):
             if monitor.issue in self._raised:
                 continue
+            if view.blind is not None and monitor.camera == HEAD:
+                continue
             detection = monitor.check(view)
             if detection is None:
                 continue
@@ -149,6 +151,7 @@ class Watch:
             sighting=progress.seen.sighting,
             refusal=progress.seen.refusal,
             obstruction=progress.seen.obstruction,
+            blind=progress.seen.blind if outcome is None else outcome.blind,
             grip=grip,
             placed=None if outcome is None else outcome.sighting,
             presence=None if outcome is None else outcome.presence,

@@ -212,7 +212,8 @@ class Looked(Message):
     what was expected came to be within the time given; None when nothing was expected.
     `there` and `gone`: of the command's `finished` results those that are seen to be so, and those
     whose place is seen without the object; what something hides is in neither. `held`: the object
-    that is between the fingers.
+    that is between the fingers. `blind`: why the head camera showed nothing of the table, so that
+    the look tells nothing of what is on it; None if it did.
     """
 
     type: Literal["looked"] = "looked"
@@ -223,6 +224,7 @@ class Looked(Message):
     there: list[FinishedResult] = []
     gone: list[FinishedResult] = []
     held: str | None = None
+    blind: str | None = None
 
 
 class Held(Message):
@@ -291,7 +293,9 @@ class Start(Message):
     `size` are the full extents of the object and `target` where its bottom centre is to rest, as
     the task's scene has them; None where it has none. `was_done`: the leaf was done before, and
     its object was then seen `gone` from its place, or is still `there` as far as anybody knows;
-    None for a leaf that never was, or that a robot has set about since.
+    None for a leaf that never was, or that a robot has set about since. `finished`: the results
+    that there are; one that is seen gone while the robot is about to cover its place ends in
+    `holding`, and the service has it look.
     """
 
     type: Literal["start"] = "start"
@@ -302,6 +306,7 @@ class Start(Message):
     size: tuple[float, float, float] | None = None
     target: Location | None = None
     was_done: WasDone | None = None
+    finished: list[FinishedResult] = []
 
 
 class Interrupt(Message):
@@ -324,7 +329,8 @@ class Look(Message):
     Without `expect`: one look at everything. With it: keep looking until it is so or `within_s`
     have passed. `at_place`: `object` rests at `place`; `in_reach`: `object` rests within the
     graspable range; `in_gripper`: take `object` from a person (move to the hand-over pose, open,
-    close once it is seen between the fingers); `way_clear`: nothing is in the arm's way.
+    close once it is seen between the fingers); `way_clear`: nothing is in the arm's way;
+    `view_clear`: the head camera shows the table.
     `rate`: simulated worlds let their clock run so fast while they look again and again; None is
     the run's own speed. `finished`: the results to judge by what the last pictures show.
     """
@@ -332,7 +338,7 @@ class Look(Message):
     type: Literal["look"] = "look"
     object: str | None = None
     place: str | None = None
-    expect: Literal["at_place", "in_reach", "in_gripper", "way_clear"] | None = None
+    expect: Literal["at_place", "in_reach", "in_gripper", "way_clear", "view_clear"] | None = None
     within_s: float = 0.0
     rate: float | None = None
     finished: list[FinishedResult] = []

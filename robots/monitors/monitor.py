@@ -50,6 +50,7 @@ class MonitorView:
     is where the head camera saw it, `refusal` why the arm cannot grasp and place it, and
     `obstruction` what it saw in the way; all three are from before the first step. `grip` is what
     the newest forearm picture says, from when the gripper has closed on the object until it opens.
+    `blind` says why the head camera shows nothing of the table, in `PREPARE` and in `CONFIRM`.
     `placed` and `presence` say where the object was seen in `CONFIRM`, after the last step.
     `contact` is what pushed against the arm in every try of a motion.
     `contact_forces_n` are the readings of every control cycle since the last check.
@@ -67,6 +68,7 @@ class MonitorView:
     sighting: HeadSighting | None = None
     refusal: str | None = None
     obstruction: Obstruction | None = None
+    blind: str | None = None
     grip: GripReading | None = None
     placed: HeadSighting | None = None
     presence: Presence | None = None
@@ -81,7 +83,8 @@ class Monitor(ABC, Generic[P]):
     `issue` is the kind, under which dialogue scripts are registered too. It checks in the
     `phases` of the `behaviors` that it names (a behavior says in `monitored_as` by which name it
     is watched), at the forearm camera's period, and never in any other. `camera` is the one whose
-    pictures it judges, None if it judges by something else. `parameters` is the pydantic model of
+    pictures it judges, None if it judges by something else; by pictures of a camera that shows
+    nothing of the table none is asked to judge. `parameters` is the pydantic model of
     its settings. A monitor is made anew for each execution, so it may remember what it saw.
     """
 

@@ -11,6 +11,7 @@ import shapely
 from robots.catalogue import Part
 from robots.link.messages import Location
 from robots.vision.head import HeadSighting
+from robots.vision.height_map import HeightMap
 from robots.vision.projection import project
 from robots.vision.seen_box import SeenBox
 from robots.vision.table_view import TableView
@@ -46,9 +47,7 @@ def judge_presence(
     view: TableView, part: Part, equals: AbstractSet[str], target: Location, bottom_z: float
 ) -> Presence:
     """Whether `part`, or one of its `equals` by name, stands with its bottom at `bottom_z`."""
-    room = SeenBox(
-        target.x, target.y, target.yaw, (*part.size[:2], part.height), bottom_z, None, complete=True
-    )
+    room = room_of(part, target, bottom_z)
     for box in view.boxes:
         if box.name in equals and _stands_at(box, room):
             return Presence.THERE
@@ -57,8 +56,18 @@ def judge_presence(
         return Presence.GONE
     if any(_keeps_out(box, room, equals) for box in view.boxes):
         return Presence.GONE
-    through = _share_seen_through(view, room)
-    return Presence.GONE if through >= _SEEN_THROUGH else Presence.HIDDEN
+    return Presence.GONE if is_seen_through(view.heights, room) else Presence.HIDDEN
+
+
+def room_of(part: Part, target: Location, bottom_z: float) -> SeenBox:
+    """The room that a part takes whose bottom is at `bottom_z`."""
+    size = (*part.size[:2], part.height)
+    return SeenBox(target.x, target.y, target.yaw, size, bottom_z, None, complete=True)
+
+
+def is_seen_through(heights: HeightMap, room: SeenBox) -> bool:
+    """Whether the camera sees what is behind where the part's top would be, so that it is gone."""
+    return _share_seen_through(heights, room) >= _SEEN_THROUGH
 
 
 def _stands_at(box: SeenBox, room: SeenBox) -> bool:
@@ -88,7 +97,7 @@ def _fills(box: SeenBox, room: SeenBox) -> bool:
     return bool(outlines[0].intersects(outlines[1]))
 
 
-def _share_seen_through(view: TableView, room: SeenBox) -> float:
+def _share_seen_through(seen: HeightMap, room: SeenBox) -> float:
     """The share of where the part's top would be behind which the camera sees something."""
     spread = np.linspace(-_INNER / 2, _INNER / 2, _SAMPLES)
     x, y = (each.ravel() for each in np.meshgrid(spread * room.size[0], spread * room.size[1]))
@@ -97,12 +106,12 @@ def _share_seen_through(view: TableView, room: SeenBox) -> float:
     tops = np.stack(
         [room.x + cos * x - sin * y, room.y + sin * x + cos * y, np.full(len(x), top_z)], axis=1
     )
-    us, vs = np.rint(project(view.heights.image, tops)).astype(np.intp).T
-    rows, columns = view.heights.height_m.shape
+    us, vs = np.rint(project(seen.image, tops)).astype(np.intp).T
+    rows, columns = seen.height_m.shape
     pictured = (us >= 0) & (us < columns) & (vs >= 0) & (vs < rows)
     heights = np.full(len(us), np.nan)
-    heights[pictured] = view.heights.height_m[vs[pictured], us[pictured]]
+    heights[pictured] = seen.height_m[vs[pictured], us[pictured]]
     # A ray that is still under the top's height has passed through where the top would be.
-    slack_m = min(max(0.006, 5 * view.heights.noise_m), room.size[2] / 2)
+    slack_m = min(max(0.006, 5 * seen.noise_m), room.size[2] / 2)
     with np.errstate(invalid="ignore"):
         return float((heights < top_z - slack_m).mean())

@@ -11,6 +11,11 @@ NEAR_M = 0.02
 """Points nearer to the lens than this are drawn as if they were this far away."""
 
 
+def is_measured(depth_m: NDArray[np.float32] | NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Where there is a depth: drivers tell a missing one as NaN, as 0, or as infinite."""
+    return np.isfinite(depth_m) & (depth_m > 0.0)
+
+
 def unproject(image: CameraImage, us: NDArray[np.intp], vs: NDArray[np.intp]) -> Points:
     """The points (n, 3) in the base frame that pixels of an RGB-D picture show.
 
@@ -33,7 +38,7 @@ def unproject(image: CameraImage, us: NDArray[np.intp], vs: NDArray[np.intp]) ->
 def heights(image: CameraImage) -> NDArray[np.float64]:
     """How high (metres, base frame) lies what each pixel of an RGB-D picture shows.
 
-    Raises `ValueError` for a picture without depth.
+    NaN where there is no depth. Raises `ValueError` for a picture without depth.
     """
     if image.depth_m is None:
         raise ValueError("expected a picture with depth, got one without")
@@ -42,7 +47,8 @@ def heights(image: CameraImage) -> NDArray[np.float64]:
     x, y, z, origin = image.pose[2]
     across = (np.arange(columns) - cx) * (x / image.focal_px)
     down = (np.arange(rows) - cy) * (y / image.focal_px) + z
-    found: NDArray[np.float64] = image.depth_m * (across[None, :] + down[:, None]) + origin
+    depth_m = np.where(is_measured(image.depth_m), image.depth_m, np.nan)
+    found: NDArray[np.float64] = depth_m * (across[None, :] + down[:, None]) + origin
     return found
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robots.body import CameraImage
+from robots.vision.projection import is_measured
 
 Picture = NDArray[np.float32]
 
@@ -22,8 +23,11 @@ _MAD_TO_SIGMA = 1.4826
 _LEAST_GREY = 8.0
 _LEAST_DEPTH_M = 0.008
 """Smaller differences are those of light and of depth at edges, not of something that moved."""
-_DARKEST, _BRIGHTEST = 8.0, 247.0
+DARKEST, BRIGHTEST = 8.0, 247.0
+"""Grey levels beyond which a pixel is under- or overexposed."""
 _FEWEST_PX = 6
+_STILL_SHARE = 0.5
+"""What is dark, or an edge, has depth in some pictures and none in others."""
 _LEAST_SHARE = 5e-5
 """A patch that covers less of the picture is noise, or too small for a part."""
 
@@ -39,8 +43,31 @@ def shows_change(before: CameraImage, now: CameraImage) -> bool:
     return _differ(*_equally_exposed(before, now), _LEAST_GREY) or (
         before.depth_m is not None
         and now.depth_m is not None
-        and _differ(before.depth_m, now.depth_m, _LEAST_DEPTH_M)
+        and _differ(_known(before.depth_m), _known(now.depth_m), _LEAST_DEPTH_M)
     )
+
+
+def still_measures(before: CameraImage, now: CameraImage, mask: NDArray[np.uint8]) -> bool:
+    """Whether the later picture has depth where the earlier one had it, but for single pixels.
+
+    That nothing has changed says nothing of what is not measured any more. `mask` (h, w) is not 0
+    where it matters.
+    """
+    if before.depth_m is None:
+        return True
+    if now.depth_m is None:
+        return False
+    where = mask > 0
+    had, has = (
+        int(np.count_nonzero(is_measured(depth_m[where])))
+        for depth_m in (before.depth_m, now.depth_m)
+    )
+    return has >= _STILL_SHARE * had
+
+
+def _known(depth_m: Picture) -> Picture:
+    """Depth with NaN where there is none."""
+    return np.where(is_measured(depth_m), depth_m, np.float32(np.nan))
 
 
 def is_same(before: CameraImage, now: CameraImage) -> bool:
@@ -58,7 +85,7 @@ def _equally_exposed(before: CameraImage, now: CameraImage) -> tuple[Picture, Pi
     """Both pictures at the later one's exposure; NaN where either is over- or underexposed."""
     pictures = [each.bgr.astype(np.float32) for each in (before, now)]
     for each in pictures:
-        each[(each < _DARKEST) | (each > _BRIGHTEST)] = np.nan
+        each[(each < DARKEST) | (each > BRIGHTEST)] = np.nan
     ratios = (pictures[1] / pictures[0])[::_SPARSE, ::_SPARSE]
     known = ratios[np.isfinite(ratios)]
     gain = np.float32(np.median(known)) if known.size else np.float32(1.0)

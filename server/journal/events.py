@@ -349,12 +349,14 @@ class NodeUndone(NodeEvent):
 
     `robot` saw that the leaf's object is gone from its place, or, with `because_of`, that another
     one's is, after which a THEN puts this leaf. Those that come after others are told first.
+    `unseen`: the object may well be there, but the robot sees nothing.
     """
 
     type: Literal["node_undone"] = "node_undone"
     robot: str
     reason: str
     because_of: str | None = None
+    unseen: bool = False
 
 
 class NodeAbandoned(NodeEvent):
@@ -402,11 +404,24 @@ class MissingPart(EventModel):
     left_out_by: str | None = None
 
 
+class UnseenPart(EventModel):
+    """A done leaf whose object the last look could not see, as something hides its place."""
+
+    node: str
+    name: str
+    object: str
+    place: str
+
+
 class RunFinished(Event):
-    """The task is done. `missing`: what was left out, as a helper said."""
+    """The task is done. `missing`: what was left out, as a helper said; `unseen`: what is hidden.
+
+    The journal of an older Mend does not tell what was hidden.
+    """
 
     type: Literal["run_finished"] = "run_finished"
     missing: list[MissingPart]
+    unseen: list[UnseenPart] = []
 
 
 class RunFailed(Event):

@@ -57,6 +57,7 @@ def _untrue_missing(
     leaves = leaves_of(started)
     scene = Scene.model_validate(started.scene, strict=False)
     told = {each.node for each in end.missing}
+    unseen = {each.node for each in end.unseen}
     blocked = _somebody_stands_there(events)
     wrong = []
     started_last = _started_last(events)
@@ -72,7 +73,7 @@ def _untrue_missing(
         unsure = blocked or _is_under(leaf, [leaves[node] for node in told], scene)
         if there and done.node in told and not unsure:
             wrong.append(f"'{leaf.object}' is told to be missing, but is at its place")
-        if away and done.node not in told:
+        if away and done.node not in told | unseen:
             wrong.append(f"'{leaf.object}' is not at its place, but is not told to be missing")
         others = [other for name, other in resting.items() if name != leaf.object]
         taken = any(_offset(each, scene, scene.places[leaf.place])[0] <= AWAY_M for each in others)
@@ -211,7 +212,10 @@ def _was_gone(events: Sequence[ev.Event], end: ev.RunFailed) -> bool:
     """Whether it says that a leaf's result was gone so often, and that is so."""
     said = re.search(r"it was gone again after it had been done (\d+) times", end.reason)
     gone = sum(
-        isinstance(each, ev.NodeUndone) and each.node == end.node and each.because_of is None
+        isinstance(each, ev.NodeUndone)
+        and each.node == end.node
+        and each.because_of is None
+        and not each.unseen
         for each in events
     )
     return said is not None and gone == int(said[1])

@@ -70,8 +70,14 @@ def render_report(events: Sequence[ev.Event], pictures: Mapping[UUID, bytes]) ->
 
 def _verdict(record: RunRecord) -> str:
     match record.end:
-        case ev.RunFinished(missing=[]):
+        case ev.RunFinished(missing=[], unseen=[]):
             return "The task is done, and the last look found no part gone from its place."
+        case ev.RunFinished(missing=[], unseen=unseen):
+            hidden = joined([each.object for each in unseen])
+            return (
+                "The task is done, and the last look found no part gone from its place; something "
+                f"hides {hidden} from it."
+            )
         case ev.RunFinished(missing=missing):
             parts = [told_missing(each) for each in missing[:MAX_MISSING]]
             if (more := len(missing) - len(parts)) > 0:

@@ -152,8 +152,9 @@ class DialogueLooks:
         named = dialogue.raised.object is not None
         if Expectation.IN_REACH in watched and named:
             return Expectation.IN_REACH
-        if Expectation.WAY_CLEAR in watched:
-            return Expectation.WAY_CLEAR
+        for each in (Expectation.WAY_CLEAR, Expectation.VIEW_CLEAR):
+            if each in watched:
+                return each
         if Expectation.AT_PLACE in watched and named and dialogue.raised.place is not None:
             return Expectation.AT_PLACE
         return None

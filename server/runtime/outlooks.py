@@ -71,8 +71,9 @@ def _unchanged(state: RunState, leaf: int, raised: ev.IssueRaised) -> int:
         return 1
     looked = dialogue.first_look
     then = before.last_seen if looked is None else looked.position
-    about_the_way = Expectation.WAY_CLEAR in state.scripts[raised.issue].put_right
-    if not about_the_way and _is_elsewhere(then, raised.last_seen):
+    put_right = state.scripts[raised.issue].put_right
+    about_the_part = not {Expectation.WAY_CLEAR, Expectation.VIEW_CLEAR} & set(put_right)
+    if about_the_part and _is_elsewhere(then, raised.last_seen):
         return 1
     return before.outlook.unchanged + 1
 

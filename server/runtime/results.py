@@ -1,6 +1,6 @@
 """The results of finished leaves: which are looked at, and what follows when one is gone."""
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 
 from robots.link.messages import FinishedResult, Looked
 from server.journal import events as ev
@@ -40,6 +40,18 @@ def missing_parts(state: RunState) -> list[ev.MissingPart]:
     ]
 
 
+def unseen_parts(state: RunState, there: Collection[FinishedResult]) -> list[ev.UnseenPart]:
+    """What is neither left out nor among the results that the last look saw."""
+    tree = state.tree
+    return [
+        ev.UnseenPart(
+            node=tree.path_of(leaf), name=tree.name_of(leaf), object=each.object, place=each.place
+        )
+        for each, leaf in results_of(state).items()
+        if leaf not in state.left_out and each not in there
+    ]
+
+
 class Results:
     """Takes back what a robot sees gone, and notes what was left out and is seen again."""
 
@@ -63,13 +75,27 @@ class Results:
         elif returned:
             await self._context.commit(returned)
 
+    async def doubt_last(self, side: RobotSide, blind: str) -> None:
+        """Take back what was handled last: of a table that is not seen nobody can say it is done.
+
+        The robot looks for it, and asks for its view.
+        """
+        results = results_of(self._context.state)
+        seen = [leaf for leaf in results.values() if leaf not in self._context.state.left_out]
+        if seen:
+            await self._take_back(seen[-1:], side, (), blind)
+
     def _returned(self, leaf: int, side: RobotSide) -> ev.NodeReturned:
         return ev.NodeReturned(
             **self._context.stamp(), **self._reports.node(leaf), robot=side.robot
         )
 
     async def _take_back(
-        self, gone: Iterable[int], side: RobotSide, before: Iterable[ev.Event]
+        self,
+        gone: Iterable[int],
+        side: RobotSide,
+        before: Iterable[ev.Event],
+        blind: str | None = None,
     ) -> None:
         tree = self._context.state.tree
         because: dict[int, int] = {leaf: leaf for leaf in gone}
@@ -81,13 +107,20 @@ class Results:
             active.update(found.put_back)
         put_back = self._cutting_short.put_back(active, "what it comes after is no longer done")
         # What a THEN puts after another leaf is after it in the tree as well.
-        undone = [self._undone(leaf, because[leaf], side) for leaf in sorted(because, reverse=True)]
+        undone = [
+            self._undone(leaf, because[leaf], side, blind) for leaf in sorted(because, reverse=True)
+        ]
         await self._cutting_short.commit(active, [*before, *put_back, *undone])
 
-    def _undone(self, leaf: int, because_of: int, side: RobotSide) -> ev.NodeUndone:
+    def _undone(
+        self, leaf: int, because_of: int, side: RobotSide, blind: str | None
+    ) -> ev.NodeUndone:
         tree = self._context.state.tree
         definition = tree.leaf_definition(leaf)
         follows = because_of != leaf
+        why = f"{definition.object} is no longer at {definition.place}"
+        if blind is not None:
+            why = f"whether {definition.object} is at {definition.place} cannot be seen: {blind}"
         return ev.NodeUndone(
             **self._context.stamp(),
             **self._reports.node(leaf),
@@ -95,7 +128,8 @@ class Results:
             reason=(
                 f"it comes after {tree.name_of(because_of)}, which is no longer done"
                 if follows
-                else f"{definition.object} is no longer at {definition.place}"
+                else why
             ),
             because_of=tree.path_of(because_of) if follows else None,
+            unseen=blind is not None and not follows,
         )

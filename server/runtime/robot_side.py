@@ -84,6 +84,8 @@ class RobotSide:
     """The results that there are to judge now."""
     there: frozenset[FinishedResult] = frozenset()
     """Of the results that the last look judged, those that it saw to be so."""
+    blind: str | None = None
+    """Why the last look saw nothing of the table."""
 
     @property
     def free(self) -> bool:
@@ -153,6 +155,7 @@ class RobotSide:
         size: tuple[float, float, float] | None,
         target: Location | None,
         was_done: WasDone | None,
+        finished: list[FinishedResult],
     ) -> None:
         self.looked_at = None
         self.holds_execution = False
@@ -167,6 +170,7 @@ class RobotSide:
                 size=size,
                 target=target,
                 was_done=was_done,
+                finished=finished,
             ),
         )
 
@@ -189,7 +193,9 @@ class RobotSide:
 
     def take_look(self, looked: Looked, time: float) -> Purpose | None:
         """Note what a look saw; returns its purpose if it is the look that was last asked for."""
-        self.seen = dict(looked.objects)
+        self.blind = looked.blind
+        if looked.blind is None:
+            self.seen = dict(looked.objects)
         self.held = looked.held
         self.there = frozenset(looked.there)
         self.gripper = (looked.gripper.x, looked.gripper.y, looked.gripper.z)

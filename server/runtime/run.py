@@ -41,7 +41,7 @@ from server.runtime.interventions import Interventions
 from server.runtime.pose_sink import PoseSink
 from server.runtime.presence import Presence
 from server.runtime.report_events import ReportEvents
-from server.runtime.results import Results, missing_parts, results_of
+from server.runtime.results import Results, missing_parts, results_of, unseen_parts
 from server.runtime.robot_side import JUDGING, Doing, Purpose, RobotSide
 from server.runtime.run_state import DialogueState, Execution
 from server.runtime.views import RunStatus
@@ -250,7 +250,7 @@ class Run:
 
     async def _looked(self, side: RobotSide, purpose: Purpose, fulfilled: bool) -> None:
         if purpose is Purpose.LAST:
-            await self._finish()
+            await self._finish(side)
             return
         dialogue = self._dialogue_of(side)
         if dialogue is not None:
@@ -337,7 +337,8 @@ class Run:
         taken_back = state.taken_back.get(execution.leaf)
         was_done: WasDone | None = None
         if taken_back is not None:
-            was_done = "gone" if taken_back.because_of is None else "there"
+            gone = taken_back.because_of is None and not taken_back.unseen
+            was_done = "gone" if gone else "there"
         tree, scene = state.tree, state.scene
         part = scene.objects.get(tree.leaf_definition(execution.leaf).object or "")
         place = scene.places.get(tree.leaf_definition(execution.leaf).place or "")
@@ -349,16 +350,23 @@ class Run:
             size=part.size if part else None,
             target=Location(**place.pose.model_dump()) if place else None,
             was_done=was_done,
+            finished=[
+                each for each, leaf in results_of(state).items() if leaf not in state.left_out
+            ],
         )
 
     # --- The end ------------------------------------------------------------------------------
 
-    async def _finish(self) -> None:
-        """End the run, unless the last look has taken something back."""
+    async def _finish(self, side: RobotSide) -> None:
+        """End the run, unless the last look has taken something back, or has seen no table."""
         state = self._context.state
-        if state.tree.done(0):
-            missing = missing_parts(state)
-            await self._context.commit([ev.RunFinished(**self._context.stamp(), missing=missing)])
+        if state.tree.done(0) and side.blind is not None:
+            await self._results.doubt_last(side, side.blind)
+        if not state.tree.done(0):
+            return
+        missing, unseen = missing_parts(state), unseen_parts(state, side.there)
+        finished = ev.RunFinished(**self._context.stamp(), missing=missing, unseen=unseen)
+        await self._context.commit([finished])
 
     # --- What people ask for ------------------------------------------------------------------
 

@@ -400,7 +400,7 @@ class RunState:
         if leaf in self.left_out:
             self.to_leave_out[leaf] = self.left_out.pop(leaf)
         self.taken_back[leaf] = event
-        self.times_gone[leaf] += event.because_of is None
+        self.times_gone[leaf] += event.because_of is None and not event.unseen
 
     @_apply.register
     def _(self, event: ev.NodeReset) -> None:
@@ -433,7 +433,11 @@ class RunState:
     def _(self, event: ev.RunFinished) -> None:
         self._end(
             RunStatus.FINISHED,
-            RunResult(reason=finished_text(event.missing), missing=event.missing),
+            RunResult(
+                reason=finished_text(event.missing, event.unseen),
+                missing=event.missing,
+                unseen=event.unseen,
+            ),
         )
 
     @_apply.register
@@ -457,12 +461,13 @@ class RunState:
         self.lost.discard(event.robot)
 
 
-HelpExpectation = Literal["at_place", "in_reach", "in_gripper", "way_clear"]
+HelpExpectation = Literal["at_place", "in_reach", "in_gripper", "way_clear", "view_clear"]
 
 EXPECTED: dict[Help, HelpExpectation] = {
     Help.PLACE: "at_place",
     Help.PUT_BACK: "in_reach",
     Help.HAND_OVER: "in_gripper",
     Help.CLEAR_WAY: "way_clear",
+    Help.CLEAR_VIEW: "view_clear",
 }
 """What a camera has to see before a promise counts as kept."""

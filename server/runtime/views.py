@@ -9,7 +9,7 @@ from pydantic import BaseModel, ConfigDict
 
 from dialogue.script import Help
 from robots.link.messages import Detection
-from server.journal.events import AnswerOption, ClipPicture, MissingPart
+from server.journal.events import AnswerOption, ClipPicture, MissingPart, UnseenPart
 
 
 class View(BaseModel):
@@ -100,6 +100,7 @@ class RunResult(View):
     reason: str
     node: str | None = None
     missing: list[MissingPart] = []
+    unseen: list[UnseenPart] = []
 
 
 class RunSummary(View):

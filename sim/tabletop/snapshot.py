@@ -34,6 +34,7 @@ class TabletopSnapshot(StrictModel):
     held: Name | None
     blocker: tuple[float, float, float] | None
     hand_over: HandOverSnapshot | None
+    head_covered: bool = False
 
 
 def to_rest_pose(pose: PartPose) -> RestPose:

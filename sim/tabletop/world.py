@@ -11,6 +11,7 @@ from pydantic import Field
 
 from robots.body import Reach
 from robots.link.messages import ShownObject, ShownPose
+from sim.camera_cover import CoverableCamera
 from sim.depth_noise import DepthNoise
 from sim.lighting import Lighting
 from sim.raster import Light
@@ -63,7 +64,10 @@ class TabletopWorld:
         self.forearm = ForearmCamera(self._state, scenery, lighting, depth_noise)
         self._body = TabletopBody(
             self._state,
-            {"head": self.head, "forearm": self.forearm},
+            {
+                "head": CoverableCamera(self.head, self._person.head_cover),
+                "forearm": self.forearm,
+            },
             reach_for(scene, chosen.reach_m),
         )
 
@@ -112,6 +116,7 @@ class TabletopWorld:
             "hand_over": {"object": hand_over.part.name, "until_s": hand_over.until_s}
             if hand_over
             else None,
+            "head_covered": self._person.head_cover.on,
         }
 
     def restore(self, snapshot: dict[str, Any]) -> None:
@@ -133,6 +138,7 @@ class TabletopWorld:
         if saved.hand_over is not None:
             part = self._state.parts[saved.hand_over.object]
             self._person.hold_out(part, saved.hand_over.until_s)
+        self._person.head_cover.on = saved.head_covered
         self._state.settle()
 
     def close(self) -> None:

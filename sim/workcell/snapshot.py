@@ -52,3 +52,4 @@ class WorkcellSnapshot(StrictModel):
     obstacle: Triple | None
     hand_over: HandOverSnapshot | None
     generator: str
+    head_covered: bool = False

@@ -8,6 +8,7 @@ from typing import Any, Literal
 import numpy as np
 
 from robots.link.messages import ShownObject, ShownPose
+from sim.camera_cover import CoverableCamera
 from sim.depth_noise import DepthNoise
 from sim.lighting import Lighting
 from sim.raster import Light
@@ -72,7 +73,10 @@ class WorkcellWorld:
         )
         self.head = self.camera("head", head_optics())
         self.forearm = self.camera("forearm", forearm_optics(1.0 / _FOREARM_HZ[options.renderer]))
-        self._body.cameras = {"head": self.head, "forearm": self.forearm}
+        self._body.cameras = {
+            "head": CoverableCamera(self.head, self._person.head_cover),
+            "forearm": self.forearm,
+        }
 
     def camera(self, name: Literal["head", "forearm"], optics: Optics) -> WorkcellCamera:
         """Another camera where one of the robot's is."""
@@ -134,6 +138,7 @@ class WorkcellWorld:
             if hand_over
             else None,
             generator=json.dumps(self._rng.bit_generator.state),
+            head_covered=self._person.head_cover.on,
         ).model_dump(mode="json")
 
     def restore(self, snapshot: dict[str, Any]) -> None:
@@ -155,6 +160,7 @@ class WorkcellWorld:
             self._person.obstacle.stand_at(saved.obstacle)
         if saved.hand_over is not None:
             self._person.hold_out(self.parts[saved.hand_over.object], saved.hand_over.until_s)
+        self._person.head_cover.on = saved.head_covered
         self._body.cycle = saved.cycle
         self._rng.bit_generator.state = json.loads(saved.generator)
 

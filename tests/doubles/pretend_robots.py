@@ -59,7 +59,8 @@ class PretendRobot:
     what no look can judge. `returns`: once such an object is placed, all that was stolen is back at
     its place. `slow`: it is still at its first start until it is interrupted. `wrong`: what it
     believes to have missed or dropped stands within its reach all the time. `held` is between its
-    fingers all the time.
+    fingers all the time. Once `blinded_by` is placed its head camera is covered, until somebody
+    clears its view.
     """
 
     name: str
@@ -75,6 +76,7 @@ class PretendRobot:
         "missing",
         "blocked",
         "undone",
+        "blind",
     )
     commands: list[CommandBody] = field(default_factory=list)
     right: set[str] = field(default_factory=set)
@@ -96,6 +98,8 @@ class PretendRobot:
     in_reach: bool = False
     slow: bool = False
     held: str | None = None
+    blinded_by: str | None = None
+    blind: bool = False
 
     def hello(self) -> Hello:
         return Hello(
@@ -201,11 +205,18 @@ class PretendRobots:
                     robot.stolen.discard(deed.object or "")
                 if deed.act is Act.RELEASE:
                     robot.obstructed = False
+                if deed.act is Act.UNCOVER:
+                    robot.blind = False
                 await self.report(robot, Intervened(intervention=deed, by=by, command=command))
 
     async def _work(self, robot: PretendRobot, start: Start, *, resumed: bool = False) -> None:
         part = str(start.parameters.get("object"))
         faults = robot.faults.get(part, [])
+        if robot.blind:
+            await self._issue(robot, start, "blind", 0)
+            holding = {"execution": start.execution, "at": "neutral"}
+            await self.report(robot, Holding.model_validate(holding))
+            return
         if start.was_done is not None and not resumed and part not in robot.stolen:
             await self.report(robot, Finished(execution=start.execution, found_in_place=True))
             return
@@ -243,6 +254,8 @@ class PretendRobots:
         thefts = robot.thefts.get(part, [])
         if thefts:
             self._steal(robot, thefts.pop(0))
+        if part == robot.blinded_by:
+            robot.blind, robot.blinded_by = True, None
         await self.report(robot, Finished(execution=start.execution))
 
     async def _issue(self, robot: PretendRobot, start: Start, kind: str, step: int) -> None:
@@ -265,7 +278,7 @@ class PretendRobots:
             await self.report(robot, clip)
 
     def _verdict(self, robot: PretendRobot, result: FinishedResult) -> str:
-        if result.object in robot.hidden_at_place:
+        if robot.blind or result.object in robot.hidden_at_place:
             return "hidden"
         # A patient one would wait for ever for help that was given before it first looked.
         helped = set() if robot.patient else robot.placed
@@ -282,7 +295,8 @@ class PretendRobots:
     async def _look(self, robot: PretendRobot, command: str, look: Look) -> None:
         fulfilled = None
         if look.expect is not None:
-            clear = look.expect == "way_clear" and not robot.obstructed
+            clear = look.expect == "view_clear" and not robot.blind
+            clear |= look.expect == "way_clear" and not robot.obstructed
             there = robot.wrong and look.expect == "in_reach" and look.object not in robot.lost
             held = look.expect == "in_gripper" and look.object == robot.held
             fulfilled = (look.object or "") in robot.right or clear or there or held
@@ -296,7 +310,7 @@ class PretendRobots:
                 x=0.5 if name in robot.placed else 0.4, y=y, z=0.7, yaw=0, time=robot.time
             )
             for name, y in ((f"part_{i}", 0.01 * i) for i in range(100))
-            if name not in robot.hidden | robot.lost
+            if name not in robot.hidden | robot.lost and not robot.blind
         }
         await self.report(
             robot,
@@ -308,5 +322,6 @@ class PretendRobots:
                 there=[each for each in look.finished if self._verdict(robot, each) == "there"],
                 gone=[each for each in look.finished if self._verdict(robot, each) == "gone"],
                 held=robot.held,
+                blind="the camera is covered" if robot.blind else None,
             ),
         )

@@ -51,7 +51,8 @@ class ScriptedCamera:
         self.pictures_taken += 1
         scene = DrawnScene(self._body.placed(), self._body.grey_boxes)
         if self._name == "head":
-            return scene.picture(time=self._body.time_s())
+            picture = scene.picture(time=self._body.time_s())
+            return covered(picture) if self._body.head_covered else picture
         return scene.picture(
             pose=self.pose(),
             width=160,
@@ -60,6 +61,13 @@ class ScriptedCamera:
             time=self._body.time_s(),
             with_depth=False,
         )
+
+
+def covered(image: CameraImage) -> CameraImage:
+    """What a covered camera gives instead."""
+    assert image.depth_m is not None
+    nothing = np.full_like(image.depth_m, np.nan)
+    return replace(image, bgr=np.zeros_like(image.bgr), depth_m=nothing)
 
 
 def tool_matrix(pose: ToolPose) -> np.ndarray:
@@ -90,6 +98,7 @@ class ScriptedBody:
     def __init__(self, parts: dict[str, Resting], period_s: float = 1 / 30) -> None:
         self.parts: dict[str, Resting] = {name: replace(each) for name, each in parts.items()}
         self.grey_boxes: list = []
+        self.head_covered = False
         self.bars: frozenset[str | None] = frozenset()
         """Around which things no path leads, by their names; None is something unknown."""
         self.in_hand: tuple[str, np.ndarray] | None = None

@@ -10,6 +10,7 @@ from scripted_body import HAND_OVER, NEUTRAL, PLACES, STARTS
 
 from robots.link.messages import (
     Finished,
+    FinishedResult,
     Holding,
     Interrupt,
     IssueDetected,
@@ -279,3 +280,35 @@ def test_an_interrupt_ends_a_hand_over() -> None:
     bench.send(Interrupt(retreat=False))
     assert not bench.body.moving
     assert bench.of(Holding)[-1] == Holding(execution="e1", at="in_place")
+
+
+def test_in_the_dark_nothing_is_seen_and_nothing_fulfilled() -> None:
+    bench = RobotBench()
+    bench.look()
+    assert looked(bench).blind is None
+    bench.body.head_covered = True
+    result = FinishedResult(object="pink_bar", place="where_pink_is")
+    for expect in ("at_place", "in_reach", "way_clear", "view_clear"):
+        bench.look(expect=expect, object="pink_bar", place="where_pink_is", finished=[result])
+        seen = looked(bench)
+        assert seen.fulfilled is False, expect
+        assert seen.blind == "the picture of my head camera is black"
+        assert (seen.objects, seen.there, seen.gone) == ({}, [], [])
+    bench.body.head_covered = False
+    bench.look(expect="view_clear", finished=[result])
+    seen = looked(bench)
+    assert (seen.fulfilled, seen.blind, seen.there) == (True, None, [result])
+
+
+def test_what_is_taken_away_in_the_dark_is_seen_gone_afterwards() -> None:
+    bench = RobotBench()
+    result = FinishedResult(object="pink_bar", place="where_pink_is")
+    bench.look(finished=[result])
+    assert looked(bench).there == [result]
+    bench.body.head_covered = True
+    bench.look(finished=[result])
+    bench.run()
+    bench.body.vanish("pink_bar")
+    bench.body.head_covered = False
+    bench.look(finished=[result])
+    assert looked(bench).gone == [result]

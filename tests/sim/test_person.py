@@ -38,6 +38,7 @@ def kept(promised: Promise, person: Person, seed: int = 1) -> Deed | None:
     [
         ("place", Intervention(act=Act.PLACE, object="red_cup", place="left")),
         ("put_back", Intervention(act=Act.PUT_BACK, object="red_cup")),
+        ("clear_view", Intervention(act=Act.UNCOVER)),
         ("hand_over", Intervention(act=Act.HAND_OVER, object="red_cup")),
         ("clear_way", Intervention(act=Act.RELEASE, object="red_cup", place="left")),
     ],

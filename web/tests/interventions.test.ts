@@ -29,6 +29,12 @@ describe("offersFor", () => {
   });
 });
 
+describe("offersFor the head", () => {
+  it("covers its camera and clears the view again", () => {
+    expect(labels({ kind: "head" }, [])).toEqual(["Cover", "Uncover"]);
+  });
+});
+
 describe("sentenceOn", () => {
   it("speaks of the object in plain words", () => {
     expect(sentenceOn({ act: "steal", object: "green_leg" })).toBe("The green leg is taken away.");

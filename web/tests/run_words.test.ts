@@ -27,6 +27,6 @@ describe("what came of a run", () => {
   });
 
   it("is its reason, as a sentence begins", () => {
-    expect(outcome(run({ reason: "the task is done", node: null, missing: [] }))).toBe("The task is done");
+    expect(outcome(run({ reason: "the task is done", node: null, missing: [], unseen: [] }))).toBe("The task is done");
   });
 });

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from robots.body import CameraImage
-from robots.vision.scene_change import shows_change
+from robots.vision.scene_change import shows_change, still_measures
 
 NOISE = 3.0
 DEPTH_NOISE_M = 0.002
@@ -54,3 +54,17 @@ def test_another_place_of_the_camera_is_a_change() -> None:
 
 def test_the_same_picture_is_no_change() -> None:
     assert not shows_change(picture(0), replace(picture(0), time=9.0))
+
+
+def test_what_is_measured_no_more_is_not_seen_any_more() -> None:
+    before, now = picture(0), picture(1)
+    mask = np.zeros((120, 160), np.uint8)
+    mask[40:50, 60:70] = 255
+    assert still_measures(before, now, mask)
+    assert now.depth_m is not None
+    for missing in (np.nan, 0.0):
+        depth_m = now.depth_m.copy()
+        depth_m[40:50, 60:68] = missing
+        lost = replace(now, depth_m=depth_m)
+        assert not still_measures(before, lost, mask)
+        assert not shows_change(before, lost)

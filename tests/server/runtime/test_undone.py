@@ -138,6 +138,41 @@ async def test_what_is_hidden_is_believed_to_be_where_it_was_put() -> None:
     assert [line for line in story(events) if "undone" in line] == []
 
 
+async def test_what_the_last_look_cannot_see_is_told_as_that() -> None:
+    hidden = frozenset({"part_1"})
+    view, events = await run_with({"then": LEAVES[:2]}, {}, hidden=hidden)
+    assert isinstance(events[-1], ev.RunFinished)
+    assert [(each.node, each.place) for each in events[-1].unseen] == [("/0", "spot_1")]
+    assert view.result is not None
+    assert view.result.reason == "the task is done; something hides part_1 from the last look"
+
+
+async def test_a_run_does_not_end_with_a_table_that_is_not_seen() -> None:
+    async with pretend_service(definition_of({"then": LEAVES[:2]}), scene=SCENE) as service:
+        service.robots.make = lambda name: PretendRobot(name, blinded_by="part_2")
+        view, events = await service.run_to_end(answers=["yes"])
+    assert audit(events, {node.node: node.kind for node in view.nodes}) == []
+    assert view.status is RunStatus.FINISHED
+    assert story(events)[-3:] == ["undone 2", *in_turn(2)]
+    [undone] = [each for each in events if isinstance(each, ev.NodeUndone)]
+    assert undone.unseen
+    assert undone.reason == "whether part_2 is at spot_2 cannot be seen: the camera is covered"
+    [issue] = [each for each in events if isinstance(each, ev.IssueRaised)]
+    assert (issue.issue, issue.object) == ("blind", "part_2")
+    [prompt] = [each for each in events if isinstance(each, ev.Prompt) and each.kind == "ask"]
+    assert prompt.text.startswith("I cannot see the table.")
+    assert isinstance(events[-1], ev.RunFinished)
+    assert events[-1].unseen == []
+
+
+async def test_with_nobody_there_a_run_that_sees_no_table_fails() -> None:
+    async with pretend_service(definition_of({"then": LEAVES[:2]}), scene=SCENE) as service:
+        service.robots.make = lambda name: PretendRobot(name, blinded_by="part_1")
+        view, events = await service.run_to_end(answers="none")
+    assert view.status is RunStatus.FAILED
+    assert {each.issue for each in events if isinstance(each, ev.IssueRaised)} == {"blind"}
+
+
 async def test_what_another_robot_builds_on_it_is_cut_short() -> None:
     tree = {"then": [LEAVES[0], {"and": LEAVES[1:4]}]}
     async with pretend_service(definition_of(tree), scene=SCENE) as service:

@@ -2,6 +2,7 @@
 
 import math
 
+import numpy as np
 import pytest
 from tabletop_hands import TABLE_M, Hands
 
@@ -218,3 +219,16 @@ def test_somebody_in_the_way_is_seen_by_the_head_camera(world: TabletopWorld) ->
 def test_nobody_else_can_block_an_arm_that_is_blocked(world: TabletopWorld) -> None:
     do(world, Act.BLOCK)
     assert do(world, Act.BLOCK) == "somebody stands in the way already"
+
+
+def test_a_covered_camera_shows_nothing_until_its_view_is_clear(world: TabletopWorld) -> None:
+    head = world.body.cameras["head"]
+    assert do(world, Act.COVER) == ""
+    assert do(world, Act.COVER) == "the head camera is covered already"
+    dark = head.capture()
+    assert dark.bgr.max() == 0
+    assert dark.depth_m is not None
+    assert not np.isfinite(dark.depth_m).any()
+    assert do(world, Act.UNCOVER) == ""
+    assert do(world, Act.UNCOVER) == "nothing covers the head camera"
+    assert head.capture().bgr.max() > 0

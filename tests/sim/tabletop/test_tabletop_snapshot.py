@@ -26,7 +26,7 @@ interventions = st.one_of(
     st.builds(Intervention, act=st.just(Act.PLACE), object=parts, place=places),
     st.builds(Intervention, act=st.just(Act.MOVE), object=parts, to=on_table),
     st.builds(Intervention, act=st.just(Act.HAND_OVER), object=parts),
-    st.builds(Intervention, act=st.sampled_from([Act.BLOCK, Act.RELEASE])),
+    st.builds(Intervention, act=st.sampled_from([Act.BLOCK, Act.RELEASE, Act.COVER, Act.UNCOVER])),
 )
 
 

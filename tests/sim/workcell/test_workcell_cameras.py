@@ -9,7 +9,6 @@ from workcell_hands import Hands
 
 from robots.body import CameraImage
 from robots.vision.projection import project, unproject
-from sim.workcell.cameras import WorkcellCamera
 from sim.workcell.options import WorkcellOptions, read_options
 from sim.workcell.parts import Part
 from sim.workcell.physics import to_matrix
@@ -36,8 +35,8 @@ def worlds(scene: Scene) -> Iterator[dict[str, WorkcellWorld]]:
 def capture(
     worlds: dict[str, WorkcellWorld], renderer: str, camera: str
 ) -> tuple[CameraImage, Rendering]:
-    chosen = worlds[renderer].body.cameras[camera]
-    assert isinstance(chosen, WorkcellCamera)
+    world = worlds[renderer]
+    chosen = world.head if camera == "head" else world.forearm
     return chosen.capture_with_bodies()
 
 

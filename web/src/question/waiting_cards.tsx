@@ -11,6 +11,7 @@ const PROMISES: Readonly<Record<Help, (part: string) => string>> = {
   put_back: (part) => `would put the ${part} back on the table`,
   hand_over: (part) => `would hand over the ${part}`,
   clear_way: () => "would clear the way",
+  clear_view: () => "would clear the view of the head camera",
 };
 
 const EXPECTED: Readonly<Record<Help, (part: string) => string>> = {
@@ -18,6 +19,7 @@ const EXPECTED: Readonly<Record<Help, (part: string) => string>> = {
   put_back: (part) => `The robot watches for the ${part} on the table, within its reach.`,
   hand_over: (part) => `The robot watches for the ${part} between its fingers, and then grips it.`,
   clear_way: () => "The robot watches until nothing is in the way of its arm.",
+  clear_view: () => "The robot watches until its head camera sees the table.",
 };
 
 interface AwaitedHelpProps {

@@ -133,11 +133,16 @@ function applied(state: RunState, event: Event): RunState {
     case "run_resumed":
       return { ...state, status: "running" };
     case "run_finished":
-      return end(state, "finished", { reason: finishedWords(event.missing), node: null, missing: event.missing });
+      return end(state, "finished", {
+        reason: finishedWords(event),
+        node: null,
+        missing: event.missing,
+        unseen: event.unseen,
+      });
     case "run_failed":
-      return end(state, "failed", { reason: event.reason, node: event.node, missing: [] });
+      return end(state, "failed", { reason: event.reason, node: event.node, missing: [], unseen: [] });
     case "run_aborted":
-      return end(state, "aborted", { reason: event.reason || "aborted by a person", node: null, missing: [] });
+      return end(state, "aborted", { reason: event.reason || "aborted by a person", node: null, missing: [], unseen: [] });
     case "robot_lost":
       return { ...state, lost: new Set(state.lost).add(event.robot) };
     case "robot_back":

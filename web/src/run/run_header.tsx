@@ -34,6 +34,9 @@ export function RunHeader({ newest, moment }: { newest: RunState; moment: Moment
         {result !== null && (status !== "finished" || result.missing.length > 0) && (
           <p class="mistake">{result.reason}</p>
         )}
+        {result !== null && status === "finished" && result.missing.length === 0 && result.unseen.length > 0 && (
+          <p class="quiet">{result.reason}</p>
+        )}
       </div>
       {!ended(status) && <RunControls run={started.run} paused={status === "paused"} />}
     </header>

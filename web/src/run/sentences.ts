@@ -1,5 +1,5 @@
 // The transcript of a run: each event as the lines that a person reads.
-import type { Act, Change, CloseReason, Event, Help, Intervention, MissingPart, NodeStarted, Resolution } from "../wire/types";
+import type { Act, Change, CloseReason, Event, Help, Intervention, MissingPart, NodeStarted, Resolution, RunFinished } from "../wire/types";
 import { plain } from "../tree/words";
 
 /** What kind of news a line brings; each has its own look. */
@@ -38,6 +38,8 @@ const DEEDS: Readonly<Record<Act, string>> = {
   move: "moves {object}",
   block: "stands in the arm's way",
   release: "gets out of the arm's way",
+  cover: "covers the head camera",
+  uncover: "clears the head camera's view",
 };
 
 const PROMISES: Readonly<Record<Help, string>> = {
@@ -45,6 +47,7 @@ const PROMISES: Readonly<Record<Help, string>> = {
   put_back: "{object} back within reach",
   hand_over: "{object} between the fingers",
   clear_way: "the way clear",
+  clear_view: "the table again",
 };
 
 const RESOLUTIONS: Readonly<Record<Resolution, string>> = {
@@ -103,7 +106,7 @@ export function linesOf(event: Event): Line[] {
         ...event.missing.flatMap((part) =>
           line("setback", `${plain(part.object)} is not at ${plain(part.place)}${asSaid(part.left_out_by)}.`),
         ),
-        ...line("finished", `The run has finished: ${finishedWords(event.missing)}.`),
+        ...line("finished", `The run has finished: ${finishedWords(event)}.`),
       ];
     case "run_failed":
       return line("failed", `The run has failed: ${event.reason}`);
@@ -199,8 +202,13 @@ export function linesOf(event: Event): Line[] {
   }
 }
 
-/** What a finished run came to: the task is done, perhaps without what was left out. */
-export function finishedWords(missing: readonly MissingPart[]): string {
+/** What a finished run came to: what was left out, and what nobody can see now. */
+export function finishedWords({ missing, unseen = [] }: Pick<RunFinished, "missing" | "unseen">): string {
+  const hidden = enumerated(unseen.map(({ object }) => plain(object)));
+  return without(missing) + (hidden === "" ? "" : `; something hides ${hidden} from the last look`);
+}
+
+function without(missing: readonly MissingPart[]): string {
   const said = new Map<string | null, string[]>();
   for (const { object, left_out_by: by } of missing) said.set(by, [...(said.get(by) ?? []), object]);
   const parts = [...said].map(([by, objects]) => `without ${enumerated(objects)}${asSaid(by)}`);

@@ -13,7 +13,12 @@ export interface ArmTarget {
   readonly blocked: boolean;
 }
 
-export type Target = ObjectTarget | ArmTarget;
+/** The camera on the robot's head; nobody is told whether it is covered. */
+export interface HeadTarget {
+  readonly kind: "head";
+}
+
+export type Target = ObjectTarget | ArmTarget | HeadTarget;
 
 export interface Offer {
   readonly label: string;
@@ -24,8 +29,14 @@ export interface Offer {
 
 /** What is worth doing now; `places` are the names of the scene's places. */
 export function offersFor(target: Target, places: readonly string[]): Offer[] {
-  return target.kind === "arm" ? offersForArm(target) : offersForObject(target, places);
+  if (target.kind === "arm") return offersForArm(target);
+  return target.kind === "head" ? OFFERS_FOR_HEAD : offersForObject(target, places);
 }
+
+const OFFERS_FOR_HEAD: Offer[] = [
+  { label: "Cover", hint: "Cover the head camera", act: { act: "cover" } },
+  { label: "Uncover", hint: "Clear the view of the head camera", act: { act: "uncover" } },
+];
 
 function offersForArm({ blocked }: ArmTarget): Offer[] {
   return blocked
@@ -59,6 +70,8 @@ const DONE: Readonly<Record<Intervention["act"], (object: string) => string>> = 
   move: (object) => `The ${object} is moved.`,
   block: () => "Somebody stands in the arm’s way.",
   release: () => "The arm’s way is free.",
+  cover: () => "The head camera is covered.",
+  uncover: () => "The head camera’s view is clear.",
 };
 
 /** One sentence on what was done. */

@@ -47,17 +47,19 @@ export function ObjectList({ whereabouts, places, offered, onChoose, onPoint }: 
     </li>
   );
   return (
-    <ul class="scene-list" aria-label="Objects and the arm">
+    <ul class="scene-list" aria-label="Objects, the arm and the camera">
       {whereabouts
         .filter((each) => each.kind === "object")
         .map((each) => row(each.name, plain(each.name), wordsFor(each), { ...each, kind: "object" }))}
       {row(ARM, "the arm’s way", armIsBlocked(whereabouts) ? "blocked" : "free", armTarget(whereabouts))}
+      {row(HEAD, "the head camera", "", { kind: "head" })}
     </ul>
   );
 }
 
 // No name of a scene begins so.
 const ARM = "*arm";
+const HEAD = "*head";
 
 function wordsFor({ held, gone, hidden }: Whereabouts): string {
   if (gone) return "taken away";

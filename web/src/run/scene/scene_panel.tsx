@@ -101,7 +101,8 @@ export function ScenePanel({ run, moment }: ScenePanelProps) {
 }
 
 function titleOf(target: Target): string {
-  return target.kind === "arm" ? "the arm’s way" : plain(target.name);
+  if (target.kind === "object") return plain(target.name);
+  return target.kind === "arm" ? "the arm’s way" : "the head camera";
 }
 
 function stateSentence(source: PoseSource, moment: Moment): string {

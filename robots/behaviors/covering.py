@@ -1,0 +1,63 @@
+"""Finished results that a behavior covers: whether they are there until nobody can see them."""
+
+from robots.behaviors.assignment import Assignment
+from robots.behaviors.phase import Phase
+from robots.catalogue import Part
+from robots.link.messages import Location
+from robots.result import Result
+from robots.senses import Senses
+from tasks.footprint import Footprint
+
+LOOK_PERIOD_S = 0.5
+
+_PHASES = frozenset({Phase.LIFT, Phase.CARRY, Phase.PLACE})
+_ON_TOP_M = 0.01
+
+
+class CoveredResultGone(Exception):  # noqa: N818 - control flow, not an error
+    """Something that the object is to be put on is seen gone."""
+
+
+class Covering:
+    """Looks past the arm at what the object will cover, while it is on its way there.
+
+    What it has told of once it does not tell again: whoever was told decides how to go on.
+    """
+
+    def __init__(self, assignment: Assignment, senses: Senses) -> None:
+        self._senses = senses
+        self._watched = _covered(assignment, senses)
+        self._doubted: list[Result] = []
+        self._next_look_s = 0.0
+
+    def look_if_due(self, phase: Phase, now_s: float) -> None:
+        """Raises `CoveredResultGone` for what two pictures on end show to be gone."""
+        if not self._watched or phase not in _PHASES:
+            return
+        if now_s < self._next_look_s - 1e-9 and not self._doubted:
+            return
+        self._next_look_s = now_s + LOOK_PERIOD_S
+        gone = self._senses.seen_gone(self._senses.look(), self._watched)
+        sure = [each for each in gone if each in self._doubted]
+        self._watched = [each for each in self._watched if each not in sure]
+        self._doubted = [each for each in gone if each not in sure]
+        if sure:
+            raise CoveredResultGone
+
+
+def _covered(assignment: Assignment, senses: Senses) -> list[Result]:
+    part, target = assignment.part, assignment.target
+    if part is None or target is None:
+        return []
+    height_of = senses.catalogue.height_of
+    own, bottom_z = _footprint(part, target), height_of(target)
+    return [
+        each
+        for each in assignment.finished
+        if height_of(each.target) + each.part.size[2] <= bottom_z + _ON_TOP_M
+        and own.overlaps(_footprint(each.part, each.target))
+    ]
+
+
+def _footprint(part: Part, at: Location) -> Footprint:
+    return Footprint(at.x, at.y, at.yaw, part.size[0], part.size[1])

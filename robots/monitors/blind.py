@@ -1,0 +1,26 @@
+"""`blind`: the head camera shows nothing of the table."""
+
+from typing import ClassVar
+
+from robots.behaviors.phase import Phase
+from robots.link.messages import Detection
+from robots.monitors.monitor import ANY_BEHAVIOR, Meanwhile, Monitor, MonitorView, NoParameters
+from tasks.scene import StrictModel
+
+
+class Blind(Monitor[NoParameters]):
+    """Raises `blind` before step 1 and after the last step of any behavior.
+
+    It judges the camera itself, and not what that shows.
+    """
+
+    issue: ClassVar[str] = "blind"
+    behaviors: ClassVar[frozenset[str]] = ANY_BEHAVIOR
+    phases: ClassVar[frozenset[Phase]] = frozenset({Phase.PREPARE, Phase.CONFIRM})
+    meanwhile: ClassVar[Meanwhile] = Meanwhile.STOP_IN_PLACE
+    parameters: ClassVar[type[StrictModel]] = NoParameters
+
+    def check(self, view: MonitorView) -> Detection | None:
+        if view.blind is None:
+            return None
+        return Detection(camera="head", explanation=view.blind)

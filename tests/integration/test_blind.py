@@ -1,0 +1,96 @@
+"""A head camera that shows nothing: the robot says so, and calls nothing done that is unseen."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+
+from server.composition import open_service
+from server.journal import events as ev
+from server.journal.audit import audit
+from server.runtime.requests import RunRequest
+from server.runtime.views import RunStatus, RunView
+from server.settings import Settings
+
+
+async def build(
+    tmp_path: Path, interventions: list[dict[str, Any]], **request: Any
+) -> tuple[RunView, list[ev.Event]]:
+    """The EKET base while people do what the scenario says."""
+    scenario = {"name": "dark", "tree": "eket", "interventions": interventions}
+    settings = Settings(port=0, data_dir=tmp_path, speech_voice="none", log_level="error")
+    async with open_service(settings) as service:
+        await service.library.scenarios.save("dark", yaml.safe_dump(scenario))
+        asked = {"tree": "eket", "speed": "max", "seed": 7, "scenario": "dark", **request}
+        run = await service.runtime.start_run(RunRequest.model_validate(asked))
+        view = await service.runtime.wait_for_end(run.id)
+        events = await service.journal.read(0, 100_000, run.id)
+    assert audit(events, {node.node: node.kind for node in view.nodes}) == []
+    return view, events
+
+
+def during(part: str, step: int, act: str, **fields: Any) -> dict[str, Any]:
+    return {"when": {"object": part, "step": step}, "do": {"act": act, **fields}}
+
+
+def raised(events: list[ev.Event]) -> list[tuple[str, str | None]]:
+    issues = (each for each in events if isinstance(each, ev.IssueRaised))
+    return [(each.issue, each.object) for each in issues if each.issue != "positioning"]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("world", ["tabletop", "workcell"])
+async def test_a_covered_camera_is_told_and_uncovered_and_the_task_is_done(
+    world: str, tmp_path: Path
+) -> None:
+    dark = [during("pink_bar", 5, "cover")]
+    view, events = await build(tmp_path, dark, world=world, answers=["yes"] * 20)
+    assert view.status is RunStatus.FINISHED
+    assert raised(events) == [("blind", "pink_bar")]
+    [issue] = [each for each in events if isinstance(each, ev.IssueRaised) and each.interrupts]
+    assert issue.detection is not None
+    assert issue.detection.explanation == "the picture of my head camera is black"
+    [done] = [each for each in events if isinstance(each, ev.NodeDone) and each.name == "pink_bar"]
+    assert done.by == "robot"
+
+
+@pytest.mark.slow
+async def test_what_is_stolen_while_it_is_dark_is_never_called_done(tmp_path: Path) -> None:
+    parts = ["green_leg", "pink_bar", "yellow_bar"]
+    dark = [during("yellow_bar", 5, "cover")]
+    dark += [during("yellow_bar", 7, "steal", object=each) for each in parts[:2]]
+    view, events = await build(
+        tmp_path, dark, world="tabletop", answers=["yes"] * 2 + ["no"] * 40, max_attempts=1
+    )
+    assert raised(events)[0] == ("blind", "yellow_bar")
+    assert {part for issue, part in raised(events) if issue == "undone"} == {"green_leg"}
+    assert view.status is RunStatus.FAILED
+
+
+@pytest.mark.slow
+async def test_with_nobody_there_a_robot_in_the_dark_fails_and_says_why(tmp_path: Path) -> None:
+    dark = [during("green_leg", 2, "cover")]
+    view, events = await build(tmp_path, dark, world="tabletop", answers="none", max_attempts=1)
+    assert view.status is RunStatus.FAILED
+    assert raised(events) == [("blind", "green_leg")]
+    assert not [each for each in events if isinstance(each, ev.NodeDone)]
+
+
+@pytest.mark.slow
+async def test_what_is_stolen_from_under_what_is_on_its_way_is_missed_before_it_is_covered(
+    tmp_path: Path,
+) -> None:
+    theft = [during("purple_top", 4, "steal", object="pink_bar")]
+    view, events = await build(tmp_path, theft, world="tabletop", answers=["yes"] * 20)
+    assert view.status is RunStatus.FINISHED
+    undone = [each for each in events if isinstance(each, ev.NodeUndone)]
+    assert [each.name for each in undone if each.because_of is None] == ["pink_bar"]
+    last = events[-1]
+    assert isinstance(last, ev.RunFinished)
+    assert {each.object for each in last.unseen} == {
+        "green_leg",
+        "pink_bar",
+        "yellow_bar",
+        "blue_leg",
+    }
