@@ -95,8 +95,12 @@ def put_right(watched: Sequence[Expectation], first: Look, now: Look) -> PutRigh
     change = change_between(first, now)
     moved = change in (Change.APPEARED, Change.MOVED)
     for each in watched:
-        if each in now.fulfilled and (moved or each not in first.fulfilled):
-            return PutRight(each, Change.NONE if each is Expectation.VIEW_CLEAR else change)
+        if each not in now.fulfilled:
+            continue
+        if each is Expectation.VIEW_CLEAR and each not in first.fulfilled:
+            return PutRight(each, Change.NONE)
+        if each is not Expectation.VIEW_CLEAR and (moved or each not in first.fulfilled):
+            return PutRight(each, change)
     return None
 
 

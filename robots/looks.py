@@ -160,13 +160,16 @@ class InReach:
         if not can_grasp(self._part, body.gripper):
             return False
         picks = [
-            (each.tool_pose(at.x, at.y, at.z, at.yaw), each.opening_m)
+            (each.tool_pose(at.x, at.y, at.z, at.yaw), each)
             for each in grasps_of(self._part, body.gripper)
         ]
         roomy = dict.fromkeys(
             pick
-            for pick, opening_m in picks
-            if in_the_way(body.gripper, pick, opening_m, around, MARGIN_M) is None
+            for pick, grasp in picks
+            if in_the_way(
+                body.gripper, pick, grasp.opening_m, around, MARGIN_M, closed_m=grasp.width_m
+            )
+            is None
         )
         return any(
             body.plan_path([replace(pick, z=pick.z + lift_m), pick]) is not None

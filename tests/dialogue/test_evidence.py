@@ -1,6 +1,7 @@
 """What is seen puts an issue right only if it has come to be so since the question was put."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from hypothesis import given
 from hypothesis import strategies as st
@@ -98,3 +99,14 @@ def test_what_puts_it_right_is_so_now_and_is_new(
         assert found.seen in watched
         assert found.seen in now.fulfilled
         assert found.change.by_a_person or found.seen not in first.fulfilled
+
+
+def test_a_camera_that_sees_again_thanks_nobody_who_has_not_promised_it() -> None:
+    dark, light = (
+        Look(frozenset(), None),
+        Look(frozenset({Expectation.VIEW_CLEAR}), (0.4, 0.0, 0.7)),
+    )
+    found = put_right([Expectation.VIEW_CLEAR], dark, light)
+    assert found == PutRight(Expectation.VIEW_CLEAR, Change.NONE)
+    assert put_right([Expectation.VIEW_CLEAR], replace(light, position=None), light) is None
+    assert change_between(dark, light) is Change.CLEARED
