@@ -33,7 +33,8 @@ def _at_place(record: RunRecord, index: int, event: ev.Prompt, _: re.Match[str])
 
 def _not_at_place(record: RunRecord, index: int, event: ev.Prompt, _: re.Match[str]) -> str | None:
     off_m = max(record.offset(index, event.node, event.object))
-    hidden = record.moment(index).blocked or record.arm_holds_in_place(index)
+    moment = record.moment(index)
+    hidden = moment.blocked or moment.dark or record.arm_holds_in_place(index)
     return None if off_m > CLEARLY_AT_PLACE_M or hidden else "it is there"
 
 
@@ -90,7 +91,8 @@ def _not_held_yet(record: RunRecord, index: int, event: ev.Prompt, _: re.Match[s
 
 def _not_in_reach(record: RunRecord, index: int, event: ev.Prompt, _: re.Match[str]) -> str | None:
     """What lies in the open, and not only since a moment ago, must not be told not to be there."""
-    if record.moment(index).blocked or record.buried(index, event.object):
+    moment = record.moment(index)
+    if moment.blocked or moment.dark or record.buried(index, event.object):
         return None
     if not record.is_surely_in_reach(index, event.object):
         return None
@@ -122,6 +124,18 @@ def _attempt_now(
 
 def _way_free(record: RunRecord, index: int, _: ev.Prompt, __: re.Match[str]) -> str | None:
     return "somebody stands in the way" if record.moment(index).blocked else None
+
+
+def _dark_at_issue(record: RunRecord, _: int, event: ev.Prompt, __: re.Match[str]) -> str | None:
+    return None if record.at_issue(event.node).dark else "nothing covers the camera"
+
+
+def _dark(record: RunRecord, index: int, _: ev.Prompt, __: re.Match[str]) -> str | None:
+    return None if record.moment(index).dark else "nothing covers the camera"
+
+
+def _light(record: RunRecord, index: int, _: ev.Prompt, __: re.Match[str]) -> str | None:
+    return "the camera is covered" if record.moment(index).dark else None
 
 
 COUNTS = {"once": 1, "twice": 2} | {
@@ -200,7 +214,10 @@ CHECKS: Sequence[tuple[str, Check]] = (
     (r"Thank you", _thanks),
     (r"I see the .* at its place", _at_place),
     (r"I do not see the .* at its place yet|[Tt]he .* is not at its place", _not_at_place),
-    (r"I see the (?!.* at its place)", _somewhere),
+    (r"I see the (?!table)(?!.* at its place)", _somewhere),
+    (r"I cannot see the table", _dark_at_issue),
+    (r"I do not see the table yet", _dark),
+    (r"(?<!until )I see the table", _light),
     (r"I do not see the .* where I can reach it yet", _not_in_reach),
     (r"has toppled over", _toppled),
     (r"I cannot find the|cannot find it|I see it nowhere", _nowhere),

@@ -22,17 +22,21 @@ SAME_SPOT_M = 0.02
 LEANS_RAD = 0.05
 """What leans less stands."""
 
-GIVEN = frozenset({"place", "put_back", "hand_over", "move", "release"})
+GIVEN = frozenset({"place", "put_back", "hand_over", "move", "release", "uncover"})
 """Deeds that may be help."""
 
 
 @dataclass(frozen=True, slots=True)
 class Moment:
-    """The world at one event; a part is None in `resting` while somebody has taken it away."""
+    """The world at one event; a part is None in `resting` while somebody has taken it away.
+
+    `dark`: somebody has covered the head camera.
+    """
 
     resting: Mapping[str, Rest | None]
     held: str | None
     blocked: bool
+    dark: bool = False
 
 
 class RunRecord:
@@ -185,7 +189,7 @@ class RunRecord:
         for each in self.since_opened(index, event):
             if not isinstance(each, ev.InterventionDone) or not each.ok or each.act not in GIVEN:
                 continue
-            about_it = each.object == event.object or each.act == "release"
+            about_it = each.object == event.object or each.act in ("release", "uncover")
             if about_it or self._cleared(index, event.node, each.object):
                 yield each
 

@@ -156,6 +156,8 @@ class Bench:
         try:
             if self.world.shown_poses()[-1].gone is False:
                 self.act(Act.RELEASE)
+            if self.world.head_covered:
+                self.act(Act.UNCOVER)
             for each in self.scene.objects:
                 self.world.parts[each].take_away()
             for each in sorted(self.scene.objects, key=self._start_z):

@@ -94,6 +94,8 @@ class Judge:
                 return not self.at_place(name)
             case "blocked":
                 return self.is_obstructed(name)
+            case "blind":
+                return self._world.head_covered
             case _:
                 return False
 

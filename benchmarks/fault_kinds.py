@@ -1,4 +1,4 @@
-"""The ten kinds of fault: when each happens, what a person does, what the robot may say of it."""
+"""The eleven kinds of fault: when each happens, what a person does, what a robot may say of it."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -168,6 +168,11 @@ def _in_the_way(bench: Bench, trial: Trial, rng: np.random.Generator) -> None:
     bench.pick(trial, lambda: bench.act(Act.MOVE, other, to=to))
 
 
+def _camera_covered(bench: Bench, trial: Trial, rng: np.random.Generator) -> None:
+    trial.moment = _drawn(rng, range(9))
+    bench.pick(trial, lambda: bench.act(Act.COVER))
+
+
 # --- Handed over ----------------------------------------------------------------------------------
 
 
@@ -217,5 +222,6 @@ KINDS = {
     "pushed aside": Kind(_pushed_aside, frozenset({"missed", "unreachable", "undone"})),
     # A known part at the place leaves no room there, which is as true and names it.
     "in the way": Kind(_in_the_way, frozenset({"blocked", "unreachable"})),
+    "camera covered": Kind(_camera_covered, frozenset({"blind"})),
     "wrong hand-over": Kind(_wrong_hand_over, frozenset({REFUSED})),
 }

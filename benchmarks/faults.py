@@ -1,4 +1,4 @@
-"""False alarms in clean picks, and ten kinds of fault, over random scenes in the workcell.
+"""False alarms in clean picks, and eleven kinds of fault, over random scenes in the workcell.
 
     python benchmarks/faults.py [--picks 1000] [--faults 1000] [--seed 1] [--quick]
     python benchmarks/faults.py --seed 5000 --picks 0 --faults 100 --keep more.jsonl

@@ -46,7 +46,12 @@ class WatchedWorld:
 def _moment(started: ev.RunStarted, state: dict[str, Any] | None) -> Moment:
     world = {} if state is None else state["world"]
     blocker = world.get("blocker_at") or world.get("obstacle") or world.get("blocker")
-    return Moment(where_parts_rest(started, state), world.get("held"), blocker is not None)
+    return Moment(
+        where_parts_rest(started, state),
+        world.get("held"),
+        blocker is not None,
+        bool(world.get("head_covered")),
+    )
 
 
 def where_parts_rest(

@@ -9,8 +9,8 @@ from tasks.intervention import Act, Intervention
 from tasks.scenario import ScriptedIntervention, Trigger
 from tasks.scene import Scene
 
-_ACTS = (Act.STEAL, Act.MOVE, Act.BLOCK)
-_SHARES = (0.6, 0.25, 0.15)
+_ACTS = (Act.STEAL, Act.MOVE, Act.BLOCK, Act.COVER)
+_SHARES = (0.55, 0.22, 0.15, 0.08)
 _SHARE_OF_OTHERS = 0.4
 _ATTEMPTS = (1, 2)
 _ATTEMPT_SHARES = (0.8, 0.2)
@@ -19,7 +19,7 @@ _ATTEMPT_SHARES = (0.8, 0.2)
 def random_interventions(
     objects: Sequence[str], scene: Scene, rng: np.random.Generator, steps: int = 8
 ) -> list[ScriptedIntervention]:
-    """Steal, move and block at random moments, at most once per two leaves.
+    """Steal, move, block and cover the camera at random moments, at most once per two leaves.
 
     Mostly it befalls the object that is handled at that moment, else any that a leaf handles: one
     that stands finished, or that is still to come. `objects` are those that the tree's leaves
@@ -49,7 +49,7 @@ def _victim(handled_now: str, handled: Sequence[str], rng: np.random.Generator) 
 
 def _intervention(handled: str, scene: Scene, rng: np.random.Generator) -> Intervention:
     act = _ACTS[int(rng.choice(len(_ACTS), p=_SHARES))]
-    if act is Act.BLOCK:
+    if act in (Act.BLOCK, Act.COVER):
         return Intervention(act=act)
     if act is Act.MOVE and (to := free_pose(handled, scene, rng)) is not None:
         return Intervention(act=act, object=handled, to=to)

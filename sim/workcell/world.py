@@ -174,6 +174,11 @@ class WorkcellWorld:
         return self._bench.parts
 
     @property
+    def head_covered(self) -> bool:
+        """Whether somebody has covered the head camera; for benchmarks to judge by."""
+        return self._person.head_cover.on
+
+    @property
     def held(self) -> str | None:
         """What the fingers really hold; for tests and benchmarks to judge by."""
         part = self._bench.held(self._pr2)

@@ -50,7 +50,7 @@ def test_the_same_seed_gives_the_same_mischief() -> None:
 
 def test_mischief_is_of_every_kind() -> None:
     planned = [each.do for seed in range(60) for each in mischief(seed, NAMES)]
-    assert {each.act for each in planned} == {Act.STEAL, Act.MOVE, Act.BLOCK}
+    assert {each.act for each in planned} == {Act.STEAL, Act.MOVE, Act.BLOCK, Act.COVER}
     planned_at = [each for seed in range(60) for each in mischief(seed, NAMES)]
     elsewhere = [each for each in planned_at if each.when and each.do.object != each.when.object]
     assert 0 < len(elsewhere) < len(planned_at)
