@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
-from robots.feasibility.doing import ArmCheck, Reachable, Surroundings
+from robots.feasibility.doing import ArmCheck, FindNoWay, Surroundings
 from robots.feasibility.handling import cannot_handle
 from robots.feasibility.standing import Standing, at_place, beneath, starts
 from robots.feasibility.support import cannot_stand
@@ -32,14 +32,14 @@ def check_scene(
     scene: Scene,
     nodes: Sequence[GoalNode | BehaviorNode],
     gripper: GripperModel,
-    reachable: Reachable,
+    no_way: FindNoWay,
 ) -> list[SceneProblem]:
     """What keeps a robot from doing the leaves among `nodes`; without any, each part by itself.
 
     Of a whole tree (with its goal nodes) the order and the alternatives are taken into account;
     of leaves alone all are done, in any order. Each part is told of once.
     """
-    return _SceneCheck(scene, nodes, gripper, reachable).problems()
+    return _SceneCheck(scene, nodes, gripper, no_way).problems()
 
 
 class _SceneCheck:
@@ -48,11 +48,11 @@ class _SceneCheck:
         scene: Scene,
         nodes: Sequence[GoalNode | BehaviorNode],
         gripper: GripperModel,
-        reachable: Reachable,
+        no_way: FindNoWay,
     ) -> None:
         self._scene = scene
         self._gripper = gripper
-        self._arm = ArmCheck(gripper, reachable, scene.scatter, scene.table.height)
+        self._arm = ArmCheck(gripper, no_way, scene.scatter, scene.table)
         self._order = LeafOrder(nodes)
         self._starts = starts(scene)
         self._jobs = _jobs(scene, self._order, self._starts)

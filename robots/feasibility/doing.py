@@ -5,21 +5,23 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 
-from robots.behaviors.behavior import Move, Situation
+from robots.behaviors.behavior import Situation, Step
 from robots.behaviors.grasp_choice import LIFTS_M, clear_z
+from robots.behaviors.legs import legs_of, table_box
 from robots.behaviors.pick_and_place import PickAndPlace, PickAndPlaceParameters
-from robots.body import ToolPose
+from robots.body import Leg, NoWay, ToolPose
 from robots.clearance import ROOM_M, in_the_way
 from robots.feasibility.standing import Standing, beneath
 from robots.grasp import Grasp, grasps_of
 from robots.gripper import GripperModel
 from robots.link.messages import Location
 from robots.vision.seen_box import SeenBox
-from tasks.scene import Pose, Scatter
+from tasks.scene import Pose, Scatter, Table
 from tasks.scene_problem import SceneProblem
 
-Reachable = Callable[[Sequence[ToolPose]], bool]
-"""Whether the arm can go through all these poses from neutral, by the planner that it uses."""
+FindNoWay = Callable[[Sequence[Leg], Sequence[SeenBox]], NoWay | None]
+"""Why the arm cannot go from neutral through all legs amid boxes, by the planner that it uses; None
+where it can."""
 
 _SEEN_M = 0.0015
 """A part may be seen so far away from where it is."""
@@ -65,9 +67,9 @@ class ArmCheck:
     """The gripper and the reach of the robot that is to do it."""
 
     gripper: GripperModel
-    reachable: Reachable
+    no_way: FindNoWay
     scatter: Scatter
-    table_z: float
+    table: Table
 
     def cannot_do(
         self, start: Standing, place: Standing | None, around: Surroundings
@@ -81,7 +83,7 @@ class ArmCheck:
             lacking = [problem for problem in tight.values() if problem is not None]
             return min(lacking, key=lambda each: each.lacking_m).told
         if any(self._reaches(start, place, grasp, around) for grasp in roomy):
-            return None
+            return self._barred(start, place, roomy, around)
         return self._out_of_reach(start, place, roomy, around)
 
     def _tight(
@@ -137,7 +139,7 @@ class ArmCheck:
         """Whether wherever the world may scatter the start to, some lift is within reach."""
         return all(
             any(
-                self.reachable(self._way(start, at, place, grasp, lift_m, around))
+                self.no_way(self._legs(start, at, place, grasp, lift_m, around), ()) is None
                 for lift_m in LIFTS_M
             )
             for at in self._scattered(start.pose)
@@ -154,7 +156,40 @@ class ArmCheck:
             shifts = [(dx * off_m, dy * off_m) for dx, dy in product(_SIDES, _SIDES)]
         return [pose.model_copy(update={"x": pose.x + dx, "y": pose.y + dy}) for dx, dy in shifts]
 
-    def _way(
+    def _barred(
+        self,
+        start: Standing,
+        place: Standing | None,
+        grasps: Sequence[Grasp],
+        around: Surroundings,
+    ) -> SceneProblem | None:
+        """What the arm would touch on every way that it could take otherwise; None if nothing.
+
+        What is to stand where the part itself starts or goes cannot stand there by then.
+        """
+        ends = [each for each in (start, place) if each is not None]
+        standing = [
+            each
+            for each in dict.fromkeys([*around.start, *around.place])
+            if not any(each.meets(end) for end in ends)
+        ]
+        boxes = [table_box(self.table), *(box for each in standing for box in each.boxes)]
+        touched: SeenBox | None = None
+        for over, grasp, lift_m in product((True, False), grasps, LIFTS_M):
+            legs = self._legs(start, start.pose, place, grasp, lift_m, around, over=over)
+            barred = self.no_way(legs, boxes)
+            if barred is None:
+                return None
+            touched = touched or barred.touched
+        if touched is None or touched.name is None:
+            return None
+        return SceneProblem(
+            start.where,
+            f"with {start.name} the arm would touch {touched.name} on its way: move one of them, "
+            f"or let {touched.name} be taken away before",
+        )
+
+    def _legs(
         self,
         start: Standing,
         at: Pose,
@@ -162,8 +197,24 @@ class ArmCheck:
         grasp: Grasp,
         lift_m: float,
         around: Surroundings,
-    ) -> list[ToolPose]:
-        """The way of the tool point, as the behavior lays it out."""
+        *,
+        over: bool = True,
+    ) -> list[Leg]:
+        """The way of the tool point, as the behavior lays it out, `over` all that stands there."""
+        steps = self._steps(start, at, place, grasp, lift_m, around, over=over)
+        return legs_of(steps, start.part, grasp, self.gripper, carrying=False)
+
+    def _steps(
+        self,
+        start: Standing,
+        at: Pose,
+        place: Standing | None,
+        grasp: Grasp,
+        lift_m: float,
+        around: Surroundings,
+        *,
+        over: bool,
+    ) -> Sequence[Step]:
         found = Location(x=at.x, y=at.y, z=start.bottom_z, yaw=at.yaw)
         target = found
         if place is not None:
@@ -174,15 +225,14 @@ class ArmCheck:
             start.part,
             found,
             target,
-            self.table_z,
+            self.table.height,
             self.gripper,
             grasp,
-            clear_z(found, target, self.table_z, boxes),
+            clear_z(found, target, self.table.height, boxes) if over else self.table.height,
             lift_m,
         )
         parameters = PickAndPlaceParameters(object=start.name, place=start.name)
-        steps = PickAndPlace().steps(parameters, situation)
-        return [each.action.to for each in steps if isinstance(each.action, Move)]
+        return PickAndPlace().steps(parameters, situation)
 
     def _out_of_reach(
         self,

@@ -5,12 +5,13 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from robots.body import ToolPose
+from robots.body import Leg, NoWay
 from robots.catalogue import Catalogue
 from robots.feasibility.check import check_scene
 from robots.robot import Robot
 from robots.vision.color_model import ColorModel
 from robots.vision.lookalikes import find_lookalikes
+from robots.vision.seen_box import SeenBox
 from sim.simulated_agent import SimulatedAgent
 from sim.tabletop.arm import GRIPPER
 from sim.tabletop.body import can_reach
@@ -46,11 +47,12 @@ class TabletopAdapter:
         """What keeps the robot from doing the leaves among `nodes` in a scene."""
         reach = reach_for(scene, None)
 
-        def reachable(way: Sequence[ToolPose]) -> bool:
-            return all(can_reach(reach, scene.table, each) for each in way)
+        def no_way(legs: Sequence[Leg], _: Sequence[SeenBox]) -> NoWay | None:
+            reached = all(can_reach(reach, scene.table, leg.to) for leg in legs)
+            return None if reached else NoWay("does not reach all of the way")
 
         lookalikes = find_lookalikes(scene, nodes, learn_colors(scene, TabletopOptions()))
-        return [*check_scene(scene, nodes, GRIPPER, reachable), *lookalikes]
+        return [*check_scene(scene, nodes, GRIPPER, no_way), *lookalikes]
 
     def train_colors(self, scene: Scene) -> ColorModel:
         """Learn the colours of a scene's objects from rendered pictures of them.

@@ -7,7 +7,6 @@ from numpy.typing import NDArray
 
 from robots.body import ArmPath, Camera, Leg, Matrix4, NoWay, Reach, ToolPose
 from robots.gripper import GripperModel
-from robots.motion.collision import Hand
 from robots.motion.curve import JointCurve
 from robots.motion.kinematics import Joints
 from robots.motion.limits import MotionLimits
@@ -21,6 +20,7 @@ from sim.workcell.finger_motion import FingerMotion
 from sim.workcell.gripper import PR2_GRIPPER, finger_angle_rad
 from sim.workcell.physics import CONTROL_HZ
 from sim.workcell.pr2 import JOINT_DAMPING_NM_S, Pr2
+from sim.workcell.reach import hand_on
 from sim.workcell.robot_model import (
     ARM_JOINTS,
     FINGER_JOINTS,
@@ -133,7 +133,7 @@ class WorkcellBody:
 
     def plan_among(self, legs: Sequence[Leg], boxes: Sequence[SeenBox]) -> ArmPath | NoWay:
         """Plan through all legs so that nothing touches any of `boxes`."""
-        hands = [_hand(leg) for leg in legs]
+        hands = [hand_on(leg) for leg in legs]
         obstacles = PathObstacles.around(self._pr2.collisions, boxes, hands, self._target)
         waypoints = [leg.to for leg in legs]
         return self._planner.plan(self._target, waypoints, self._rng, obstacles)
@@ -255,12 +255,6 @@ class WorkcellBody:
         """Whether something keeps the arm from following its target."""
         lag = np.abs(self._target - self._pr2.arm_joints()).max()
         return bool(lag > _MOST_LAG_RAD)
-
-
-def _hand(leg: Leg) -> Hand:
-    """The gripper's joints on a leg, and what it holds."""
-    angle_rad = finger_angle_rad(leg.opening_m)
-    return Hand(dict.fromkeys(FINGER_JOINTS, angle_rad), leg.held)
 
 
 def _path(planned: JointPath | NoWay) -> JointPath | None:

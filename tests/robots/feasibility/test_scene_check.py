@@ -8,8 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robots.body import ToolPose
+from robots.body import Leg, NoWay
 from robots.feasibility.check import check_scene
+from robots.vision.seen_box import SeenBox
 from sim.workcell.gripper import PR2_GRIPPER
 from tasks.definition import BehaviorNode, GoalNode
 from tasks.scene import Place, Pose, Scatter, Scene, SceneObject
@@ -18,9 +19,10 @@ from tasks.scene_problem import SceneProblem
 REACH_M = 0.74
 
 
-def within_reach(way: Sequence[ToolPose]) -> bool:
+def within_reach(legs: Sequence[Leg], _: Sequence[SeenBox]) -> NoWay | None:
     """A stand-in for the arm: a circle around its shoulder."""
-    return all(math.hypot(each.x, each.y + 0.19) <= REACH_M for each in way)
+    reached = all(math.hypot(each.to.x, each.to.y + 0.19) <= REACH_M for each in legs)
+    return None if reached else NoWay("does not reach all of the way")
 
 
 def box(x: float, y: float, size=(0.03, 0.05, 0.05), **more: Any) -> SceneObject:
@@ -221,3 +223,41 @@ def test_a_height_that_is_given_hardly_too_low_takes_the_fingers_no_room() -> No
     parts = {"base": box(0.5, -0.4, (0.1, 0.1, 0.02))}
     parts["low"] = box(0.5, -0.4, (0.03, 0.03, 0.02), z=0.715)
     assert problems_of(scene(parts, target=FREE), leaf("low", "target", None)) == []
+
+
+def touching_the_tall(legs: Sequence[Leg], boxes: Sequence[SeenBox]) -> NoWay | None:
+    """A stand-in for an arm that can do nothing beside anything called `tall`."""
+    tall = next((each for each in boxes if each.name == "tall"), None)
+    if tall is not None:
+        return NoWay("would touch tall on the way", tall)
+    return within_reach(legs, boxes)
+
+
+def test_what_bars_the_arms_way_is_told_unless_it_is_taken_away_before() -> None:
+    made = scene(
+        {"small": box(0.5, -0.4), "tall": box(0.5, -0.1, (0.05, 0.05, 0.3))},
+        small=FREE,
+        tall=Pose(x=0.6, y=0.15),
+    )
+    leaves = leaf("small", "small"), leaf("tall", "tall")
+    [problem] = check_scene(made, [goal("and"), leaves[0]], PR2_GRIPPER, touching_the_tall)
+    assert problem.where == ("objects", "small", "pose")
+    assert problem.message == (
+        "with small the arm would touch tall on its way: move one of them, or let tall be taken "
+        "away before"
+    )
+    assert check_scene(made, [goal("and"), leaves[0]], PR2_GRIPPER, within_reach) == []
+
+
+def test_what_stands_where_the_part_itself_goes_is_gone_by_then() -> None:
+    made = scene(
+        {"small": box(0.5, -0.4), "tall": box(0.5, 0.05, (0.05, 0.05, 0.3))},
+        small=FREE,
+        tall=Pose(x=0.6, y=-0.1),
+    )
+    nodes = [goal("then"), leaf("tall", "tall"), leaf("small", "small")]
+    found = check_scene(made, nodes[:1] + nodes[1:], PR2_GRIPPER, touching_the_tall)
+    # Its place is filled by then, and bars the arm all the same.
+    assert [each.where for each in found] == [("objects", "small", "pose")]
+    alone = [goal("then"), leaf("tall", "tall")]
+    assert check_scene(made, alone, PR2_GRIPPER, touching_the_tall) == []
