@@ -2,16 +2,18 @@
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Protocol
 
 from robots.arm import Arm, Routine
-from robots.behaviors.grasp_choice import LIFTS_M, MARGIN_M, others
+from robots.behaviors.errand import Errand
+from robots.behaviors.grasp_choice import others
+from robots.behaviors.pick_and_place import lifting
+from robots.behaviors.planning import Plan, at_once, plan_amid
 from robots.behaviors.preparation import LOOK_AGAIN_S
 from robots.body import CameraImage, ToolPose
 from robots.catalogue import Part
-from robots.clearance import in_the_way
-from robots.grasp import can_grasp, grasps_of
+from robots.grasp import can_grasp
 from robots.grip import GripState
 from robots.grip.composition import likeliest
 from robots.link.messages import FinishedResult, Holding, Location, Look, Looked, ReportBody
@@ -24,6 +26,9 @@ from robots.vision.presence import Presence
 from robots.vision.seen_box import SeenBox
 
 LOOK_PERIOD_S = 0.5
+
+_Spot = tuple[str | None, float, float, float]
+"""What stands somewhere: its name, x, y and height."""
 
 _RESTS_WITHIN_M = 0.006
 """An object rests if it is this near to where the look before saw it."""
@@ -136,13 +141,16 @@ class AtPlace:
 
 
 class InReach:
-    """An object rests, standing, where the fingers have room and the arm can lift it."""
+    """An object rests, standing, where the arm can lift it amid all that is seen."""
 
     def __init__(self, looker: Looker, part: Part) -> None:
         self._looker, self._part = looker, part
         self._before: HeadSighting | None = None
+        self._barred: Sequence[_Spot] = ()
 
     def is_fulfilled(self) -> bool:
+        if not can_grasp(self._part, self._looker.arm.body.gripper):
+            return False
         senses, image = self._looker.senses, self._looker.look_at_table()
         if image is None:
             return False
@@ -153,29 +161,26 @@ class InReach:
         moved_m = math.dist((now.x, now.y, now.z), (before.x, before.y, before.z))
         if moved_m > _RESTS_WITHIN_M:
             return False
-        return self._can_grasp(now, others(self._part, senses.seen_boxes(image)))
+        return self._can_lift(now, others(self._part, senses.seen_boxes(image)))
 
-    def _can_grasp(self, at: HeadSighting, around: Sequence[SeenBox]) -> bool:
-        body = self._looker.arm.body
-        if not can_grasp(self._part, body.gripper):
+    def _can_lift(self, at: HeadSighting, around: Sequence[SeenBox]) -> bool:
+        """Whether there is a plan for that; where there was none, only once something has moved."""
+        spots = [(None, at.x, at.y, at.z), *((e.name, e.x, e.y, e.top_z) for e in around)]
+        if _alike(spots, self._barred):
             return False
-        picks = [
-            (each.tool_pose(at.x, at.y, at.z, at.yaw), each)
-            for each in grasps_of(self._part, body.gripper)
-        ]
-        roomy = dict.fromkeys(
-            pick
-            for pick, grasp in picks
-            if in_the_way(
-                body.gripper, pick, grasp.opening_m, around, MARGIN_M, closed_m=grasp.width_m
-            )
-            is None
-        )
-        return any(
-            body.plan_path([replace(pick, z=pick.z + lift_m), pick]) is not None
-            for pick in roomy
-            for lift_m in LIFTS_M
-        )
+        body, table = self._looker.arm.body, self._looker.senses.catalogue.table
+        errand = Errand(lifting, self._part, Location(x=at.x, y=at.y, z=at.z, yaw=at.yaw), None)
+        plan = at_once(plan_amid(errand, body, table, around))
+        self._barred = () if isinstance(plan, Plan) else spots
+        return isinstance(plan, Plan)
+
+
+def _alike(spots: Sequence[_Spot], before: Sequence[_Spot]) -> bool:
+    """Whether the same things stand where they stood before."""
+    return len(spots) == len(before) and all(
+        one[0] == other[0] and math.dist(one[1:], other[1:]) <= _RESTS_WITHIN_M
+        for one, other in zip(spots, before, strict=True)
+    )
 
 
 class WayClear:

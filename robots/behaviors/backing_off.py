@@ -8,7 +8,7 @@ from robots.arm import Arm, Routine
 from robots.behaviors.contact import Contact, ContactWatch
 from robots.behaviors.execution_state import ExecutionState
 from robots.behaviors.phase import Phase
-from robots.behaviors.plan import waypoints_of
+from robots.behaviors.planning import waypoints_of
 from robots.behaviors.progress import Progress
 from robots.behaviors.watch import Watch
 from robots.body import ToolPose

@@ -10,7 +10,8 @@ from robots.behaviors.confirmation import look_at_outcome
 from robots.behaviors.covering import CoveredResultGone
 from robots.behaviors.execution_state import ExecutionState, ExecutionTransitionError, is_over
 from robots.behaviors.phase import Phase
-from robots.behaviors.plan import Plan, make_plan
+from robots.behaviors.plan import make_plan
+from robots.behaviors.planning import Plan
 from robots.behaviors.preparation import (
     LOOK_AGAIN_S,
     check_carrying,
@@ -171,7 +172,7 @@ class Execution:
         if seen.carrying:
             yield from check_sight(arm, senses, seen)
             self._require_sight()
-            progress.plan = make_plan(self._assignment, arm, senses, seen)
+            progress.plan = yield from make_plan(self._assignment, arm, senses, seen)
             refused = progress.plan is None and seen.refusal is not None
             if refused and (yield from set_down(arm, senses, self._picked_at)):
                 # Held otherwise it may fit.
@@ -188,7 +189,7 @@ class Execution:
                 progress.plan = earlier
                 watch.judge(progress.felt)
             self._picked_at = None
-            progress.plan = make_plan(self._assignment, arm, senses, seen)
+            progress.plan = yield from make_plan(self._assignment, arm, senses, seen)
             if seen.sighting is not None and (progress.plan is None or seen.obstruction):
                 yield from self._plan_anew()
         if progress.plan is None and progress.inexact and self._in_place():
@@ -213,7 +214,9 @@ class Execution:
         yield from self._arm.wait(LOOK_AGAIN_S)
         yield from find(self._assignment.part, self._arm, self._senses, progress.seen)
         self._require_sight()
-        progress.plan = make_plan(self._assignment, self._arm, self._senses, progress.seen)
+        progress.plan = yield from make_plan(
+            self._assignment, self._arm, self._senses, progress.seen
+        )
 
     def _require_sight(self) -> None:
         """Raises `Interruption` where the head camera shows nothing of the table."""

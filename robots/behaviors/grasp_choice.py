@@ -8,17 +8,14 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from robots.arm import Arm
-from robots.behaviors.assignment import Assignment, Findings
 from robots.behaviors.behavior import Move, SetGripper, Situation, Step
+from robots.behaviors.errand import Errand
 from robots.body import ToolPose
 from robots.catalogue import Part
-from robots.clearance import ROOM_M, room_around
+from robots.clearance import ROOM_M, Room, room_around
 from robots.grasp import Grasp, grasps_of, half_turn
 from robots.gripper import GripperModel
 from robots.link.messages import Location
-from robots.senses import Senses
-from robots.vision.head import HeadSighting
 from robots.vision.seen_box import SeenBox
 
 Vector = NDArray[np.float64]
@@ -55,13 +52,12 @@ class Crowding:
     """What leaves the fingers least room to grasp the object, or to let go of it at its place."""
 
     by: SeenBox
-    at_place: bool
+    grip: Grip
     room_m: float
 
     @property
-    def is_too_much(self) -> bool:
-        """Whether the fingers do not fit at all."""
-        return self.room_m < MARGIN_M
+    def at_place(self) -> bool:
+        return self.grip.at_place
 
     def __str__(self) -> str:
         where = "at its place" if self.at_place else "to grasp it"
@@ -69,24 +65,19 @@ class Crowding:
 
 
 def ways_to_grasp(
-    assignment: Assignment,
-    arm: Arm,
-    senses: Senses,
-    findings: Findings,
-    boxes: Sequence[SeenBox],
+    errand: Errand, gripper: GripperModel, table_z: float, boxes: Sequence[SeenBox]
 ) -> Iterator[Situation]:
-    """The situations in which the behavior may lay out its steps, the best first.
+    """The situations in which the steps may be laid out, the best first.
 
     Raises `UngraspableError` where the gripper cannot take the object at all.
     """
-    part, target = assignment.part, assignment.target
-    ways_round = _ways_round(part, findings.sighting, target)
-    table_z = senses.catalogue.table.height
+    part, target = errand.part, errand.target
+    ways_round = _ways_round(part, errand.found, target)
     over_z = clear_z(ways_round[0], target, table_z, boxes)
-    grasps = _grasps(part, arm, senses, findings)
+    grasps = _grasps(errand, gripper)
     # Where the arm does not reach so high it may still find a way between what stands there.
     for clear_m, found, grasp, lift_m in product((over_z, table_z), ways_round, grasps, LIFTS_M):
-        yield Situation(part, found, target, table_z, arm.body.gripper, grasp, clear_m, lift_m)
+        yield Situation(part, found, target, table_z, gripper, grasp, clear_m, lift_m)
 
 
 def others(part: Part | None, boxes: Sequence[SeenBox]) -> list[SeenBox]:
@@ -121,42 +112,52 @@ def grips(steps: Sequence[Step], grasp: Grasp | None, gripper: GripperModel) -> 
 
 
 def crowding(
-    grips: Sequence[Grip], gripper: GripperModel, boxes: Sequence[SeenBox]
+    grips: Sequence[Grip], gripper: GripperModel, boxes: Sequence[SeenBox], stray_m: float = 0.0
 ) -> Crowding | None:
-    """What stands closest to where the fingers close or open; None if nothing is seen."""
+    """What stands closest to where the fingers close or open; None if nothing is seen.
+
+    Where they close it may stand `stray_m` nearer than it is said to.
+    """
     found: Crowding | None = None
     for each in grips:
-        room = room_around(gripper, each.tool, each.opening_m, boxes, closed_m=each.closed_m)
+        room = room_for(each, gripper, boxes, stray_m)
         if room is not None and (found is None or room.room_m < found.room_m):
-            found = Crowding(room.to, each.at_place, room.room_m)
+            found = Crowding(room.to, each, room.room_m)
     return found
 
 
-def _grasps(
-    part: Part | None, arm: Arm, senses: Senses, findings: Findings
-) -> Sequence[Grasp | None]:
-    if part is None:
+def room_for(
+    grip: Grip, gripper: GripperModel, boxes: Sequence[SeenBox], stray_m: float
+) -> Room | None:
+    """The room around fingers that close or open; None if nothing stands there."""
+    stray_m = 0.0 if grip.at_place else stray_m
+    opening_m, closed_m = grip.opening_m, grip.closed_m
+    return room_around(gripper, grip.tool, opening_m, boxes, closed_m=closed_m, stray_m=stray_m)
+
+
+def _grasps(errand: Errand, gripper: GripperModel) -> Sequence[Grasp | None]:
+    if errand.part is None:
         return [None]
-    if findings.carrying and senses.grip is not None:
-        return [senses.grip.grasp]
-    return grasps_of(part, arm.body.gripper)
+    if errand.held_by is not None:
+        return [errand.held_by]
+    return grasps_of(errand.part, gripper)
 
 
 def _ways_round(
-    part: Part | None, sighting: HeadSighting | None, target: Location | None
+    part: Part | None, found: Location | None, target: Location | None
 ) -> list[Location | None]:
     """Where the object is; one that is square, or hardly not, may lie two ways round.
 
     Of what is square first the one that has to be turned less on its way; of what is hardly not
     first the one that was seen: a camera may be wrong about it.
     """
-    if part is None or sighting is None:
+    if part is None or found is None:
         return [None]
-    first, quarter = sighting.yaw, math.pi / 2
+    first, quarter = found.yaw, math.pi / 2
     if part.off_square_m == 0.0 and target is not None:
         first = target.yaw + math.remainder(first - target.yaw, quarter)
     yaws = [first] if part.off_square_m > _HARDLY_M else [first, first + quarter]
-    return [Location(x=sighting.x, y=sighting.y, z=sighting.z, yaw=half_turn(yaw)) for yaw in yaws]
+    return [Location(x=found.x, y=found.y, z=found.z, yaw=half_turn(yaw)) for yaw in yaws]
 
 
 def clear_z(

@@ -11,6 +11,8 @@ from robots.grasp import RELEASE_CLEARANCE_M, Grasp, half_turn
 from robots.link.messages import Location
 from tasks.scene import Name, StrictModel
 
+_LIFTING = (Phase.APPROACH, Phase.GRASP, Phase.LIFT)
+
 
 class PickAndPlaceParameters(StrictModel):
     """Which object goes where. `needs_help`: a person has to help with placing it."""
@@ -50,6 +52,13 @@ class PickAndPlace(Behavior):
             Step("open gripper", SetGripper("open", apart_m), Phase.RELEASE),
             Step("above place", Move(above_place, 0.5, apart_m), Phase.RETREAT),
         )
+
+
+def lifting(situation: Situation) -> Sequence[Step]:
+    """The steps up to where the object is lifted, wherever it is to go."""
+    parameters = PickAndPlaceParameters(object="it", place="anywhere")
+    steps = PickAndPlace().steps(parameters, replace(situation, target=situation.found))
+    return [step for step in steps if step.phase in _LIFTING]
 
 
 def _tool_pose(grasp: Grasp, at: Location, table_z: float, clearance_m: float) -> ToolPose:

@@ -2,6 +2,7 @@
 
 from robots.arm import Arm, Routine
 from robots.behaviors.assignment import Assignment, Findings
+from robots.behaviors.errand import errand_of
 from robots.behaviors.grasp_choice import ways_to_grasp
 from robots.catalogue import Part
 from robots.senses import Senses
@@ -57,6 +58,7 @@ def check_sight(arm: Arm, senses: Senses, findings: Findings) -> Routine[None]:
 
 def goes_on_carrying(assignment: Assignment, arm: Arm, senses: Senses) -> bool:
     """Whether the behavior has a step at which to go on with its object in the gripper."""
-    (situation, *_) = ways_to_grasp(assignment, arm, senses, Findings(carrying=True), ())
+    errand = errand_of(assignment, senses, Findings(carrying=True))
+    (situation, *_) = ways_to_grasp(errand, arm.body.gripper, senses.catalogue.table.height, ())
     steps = assignment.behavior.steps(assignment.parameters, situation)
     return assignment.behavior.first_carrying(steps) is not None

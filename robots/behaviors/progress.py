@@ -7,7 +7,7 @@ from robots.behaviors.confirmation import Outcome
 from robots.behaviors.contact import Contact
 from robots.behaviors.execution_state import ExecutionState, ExecutionTransitionError, follow
 from robots.behaviors.phase import Phase
-from robots.behaviors.plan import Plan, waypoints_of
+from robots.behaviors.planning import Plan, waypoints_of
 from robots.body import ToolPose
 from robots.link.messages import WasDone
 from robots.monitors.monitor import BEFORE_FIRST_STEP

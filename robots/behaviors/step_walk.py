@@ -12,7 +12,7 @@ from robots.behaviors.contact import Contact, ContactWatch, Track, Try, hinderin
 from robots.behaviors.covering import Covering
 from robots.behaviors.execution_state import ExecutionState, ExecutionTransitionError
 from robots.behaviors.phase import Phase
-from robots.behaviors.plan import Plan
+from robots.behaviors.planning import Plan
 from robots.behaviors.progress import Progress
 from robots.behaviors.watch import Watch
 from robots.body import ToolPose

@@ -1,45 +1,35 @@
 """The check of a whole scene: each part by itself, and what gets in each other's way."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from itertools import combinations
 
-from robots.feasibility.doing import ArmCheck, FindNoWay, Surroundings
+from robots.behaviors.planning import Planner
+from robots.feasibility.doing import ArmCheck, Hindrance
 from robots.feasibility.handling import cannot_handle
-from robots.feasibility.standing import Standing, at_place, beneath, starts
+from robots.feasibility.moments import Job, Moment, Moments
+from robots.feasibility.standing import Standing, at_place, starts
 from robots.feasibility.support import cannot_stand
-from robots.gripper import GripperModel
 from tasks.definition import BehaviorNode, GoalNode
 from tasks.leaf_order import LeafOrder
 from tasks.scene import Scene
 from tasks.scene_problem import SceneProblem
 
-
-@dataclass(frozen=True, slots=True)
-class Job:
-    """One part that is to be taken from where it starts to a place, by leaf number `leaf`."""
-
-    leaf: int
-    start: Standing
-    place: Standing | None
-
-    @property
-    def name(self) -> str:
-        return self.start.name
+_MOST_SPLITS = 3
+"""So many things that may or may not stand around are looked at by themselves; where more of them
+bar the way only together, nothing is said."""
 
 
 def check_scene(
     scene: Scene,
     nodes: Sequence[GoalNode | BehaviorNode],
-    gripper: GripperModel,
-    no_way: FindNoWay,
+    planner: Planner,
 ) -> list[SceneProblem]:
     """What keeps a robot from doing the leaves among `nodes`; without any, each part by itself.
 
     Of a whole tree (with its goal nodes) the order and the alternatives are taken into account;
     of leaves alone all are done, in any order. Each part is told of once.
     """
-    return _SceneCheck(scene, nodes, gripper, no_way).problems()
+    return _SceneCheck(scene, nodes, planner).problems()
 
 
 class _SceneCheck:
@@ -47,16 +37,18 @@ class _SceneCheck:
         self,
         scene: Scene,
         nodes: Sequence[GoalNode | BehaviorNode],
-        gripper: GripperModel,
-        no_way: FindNoWay,
+        planner: Planner,
     ) -> None:
         self._scene = scene
-        self._gripper = gripper
-        self._arm = ArmCheck(gripper, no_way, scene.scatter, scene.table)
+        self._gripper = planner.gripper
+        self._arm = ArmCheck(planner, scene.scatter, scene.table)
         self._order = LeafOrder(nodes)
         self._starts = starts(scene)
         self._jobs = _jobs(scene, self._order, self._starts)
         self._together = bool(nodes)
+        self._moments = Moments(
+            self._jobs, list(self._starts.values()), self._order, together=self._together
+        )
 
     def problems(self) -> list[SceneProblem]:
         """The plain mistakes first; what follows from one is not told as well."""
@@ -121,56 +113,41 @@ class _SceneCheck:
         for job in self._jobs:
             if told.of(job.start) or (job.place is not None and told.of(job.place)):
                 continue
-            around = Surroundings(self._around_start(job), self._around_place(job))
-            problem = self._arm.cannot_do(job.start, job.place, around)
-            if problem is not None:
-                found.append(problem)
+            hindrance = self._hindrance(job)
+            if hindrance is not None:
+                found.append(self._arm.told(hindrance, {each.name for each in self._jobs}))
         return list(dict.fromkeys(found))
 
-    def _around_start(self, job: Job) -> list[Standing]:
-        """What may stand around a part when it is taken: not what is taken off it before."""
-        others = [each for each in self._starts.values() if each.name != job.name]
-        above = _resting_on(job.start, others)
-        gone = {each.name for each in self._jobs if self._order.is_before(each.leaf, job.leaf)}
-        # What stands in the same spot was told of already.
-        waiting = [
-            each
-            for each in others
-            if each not in above and each.name not in gone and not job.start.meets(each)
-        ]
-        return [*waiting, *(each for each in self._filled(job) if not job.start.meets(each))]
+    def _hindrance(self, job: Job) -> Hindrance | None:
+        """What keeps the arm from a job at a moment that the order allows; None if nothing does."""
+        moment = self._moments.of(job)
+        sure, maybe = self._moments.around(moment)
+        # What is possible amid all that may ever stand around is possible at any moment.
+        found = self._arm.hindrance(job.start, job.place, [*sure, *maybe])
+        if found is None or not maybe:
+            return found
+        return self._at_some_moment(moment, found, _MOST_SPLITS)
 
-    def _filled(self, job: Job) -> list[Standing]:
-        """The places of other parts that may be filled while a part is handled."""
-        if not self._together:
-            return []
-        return [
-            each.place
-            for each in self._jobs
-            if each.name != job.name
-            and each.place is not None
-            and not self._order.exclusive(each.leaf, job.leaf)
-            and not self._order.is_before(job.leaf, each.leaf)
-        ]
-
-    def _around_place(self, job: Job) -> list[Standing]:
-        """What may stand around a place when it is filled: not what is put onto it later."""
-        if job.place is None:
-            return []
-        rivals = [each for each in self._jobs if each.name != job.name] if self._together else []
-        places = [
-            each
-            for each in self._filled(job)
-            if each.where != job.place.where and not job.place.meets(each)
-        ]
-        above = _resting_on(job.place, places)
-        gone = {each.name for each in rivals if self._order.is_before(each.leaf, job.leaf)}
-        waiting = [
-            each
-            for each in self._starts.values()
-            if each.name != job.name and each.name not in gone and not job.place.meets(each)
-        ]
-        return [*(each for each in places if each not in above), *waiting]
+    def _at_some_moment(self, moment: Moment, amid_all: Hindrance, splits: int) -> Hindrance | None:
+        """As `_hindrance`, where there is one amid all that may stand around."""
+        job = moment.job
+        sure, maybe = self._moments.around(moment)
+        found = self._arm.hindrance(job.start, job.place, sure)
+        if found is not None or not maybe:
+            return found
+        if len(maybe) < len(amid_all.around) - len(sure):
+            again = self._arm.hindrance(job.start, job.place, [*sure, *maybe])
+            if again is None:
+                return None
+            amid_all = again
+        if splits == 0:
+            return None
+        suspect = next((each for each in maybe if each.name in amid_all.names), maybe[0])
+        for each in self._moments.split(moment, suspect):
+            found = self._at_some_moment(each, amid_all, splits - 1)
+            if found is not None:
+                return found
+        return None
 
 
 class _Told:
@@ -200,17 +177,3 @@ def _jobs(scene: Scene, order: LeafOrder, where: dict[str, Standing]) -> list[Jo
         for index, leaf in leaves
         if leaf.object in where and leaf.object is not None
     ]
-
-
-def _resting_on(lowest: Standing, others: Sequence[Standing]) -> list[Standing]:
-    """All that stands on a part, directly or by way of others."""
-    found: list[Standing] = []
-    layer = [lowest]
-    while layer:
-        layer = [
-            each
-            for each in others
-            if each not in found and any(one in layer for one in beneath(each, layer))
-        ]
-        found += layer
-    return found

@@ -1,27 +1,30 @@
-"""Whether the arm can do a leaf: grasp its object, bring it to its place, and let it go there."""
+"""Whether the arm can do a leaf amid what stands around: take its object and bring it there."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 
 from robots.behaviors.behavior import Situation, Step
-from robots.behaviors.grasp_choice import LIFTS_M, clear_z
-from robots.behaviors.legs import legs_of, table_box
-from robots.behaviors.pick_and_place import PickAndPlace, PickAndPlaceParameters
-from robots.body import Leg, NoWay, ToolPose
-from robots.clearance import ROOM_M, in_the_way
+from robots.behaviors.errand import Errand
+from robots.behaviors.grasp_choice import Crowding, room_for
+from robots.behaviors.pick_and_place import PickAndPlace, PickAndPlaceParameters, lifting
+from robots.behaviors.plan import carries
+from robots.behaviors.planning import (
+    AS_SEEN,
+    Barred,
+    Planner,
+    Spare,
+    at_once,
+    bar_of,
+    plan_amid,
+)
+from robots.clearance import ROOM_M
 from robots.feasibility.standing import Standing, beneath
-from robots.grasp import Grasp, grasps_of
-from robots.gripper import GripperModel
 from robots.link.messages import Location
 from robots.vision.seen_box import SeenBox
 from tasks.scene import Pose, Scatter, Table
 from tasks.scene_problem import SceneProblem
-
-FindNoWay = Callable[[Sequence[Leg], Sequence[SeenBox]], NoWay | None]
-"""Why the arm cannot go from neutral through all legs amid boxes, by the planner that it uses; None
-where it can."""
 
 _SEEN_M = 0.0015
 """A part may be seen so far away from where it is."""
@@ -30,123 +33,72 @@ _STEP_M, _STEPS = 0.002, 100
 
 
 @dataclass(frozen=True, slots=True)
-class Surroundings:
-    """What stands around a part when it is grasped, and when it is let go."""
+class Hindrance:
+    """Why a part cannot be taken from `start` to `place` amid `around`, wherever it is seen."""
 
-    start: Sequence[Standing]
-    place: Sequence[Standing]
-
-
-@dataclass(frozen=True, slots=True)
-class _Tight:
-    """A neighbour is `lacking_m` too close to a part, where it starts or where it is to go."""
-
-    standing: Standing
-    neighbour: str
-    lacking_m: float
-    at_start: bool
+    start: Standing
+    place: Standing | None
+    around: Sequence[Standing]
+    errand: Errand
+    barred: Barred
 
     @property
-    def told(self) -> SceneProblem:
-        name, apart = self.standing.name, f"put them {1e3 * self.lacking_m:.0f} mm further apart"
-        if self.at_start:
-            message = (
-                f"{self.neighbour} stands too close to {name} for the fingers to grasp that: "
-                f"{apart}"
-            )
-        else:
-            message = (
-                f"{self.neighbour} is too close to the place of {name} for the fingers to let it "
-                f"go there: {apart}"
-            )
-        return SceneProblem(self.standing.where, message)
+    def names(self) -> set[str | None]:
+        """What is too near, or would be touched."""
+        boxes = [
+            each.by if isinstance(each, Crowding) else each.touched for each in self.barred.refusals
+        ]
+        return {box.name for box in boxes if box is not None}
 
 
 @dataclass(frozen=True, slots=True)
 class ArmCheck:
-    """The gripper and the reach of the robot that is to do it."""
+    """The arm of the robot that is to do it."""
 
-    gripper: GripperModel
-    no_way: FindNoWay
+    planner: Planner
     scatter: Scatter
     table: Table
 
-    def cannot_do(
-        self, start: Standing, place: Standing | None, around: Surroundings
-    ) -> SceneProblem | None:
-        """Why the arm cannot take a part from `start` to `place`; None where it can."""
-        grasps = grasps_of(start.part, self.gripper)
-        tight = {grasp: self._tight(start, place, grasp, around) for grasp in grasps}
-        roomy = [grasp for grasp, problem in tight.items() if problem is None]
-        if not roomy:
-            # What lacks least is what is easiest to mend.
-            lacking = [problem for problem in tight.values() if problem is not None]
-            return min(lacking, key=lambda each: each.lacking_m).told
-        if any(self._reaches(start, place, grasp, around) for grasp in roomy):
-            return self._barred(start, place, roomy, around)
-        return self._out_of_reach(start, place, roomy, around)
+    def hindrance(
+        self, start: Standing, place: Standing | None, around: Sequence[Standing]
+    ) -> Hindrance | None:
+        """What keeps the arm from taking a part from `start` to `place`; None if nothing does.
 
-    def _tight(
-        self, start: Standing, place: Standing | None, grasp: Grasp, around: Surroundings
-    ) -> "_Tight | None":
-        """What leaves too little room for the fingers; None where there is enough."""
-        sites = [(start, around.start, self.scatter.xy)]
-        if place is not None:
-            sites.append((place, around.place, 0.0))
-        for standing, others, more_m in sites:
-            tool = _tool(_at_rest(standing, others), standing.pose, grasp)
-            near = self._near(tool, grasp, others, more_m)
-            if near is not None:
-                lacking_m = self._lacking_m(tool, grasp, near, more_m)
-                return _Tight(standing, near.name or "something", lacking_m, standing is start)
+        Without a place it is only to be lifted.
+        """
+        boxes = _boxes(around)
+        bottom_z = _rest_z(start, around)
+        for at, spare in self._seen_at(start.pose):
+            errand = _errand(start, at, bottom_z, place, around)
+            found = at_once(plan_amid(errand, self.planner, self.table, boxes, spare))
+            if isinstance(found, Barred):
+                return Hindrance(start, place, around, errand, found)
         return None
 
-    def _lacking_m(self, tool: ToolPose, grasp: Grasp, near: SeenBox, more_m: float) -> float:
-        """How much further away from the part its neighbour would leave room."""
-        dx, dy = near.x - tool.x, near.y - tool.y
-        away_m = math.hypot(dx, dy)
-        cos, sin = (dx / away_m, dy / away_m) if away_m > 0.0 else (1.0, 0.0)
-        for step in range(1, _STEPS):
-            shift_m = step * _STEP_M
-            moved = replace(near, x=near.x + cos * shift_m, y=near.y + sin * shift_m)
-            if self._in_the_way(tool, grasp, [moved], more_m) is None:
-                return shift_m
-        return _STEPS * _STEP_M
+    def told(self, hindrance: Hindrance, moved: set[str]) -> SceneProblem:
+        """The hindrance in a sentence; `moved` are the parts that leaves take away."""
+        reason = hindrance.barred.reason
+        if isinstance(reason, Crowding):
+            return self._tight(hindrance)
+        bar = self._bar(hindrance)
+        if bar is not None:
+            return self._in_the_way(hindrance, bar, moved)
+        if reason.touched is not None:
+            return self._touching(hindrance, reason.touched)
+        return self._out_of_reach(hindrance)
 
-    def _near(
-        self, tool: ToolPose, grasp: Grasp, others: Sequence[Standing], more_m: float
-    ) -> SeenBox | None:
-        boxes = [box for each in others for box in each.boxes]
-        return self._in_the_way(tool, grasp, boxes, more_m)
+    @property
+    def _spare(self) -> Spare:
+        """More room than a robot needs by what it sees, as that is never exact."""
+        return Spare(ROOM_M, self.scatter.xy)
 
-    def _in_the_way(
-        self, tool: ToolPose, grasp: Grasp, boxes: Sequence[SeenBox], more_m: float
-    ) -> SeenBox | None:
-        """What comes too near to the fingers while they close or open; `more_m` nearer at worst."""
-        return in_the_way(
-            self.gripper,
-            tool,
-            grasp.opening_m,
-            boxes,
-            ROOM_M,
-            closed_m=grasp.width_m,
-            stray_m=more_m,
-        )
+    def _seen_at(self, pose: Pose) -> Iterator[tuple[Pose, Spare]]:
+        """Where a start may be seen, and what room the fingers need there.
 
-    def _reaches(
-        self, start: Standing, place: Standing | None, grasp: Grasp, around: Surroundings
-    ) -> bool:
-        """Whether wherever the world may scatter the start to, some lift is within reach."""
-        return all(
-            any(
-                self.no_way(self._legs(start, at, place, grasp, lift_m, around), ()) is None
-                for lift_m in LIFTS_M
-            )
-            for at in self._scattered(start.pose)
-        )
-
-    def _scattered(self, pose: Pose) -> list[Pose]:
-        """Where a start may come to be, or to be seen: the corners, or nearer and farther away."""
+        Where it is, with room to spare; and at the corners of what it is scattered over, or nearer
+        and farther away.
+        """
+        yield pose, self._spare
         shift_m = self.scatter.xy
         if shift_m == 0.0:
             away_m = max(math.hypot(pose.x, pose.y), _SEEN_M)
@@ -154,118 +106,130 @@ class ArmCheck:
         else:
             off_m = shift_m + _SEEN_M
             shifts = [(dx * off_m, dy * off_m) for dx, dy in product(_SIDES, _SIDES)]
-        return [pose.model_copy(update={"x": pose.x + dx, "y": pose.y + dy}) for dx, dy in shifts]
+        for dx, dy in shifts:
+            yield pose.model_copy(update={"x": pose.x + dx, "y": pose.y + dy}), AS_SEEN
 
-    def _barred(
-        self,
-        start: Standing,
-        place: Standing | None,
-        grasps: Sequence[Grasp],
-        around: Surroundings,
-    ) -> SceneProblem | None:
-        """What the arm would touch on every way that it could take otherwise; None if nothing.
-
-        What is to stand where the part itself starts or goes cannot stand there by then.
-        """
-        ends = [each for each in (start, place) if each is not None]
-        standing = [
-            each
-            for each in dict.fromkeys([*around.start, *around.place])
-            if not any(each.meets(end) for end in ends)
-        ]
-        boxes = [table_box(self.table), *(box for each in standing for box in each.boxes)]
-        touched: SeenBox | None = None
-        for over, grasp, lift_m in product((True, False), grasps, LIFTS_M):
-            legs = self._legs(start, start.pose, place, grasp, lift_m, around, over=over)
-            barred = self.no_way(legs, boxes)
-            if barred is None:
-                return None
-            touched = touched or barred.touched
-        if touched is None or touched.name is None:
-            return None
+    def _tight(self, hindrance: Hindrance) -> SceneProblem:
+        """What lacks least is what is easiest to mend."""
+        crowded = [each for each in hindrance.barred.refusals if isinstance(each, Crowding)]
+        lacking_m, least = min(
+            ((self._lacking_m(each), each) for each in crowded), key=lambda pair: pair[0]
+        )
+        name, neighbour = hindrance.start.name, least.by.name
+        apart = f"put them {1e3 * lacking_m:.0f} mm further apart"
+        if least.at_place and hindrance.place is not None:
+            return SceneProblem(
+                hindrance.place.where,
+                f"{neighbour} is too close to the place of {name} for the fingers to let it go "
+                f"there: {apart}",
+            )
         return SceneProblem(
-            start.where,
-            f"with {start.name} the arm would touch {touched.name} on its way: move one of them, "
-            f"or let {touched.name} be taken away before",
+            hindrance.start.where,
+            f"{neighbour} stands too close to {name} for the fingers to grasp that: {apart}",
         )
 
-    def _legs(
-        self,
-        start: Standing,
-        at: Pose,
-        place: Standing | None,
-        grasp: Grasp,
-        lift_m: float,
-        around: Surroundings,
-        *,
-        over: bool = True,
-    ) -> list[Leg]:
-        """The way of the tool point, as the behavior lays it out, `over` all that stands there."""
-        steps = self._steps(start, at, place, grasp, lift_m, around, over=over)
-        return legs_of(steps, start.part, grasp, self.gripper, carrying=False)
+    def _lacking_m(self, crowding: Crowding) -> float:
+        """How much further away from the part its neighbour would leave room."""
+        near, tool = crowding.by, crowding.grip.tool
+        gripper, spare = self.planner.gripper, self._spare
+        dx, dy = near.x - tool.x, near.y - tool.y
+        away_m = math.hypot(dx, dy)
+        cos, sin = (dx / away_m, dy / away_m) if away_m > 0.0 else (1.0, 0.0)
+        for step in range(1, _STEPS):
+            shift_m = step * _STEP_M
+            moved = replace(near, x=near.x + cos * shift_m, y=near.y + sin * shift_m)
+            room = room_for(crowding.grip, gripper, [moved], spare.stray_m)
+            if room is None or room.room_m >= spare.least_m:
+                return shift_m
+        return _STEPS * _STEP_M
 
-    def _steps(
-        self,
-        start: Standing,
-        at: Pose,
-        place: Standing | None,
-        grasp: Grasp,
-        lift_m: float,
-        around: Surroundings,
-        *,
-        over: bool,
-    ) -> Sequence[Step]:
-        found = Location(x=at.x, y=at.y, z=start.bottom_z, yaw=at.yaw)
-        target = found
-        if place is not None:
-            pose = place.pose
-            target = Location(x=pose.x, y=pose.y, z=place.bottom_z, yaw=pose.yaw)
-        boxes = [box for each in (*around.start, *around.place) for box in each.boxes]
-        situation = Situation(
-            start.part,
-            found,
-            target,
-            self.table.height,
-            self.gripper,
-            grasp,
-            clear_z(found, target, self.table.height, boxes) if over else self.table.height,
-            lift_m,
+    def _bar(self, hindrance: Hindrance) -> Standing | None:
+        """What could stand elsewhere so that there would be a way."""
+        errand = hindrance.errand
+        bar = at_once(
+            bar_of(
+                hindrance.barred,
+                _boxes(hindrance.around),
+                lambda boxes: plan_amid(errand, self.planner, self.table, boxes),
+                lambda box: carries(box, errand, self.table.height),
+            )
         )
-        parameters = PickAndPlaceParameters(object=start.name, place=start.name)
-        return PickAndPlace().steps(parameters, situation)
+        return None if bar is None else next(e for e in hindrance.around if bar in e.boxes)
 
-    def _out_of_reach(
-        self,
-        start: Standing,
-        place: Standing | None,
-        grasps: Sequence[Grasp],
-        around: Surroundings,
-    ) -> SceneProblem:
+    def _in_the_way(self, hindrance: Hindrance, bar: Standing, moved: set[str]) -> SceneProblem:
+        end = self._barred_end(hindrance)
+        name = hindrance.start.name
+        to = name if end is hindrance.start else f"the place of {name}"
+        mend = "move one of them"
+        if bar.where[0] == "places":
+            mend += f", or let {name} be placed before {bar.name}"
+        elif bar.name in moved:
+            mend += f", or let {bar.name} be placed before {name}"
+        verb = "would stand" if bar.where[0] == "places" else "stands"
+        return SceneProblem(end.where, f"{bar.name} {verb} in the arm's way to {to}: {mend}")
+
+    def _touching(self, hindrance: Hindrance, touched: SeenBox) -> SceneProblem:
+        end = self._barred_end(hindrance)
+        name = hindrance.start.name
+        to = name if end is hindrance.start else f"the place of {name}"
+        return SceneProblem(
+            end.where, f"the arm would touch {touched.name} on its way to {to}: move one of them"
+        )
+
+    def _barred_end(self, hindrance: Hindrance) -> Standing:
+        """The start if the arm cannot even lift the part there, else the place."""
+        start, place = hindrance.start, hindrance.place
+        if place is None or self.hindrance(start, None, hindrance.around) is not None:
+            return start
+        return place
+
+    def _out_of_reach(self, hindrance: Hindrance) -> SceneProblem:
         """Whether the start, the place or only the way between them cannot be reached."""
-        if not any(self._reaches(start, None, grasp, around) for grasp in grasps):
-            return SceneProblem(start.where, self._too_far(start.name, start, "starts"))
-        assert place is not None
-        if not any(self._reaches(place, None, grasp, around) for grasp in grasps):
-            return SceneProblem(place.where, self._too_far(start.name, place, "is to go"))
+        start, place = hindrance.start, hindrance.place
+        if place is None or self.hindrance(start, None, ()) is not None:
+            return SceneProblem(start.where, _too_far(start.name, start, "starts"))
+        if self.hindrance(place, None, ()) is not None:
+            return SceneProblem(place.where, _too_far(start.name, place, "is to go"))
         return SceneProblem(
             place.where,
             f"the arm reaches where {start.name} starts and where it is to go, but not both with "
             "one grasp: turn or move one of them",
         )
 
-    def _too_far(self, name: str, standing: Standing, verb: str) -> str:
-        pose = standing.pose
-        return (
-            f"the arm does not reach ({pose.x:.3f}, {pose.y:.3f}, {standing.bottom_z:.3f}), where "
-            f"{name} {verb}, with the gripper pointing down"
-        )
+
+def _too_far(name: str, standing: Standing, verb: str) -> str:
+    pose = standing.pose
+    return (
+        f"the arm does not reach ({pose.x:.3f}, {pose.y:.3f}, {standing.bottom_z:.3f}), where "
+        f"{name} {verb}, with the gripper pointing down"
+    )
 
 
-def _at_rest(standing: Standing, others: Sequence[Standing]) -> Standing:
+def _boxes(around: Sequence[Standing]) -> list[SeenBox]:
+    return [box for each in around for box in each.boxes]
+
+
+def _rest_z(standing: Standing, others: Sequence[Standing]) -> float:
     """On top of what carries it, where the height that is given for it is hardly lower."""
-    tops = [each.deck_z for each in beneath(standing, others)]
-    return replace(standing, bottom_z=max([standing.bottom_z, *tops]))
+    return max([standing.bottom_z, *(each.deck_z for each in beneath(standing, others))])
 
 
-def _tool(standing: Standing, pose: Pose, grasp: Grasp) -> ToolPose:
-    return grasp.tool_pose(pose.x, pose.y, standing.bottom_z, pose.yaw)
+def _errand(
+    start: Standing,
+    at: Pose,
+    bottom_z: float,
+    place: Standing | None,
+    around: Sequence[Standing],
+) -> Errand:
+    """What `PickAndPlace` is to do with a part that is seen at a pose; without a place, lift it."""
+    found = Location(x=at.x, y=at.y, z=bottom_z, yaw=at.yaw)
+    if place is None:
+        return Errand(lifting, start.part, found, None)
+    goal = place.pose
+    target = Location(x=goal.x, y=goal.y, z=_rest_z(place, around), yaw=goal.yaw)
+    parameters = PickAndPlaceParameters(object=start.name, place=start.name)
+
+    def lay_out(situation: Situation) -> Sequence[Step]:
+        return PickAndPlace().steps(parameters, situation)
+
+    return Errand(lay_out, start.part, found, target)

@@ -11,6 +11,7 @@ from typing import Any
 import coal
 import numpy as np
 import pinocchio as pin
+from numpy.typing import NDArray
 
 from robots.body import HeldBox
 from robots.motion.kinematics import Joints
@@ -59,6 +60,9 @@ class CollisionModel:
             link.geometry.buildConvexHull(True, _QHULL_OPTIONS)
             link.geometry = link.geometry.convex
         self._joints = list(joints)
+        places = [self._model.joints[self._model.getJointId(each)] for each in joints]
+        self._unlimited = np.array([place.nq == 2 for place in places])
+        self._first = np.array([place.idx_q for place in places])
         wrist = self._model.getJointId(joints[-1])
         self._beyond_wrist = [
             wrist in self._model.supports[link.parentJoint] for link in self._links.geometryObjects
@@ -90,19 +94,21 @@ class CollisionModel:
         pairs.data = pin.GeometryData(geometry)
         for request, margin_m in zip(pairs.data.collisionRequests, kept_m, strict=True):
             request.security_margin = margin_m
-        return Surrounded(self, pairs, hand)
+        return Surrounded(self, pairs, self.with_hand(hand))
 
-    def configuration(self, joints: Joints, hand: Hand) -> Any:
-        """All joints as pinocchio counts them: unlimited ones by cosine and sine."""
-        angles = dict(zip(self._joints, joints, strict=True)) | dict(hand.angles_rad)
+    def with_hand(self, hand: Hand) -> NDArray[np.float64]:
+        """All joints as pinocchio counts them (`with_joints`), with the gripper so."""
         whole = pin.neutral(self._model)
-        for name, angle in angles.items():
-            joint = self._model.joints[self._model.getJointId(name)]
-            if joint.nq == 1:
-                whole[joint.idx_q] = angle
-            else:
-                whole[joint.idx_q : joint.idx_q + 2] = np.cos(angle), np.sin(angle)
-        return whole
+        for name, angle_rad in hand.angles_rad.items():
+            whole[self._model.joints[self._model.getJointId(name)].idx_q] = angle_rad
+        return np.asarray(whole)
+
+    def with_joints(self, whole: NDArray[np.float64], joints: Joints) -> NDArray[np.float64]:
+        """The same with the arm's joint angles: of unlimited joints cosine and sine."""
+        turned = whole.copy()
+        turned[self._first] = np.where(self._unlimited, np.cos(joints), joints)
+        turned[self._first[self._unlimited] + 1] = np.sin(joints[self._unlimited])
+        return turned
 
     def hits(self, pairs: _Pairs, whole: Any, *, first: bool) -> list[SeenBox]:
         """The boxes that anything touches, or the `first` of them only."""
@@ -121,7 +127,7 @@ class Surrounded:
 
     arm: CollisionModel
     _pairs: _Pairs
-    _hand: Hand
+    _whole: NDArray[np.float64]
 
     def hit(self, joints: Joints) -> SeenBox | None:
         """What the arm touches at these joint angles; None if nothing."""
@@ -134,7 +140,7 @@ class Surrounded:
     def _hits(self, joints: Joints, *, first: bool) -> list[SeenBox]:
         if not self._pairs.boxes:
             return []
-        whole = self.arm.configuration(joints, self._hand)
+        whole = self.arm.with_joints(self._whole, joints)
         return self.arm.hits(self._pairs, whole, first=first)
 
 

@@ -40,7 +40,7 @@ class JointCurve:
         self._parameters: NDArray[np.float64] = at[apart]
         self.length = float(self._parameters[-1])
         self._spline = self._fit()
-        self._slope = self._spline.derivative()
+        self._slope: Any = None
 
     @property
     def start(self) -> Joints:
@@ -54,8 +54,15 @@ class JointCurve:
         """The joint angles at a parameter."""
         return np.asarray(self._spline(parameter))
 
+    def along(self, parameters: Sequence[float] | NDArray[np.float64]) -> list[Joints]:
+        """The joint angles at several parameters."""
+        return list(np.asarray(self._spline(np.asarray(parameters))))
+
     def slope(self, parameter: float) -> Joints:
         """The derivative of the joint angles by the parameter."""
+        if self._slope is None:
+            # Of most curves that a plan tries nobody asks for it.
+            self._slope = self._spline.derivative()
         return np.asarray(self._slope(parameter))
 
     def steepest(self, order: int) -> float:

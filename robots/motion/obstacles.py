@@ -25,32 +25,32 @@ _FEWEST_SAMPLES = 6
 
 
 @dataclass(frozen=True, slots=True)
+class _Made:
+    """An arm with such a hand amid such boxes, keeping so far away."""
+
+    hand: Hand
+    boxes: Sequence[SeenBox]
+    kept: Margins
+    surrounded: Surrounded
+
+
 class PathObstacles:
     """Boxes around an arm whose gripper is like `hands[i]` on segment i of a path."""
 
-    free: Sequence[Surrounded]
-    straight: Sequence[Surrounded]
-
-    @classmethod
-    def around(
-        cls, arm: CollisionModel, boxes: Sequence[SeenBox], hands: Sequence[Hand], start: Joints
-    ) -> "PathObstacles":
+    def __init__(
+        self, arm: CollisionModel, boxes: Sequence[SeenBox], hands: Sequence[Hand], start: Joints
+    ) -> None:
         """What is near where the path begins is kept away from less; what is touched there is left.
 
         `start` are the joint angles of the beginning.
         """
-        if not hands:
-            return cls([], [])
-        near = arm.among(boxes, hands[0], lambda _: _FREE).hits(start)
-        touched = arm.among(boxes, hands[0], lambda _: _NONE).hits(start)
-        free, straight = [], []
-        for number, hand in enumerate(hands):
-            others = [box for box in boxes if number > 0 or box not in touched]
-            free.append(arm.among(others, hand, lambda box: _NONE if box in near else _FREE))
-            straight.append(
-                arm.among(others, hand, lambda box: _NONE if box in near else _STRAIGHT)
-            )
-        return cls(free, straight)
+        self._arm, self._hands, self._boxes = arm, hands, boxes
+        self._near = arm.among(boxes, hands[0], lambda _: _FREE).hits(start) if hands else ()
+        touched = (
+            arm.among(list(self._near), hands[0], lambda _: _NONE).hits(start) if hands else ()
+        )
+        self._left = [box for box in boxes if box not in touched] if touched else boxes
+        self._made: list[_Made] = []
 
     def first_on(self, path: JointPath) -> SeenBox | None:
         """What the arm would touch first on a path; None if nothing."""
@@ -59,7 +59,7 @@ class PathObstacles:
 
     def on(self, number: int, way: PathSegment) -> SeenBox | None:
         """What it would touch on segment `number` of a path; None if nothing."""
-        surrounded = (self.straight if way.straight else self.free)[number]
+        surrounded = self._surrounded(number, _STRAIGHT if way.straight else _FREE)
         for joints in samples(way.curve):
             hit = surrounded.hit(joints)
             if hit is not None:
@@ -68,11 +68,22 @@ class PathObstacles:
 
     def is_free(self, number: int, joints: Joints) -> bool:
         """Whether it touches nothing at these joint angles on such a segment, by a free way."""
-        return self.free[number].hit(joints) is None
+        return self._surrounded(number, _FREE).hit(joints) is None
+
+    def _surrounded(self, number: int, kept: Margins) -> Surrounded:
+        """The arm on a segment; most segments are like one before, so it is made only once."""
+        hand, boxes = self._hands[number], self._left if number == 0 else self._boxes
+        for made in self._made:
+            if made.boxes is boxes and made.kept is kept and made.hand == hand:
+                return made.surrounded
+        near = self._near
+        surrounded = self._arm.among(boxes, hand, lambda box: _NONE if box in near else kept)
+        self._made.append(_Made(hand, boxes, kept, surrounded))
+        return surrounded
 
 
 def samples(curve: JointCurve) -> list[Joints]:
     """Joint angles along a curve, the end among them."""
     turned = float(np.abs(curve.end - curve.start).max())
     count = max(_FEWEST_SAMPLES, round(turned / _STEP_RAD))
-    return [curve.at(float(at)) for at in np.linspace(0.0, curve.length, count + 1)[1:]]
+    return curve.along(np.linspace(0.0, curve.length, count + 1)[1:])

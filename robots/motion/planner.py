@@ -20,8 +20,6 @@ _LINE_STEPS = 8
 _SEEDS = 24
 _SEED_SPREAD_RAD = 0.6
 _ENOUGH_SEEDS = 4
-_ENOUGH_HITS = 10
-"""So many postures are tried before something is in the way of all."""
 _GOOD_COST = 3.0
 _WRIST = slice(4, 6)
 _MAX_DIP_M = 0.03
@@ -120,8 +118,6 @@ class PathPlanner:
             elif found is not None and (best is None or found[0] < best[0]):
                 best = found
             if best is not None and (tried + 1 >= _ENOUGH_SEEDS or best[0] < _GOOD_COST):
-                break
-            if best is None and hit is not None and tried + 1 >= _ENOUGH_HITS:
                 break
         if best is not None:
             return best[1]

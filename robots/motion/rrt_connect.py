@@ -14,7 +14,7 @@ from robots.motion.kinematics import Joints
 _STEP_RAD = 0.3
 """How far a tree grows at once, by the joint that moves furthest."""
 _CHECK_RAD = 0.06
-_GROWTHS = 150
+_GROWTHS = 600
 _AROUND_RAD = 1.0
 """So far beyond both ends joints may go."""
 _SHORTCUTS = 40

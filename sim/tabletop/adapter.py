@@ -5,16 +5,13 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from robots.body import Leg, NoWay
 from robots.catalogue import Catalogue
 from robots.feasibility.check import check_scene
 from robots.robot import Robot
 from robots.vision.color_model import ColorModel
 from robots.vision.lookalikes import find_lookalikes
-from robots.vision.seen_box import SeenBox
 from sim.simulated_agent import SimulatedAgent
-from sim.tabletop.arm import GRIPPER
-from sim.tabletop.body import can_reach
+from sim.tabletop.body import StraightPlanner
 from sim.tabletop.colors import learn_colors
 from sim.tabletop.layout import lay_out
 from sim.tabletop.world import TabletopOptions, TabletopWorld, reach_for
@@ -45,14 +42,9 @@ class TabletopAdapter:
         self, scene: Scene, nodes: Sequence[GoalNode | BehaviorNode]
     ) -> list[SceneProblem]:
         """What keeps the robot from doing the leaves among `nodes` in a scene."""
-        reach = reach_for(scene, None)
-
-        def no_way(legs: Sequence[Leg], _: Sequence[SeenBox]) -> NoWay | None:
-            reached = all(can_reach(reach, scene.table, leg.to) for leg in legs)
-            return None if reached else NoWay("does not reach all of the way")
-
+        planner = StraightPlanner(reach_for(scene, None), scene.table)
         lookalikes = find_lookalikes(scene, nodes, learn_colors(scene, TabletopOptions()))
-        return [*check_scene(scene, nodes, GRIPPER, no_way), *lookalikes]
+        return [*check_scene(scene, nodes, planner), *lookalikes]
 
     def train_colors(self, scene: Scene) -> ColorModel:
         """Learn the colours of a scene's objects from rendered pictures of them.

@@ -19,6 +19,33 @@ _HIGHEST_M = 1.2
 """How far above the table the tool can go."""
 
 
+class StraightPlanner:
+    """Plans of a gripper that floats: it has no arm that could touch anything."""
+
+    def __init__(self, reach: Reach, table: Table) -> None:
+        self._reach = reach
+        self._table = table
+
+    @property
+    def gripper(self) -> GripperModel:
+        return GRIPPER
+
+    def plan(self, waypoints: Sequence[ToolPose]) -> StraightPath | None:
+        """Straight lines through the waypoints; None if one is out of reach or in the table."""
+        if all(can_reach(self._reach, self._table, each) for each in waypoints):
+            return StraightPath(tuple(waypoints))
+        return None
+
+    def plan_among(
+        self,
+        legs: Sequence[Leg],
+        boxes: Sequence[SeenBox],  # noqa: ARG002
+    ) -> StraightPath | NoWay:
+        """As `plan`, whatever stands there."""
+        path = self.plan([leg.to for leg in legs])
+        return path or NoWay("does not reach all of the way")
+
+
 class TabletopBody:
     """What behaviors, monitors and looks may ask of the robot."""
 
@@ -26,6 +53,7 @@ class TabletopBody:
         self._state = state
         self._cameras = MappingProxyType(dict(cameras))
         self._reach = reach
+        self._planner = StraightPlanner(reach, state.scene.table)
 
     @property
     def control_period_s(self) -> float:
@@ -47,18 +75,11 @@ class TabletopBody:
 
     def plan_path(self, waypoints: Sequence[ToolPose]) -> StraightPath | None:
         """Straight lines through the waypoints; None if one is out of reach or in the table."""
-        if all(can_reach(self._reach, self._state.scene.table, each) for each in waypoints):
-            return StraightPath(tuple(waypoints))
-        return None
+        return self._planner.plan(waypoints)
 
-    def plan_among(
-        self,
-        legs: Sequence[Leg],
-        boxes: Sequence[SeenBox],  # noqa: ARG002
-    ) -> StraightPath | NoWay:
+    def plan_among(self, legs: Sequence[Leg], boxes: Sequence[SeenBox]) -> StraightPath | NoWay:
         """As `plan_path`: a gripper that floats has no arm that could touch anything."""
-        path = self.plan_path([leg.to for leg in legs])
-        return path or NoWay("does not reach all of the way")
+        return self._planner.plan_among(legs, boxes)
 
     def plan_neutral(self) -> StraightPath:
         return StraightPath((self._state.home.neutral,), homeward=True)

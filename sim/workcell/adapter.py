@@ -9,7 +9,7 @@ from robots.robot import Robot
 from robots.vision.color_model import ColorModel
 from robots.vision.lookalikes import find_lookalikes
 from sim.simulated_agent import SimulatedAgent
-from sim.workcell.gripper import PR2_GRIPPER
+from sim.workcell.arm_planner import neutral_arm
 from sim.workcell.options import read_options
 from sim.workcell.robot_model import MODEL, check_installed, robot_urdf
 from sim.world import WorldSetup
@@ -71,10 +71,9 @@ class WorkcellAdapter:
         """What keeps the robot from doing the leaves among `nodes` in a scene."""
         check_installed()
         from sim.workcell.colors import learn_colors
-        from sim.workcell.reach import no_way
 
         lookalikes = find_lookalikes(scene, nodes, learn_colors(scene))
-        return [*check_scene(scene, nodes, PR2_GRIPPER, no_way), *lookalikes]
+        return [*check_scene(scene, nodes, neutral_arm()), *lookalikes]
 
     def train_colors(self, scene: Scene) -> ColorModel:
         """Learn the colours of a scene's objects from rendered pictures of them."""

@@ -10,17 +10,16 @@ from robots.gripper import GripperModel
 from robots.motion.curve import JointCurve
 from robots.motion.kinematics import Joints
 from robots.motion.limits import MotionLimits
-from robots.motion.obstacles import PathObstacles
 from robots.motion.planner import JointPath, PathPlanner, PathSegment
 from robots.motion.timing import TimedMotion
 from robots.vision.seen_box import SeenBox
+from sim.workcell.arm_planner import plan_legs
 from sim.workcell.effort_sensors import ENCODER_NOISE_M, FINGER_NOISE_N
 from sim.workcell.finger_hulls import Hull
 from sim.workcell.finger_motion import FingerMotion
 from sim.workcell.gripper import PR2_GRIPPER, finger_angle_rad
 from sim.workcell.physics import CONTROL_HZ
 from sim.workcell.pr2 import JOINT_DAMPING_NM_S, Pr2
-from sim.workcell.reach import hand_on
 from sim.workcell.robot_model import (
     ARM_JOINTS,
     FINGER_JOINTS,
@@ -133,10 +132,7 @@ class WorkcellBody:
 
     def plan_among(self, legs: Sequence[Leg], boxes: Sequence[SeenBox]) -> ArmPath | NoWay:
         """Plan through all legs so that nothing touches any of `boxes`."""
-        hands = [hand_on(leg) for leg in legs]
-        obstacles = PathObstacles.around(self._pr2.collisions, boxes, hands, self._target)
-        waypoints = [leg.to for leg in legs]
-        return self._planner.plan(self._target, waypoints, self._rng, obstacles)
+        return plan_legs(self._planner, self._pr2.collisions, self._target, legs, boxes, self._rng)
 
     def plan_neutral(self) -> ArmPath:
         return self._planner.plan_to_joints(self._target, np.array(NEUTRAL_RAD))

@@ -112,6 +112,28 @@ def test_out_of_reach_is_not_in_reach() -> None:
     bench.body.parts["pink_bar"].x = 0.45
 
 
+def test_what_the_arm_does_not_get_to_for_something_else_is_not_in_reach() -> None:
+    bench = RobotBench()
+    bench.body.bars = frozenset({"green_leg"})
+    bench.look(expect="in_reach", object="pink_bar", within_s=1.5)
+    assert looked(bench).fulfilled is False
+
+
+def test_it_is_in_reach_once_that_has_moved() -> None:
+    bench = RobotBench()
+    bench.body.bars = frozenset({"green_leg"})
+    began_s = bench.robot.time_s()
+
+    def take_away() -> None:
+        if bench.robot.time_s() > began_s + 2.0:
+            bench.body.parts.pop("green_leg", None)
+
+    bench.body.at_cycle = take_away
+    bench.look(expect="in_reach", object="pink_bar", within_s=8.0)
+    assert looked(bench).fulfilled is True
+    assert bench.robot.time_s() - began_s > 2.0
+
+
 def test_a_look_does_not_end_what_is_held() -> None:
     bench = RobotBench()
     hold_with_issue(bench)

@@ -7,7 +7,7 @@ from robots.behaviors.behavior import Move, SetGripper, Step
 from robots.behaviors.confirmation import Outcome
 from robots.behaviors.execution_state import ExecutionState, ExecutionTransitionError
 from robots.behaviors.phase import Phase
-from robots.behaviors.plan import Plan
+from robots.behaviors.planning import Plan
 from robots.behaviors.progress import Progress
 from robots.body import ToolPose
 from robots.vision.presence import Presence

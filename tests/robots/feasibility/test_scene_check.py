@@ -2,6 +2,8 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import product
 from typing import Any
 
 import pytest
@@ -10,6 +12,7 @@ from hypothesis import strategies as st
 
 from robots.body import Leg, NoWay
 from robots.feasibility.check import check_scene
+from robots.gripper import GripperModel
 from robots.vision.seen_box import SeenBox
 from sim.workcell.gripper import PR2_GRIPPER
 from tasks.definition import BehaviorNode, GoalNode
@@ -17,12 +20,30 @@ from tasks.scene import Place, Pose, Scatter, Scene, SceneObject
 from tasks.scene_problem import SceneProblem
 
 REACH_M = 0.74
+SHY_OF_M, SHY_WITHIN_M = 0.25, 0.15
 
 
-def within_reach(legs: Sequence[Leg], _: Sequence[SeenBox]) -> NoWay | None:
-    """A stand-in for the arm: a circle around its shoulder."""
-    reached = all(math.hypot(each.to.x, each.to.y + 0.19) <= REACH_M for each in legs)
-    return None if reached else NoWay("does not reach all of the way")
+@dataclass(frozen=True)
+class MadeUpPath:
+    segments: int
+
+
+@dataclass(frozen=True)
+class MadeUpArm:
+    """A stand-in for an arm: it reaches a circle around its shoulder, and keeps
+    `SHY_WITHIN_M` away from what is as tall as `SHY_OF_M`.
+    """
+
+    gripper: GripperModel = PR2_GRIPPER
+
+    def plan_among(self, legs: Sequence[Leg], boxes: Sequence[SeenBox]) -> MadeUpPath | NoWay:
+        if any(math.hypot(leg.to.x, leg.to.y + 0.19) > REACH_M for leg in legs):
+            return NoWay("does not reach")
+        tall = [box for box in boxes if box.size[2] >= SHY_OF_M and box.name != "the table"]
+        for leg, box in product(legs, tall):
+            if math.hypot(leg.to.x - box.x, leg.to.y - box.y) < SHY_WITHIN_M:
+                return NoWay(f"would touch {box.name}", box)
+        return MadeUpPath(len(legs))
 
 
 def box(x: float, y: float, size=(0.03, 0.05, 0.05), **more: Any) -> SceneObject:
@@ -52,7 +73,7 @@ def goal(kind: str) -> GoalNode:
 
 
 def problems_of(made: Scene, *nodes: GoalNode | BehaviorNode) -> list[SceneProblem]:
-    return check_scene(made, nodes, PR2_GRIPPER, within_reach)
+    return check_scene(made, nodes, MadeUpArm())
 
 
 FREE = Pose(x=0.5, y=0.05)
@@ -225,39 +246,85 @@ def test_a_height_that_is_given_hardly_too_low_takes_the_fingers_no_room() -> No
     assert problems_of(scene(parts, target=FREE), leaf("low", "target", None)) == []
 
 
-def touching_the_tall(legs: Sequence[Leg], boxes: Sequence[SeenBox]) -> NoWay | None:
-    """A stand-in for an arm that can do nothing beside anything called `tall`."""
-    tall = next((each for each in boxes if each.name == "tall"), None)
-    if tall is not None:
-        return NoWay("would touch tall on the way", tall)
-    return within_reach(legs, boxes)
+def pillar(x: float, y: float) -> SceneObject:
+    """So tall that the arm keeps away from it."""
+    return box(x, y, (0.05, 0.05, 0.3))
 
 
-def test_what_bars_the_arms_way_is_told_unless_it_is_taken_away_before() -> None:
+ASIDE, FAR = Pose(x=0.45, y=-0.2), Pose(x=0.6, y=0.2)
+
+
+@pytest.mark.parametrize(
+    ("at", "where", "says"),
+    [
+        (
+            (0.5, -0.4),
+            ("objects", "part", "pose"),
+            "pillar stands in the arm's way to part: move one of them",
+        ),
+        (
+            (0.5, 0.15),
+            ("places", "target", "pose"),
+            "pillar stands in the arm's way to the place of part: move one of them",
+        ),
+    ],
+)
+def test_what_bars_the_arms_way_is_told_of(
+    at: tuple[float, float], where: tuple[str, ...], says: str
+) -> None:
+    made = scene({"part": box(0.5, -0.5), "pillar": pillar(*at)}, target=FREE)
+    (found,) = problems_of(made, leaf("part", "target", None))
+    assert (found.where, found.message) == (where, says)
+
+
+def test_what_bars_the_way_may_be_taken_away_first() -> None:
+    made = scene({"part": box(0.5, -0.5), "pillar": pillar(0.5, -0.4)}, target=FREE, far=FAR)
+    part, taken = leaf("part", "target"), leaf("pillar", "far")
+    (found,) = problems_of(made, goal("and"), part, taken)
+    assert found.message == (
+        "pillar stands in the arm's way to part: move one of them, or let pillar be placed before "
+        "part"
+    )
+    assert problems_of(made, goal("then"), taken, part) == []
+
+
+def test_what_will_bar_the_way_may_be_placed_later() -> None:
     made = scene(
-        {"small": box(0.5, -0.4), "tall": box(0.5, -0.1, (0.05, 0.05, 0.3))},
-        small=FREE,
-        tall=Pose(x=0.6, y=0.15),
+        {"part": box(0.5, -0.5), "pillar": pillar(0.45, -0.05)},
+        target=Pose(x=0.5, y=0.2),
+        post=Pose(x=0.5, y=0.1),
     )
-    leaves = leaf("small", "small"), leaf("tall", "tall")
-    [problem] = check_scene(made, [goal("and"), leaves[0]], PR2_GRIPPER, touching_the_tall)
-    assert problem.where == ("objects", "small", "pose")
-    assert problem.message == (
-        "with small the arm would touch tall on its way: move one of them, or let tall be taken "
-        "away before"
+    part, put = leaf("part", "target"), leaf("pillar", "post")
+    (found,) = problems_of(made, goal("and"), part, put)
+    assert found.where == ("places", "target", "pose")
+    assert found.message == (
+        "pillar would stand in the arm's way to the place of part: move one of them, or let part "
+        "be placed before pillar"
     )
-    assert check_scene(made, [goal("and"), leaves[0]], PR2_GRIPPER, within_reach) == []
+    assert problems_of(made, goal("then"), part, put) == []
 
 
-def test_what_stands_where_the_part_itself_goes_is_gone_by_then() -> None:
+def test_things_that_never_stand_there_together_bar_no_way() -> None:
+    """Each way to grasp the part is barred at some time, but never all of them at once."""
+    wide = box(0.5, -0.4, (0.05, 0.05, 0.05))
+    across, along = (0.02, 0.2, 0.12), (0.2, 0.02, 0.12)
     made = scene(
-        {"small": box(0.5, -0.4), "tall": box(0.5, 0.05, (0.05, 0.05, 0.3))},
-        small=FREE,
-        tall=Pose(x=0.6, y=-0.1),
+        {"part": wide, "wall": box(0.5, -0.37 + 0.03, along)},
+        target=FREE,
+        beside=Pose(x=0.56, y=-0.4, yaw=math.pi / 2),
     )
-    nodes = [goal("then"), leaf("tall", "tall"), leaf("small", "small")]
-    found = check_scene(made, nodes[:1] + nodes[1:], PR2_GRIPPER, touching_the_tall)
-    # Its place is filled by then, and bars the arm all the same.
-    assert [each.where for each in found] == [("objects", "small", "pose")]
-    alone = [goal("then"), leaf("tall", "tall")]
-    assert check_scene(made, alone, PR2_GRIPPER, touching_the_tall) == []
+    part, moved = leaf("part", "target"), leaf("wall", "beside")
+    assert problems_of(made, goal("and"), part, moved) == []
+    both = {**made.objects, "second": box(0.56, -0.4, across)}
+    stuck = made.model_copy(update={"objects": both})
+    assert any("too close" in each.message for each in problems_of(stuck, goal("and"), part))
+
+
+def test_only_one_alternative_of_two_is_in_the_way() -> None:
+    made = scene(
+        {"part": box(0.5, -0.5), "pillar": pillar(0.45, -0.05)},
+        target=Pose(x=0.5, y=0.2),
+        post=Pose(x=0.5, y=0.1),
+    )
+    nodes = [goal("or"), leaf("part", "target"), leaf("pillar", "post")]
+    assert problems_of(made, *nodes) == []

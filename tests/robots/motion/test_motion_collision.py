@@ -57,7 +57,7 @@ def over(pose: ToolPose) -> ToolPose:
 
 def plan(arm: CollisionModel, chain: KinematicChain, *boxes: SeenBox) -> JointPath | NoWay:
     waypoints = [over(PICK), PICK, over(PICK), over(PLACE), PLACE]
-    obstacles = PathObstacles.around(arm, boxes, [hand(0.04)] * len(waypoints), START)
+    obstacles = PathObstacles(arm, boxes, [hand(0.04)] * len(waypoints), START)
     planner = PathPlanner(chain, np.array(PREFERRED_RAD))
     return planner.plan(START, waypoints, np.random.default_rng(0), obstacles)
 
@@ -176,7 +176,7 @@ def test_what_is_near_or_touched_at_the_beginning_is_not_gone_through_later(
     planner = PathPlanner(chain, np.array(PREFERRED_RAD))
     rng = np.random.default_rng(0)
     assert arm.among([beside], hands[0], touching).hit(start) == beside
-    obstacles = PathObstacles.around(arm, [beside], hands, start)
+    obstacles = PathObstacles(arm, [beside], hands, start)
     away = planner.plan(start, [over(PICK)], rng, obstacles)
     assert isinstance(away, JointPath)
     back = planner.plan(start, [over(PICK), PICK], rng, obstacles)
@@ -197,8 +197,8 @@ def test_what_is_near_at_the_beginning_is_kept_away_from_less(
 ) -> None:
     beside = not_touched_beside(arm, at_pick)
     hands = [hand(0.04)] * 2
-    from_elsewhere = PathObstacles.around(arm, [beside], hands, START)
-    from_there = PathObstacles.around(arm, [beside], hands, at_pick)
+    from_elsewhere = PathObstacles(arm, [beside], hands, START)
+    from_there = PathObstacles(arm, [beside], hands, at_pick)
     for number in range(len(hands)):
         assert not from_elsewhere.is_free(number, at_pick)
         assert from_there.is_free(number, at_pick)
@@ -208,7 +208,7 @@ def test_only_the_first_segment_leaves_out_what_is_touched_at_the_beginning(
     arm: CollisionModel, at_pick: Joints
 ) -> None:
     touched = box(PICK.x + 0.04, PICK.y, (0.03, 0.05, 0.06))
-    obstacles = PathObstacles.around(arm, [touched], [hand(0.04)] * 2, at_pick)
+    obstacles = PathObstacles(arm, [touched], [hand(0.04)] * 2, at_pick)
     assert obstacles.is_free(0, at_pick)
     assert not obstacles.is_free(1, at_pick)
 
