@@ -8,7 +8,7 @@ import numpy as np
 from robots.motion.collision import CollisionModel, Hand, Margins, Surrounded
 from robots.motion.curve import JointCurve
 from robots.motion.kinematics import Joints
-from robots.motion.planner import JointPath, PathSegment
+from robots.motion.planner import PathSegment
 from robots.vision.seen_box import SeenBox
 
 _FREE_M = 0.008
@@ -51,11 +51,6 @@ class PathObstacles:
         )
         self._left = [box for box in boxes if box not in touched] if touched else boxes
         self._made: list[_Made] = []
-
-    def first_on(self, path: JointPath) -> SeenBox | None:
-        """What the arm would touch first on a path; None if nothing."""
-        hits = (self.on(number, way) for number, way in enumerate(path.ways))
-        return next((hit for hit in hits if hit is not None), None)
 
     def on(self, number: int, way: PathSegment) -> SeenBox | None:
         """What it would touch on segment `number` of a path; None if nothing."""

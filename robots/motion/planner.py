@@ -18,6 +18,8 @@ _LINE_STEPS = 8
 """Postures along a straight line; between them the tool strays less than 0.1 mm."""
 
 _SEEDS = 24
+_MOST_SEEDS = 96
+"""So many postures are tried where something is in the way of all before."""
 _SEED_SPREAD_RAD = 0.6
 _ENOUGH_SEEDS = 4
 _GOOD_COST = 3.0
@@ -51,12 +53,17 @@ class JointPath:
         return len(self.ways)
 
 
+@dataclass(frozen=True, slots=True)
+class _Tried:
+    """A path with its cost, and what it would touch first."""
+
+    cost: float
+    path: JointPath
+    hit: SeenBox | None
+
+
 class Obstacles(Protocol):
     """What a path may not touch."""
-
-    def first_on(self, path: JointPath) -> SeenBox | None:
-        """What the arm would touch first on a path; None if nothing."""
-        ...
 
     def on(self, number: int, way: PathSegment) -> SeenBox | None:
         """What it would touch on segment `number` of a path; None if nothing."""
@@ -106,24 +113,27 @@ class PathPlanner:
         """
         if not waypoints:
             raise ValueError("a path needs at least one waypoint")
-        best: tuple[float, JointPath] | None = None
+        best: _Tried | None = None
         hit: SeenBox | None = None
-        obstructed: list[JointPath] = []
+        barred: list[JointPath] = []
         for tried, (seed, yaw_offset) in enumerate(self._attempts(start, rng)):
-            found = self._try(start, waypoints, seed, yaw_offset)
-            touched = obstacles and found and obstacles.first_on(found[1])
-            if touched and found is not None:
-                hit = hit or touched
-                obstructed.append(found[1])
-            elif found is not None and (best is None or found[0] < best[0]):
+            if tried >= _SEEDS and (hit is None or best is not None):
+                break
+            found = self._try(start, waypoints, seed, yaw_offset, obstacles)
+            if isinstance(found, SeenBox):
+                hit = hit or found
+            elif found is not None and found.hit is not None:
+                hit = hit or found.hit
+                barred.append(found.path)
+            elif found is not None and (best is None or found.cost < best.cost):
                 best = found
-            if best is not None and (tried + 1 >= _ENOUGH_SEEDS or best[0] < _GOOD_COST):
+            if best is not None and (tried + 1 >= _ENOUGH_SEEDS or best.cost < _GOOD_COST):
                 break
         if best is not None:
-            return best[1]
+            return best.path
         if hit is None or obstacles is None:
             return NoWay("does not reach all of the way with the gripper pointing down")
-        for path in obstructed:
+        for path in barred:
             around = self._detour(path, obstacles, rng)
             if around is not None:
                 return around
@@ -135,18 +145,28 @@ class PathPlanner:
 
     def _attempts(self, start: Joints, rng: np.random.Generator) -> Iterator[tuple[Joints, float]]:
         """Seeds with the half turn to try them with: the preferred posture first."""
-        for number in range(_SEEDS):
+        for number in range(_MOST_SEEDS):
             seed = self._preferred
             if number >= 2:
                 seed = seed + rng.normal(0.0, _SEED_SPREAD_RAD, len(start))
             yield seed, math.pi if number % 2 else 0.0
 
     def _try(
-        self, start: Joints, waypoints: Sequence[ToolPose], seed: Joints, yaw_offset: float
-    ) -> tuple[float, JointPath] | None:
+        self,
+        start: Joints,
+        waypoints: Sequence[ToolPose],
+        seed: Joints,
+        yaw_offset: float,
+        obstacles: "Obstacles | None",
+    ) -> "_Tried | SeenBox | None":
+        """A path from a seed, or what it would touch where no detour leads around that.
+
+        None where the arm does not reach.
+        """
         joints = start
-        segments = []
+        segments: list[PathSegment] = []
         cost = 0.0
+        hit: SeenBox | None = None
         for index, waypoint in enumerate(waypoints):
             target = pose_matrix(waypoint, yaw_offset)
             origin = self._chain.pose(joints)
@@ -165,9 +185,14 @@ class PathPlanner:
             else:
                 cost += self._cost(joints, knots[-1], first=index == 0)
                 curve = JointCurve([joints, *knots])
-            segments.append(PathSegment(curve, straight))
+            way = PathSegment(curve, straight)
+            touched = None if obstacles is None else obstacles.on(index, way)
+            if touched is not None and straight:
+                return touched
+            hit = hit or touched
+            segments.append(way)
             joints = knots[-1]
-        return cost, JointPath(tuple(segments))
+        return _Tried(cost, JointPath(tuple(segments)), hit)
 
     def _straight(self, origin: Matrix4, target: Matrix4, joints: Joints) -> list[Joints] | None:
         knots = []
