@@ -3,10 +3,14 @@
 from collections.abc import Sequence
 from itertools import combinations
 
+import numpy as np
+from numpy.typing import NDArray
+
 from robots.behaviors.planning import Planner
 from robots.feasibility.doing import ArmCheck, Hindrance
 from robots.feasibility.handling import cannot_handle
 from robots.feasibility.moments import Job, Moment, Moments
+from robots.feasibility.sight import hidden
 from robots.feasibility.standing import Standing, at_place, starts
 from robots.feasibility.support import cannot_stand
 from tasks.definition import BehaviorNode, GoalNode
@@ -23,13 +27,15 @@ def check_scene(
     scene: Scene,
     nodes: Sequence[GoalNode | BehaviorNode],
     planner: Planner,
+    eye: NDArray[np.float64],
 ) -> list[SceneProblem]:
     """What keeps a robot from doing the leaves among `nodes`; without any, each part by itself.
 
-    Of a whole tree (with its goal nodes) the order and the alternatives are taken into account;
-    of leaves alone all are done, in any order. Each part is told of once.
+    `eye` is where its head camera is (3, base frame). Of a whole tree (with its goal nodes) the
+    order and the alternatives are taken into account; of leaves alone all are done, in any order.
+    Each part is told of once.
     """
-    return _SceneCheck(scene, nodes, planner).problems()
+    return _SceneCheck(scene, nodes, planner, eye).problems()
 
 
 class _SceneCheck:
@@ -38,8 +44,10 @@ class _SceneCheck:
         scene: Scene,
         nodes: Sequence[GoalNode | BehaviorNode],
         planner: Planner,
+        eye: NDArray[np.float64],
     ) -> None:
         self._scene = scene
+        self._eye = eye
         self._gripper = planner.gripper
         self._arm = ArmCheck(planner, scene.scatter, scene.table)
         self._order = LeafOrder(nodes)
@@ -113,9 +121,13 @@ class _SceneCheck:
         for job in self._jobs:
             if told.of(job.start) or (job.place is not None and told.of(job.place)):
                 continue
-            hindrance = self._hindrance(job)
-            if hindrance is not None:
-                found.append(self._arm.told(hindrance, {each.name for each in self._jobs}))
+            moved = {each.name for each in self._jobs}
+            sure, _ = self._moments.around(self._moments.of(job))
+            problem = hidden(job.start, sure, self._eye, moved)
+            if problem is None and (hindrance := self._hindrance(job)) is not None:
+                problem = self._arm.told(hindrance, moved)
+            if problem is not None:
+                found.append(problem)
         return list(dict.fromkeys(found))
 
     def _hindrance(self, job: Job) -> Hindrance | None:

@@ -16,6 +16,7 @@ from sim.tabletop.gripper_shape import FINGER, PALM, finger_offset_m
 from sim.tabletop.part import PartPose, TablePart
 from sim.tabletop.state import CONTROL_PERIOD_S, TabletopState
 from tasks.part_boxes import boxes_of
+from tasks.scene import Table
 
 HEAD_SIZE = (640, 480)
 HEAD_FOCAL_PX = 526.0
@@ -192,7 +193,7 @@ class HeadCamera(TabletopCamera):
         depth_noise: DepthNoise,
     ) -> None:
         super().__init__(state, scenery, lighting, depth_noise)
-        self._pose = _look_at_table(state)
+        self._pose = look_at_table(state.scene.table)
 
     def pose(self) -> Matrix4:
         return self._pose
@@ -218,9 +219,8 @@ def _forearm_pose(tool: ToolPose) -> Matrix4:
     return _optical_frame(position, -offset, np.array([cos, sin, 0.0]))
 
 
-def _look_at_table(state: TabletopState) -> Matrix4:
+def look_at_table(table: Table) -> Matrix4:
     """As near as the camera can be and still see the whole table and what stands on it."""
-    table = state.scene.table
     target = np.array([*table.center, table.height])
     forward = np.array([math.sin(HEAD_TILT_RAD), 0.0, -math.cos(HEAD_TILT_RAD)])
     right = np.array([0.0, -1.0, 0.0])

@@ -3,12 +3,21 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
 
 from robots.body import CameraImage, Matrix4
+from robots.motion.kinematics import KinematicChain
 from sim.depth_noise import DepthNoise, Pinhole
 from sim.lighting import Lighting
 from sim.workcell.rendering import Renderer, Rendering, View
-from sim.workcell.robot_model import FOREARM_FOV_RAD, HEAD_FOV_RAD
+from sim.workcell.robot_model import (
+    FOREARM_FOV_RAD,
+    HEAD_CAMERA_FRAME,
+    HEAD_FOV_RAD,
+    robot_urdf,
+)
 
 HEAD_SIZE = (640, 480)
 FOREARM_SIZE = (160, 120)
@@ -29,6 +38,12 @@ def head_optics() -> Optics:
     """The head's wide stereo camera; it takes pictures when asked."""
     focal_px = HEAD_SIZE[1] / 2 / math.tan(HEAD_FOV_RAD / 2)
     return Optics(HEAD_SIZE, focal_px, near_m=0.1, period_s=0.1, has_depth=True)
+
+
+@cache
+def head_camera_pose() -> Matrix4:
+    """Where the head camera is, which does not move: its optical frame in the base frame."""
+    return KinematicChain(robot_urdf(), HEAD_CAMERA_FRAME, ()).pose(np.zeros(0))
 
 
 def forearm_optics(period_s: float) -> Optics:

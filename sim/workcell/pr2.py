@@ -16,7 +16,6 @@ from sim.workcell.robot_model import (
     ARM_JOINTS,
     FINGER_JOINTS,
     FOREARM_CAMERA_FRAME,
-    HEAD_CAMERA_FRAME,
     NEUTRAL_RAD,
     SHOULDER_FRAME,
     TOOL_FRAME,
@@ -74,7 +73,6 @@ class Pr2:
         self.tool = KinematicChain(urdf, TOOL_FRAME, ARM_JOINTS)
         self.collisions = CollisionModel(urdf, ARM_JOINTS, TOOL_FRAME)
         self._forearm_camera = KinematicChain(urdf, FOREARM_CAMERA_FRAME, _FOREARM_JOINTS)
-        self.head_camera_pose = KinematicChain(urdf, HEAD_CAMERA_FRAME, ()).pose(np.zeros(0))
         shoulder = KinematicChain(urdf, SHOULDER_FRAME, ARM_JOINTS[:1]).pose(np.zeros(1))
         self.shoulder = (float(shoulder[0, 3]), float(shoulder[1, 3]))
         self._hulls = FingerHulls(urdf)

@@ -1,12 +1,13 @@
 """The workcell: a PR2 at a table with parts, in PyBullet, with a person who intervenes."""
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Any, Literal
 
 import numpy as np
 
+from robots.body import Matrix4
 from robots.link.messages import ShownObject, ShownPose
 from sim.camera_cover import CoverableCamera
 from sim.depth_noise import DepthNoise
@@ -14,7 +15,13 @@ from sim.lighting import Lighting
 from sim.raster import Light
 from sim.workcell.bench import Bench
 from sim.workcell.body import PERIOD_S, WorkcellBody
-from sim.workcell.cameras import Optics, WorkcellCamera, forearm_optics, head_optics
+from sim.workcell.cameras import (
+    Optics,
+    WorkcellCamera,
+    forearm_optics,
+    head_camera_pose,
+    head_optics,
+)
 from sim.workcell.options import WorkcellOptions
 from sim.workcell.parts import Part
 from sim.workcell.person import Person
@@ -80,8 +87,8 @@ class WorkcellWorld:
 
     def camera(self, name: Literal["head", "forearm"], optics: Optics) -> WorkcellCamera:
         """Another camera where one of the robot's is."""
-        poses = {
-            "head": lambda: self._pr2.head_camera_pose,
+        poses: dict[str, Callable[[], Matrix4]] = {
+            "head": head_camera_pose,
             "forearm": self._pr2.forearm_camera_pose,
         }
         return WorkcellCamera(

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from itertools import product
 from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -20,6 +21,7 @@ from tasks.scene import Place, Pose, Scatter, Scene, SceneObject
 from tasks.scene_problem import SceneProblem
 
 REACH_M = 0.74
+EYE = np.array([0.5, 0.0, 2.5])
 SHY_OF_M, SHY_WITHIN_M = 0.25, 0.15
 
 
@@ -73,7 +75,7 @@ def goal(kind: str) -> GoalNode:
 
 
 def problems_of(made: Scene, *nodes: GoalNode | BehaviorNode) -> list[SceneProblem]:
-    return check_scene(made, nodes, MadeUpArm())
+    return check_scene(made, nodes, MadeUpArm(), EYE)
 
 
 FREE = Pose(x=0.5, y=0.05)
@@ -328,3 +330,21 @@ def test_only_one_alternative_of_two_is_in_the_way() -> None:
     )
     nodes = [goal("or"), leaf("part", "target"), leaf("pillar", "post")]
     assert problems_of(made, *nodes) == []
+
+
+def test_what_hides_a_part_from_the_head_camera_is_told_unless_it_is_taken_away_before() -> None:
+    eye = np.array([0.2, 0.0, 1.5])
+    parts = {"low": box(0.6, 0.0, (0.03, 0.03, 0.03)), "hider": box(0.5, 0.0, (0.05, 0.08, 0.24))}
+    made = scene(parts, target=ASIDE, far=FAR)
+    low, taken = leaf("low", "target"), leaf("hider", "far")
+
+    def told(*nodes: GoalNode | BehaviorNode) -> list[str]:
+        return [each.message for each in check_scene(made, nodes, MadeUpArm(), eye)]
+
+    assert told(goal("then"), low) == ["hider hides low from the head camera: move one of them"]
+    assert told(goal("then"), low, taken) == [
+        "hider hides low from the head camera: move one of them, or let hider be placed before low"
+    ]
+    assert told(goal("then"), taken, low) == []
+    # In an open order the robot takes what it sees first.
+    assert told(goal("and"), low, taken) == []
