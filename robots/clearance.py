@@ -19,6 +19,9 @@ ROOM_M = 0.002
 """Enough between the gripper and what stands beside it: scenes are checked for so much. It is more
 than what is seen may be off by."""
 
+_NEAR_M = 0.05
+"""What is farther away leaves room enough, however much that is."""
+
 
 @dataclass(frozen=True, slots=True)
 class Room:
@@ -37,16 +40,19 @@ def room_around(
     closed_m: float | None = None,
     stray_m: float = 0.0,
 ) -> Room | None:
-    """The room that `boxes` leave a gripper coming straight down to `tool`; None without any.
+    """The room that `boxes` leave a gripper coming straight down to `tool`; None if none is near.
 
     Its fingers are `opening_m` apart, and close to `closed_m` there, or open from it. Boxes may be
     `stray_m` nearer, in the plane, than they are said to be. Where they meet the gripper the room
     is 0 or less.
     """
+    rooms = gripper.swept_boxes(opening_m if closed_m is None else closed_m, opening_m)
+    corners = _outlines(rooms, tool)
+    spread_m = float(np.linalg.norm(corners - (tool.x, tool.y), axis=-1).max())
+    boxes = [each for each in boxes if _apart_m(each, tool) < spread_m + stray_m + _NEAR_M]
     if not boxes:
         return None
-    rooms = gripper.swept_boxes(opening_m if closed_m is None else closed_m, opening_m)
-    outlines = np.asarray(shapely.polygons(np.array([_outline(room, tool) for room in rooms])))
+    outlines = np.asarray(shapely.polygons(corners))
     others = np.asarray(shapely.polygons(np.array([box.corners() for box in boxes])))
     apart = np.asarray(shapely.distance(outlines[:, None], others[None, :])) - stray_m
     tops = np.array([box.top_z for box in boxes])
@@ -79,9 +85,16 @@ def beside(box: SeenBox, others: Sequence[SeenBox], margin_m: float) -> bool:
     return bool((shapely.distance(shapely.Polygon(box.corners()), outlines) < margin_m).any())
 
 
-def _outline(room: ToolBox, tool: ToolPose) -> NDArray[np.float64]:
-    """The corners (4, 2) of a room around the tool, from above."""
+def _outlines(rooms: Sequence[ToolBox], tool: ToolPose) -> NDArray[np.float64]:
+    """The corners (n, 4, 2) of rooms around the tool, from above."""
     cos, sin = math.cos(tool.yaw), math.sin(tool.yaw)
-    local = _SIGNS * (room.length_m, room.width_m) + (room.along_m, room.aside_m)
+    extents = np.array([(room.length_m, room.width_m) for room in rooms])
+    middles = np.array([(room.along_m, room.aside_m) for room in rooms])
+    local = _SIGNS * extents[:, None] + middles[:, None]
     turned: NDArray[np.float64] = local @ np.array([[cos, sin], [-sin, cos]])
     return np.asarray(turned + np.array([tool.x, tool.y]))
+
+
+def _apart_m(box: SeenBox, tool: ToolPose) -> float:
+    """At least so far is a box from the tool, from above."""
+    return math.hypot(box.x - tool.x, box.y - tool.y) - math.hypot(*box.size[:2]) / 2

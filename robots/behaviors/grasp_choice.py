@@ -114,7 +114,7 @@ def grips(steps: Sequence[Step], grasp: Grasp | None, gripper: GripperModel) -> 
 def crowding(
     grips: Sequence[Grip], gripper: GripperModel, boxes: Sequence[SeenBox], stray_m: float = 0.0
 ) -> Crowding | None:
-    """What stands closest to where the fingers close or open; None if nothing is seen.
+    """What stands closest to where the fingers close or open; None if nothing is near.
 
     Where they close it may stand `stray_m` nearer than it is said to.
     """
@@ -129,7 +129,7 @@ def crowding(
 def room_for(
     grip: Grip, gripper: GripperModel, boxes: Sequence[SeenBox], stray_m: float
 ) -> Room | None:
-    """The room around fingers that close or open; None if nothing stands there."""
+    """The room around fingers that close or open; None if nothing is near."""
     stray_m = 0.0 if grip.at_place else stray_m
     opening_m, closed_m = grip.opening_m, grip.closed_m
     return room_around(gripper, grip.tool, opening_m, boxes, closed_m=closed_m, stray_m=stray_m)

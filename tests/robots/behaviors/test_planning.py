@@ -1,0 +1,114 @@
+"""One answer to whether an arm can do an errand amid what stands around."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import pytest
+from scripted_body import GRIPPER
+
+from robots.behaviors.errand import Errand
+from robots.behaviors.pick_and_place import PickAndPlace, PickAndPlaceParameters
+from robots.behaviors.planning import Barred, Plan, at_once, bar_of, plan_amid
+from robots.body import Leg, NoWay
+from robots.catalogue import Part
+from robots.gripper import GripperModel
+from robots.link.messages import Location
+from robots.vision.seen_box import SeenBox
+from tasks.scene import Table
+
+PART = Part("part", (0.03, 0.05, 0.05))
+TABLE = Table()
+PARAMETERS = PickAndPlaceParameters(object="part", place="there")
+ERRAND = Errand(
+    lambda situation: PickAndPlace().steps(PARAMETERS, situation),
+    PART,
+    Location(x=0.5, y=-0.4, yaw=0.0),
+    Location(x=0.5, y=0.0, yaw=0.0),
+)
+
+
+@dataclass
+class Path:
+    segments: int
+
+
+@dataclass
+class ArmThatTouches:
+    """It touches anything called one of `names`, on its first `ways` of all ways."""
+
+    names: Sequence[str | None] = ()
+    ways: int = 1000
+    asked: list[Sequence[Leg]] = field(default_factory=list)
+
+    @property
+    def gripper(self) -> GripperModel:
+        return GRIPPER
+
+    def plan_among(self, legs: Sequence[Leg], boxes: Sequence[SeenBox]) -> Path | NoWay:
+        self.asked.append(legs)
+        for box in boxes:
+            if box.name in self.names and len(self.asked) <= self.ways:
+                return NoWay(f"would touch {box.name}", box)
+        return Path(len(legs))
+
+
+def box(name: str | None, x: float = 0.7, y: float = 0.2) -> SeenBox:
+    return SeenBox(x, y, 0.0, (0.03, 0.03, 0.05), TABLE.height, name, complete=True)
+
+
+def test_a_control_cycle_passes_after_every_way_that_is_barred() -> None:
+    arm = ArmThatTouches(["post"], ways=3)
+    routine = plan_amid(ERRAND, arm, TABLE, [box("post")])
+    cycles = 0
+    while True:
+        try:
+            next(routine)
+        except StopIteration as end:
+            found = end.value
+            break
+        cycles += 1
+        assert len(arm.asked) == cycles
+    assert isinstance(found, Plan)
+    assert (cycles, len(arm.asked)) == (3, 4)
+
+
+def test_no_way_is_asked_for_twice() -> None:
+    arm = ArmThatTouches(["post"])
+    assert isinstance(at_once(plan_amid(ERRAND, arm, TABLE, [box("post")])), Barred)
+    ways = [tuple((leg.to, leg.opening_m) for leg in legs) for legs in arm.asked]
+    assert len(ways) == len(set(ways)) > 1
+
+
+def test_that_there_is_no_path_is_the_reason_where_there_was_room() -> None:
+    beside = box("beside", x=0.5 + 0.015 + 0.025, y=-0.4)
+    found = at_once(plan_amid(ERRAND, ArmThatTouches(["post"]), TABLE, [beside, box("post")]))
+    assert isinstance(found, Barred)
+    assert isinstance(found.reason, NoWay)
+    assert any(not isinstance(each, NoWay) for each in found.refusals)
+
+
+@pytest.mark.parametrize(
+    ("touched", "stays", "told"),
+    [
+        (["post"], [], "post"),
+        (["post", "other"], [], "post"),
+        (["post"], ["post"], None),
+        (["post", "other"], ["other"], None),
+        (["post", "other", "third", "fourth"], [], None),
+    ],
+)
+def test_what_could_be_taken_away_is_told_where_that_would_help(
+    touched: list[str], stays: list[str], told: str | None
+) -> None:
+    arm, boxes = ArmThatTouches(touched), [box(name) for name in touched]
+    barred = at_once(plan_amid(ERRAND, arm, TABLE, boxes))
+    assert isinstance(barred, Barred)
+    bar = at_once(
+        bar_of(
+            barred,
+            boxes,
+            lambda fewer: plan_amid(ERRAND, arm, TABLE, fewer),
+            lambda each: each.name in stays,
+        )
+    )
+    assert (bar and bar.name) == told
