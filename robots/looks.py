@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from robots.arm import Arm, Routine
+from robots.behaviors.contact import hindering_n
 from robots.behaviors.errand import Errand
 from robots.behaviors.grasp_choice import others
 from robots.behaviors.pick_and_place import lifting
@@ -184,16 +185,19 @@ def _alike(spots: Sequence[_Spot], before: Sequence[_Spot]) -> bool:
 
 
 class WayClear:
-    """Nothing presses against the arm or is where it has to go, object and place are free."""
+    """Nothing hinders the arm or is where it has to go, object and place are free."""
 
     def __init__(self, looker: Looker) -> None:
         self._looker = looker
 
     def is_fulfilled(self) -> bool:
-        if self._looker.arm.body.contact_force_n() > _CLEAR_FORCE_N:
-            return False
         senses, way, arm = self._looker.senses, self._looker.way, self._looker.arm
-        here = arm.tool_pose()
+        here, body = arm.tool_pose(), arm.body
+        pressed_n = body.contact_force_n()
+        if here is not None and way:
+            pressed_n = hindering_n(body.contact_force(), here, way[0])
+        if pressed_n > _CLEAR_FORCE_N:
+            return False
         if here is not None and not arm.at_neutral:
             way = [here, *way]
         image = self._looker.look_at_table()

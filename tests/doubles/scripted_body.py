@@ -253,13 +253,13 @@ class ScriptedBody:
         return []
 
     def contact_force(self) -> np.ndarray:
-        """What it feels pushes against its motion."""
+        """What it feels pushes against its motion, and along if it is negative."""
         way = np.array(_position(self._to)) - _position(self._from)
         length = np.linalg.norm(way)
         return -self.force_n * (way / length if length > 0 else np.array([0.0, 0.0, 1.0]))
 
     def contact_force_n(self) -> float:
-        return self.force_n
+        return abs(self.force_n)
 
     def _advance_arm(self) -> None:
         self._done += 0.8 * self._speed * CYCLE_S

@@ -236,6 +236,19 @@ def test_the_way_is_clear_once_nothing_pushes_or_stands_in_it() -> None:
     assert bench.kinds()[-1] == "finished"
 
 
+def test_what_presses_along_the_way_that_is_left_is_not_in_it() -> None:
+    """As the table does against a part that closing fingers have pressed down."""
+    bench = RobotBench()
+    bench.start("pink_bar")
+    bench.run_to(4, 0.2)
+    bench.body.force_n = 250.0
+    bench.run_until(IssueDetected)
+    for force_n, clear in ((30.0, False), (-30.0, True)):
+        bench.body.force_n = force_n
+        bench.look(expect="way_clear", within_s=1.0)
+        assert looked(bench).fulfilled is clear
+
+
 def test_what_stands_in_the_way_is_seen_even_where_no_path_was_found() -> None:
     bench = RobotBench()
     bench.body.unplannable = True
