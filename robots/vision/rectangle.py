@@ -40,14 +40,16 @@ class Evidence:
     """What the pixels around a surface say, on the plane at its height.
 
     `points` (n, 2); `inside` 1 where the pixel shows the surface; `weight` 0 where it says
-    nothing. `rim` (2,): sides that face the camera draw the surface out by this much, as far as
-    they are within its height's tolerance. `pixel_m` is what a pixel spans
-    across there, `pixel_m2` the area that it covers.
+    nothing; `measured` where it has a depth, so that more than its colour says where it is.
+    `rim` (2,): sides that face the camera draw the surface out by this much, as far as they are
+    within its height's tolerance. `pixel_m` is what a pixel spans across there, `pixel_m2` the area
+    that it covers.
     """
 
     points: NDArray[np.float64]
     inside: NDArray[np.float64]
     weight: NDArray[np.float64]
+    measured: NDArray[np.bool_]
     rim: NDArray[np.float64]
     pixel_m: float
     pixel_m2: float
@@ -137,6 +139,7 @@ def gather(
         points,
         inside.ravel().astype(np.float64),
         weight.ravel().astype(np.float64),
+        ~np.isnan(height).ravel(),
         to_eye[:2] * (tolerance / to_eye[2]),
         pixel_m,
         pixel_area_m2(image, (float(middle[0]), float(middle[1]), surface.top_z)),
@@ -206,11 +209,16 @@ def _fit(evidence: Evidence, start: Rectangle, *, sized: bool) -> Fitted:
 
 
 def _cut_to_seen(evidence: Evidence, found: Fitted) -> Fitted:
-    """Ends that are hidden could be anywhere behind what hides them: only what is seen counts."""
+    """Ends that are hidden could be anywhere behind what hides them: only what is seen counts.
+
+    So does only what has a depth: without, a side of the same colour could not be told from it.
+    """
+    inside = evidence.inside > 0
+    measured = inside & evidence.measured
     if all(found.sides_seen):
         return found
     old = found.rectangle
-    local = old.local(evidence.points[evidence.inside > 0])
+    local = old.local(evidence.points[measured if measured.any() else inside])
     ends = []
     for axis in range(2):
         half, margin = old.extents[axis] / 2, evidence.pixel_m / 2
