@@ -169,6 +169,16 @@ UNSEEN = [
         ALL,
         "cannot tell",
     ),
+    (
+        "hidden",
+        changed(
+            cup__pose={"x": 0.52, "y": -0.45},
+            cup__size=[0.03, 0.03, 0.03],
+            screen=equal("cup", 0.41, -0.40, size=[0.04, 0.16, 0.28]),
+        ),
+        ALL,
+        "screen hides cup from the head camera",
+    ),
     ("too dark", changed(cup__color=[0.02, 0.02, 0.02]), ALL, "too dark"),
 ]
 ANY_REACH = {"starts too far", "starts too far aside", "goes too far"}
