@@ -29,7 +29,7 @@ MOVED_M = 0.02
 """An object that is seen this far from where it was has been moved; cameras err by less."""
 
 RAISED_M = 0.012
-"""One that is seen so much higher or lower has toppled, or been set upright; heights err by less."""
+"""One that is seen so much higher or lower has toppled or was set upright; heights err by less."""
 
 Point = tuple[float, float, float]
 
