@@ -16,6 +16,7 @@ from server.cli.journals import new_run_journal
 from server.cli.live_run import LiveRun
 from server.cli.output import JsonLines, LiveTranscript
 from server.cli.run_files import RunFiles, read_run_files
+from server.errors import ImpossibleError
 from server.runtime.requests import RunRequest
 from server.settings import Settings, load_settings
 from tasks.scenario import Person, Scenario
@@ -111,7 +112,11 @@ def run(
             report,
             asks_at_terminal=asks_at_terminal,
         )
-        exit_code = asyncio.run(live_run.carry_out())
+        try:
+            exit_code = asyncio.run(live_run.carry_out())
+        except ImpossibleError as error:
+            told = [str(error), *files.described(error.scene_problems)]
+            raise CommandLineError("\n".join(told)) from error
     raise typer.Exit(exit_code)
 
 

@@ -384,6 +384,9 @@ def test_a_scenario_for_a_tree_that_there_is_not_is_refused_with_its_line(
 ) -> None:
     file = write_file(tmp_path, STEP_TWELVE.replace("eket", "moon"))
     assert f"{file}:2: there is no task tree 'moon'" in mend("check", str(file)).err
+    refused = mend("run", "eket", "--scenario", str(file))
+    assert refused.code == 2
+    assert f"{file}:2: the scenario is for the task tree 'moon', not 'eket'" in refused.err
 
 
 @pytest.mark.parametrize(
@@ -717,6 +720,7 @@ def test_a_run_that_the_robot_cannot_do_is_refused(data_dir: Path, tmp_path: Pat
         out, err = process.communicate(timeout=120)
     assert (process.returncode, out) == (2, "")
     assert "cannot do the tree 'just_one' in the scene 'bench'" in err
+    assert f"mend: {scene}:3: " in err
     assert "takes 12 to 78 mm" in err
 
 
