@@ -28,6 +28,9 @@ from dialogue.script import Expectation
 MOVED_M = 0.02
 """An object that is seen this far from where it was has been moved; cameras err by less."""
 
+RAISED_M = 0.012
+"""One that is seen so much higher or lower has toppled or was set upright; heights err by less."""
+
 Point = tuple[float, float, float]
 
 
@@ -115,5 +118,5 @@ def contradiction(
 
 
 def has_moved(before: Point, now: Point) -> bool:
-    """Whether an object is seen elsewhere than it was."""
-    return math.dist(before, now) > MOVED_M
+    """Whether an object is seen elsewhere than it was, or has toppled or been set upright there."""
+    return math.dist(before, now) > MOVED_M or abs(before[2] - now[2]) > RAISED_M

@@ -29,5 +29,6 @@ def lost_part_script(what_happened: str, failed: str) -> ScriptWithParameters[Pa
                 Expectation.AT_PLACE: Resolution.HUMAN_FINISH,
                 Expectation.IN_REACH: Resolution.ROBOT_RETRY,
             },
+            may_be_mistaken=True,
         )
     )

@@ -29,7 +29,7 @@ class Offer:
     `failed` says how often the robot has failed at this itself; it then no longer asks for `help`.
     `request` says what to do and `not_seen` asks for it again; once `help` is seen the robot says
     `thanks` (or `unchanged`, where it was so before) and the dialogue closes with `resolution`.
-    `put_right` and `denied` are a script's.
+    `put_right`, `denied` and `may_be_mistaken` are a script's.
     """
 
     question: str
@@ -43,6 +43,7 @@ class Offer:
     not_seen: str
     put_right: Mapping[Expectation, Resolution]
     denied: frozenset[Expectation] = frozenset()
+    may_be_mistaken: bool = False
 
 
 def offer_script(
@@ -95,6 +96,7 @@ def _script(offer: Offer, patience: Patience, variants: Mapping[Sensed, Script])
         },
         put_right=offer.put_right,
         denied=offer.denied,
+        may_be_mistaken=offer.may_be_mistaken,
         reasks=patience.reasks,
         variants=variants,
     )

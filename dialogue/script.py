@@ -178,8 +178,10 @@ class Script:
     the robot goes on by itself, so that there is nothing to ask. `put_right` says what the
     robot may see happen before anyone answers, the most telling first, and how the issue is then
     resolved; `denied` what of it the issue itself says not to be so. `reasks` is how often promised
-    help that is not seen is asked about again. `variants` are the scripts that take its place for
-    what was sensed otherwise than by seeing it.
+    help that is not seen is asked about again. `may_be_mistaken`: the robot did not see the issue
+    but judged it, so that the same again, where its looks see nothing wrong and nothing changed,
+    is a suspected false alarm. `variants` are the scripts that take its place for what was sensed
+    otherwise than by seeing it.
     """
 
     opening: str
@@ -189,6 +191,7 @@ class Script:
     failed_opening: str | None = None
     on_the_way: str | None = None
     denied: frozenset[Expectation] = frozenset()
+    may_be_mistaken: bool = False
     variants: Mapping[Sensed, "Script"] = field(default_factory=dict)
 
     @property

@@ -19,5 +19,6 @@ script = offer_script(
             Expectation.AT_PLACE: Resolution.HUMAN_FINISH,
             Expectation.IN_REACH: Resolution.ROBOT_FINISH,
         },
+        may_be_mistaken=True,
     )
 )

@@ -116,7 +116,7 @@ class TreeChecker(_Checker):
         fits = [
             WorldFit(
                 world=world,
-                problems=[_mistake_of_leaf(each, task.definition) for each in problems],
+                problems=[_mistake_of_leaf(each, task, text.splitlines()) for each in problems],
             )
             for world, problems in self._worlds.try_tree(task.scene, task.definition).items()
         ]
@@ -229,9 +229,11 @@ def _mistake(problem: Problem, lines: Sequence[str]) -> DocumentMistake:
     )
 
 
-def _mistake_of_leaf(problem: SceneProblem, tree: TaskTreeDefinition) -> DocumentMistake:
+def _mistake_of_leaf(
+    problem: SceneProblem, task: CheckedTask, lines: Sequence[str]
+) -> DocumentMistake:
     """A problem of a scene, told to who reads the tree: at the leaf that it is about."""
-    named = set(problem.where)
+    named, tree = set(problem.where), task.definition
     leaf = next(
         (
             index
@@ -240,8 +242,9 @@ def _mistake_of_leaf(problem: SceneProblem, tree: TaskTreeDefinition) -> Documen
         ),
         None,
     )
-    path = None if leaf is None else _path(tree, leaf)
-    return DocumentMistake(line=None, column=None, node=path, message=problem.message)
+    if leaf is None:
+        return DocumentMistake(line=None, column=None, node=None, message=problem.message)
+    return _mistake(Problem(task.lines[leaf], _path(tree, leaf), problem.message), lines)
 
 
 def _path(tree: TaskTreeDefinition, node: int) -> str:

@@ -102,8 +102,8 @@ class WrongDocumentError(InvalidError):
 
 
 def _sentence(mistake: DocumentMistake) -> str:
-    where = "line" if mistake.line is None else f"line:{mistake.line}"
-    return f"{where}: " + (f"{mistake.node}: " if mistake.node else "") + mistake.message
+    where = "" if mistake.line is None else f"line:{mistake.line}: "
+    return where + (f"{mistake.node}: " if mistake.node else "") + mistake.message
 
 
 Uploaded = Mapping[DocumentKind, Mapping[str, str]]

@@ -1,6 +1,9 @@
 """What the service refuses, and why: each becomes one problem document on the API."""
 
+from collections.abc import Sequence
 from uuid import UUID
+
+from tasks.scene_problem import SceneProblem
 
 
 class ServiceError(Exception):
@@ -30,3 +33,11 @@ class InvalidError(ServiceError):
     def __init__(self, message: str, problems: list[str] | None = None) -> None:
         super().__init__(message)
         self.problems = problems or []
+
+
+class ImpossibleError(InvalidError):
+    """A world's robot cannot do a tree in a scene; `scene_problems` say where in that, and why."""
+
+    def __init__(self, message: str, scene_problems: Sequence[SceneProblem]) -> None:
+        super().__init__(message, [each.message for each in scene_problems])
+        self.scene_problems = scene_problems

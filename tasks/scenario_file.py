@@ -101,7 +101,7 @@ def find_misfits(
     """
     misfits = [] if scene is None else _missing_in_scene(scenario, scene)
     for index, each in enumerate(scenario.interventions):
-        if each.when is not None:
+        if each.when is not None and (scene is None or each.when.object in scene.objects):
             misfits += _missing_steps(each.when, index, tree, step_counts)
     return misfits
 
@@ -128,16 +128,22 @@ def _missing_in_scene(scenario: Scenario, scene: Scene) -> list[Misfit]:
 def _missing_steps(
     when: Trigger, index: int, tree: TaskTreeDefinition, step_counts: Mapping[str, int | None]
 ) -> Iterator[Misfit]:
-    """A step that none of the behaviors has that handle the object."""
-    behaviors = {
-        each.behavior
-        for each in tree.nodes
-        if isinstance(each, BehaviorNode) and each.object == when.object
-    }
-    counts = {each: step_counts.get(each) for each in sorted(behaviors)}
-    if not counts or any(count is None or count >= when.step for count in counts.values()):
-        return
+    """A step that none of the behaviors has that handle the object, or that nothing handles."""
     where = ("interventions", index, "when")
+    leaves = [each for each in tree.nodes if isinstance(each, BehaviorNode) and each.object]
+    behaviors = {each.behavior for each in leaves if each.object == when.object}
+    if not behaviors:
+        handled = ", ".join(sorted({each.object for each in leaves if each.object}))
+        yield Misfit(
+            (*where, "object"),
+            f"{_spoken(where)} waits for a step with '{when.object}', which no leaf of the task "
+            f"tree '{tree.name}' handles; name an object that one handles ({handled or 'none'}), "
+            "or a time (at_s)",
+        )
+        return
+    counts = {each: step_counts.get(each) for each in sorted(behaviors)}
+    if any(count is None or count >= when.step for count in counts.values()):
+        return
     have = " and ".join(f"'{name}' has the steps 1 to {count}" for name, count in counts.items())
     yield Misfit(
         (*where, "step"),

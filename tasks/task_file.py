@@ -1,6 +1,6 @@
 """Task files: reading and checking them, in the nested or the published flat form."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -30,10 +30,11 @@ class TaskFileError(InvalidFileError):
 
 @dataclass(frozen=True, slots=True)
 class CheckedTask:
-    """A task file without mistakes. `scene` is None if it names none."""
+    """A task file without mistakes. `scene` is None if it names none; `lines` has each node's."""
 
     definition: TaskTreeDefinition
     scene: Scene | None
+    lines: Sequence[int]
 
 
 def check_task_file(
@@ -106,7 +107,8 @@ def check_task_text(
     nodes = _check_nodes(draft, behaviors, scene)
     if draft.problems:
         raise TaskFileError(source, draft.problems)
-    return CheckedTask(TaskTreeDefinition(nodes=nodes, **head), scene)
+    lines = [each.source.line for each in draft.nodes]
+    return CheckedTask(TaskTreeDefinition(nodes=nodes, **head), scene, lines)
 
 
 def _check_head(document: LinedMapping, problems: list[Problem]) -> dict[str, Any]:

@@ -7,6 +7,8 @@ from typing import Annotated, Any, Union, get_args, get_origin
 
 from pydantic import BaseModel
 
+_BY_ENDING = {"s": "seconds", "m": "metres", "rad": "radians", "n": "newtons", "kg": "kilograms"}
+
 
 @dataclass(frozen=True, slots=True)
 class Unit:
@@ -21,6 +23,12 @@ def unit_at(model: type[BaseModel], location: Sequence[int | str]) -> str | None
     for step in location:
         found = [inner for each in found for inner in _inside(each, step)]
     return next((each.name for each in found if isinstance(each, Unit)), None)
+
+
+def unit_of_name(location: Sequence[int | str]) -> str | None:
+    """What the number at a location is in, by the end of its name, as in `timeout_s`."""
+    name = next((each for each in reversed(location) if isinstance(each, str)), "")
+    return _BY_ENDING.get(name.rpartition("_")[2]) if "_" in name else None
 
 
 def _inside(kind: Any, step: int | str) -> Iterator[Any]:

@@ -1,6 +1,7 @@
 """What pydantic finds wrong with a part of a document, as problems with lines and sentences."""
 
 import json
+import re
 from collections.abc import Iterable, Sequence
 from typing import Any, TypeVar
 
@@ -9,9 +10,12 @@ from pydantic_core import ErrorDetails
 
 from tasks.document import LinedMapping, LinedSequence
 from tasks.problem import Problem, list_names
-from tasks.unit import unit_at
+from tasks.unit import unit_at, unit_of_name
 
 _MAX_VALUE_CHARACTERS = 60
+_OF_NUMBERS = ("greater_", "less_", "float_", "int_", "finite_")
+"""How pydantic's types of mistakes begin that only a number can have."""
+_SUBJECT = re.compile(r"^\w+ should ")
 
 Model = TypeVar("Model", bound=BaseModel)
 
@@ -39,19 +43,29 @@ def describe_mistake(mistake: ErrorDetails, model: type[BaseModel]) -> str:
     if mistake["type"] == "extra_forbidden":
         known = _known_keys(mistake, model)
         return f"unknown key '{where}'" + (f"; known are {known}" if known else "")
-    message = mistake["msg"].removeprefix("Value error, ")
     if mistake["type"] == "value_error":
+        message = mistake["msg"].removeprefix("Value error, ")
         return f"'{where}': {message}" if where else message
     if mistake["type"] == "too_short":
         least, known = mistake["ctx"]["min_length"], mistake["ctx"]["actual_length"]
         entries = "entry" if least == 1 else "entries"
         return f"'{where}' must have at least {least} {entries}, but it has {known}"
     if mistake["type"] == "string_pattern_mismatch":
-        message = "must be a name: a letter, then at most 63 letters, digits, '_' or '-'"
-    message = message.replace("Input should be", "must be", 1)
-    if unit := unit_at(model, mistake["loc"]):
-        message += f" (in {unit})"
-    return f"'{where}' {message}, but it is {_show(mistake['input'])}"
+        must = "must be a name: a letter, then at most 63 letters, digits, '_' or '-'"
+        return f"'{where}' {must}, but it is {_show(mistake['input'])}"
+    unit = unit_at(model, mistake["loc"]) or unit_of_name(mistake["loc"])
+    return f"'{where}' {what_is_right([mistake], unit)}"
+
+
+def what_is_right(mistakes: Sequence[ErrorDetails], unit: str | None) -> str:
+    """What a value must be, in its unit, and what it is; `mistakes`: one for each of its types."""
+    first = mistakes[0]
+    said = " or ".join(_SUBJECT.sub("must ", each["msg"]) for each in mistakes)
+    if unit is not None and first["type"].startswith(_OF_NUMBERS):
+        said += f" (in {unit})"
+    # What is too long to be taken tells nothing.
+    is_told = "input" in first and first["type"] != "string_too_long"
+    return f"{said}, but it is {_show(first['input'])}" if is_told else said
 
 
 def find_extra_keys(part: LinedMapping, known: Iterable[str], what: str) -> list[Problem]:

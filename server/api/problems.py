@@ -21,6 +21,8 @@ from server.errors import (
     ServiceError,
 )
 from server.journal.journal import JournalClosedError, JournalWriteError
+from tasks.unit import unit_of_name
+from tasks.validation import what_is_right
 
 log = logging.getLogger(__name__)
 
@@ -116,7 +118,7 @@ async def _http_error(request: Request, error: Exception) -> Response:
 
 async def _validation_error(_request: Request, error: Exception) -> Response:
     assert isinstance(error, RequestValidationError)
-    sentences = validation_sentences(error.errors())
+    sentences = validation_sentences(error.errors(), error.body)
     detail = sentences[0] if len(sentences) == 1 else f"{len(sentences)} things are wrong"
     return problem_response(problem(422, detail, errors=sentences))
 
@@ -137,10 +139,46 @@ async def _defect(request: Request, error: Exception) -> Response:
     return problem_response(problem(500, "the service made a mistake; its log says more"))
 
 
-def validation_sentences(errors: Sequence[Any]) -> list[str]:
-    """One sentence per mistake that pydantic found: where, and what is wrong."""
+def validation_sentences(errors: Sequence[Any], body: object = None) -> list[str]:
+    """One sentence per value that pydantic found wrong: where it is, and what would be right.
+
+    `body` is what was sent, where that is known.
+    """
+    wrong: dict[tuple[int | str, ...], list[Any]] = {}
+    for each in errors:
+        wrong.setdefault(_where(each, body), []).append(each)
     return [
-        f"{'.'.join(str(part) for part in error['loc']) or 'body'}: "
-        f"{str(error['msg']).removeprefix('Value error, ')}"
-        for error in errors
+        f"{'.'.join(map(str, where)) or 'body'}: {_what_is_wrong(where, mistakes)}"
+        for where, mistakes in wrong.items()
     ]
+
+
+def _where(mistake: Any, body: Any) -> tuple[int | str, ...]:
+    """The keys to a value; a value that may be of several types has one mistake for each."""
+    loc: tuple[int | str, ...] = mistake["loc"]
+    if mistake["type"] == "json_invalid":
+        return loc[:1]
+    if loc[:1] != ("body",) or mistake["type"] == "missing":
+        return loc
+    where = list(loc[:1])
+    for step in loc[1:]:
+        try:
+            body = body[step]
+        except (KeyError, IndexError, TypeError):
+            continue  # It names the type that was tried, and no key.
+        where.append(step)
+    return tuple(where)
+
+
+def _what_is_wrong(where: Sequence[int | str], mistakes: Sequence[Any]) -> str:
+    first = mistakes[0]
+    match first["type"]:
+        case "missing":
+            return "is missing"
+        case "extra_forbidden":
+            return "is not known here"
+        case "json_invalid":
+            return f"is not JSON: {first['ctx']['error']}"
+        case "value_error":
+            return str(first["msg"]).removeprefix("Value error, ")
+    return what_is_right(mistakes, unit_of_name(where))

@@ -83,8 +83,7 @@ def _in_scene(problems: InWorlds, scene: SceneSource) -> Checked:
     told: dict[Problem, list[str]] = {}
     for world, found in problems.items():
         for each in found:
-            problem = Problem(scene.read.line_of(each.where), None, each.message)
-            told.setdefault(problem, []).append(world)
+            told.setdefault(scene.problem(each), []).append(world)
     ordered = sorted(told.items(), key=lambda item: item[0].line or 0)
     mistakes = [
         Problem(problem.line, None, f"{in_worlds(worlds)}: {problem.message}").describe(

@@ -9,6 +9,7 @@ from typing import Annotated, Any
 
 import typer
 from pydantic import SecretStr, ValidationError
+from pydantic_core import ErrorDetails
 
 from server.cli.answers import Answers, read_answers
 from server.cli.failures import CommandLineError, told_plainly
@@ -16,9 +17,11 @@ from server.cli.journals import new_run_journal
 from server.cli.live_run import LiveRun
 from server.cli.output import JsonLines, LiveTranscript
 from server.cli.run_files import RunFiles, read_run_files
+from server.errors import ImpossibleError
 from server.runtime.requests import RunRequest
 from server.settings import Settings, load_settings
 from tasks.scenario import Person, Scenario
+from tasks.validation import what_is_right
 
 
 def run(
@@ -111,7 +114,11 @@ def run(
             report,
             asks_at_terminal=asks_at_terminal,
         )
-        exit_code = asyncio.run(live_run.carry_out())
+        try:
+            exit_code = asyncio.run(live_run.carry_out())
+        except ImpossibleError as error:
+            told = [str(error), *files.described(error.scene_problems)]
+            raise CommandLineError("\n".join(told)) from error
     raise typer.Exit(exit_code)
 
 
@@ -147,11 +154,13 @@ def _request(**fields: Any) -> RunRequest:
     try:
         return RunRequest(**fields)
     except ValidationError as error:
-        problems = {str(each["loc"][0]): each["msg"] for each in error.errors()}
+        wrong: dict[str, list[ErrorDetails]] = {}
+        for each in error.errors():
+            wrong.setdefault(str(each["loc"][0]), []).append(each)
         raise CommandLineError(
             "\n".join(
-                f"{'TREE' if name == 'tree' else '--' + name.replace('_', '-')} is wrong: "
-                f"{message[0].lower()}{message[1:]}"
-                for name, message in problems.items()
+                f"{'TREE' if name == 'tree' else '--' + name.replace('_', '-')} "
+                f"{what_is_right(mistakes, None)}"
+                for name, mistakes in wrong.items()
             )
         ) from error

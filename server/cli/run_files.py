@@ -1,23 +1,26 @@
 """The TREE, --scene and --scenario of `mend run`: names of the library, or files."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from server.behaviors import behavior_parameters, behavior_step_counts
 from server.cli.failures import CommandLineError
-from server.cli.task_files import read_task, read_text
+from server.cli.task_files import SceneSource, read_task, read_text
 from server.documents import DocumentKind
 from server.fixed_documents import GivenFiles
 from tasks.library import TREES
 from tasks.scenario import Scenario
 from tasks.scenario_file import (
+    Misfit,
     ScenarioFileError,
     built_in_scenario,
     find_misfits,
     read_scenario_file,
 )
 from tasks.scene import Scene
-from tasks.scene_file import built_in_scene, check_scene_file
+from tasks.scene_file import built_in_scene, check_scene_file, read_scene_file
+from tasks.scene_problem import SceneProblem
 from tasks.task_file import CheckedTask, check_built_in_task
 
 SUFFIXES = (".yaml", ".yml", ".json")
@@ -27,7 +30,8 @@ SUFFIXES = (".yaml", ".yml", ".json")
 class RunFiles:
     """What a run is to name, and the texts of the files that were given for it.
 
-    `scenes` is the folder beside the task file, where its scene may be.
+    `scenes` is the folder beside the task file, where its scene may be; `scene_file` is the
+    file of the scene, None where that is built in.
     """
 
     tree: str
@@ -35,6 +39,14 @@ class RunFiles:
     scenario: Scenario | None = None
     given: GivenFiles = field(default_factory=GivenFiles)
     scenes: Path | None = None
+    scene_file: Path | None = None
+
+    def described(self, problems: Sequence[SceneProblem]) -> list[str]:
+        """One sentence per problem of the run's scene, with its line where that is a file."""
+        if self.scene_file is None:
+            return [each.message for each in problems]
+        scene = SceneSource(read_scene_file(self.scene_file), str(self.scene_file))
+        return [scene.problem(each).describe(scene.source) for each in problems]
 
 
 def read_run_files(tree: str, scene: str | None, scenario: str | None) -> RunFiles:
@@ -44,10 +56,14 @@ def read_run_files(tree: str, scene: str | None, scenario: str | None) -> RunFil
     by the name of a built-in tree, `NotInLibraryError`, and `OSError` for what cannot be read.
     """
     texts: dict[DocumentKind, dict[str, str]] = {}
-    chosen = _read_scene(scene, Path(tree), texts) if scene else None
+    file = _scene_file(scene, tree) if scene else None
+    chosen = _read_scene(scene, file, texts) if scene else None
     name, task, scenes = _read_tree(tree, chosen, texts)
+    if task is not None and task.definition.scene and not scene:
+        file = _scene_file(task.definition.scene, tree)
     script = _read_scenario(scenario, task, chosen, texts) if scenario else None
-    return RunFiles(name, chosen.name if chosen else None, script, GivenFiles(texts), scenes)
+    named = chosen.name if chosen else None
+    return RunFiles(name, named, script, GivenFiles(texts), scenes, file)
 
 
 def is_file(argument: str) -> bool:
@@ -76,15 +92,21 @@ def _read_tree(
     return name, task, scenes if scenes.is_dir() else None
 
 
-def _read_scene(argument: str, tree: Path, texts: dict[DocumentKind, dict[str, str]]) -> Scene:
+def _scene_file(argument: str, tree: str) -> Path | None:
+    """The file of a scene: itself, or the one beside the task file; None where it is built in."""
     if is_file(argument):
-        path = Path(argument)
-    else:
-        path = tree.parent / "scenes" / f"{argument}.yaml"
-        if not is_file(str(tree)) or not path.is_file():
-            return built_in_scene(argument)
-    scene = check_scene_file(path)
-    texts[DocumentKind.SCENE] = {scene.name: read_text(path)}
+        return Path(argument)
+    beside = Path(tree).parent / "scenes" / f"{argument}.yaml"
+    return beside if is_file(tree) and beside.is_file() else None
+
+
+def _read_scene(
+    argument: str, file: Path | None, texts: dict[DocumentKind, dict[str, str]]
+) -> Scene:
+    if file is None:
+        return built_in_scene(argument)
+    scene = check_scene_file(file)
+    texts[DocumentKind.SCENE] = {scene.name: read_text(file)}
     return scene
 
 
@@ -98,9 +120,17 @@ def _read_scenario(
         return built_in_scenario(argument)
     read = read_scenario_file(Path(argument))
     scenario = read.scenario
-    if task is not None and task.definition.name == scenario.tree:
-        found = find_misfits(scenario, task.definition, scene or task.scene, behavior_step_counts())
+    if task is not None:
+        found = _misfits(scenario, task, scene or task.scene)
         if found:
             raise ScenarioFileError(argument, [read.problem(each) for each in found])
     texts[DocumentKind.SCENARIO] = {scenario.name: read_text(Path(argument))}
     return scenario
+
+
+def _misfits(scenario: Scenario, task: CheckedTask, scene: Scene | None) -> list[Misfit]:
+    tree = task.definition
+    if tree.name != scenario.tree:
+        message = f"the scenario is for the task tree '{scenario.tree}', not '{tree.name}'"
+        return [Misfit(("tree",), message)]
+    return find_misfits(scenario, tree, scene, behavior_step_counts())

@@ -6,8 +6,10 @@ from pathlib import Path
 from server.behaviors import behavior_parameters
 from server.cli.failures import CommandLineError
 from tasks.library import SCENES, NotInLibraryError
+from tasks.problem import Problem
 from tasks.scene import Scene
 from tasks.scene_file import ReadScene, check_scene_file, read_scene_file, read_scene_text
+from tasks.scene_problem import SceneProblem
 from tasks.task_file import CheckedTask, check_built_in_task, check_task_file
 
 
@@ -17,6 +19,10 @@ class SceneSource:
 
     read: ReadScene
     source: str
+
+    def problem(self, problem: SceneProblem) -> Problem:
+        """A problem of the scene with its line."""
+        return Problem(self.read.line_of(problem.where), None, problem.message)
 
 
 def read_text(path: Path) -> str:

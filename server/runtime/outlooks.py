@@ -48,14 +48,18 @@ def outlook_now(
 
 
 def is_suspect(state: RunState, raised: ev.IssueRaised) -> bool:
-    """Whether an issue looks like a false alarm: the same again, though nothing was seen wrong."""
+    """Whether an issue looks like a false alarm: the same again, though nothing was seen wrong.
+
+    What was seen itself is not doubted: things may go wrong again and again.
+    """
     if raised.outlook is None or raised.outlook.unchanged < 2:
         return False
     leaf = state.tree.index_of(raised.node)
     before = _dialogue_about(state, state.issues[leaf][-1])
     felt = raised.detection is not None and raised.detection.felt
     looked = None if before is None else before.first_look
-    return felt or (looked is not None and bool(looked.fulfilled))
+    judged = state.scripts[raised.issue].may_be_mistaken
+    return felt or (judged and looked is not None and bool(looked.fulfilled))
 
 
 # --- The same issue again ----------------------------------------------------------------------

@@ -76,7 +76,7 @@ class Worlds(Protocol):
         ...
 
     def refuse_impossible(self, world: str, scene: Scene, tree: LoadedTree) -> None:
-        """Raise `InvalidError` where the world's robot cannot do the tree in the scene."""
+        """Raise `ImpossibleError` where the world's robot cannot do the tree in the scene."""
         ...
 
     def open(self, state: RunState, run: Callable[[], Run]) -> Hardware:

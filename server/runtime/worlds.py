@@ -6,7 +6,7 @@ from typing import Protocol
 
 import numpy as np
 
-from server.errors import InvalidError
+from server.errors import ImpossibleError, InvalidError
 from server.journal.journal import Journal
 from server.runtime.ports import LIVE, LoadedTree
 from server.runtime.run import Run
@@ -80,14 +80,14 @@ class SimulatedWorlds:
             raise InvalidError(f"tree '{tree.name}' cannot be laid out: {error}") from error
 
     def refuse_impossible(self, world: str, scene: Scene, tree: LoadedTree) -> None:
-        """Raise `InvalidError` where the world's robot cannot do the tree in the scene."""
+        """Raise `ImpossibleError` where the world's robot cannot do the tree in the scene."""
         check = WorldChecks(self._adapters).check_of(world)
         problems = check(scene, tree.definition.nodes) if check is not None else []
         if problems:
-            raise InvalidError(
+            raise ImpossibleError(
                 f"the robot of the world '{world}' cannot do the tree '{tree.name}' in the scene "
                 f"'{scene.name}'",
-                [each.message for each in problems],
+                problems,
             )
 
     def open(self, state: RunState, run: Callable[[], Run]) -> "SimulatedHardware":

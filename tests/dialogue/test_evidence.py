@@ -40,6 +40,14 @@ def test_a_part_that_moved_since_the_question_has_though_not_since_the_last_look
     assert change_since([], look(Expectation.IN_REACH)) is Change.UNKNOWN
 
 
+def test_a_part_that_is_set_upright_where_it_lay_has_moved() -> None:
+    # What lies is seen as far below the table as it is lower than when it stands.
+    lying, upright = look(at=(0.5, 0.1, 0.684)), look(Expectation.IN_REACH, at=(0.505, 0.1, 0.701))
+    assert change_between(lying, upright) is Change.MOVED
+    assert put_right(LOST, lying, upright) == PutRight(Expectation.IN_REACH, Change.MOVED)
+    assert change_between(upright, lying) is Change.MOVED
+
+
 def test_a_part_that_came_back_does() -> None:
     first, now = look(at=None), look(Expectation.IN_REACH)
     assert put_right(LOST, first, now) == PutRight(Expectation.IN_REACH, Change.APPEARED)

@@ -384,6 +384,9 @@ def test_a_scenario_for_a_tree_that_there_is_not_is_refused_with_its_line(
 ) -> None:
     file = write_file(tmp_path, STEP_TWELVE.replace("eket", "moon"))
     assert f"{file}:2: there is no task tree 'moon'" in mend("check", str(file)).err
+    refused = mend("run", "eket", "--scenario", str(file))
+    assert refused.code == 2
+    assert f"{file}:2: the scenario is for the task tree 'moon', not 'eket'" in refused.err
 
 
 @pytest.mark.parametrize(
@@ -669,6 +672,15 @@ def test_a_scene_and_a_scenario_may_be_files(
     }
 
 
+def test_an_option_beyond_its_limit_is_told_with_what_would_be_right(mend: Mend) -> None:
+    outcome = mend("run", "eket", "--max-attempts", "101", "--speed", "2000")
+    assert outcome.code == 2
+    assert "--max-attempts must be less than or equal to 100, but it is 101" in outcome.err
+    assert "--speed must be less than or equal to 1000 or must be 'max', but it is 2000" in (
+        outcome.err
+    )
+
+
 def test_a_scene_may_be_named(mend: Mend, service: Callable[..., RecordedService]) -> None:
     recorded = service()
     assert mend("run", "eket", "--scene", "eket").code == 0
@@ -717,6 +729,7 @@ def test_a_run_that_the_robot_cannot_do_is_refused(data_dir: Path, tmp_path: Pat
         out, err = process.communicate(timeout=120)
     assert (process.returncode, out) == (2, "")
     assert "cannot do the tree 'just_one' in the scene 'bench'" in err
+    assert f"mend: {scene}:3: " in err
     assert "takes 12 to 78 mm" in err
 
 

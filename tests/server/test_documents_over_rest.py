@@ -237,6 +237,8 @@ async def test_what_only_some_worlds_can_do_is_kept_and_said(client: httpx.Async
     tree = (await client.post("/api/trees/check", json={"text": TREE})).json()
     (problem,) = {each["world"]: each["problems"] for each in tree["worlds"]}["timid"]
     assert (problem["node"], problem["message"]) == ("/", "'cup' is too high")
+    at = next(n for n, line in enumerate(TREE.splitlines(), 1) if "behavior:" in line)
+    assert problem["line"] == at
 
 
 async def test_what_no_world_can_do_is_refused() -> None:

@@ -146,6 +146,49 @@ async def test_body_that_is_no_good_json_is_a_problem(
 
 
 @pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        (
+            {"max_attempts": 101},
+            "body.max_attempts: must be less than or equal to 100, but it is 101",
+        ),
+        (
+            {"person": {"delay_s": 5000}},
+            "body.person.delay_s: must be less than or equal to 3600 (in seconds), but it is 5000",
+        ),
+        (
+            {"speed": 2000},
+            "body.speed: must be less than or equal to 1000 or must be 'max', but it is 2000",
+        ),
+        ({"tree": "t" * 65}, "body.tree: must have at most 64 characters"),
+        ({"sped": 1}, "body.sped: is not known here"),
+    ],
+)
+async def test_what_is_wrong_in_a_body_is_told_with_its_field_what_is_right_and_what_came(
+    client: httpx.AsyncClient, change: dict[str, Any], sentence: str
+) -> None:
+    response = await client.post("/api/runs", json={**EKET, **change})
+    assert problem_in(response)["errors"] == [sentence]
+
+
+async def test_what_is_wrong_in_an_address_is_told_with_its_parameter(
+    client: httpx.AsyncClient,
+) -> None:
+    response = await client.get("/api/runs", params={"limit": 5000})
+    assert problem_in(response)["detail"] == (
+        'query.limit: must be less than or equal to 1000, but it is "5000"'
+    )
+
+
+async def test_a_body_that_is_not_json_or_lacks_a_field_is_told(client: httpx.AsyncClient) -> None:
+    headers = {"content-type": "application/json"}
+    response = await client.post("/api/runs", content=b"{", headers=headers)
+    assert problem_in(response)["detail"].startswith("body: is not JSON: ")
+    response = await client.post("/api/runs", json={})
+    assert problem_in(response)["detail"] == "body.tree: is missing"
+
+
+@pytest.mark.parametrize(
     ("method", "path", "status"),
     [
         ("GET", "/nowhere", 404),

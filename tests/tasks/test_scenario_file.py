@@ -169,6 +169,24 @@ def test_a_step_that_no_behavior_of_the_object_has_is_told_with_its_line(
     assert [read.problem(each).describe("mine.yaml") for each in found] == misfits
 
 
+@pytest.mark.parametrize("step", [1, 12])
+def test_a_step_of_what_no_leaf_handles_is_told_with_its_line(step: int) -> None:
+    text = GOOD.replace("{object: pink_bar, step: 5", f"{{object: green_leg, step: {step}")
+    read = read_scenario_text(text)
+    found = find_misfits(read.scenario, TREE, None, {"pick_and_place": 8})
+    assert [read.problem(each).describe("mine.yaml") for each in found] == [
+        "mine.yaml:4: interventions[0].when waits for a step with 'green_leg', which no leaf of "
+        "the task tree 'eket' handles; name an object that one handles (pink_bar), or a time (at_s)"
+    ]
+
+
+def test_what_befalls_an_object_that_no_leaf_handles_is_no_mistake() -> None:
+    text = GOOD.replace("{act: steal, object: pink_bar}", "{act: steal, object: green_leg}")
+    text = text.replace("answers:", "  - at_s: 3.0\n    do: {act: steal, object: cup}\nanswers:")
+    scenario = check_scenario_text(text, source="mine.yaml")
+    assert find_misfits(scenario, TREE, None, {"pick_and_place": 8}) == []
+
+
 def test_what_the_scene_has_not_is_told_with_its_line() -> None:
     scene = Scene(name="bare", objects={}, places={})
     text = GOOD + "scene:\n  pink_bar: {x: 0.5, y: 0.1}\n"

@@ -4,7 +4,7 @@ import pytest
 
 from tasks.scene import Name, Place, Pose, Scene, SceneObject, StrictModel, Table
 from tasks.scene_file import SceneFileError, check_scene_text
-from tasks.unit import unit_at
+from tasks.unit import unit_at, unit_of_name
 
 
 class Shelf(StrictModel):
@@ -47,3 +47,19 @@ def test_a_measure_beyond_its_limit_is_told_with_its_unit_and_line() -> None:
         "'objects.cup.pose.yaw' must be less than or equal to 6.2832 (in radians), but it is 90"
     )
     assert problem.line == 1 + wrong[: wrong.index('"yaw": 90')].count("\n")
+
+
+@pytest.mark.parametrize(
+    ("location", "unit"),
+    [
+        (("person", "delay_s"), "seconds"),
+        (("knob_m", 2), "metres"),
+        (("max_attempts",), None),
+        (("s",), None),
+        ((), None),
+    ],
+)
+def test_the_end_of_a_name_tells_the_unit(
+    location: tuple[int | str, ...], unit: str | None
+) -> None:
+    assert unit_of_name(location) == unit

@@ -69,6 +69,20 @@ async def test_a_robot_that_is_wrong_finds_out_and_the_operators_hear_of_it_once
     ]
 
 
+@pytest.mark.parametrize(
+    ("kind", "step", "robot"),
+    [("undone", 1, {}), ("missing", 6, {"stubborn": True}), ("blind", 6, {"stubborn": True})],
+)
+async def test_what_is_seen_again_and_again_is_no_false_alarm(
+    kind: str, step: int, robot: dict[str, Any]
+) -> None:
+    _, events = await run_with(kind, step, "none", wrong=True, **robot)
+    again = [each.outlook.unchanged for each in of_type(events, ev.IssueRaised)]
+    assert max(again) >= 2
+    assert of_type(events, ev.FirstLook)[0].fulfilled
+    assert of_type(events, ev.SuspectedFalseAlarm) == []
+
+
 async def test_a_yes_without_a_change_is_no_help_and_the_attempt_has_failed() -> None:
     person = {"never": 1.0}
     faults = {"part_1": [("missed", 4)] * 9}
