@@ -98,7 +98,7 @@ def _repair(drawing: "_Drawing", seed: int, count: int, check: SceneCheck | None
     if check is None:
         return True
     for _ in range(_REPAIRS):
-        wrong = drawing.parts_of(check(drawing.scene(seed), drawing.leaves()))
+        wrong = drawing.parts_of(check(drawing.scene(seed), drawing.nodes(seed)))
         if not wrong:
             return True
         for name in wrong:
@@ -162,17 +162,29 @@ class _Drawing:
             "tree": random_ordered_nesting(rng, leaves, self._order()),
         }
 
-    def leaves(self) -> list[BehaviorNode]:
-        """What the tree has to do, without its order."""
-        return [
-            BehaviorNode(
-                parent=None if number == 0 else 0,
-                name=name,
-                behavior="pick_and_place",
-                parameters={"object": name, "place": _place_of(name)},
-            )
-            for number, name in enumerate(self._names())
-        ]
+    def nodes(self, seed: int) -> list[GoalNode | BehaviorNode]:
+        """The nodes of the tree, depth first: what has to be done, and in which order."""
+        found: list[GoalNode | BehaviorNode] = []
+
+        def add(nested: dict[str, Any], parent: int | None) -> None:
+            if "behavior" in nested:
+                name, place = nested["object"], nested["place"]
+                parameters = {"object": name, "place": place}
+                found.append(
+                    BehaviorNode(
+                        parent=parent, name=name, behavior=nested["behavior"], parameters=parameters
+                    )
+                )
+                return
+            ((kind, children),) = nested.items()
+            here = len(found)
+            fields = {"kind": kind, "parent": parent, "name": f"goal_{here}"}
+            found.append(GoalNode.model_validate(fields))
+            for child in children:
+                add(child, here)
+
+        add(self.tree(seed)["tree"], None)
+        return found
 
     def _names(self) -> list[str]:
         return sorted(self._parts, key=lambda name: int(name.partition("_")[2]))

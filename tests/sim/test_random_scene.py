@@ -1,4 +1,5 @@
 import itertools
+import json
 
 import pytest
 import yaml
@@ -10,6 +11,7 @@ from server.behaviors import behavior_parameters
 from sim.random_parts import DrawnSizes
 from sim.random_scene import MOST_PARTS, random_scene, scene_document
 from sim.standing_room import standing
+from tasks.definition import BehaviorNode
 from tasks.footprint import Footprint
 from tasks.library import NotInLibraryError
 from tasks.scene import Pose, Scene, SceneObject
@@ -181,7 +183,8 @@ def _look(part: SceneObject) -> tuple:
 
 
 def test_what_the_world_refuses_is_drawn_anew():
-    def refuse_high_parts(scene, leaves):
+    def refuse_high_parts(scene, nodes):
+        leaves = [each for each in nodes if isinstance(each, BehaviorNode)]
         assert {leaf.object for leaf in leaves} == set(scene.objects)
         return [
             SceneProblem(("objects", name, "size"), "too high")
@@ -193,6 +196,24 @@ def test_what_the_world_refuses_is_drawn_anew():
         made = random_scene(seed, 8, refuse_high_parts)
         assert len(made.scene.objects) == 8
         assert max(_height(part) for part in made.scene.objects.values()) <= 0.06
+
+
+def test_the_world_is_asked_about_the_tree_that_is_drawn():
+    asked = []
+
+    def note(_, nodes):
+        asked.append(nodes)
+        return []
+
+    for seed in range(10):
+        made = random_scene(seed, 8, note)
+        text = json.dumps({"name": "drawn", "tree": made.tree["tree"]})
+        wanted = check_task_text(text, behavior_parameters(), scene=made.scene).definition
+        assert [_told(each) for each in asked[-1]] == [_told(each) for each in wanted.nodes]
+
+
+def _told(node):
+    return node.kind, node.parent, getattr(node, "object", None)
 
 
 @pytest.mark.parametrize("count", [0, 31, -1])
