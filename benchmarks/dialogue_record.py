@@ -2,12 +2,18 @@
 
 import math
 from collections import deque
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
+from robots.vision.line_of_sight import sight_of
+from robots.vision.seen_box import SeenBox
 from server.journal import events as ev
 from server.journal.untruths import Rest, equals_of, leaves_of
+from tasks.part_boxes import height_of
 from tasks.scene import Scene
 
 NEAR_M = 0.06
@@ -18,6 +24,9 @@ _ARM_PASSES_M = 0.3
 
 SAME_SPOT_M = 0.02
 """What is this near to a pose of the scene is there."""
+
+WHOLE_SHARE = 0.9
+"""A part of which the head camera sees more than this share is not hidden."""
 
 LEANS_RAD = 0.05
 """What leans less stands."""
@@ -49,6 +58,7 @@ class RunRecord:
         self._moments = moments
         self._scene = Scene.model_validate(started.scene, strict=False)
         self._leaves = leaves_of(started)
+        self._eye = _eye(started.world, self._scene)
         self._raised: dict[str, ev.IssueRaised] = {}
         self._opened: dict[Any, int] = {}
 
@@ -111,8 +121,22 @@ class RunRecord:
         """The world when the issue of a leaf was raised last."""
         return self._moments[self.raised_at(node)]
 
+    def may_be_hidden(self, index: int, name: str | None) -> bool:
+        """Whether another part lies over one, or stands between it and the head camera."""
+        resting = self._moments[index].resting
+        rest = resting.get(name or "")
+        if rest is None or name is None:
+            return False
+        others = [
+            self._box(other, each, math.hypot)
+            for other, each in resting.items()
+            if other != name and each is not None
+        ]
+        seen = sight_of(self._eye, self._box(name, rest, min), others).share
+        return seen < WHOLE_SHARE or self.buried(index, name)
+
     def buried(self, index: int, name: str | None) -> bool:
-        """Whether another part lies over one, and may hide it."""
+        """Whether another part lies over one."""
         resting = self._moments[index].resting
         rest = resting.get(name or "")
         if rest is None or name is None:
@@ -123,6 +147,20 @@ class RunRecord:
             and each.z > rest.z
             and math.hypot(each.x - rest.x, each.y - rest.y) < self._together_m(name, other)
             for other, each in resting.items()
+        )
+
+    def _box(self, name: str, rest: Rest, across: Callable[[float, float], float]) -> SeenBox:
+        """A part as a square box: nothing tells how it is turned."""
+        part = self._scene.objects[name]
+        side_m = across(*part.size[:2])
+        return SeenBox(
+            rest.x,
+            rest.y,
+            0.0,
+            (side_m, side_m, height_of(part.size, part.knob)),
+            rest.z,
+            name,
+            complete=True,
         )
 
     def lay_for_s(self, index: int, name: str | None) -> float:
@@ -228,3 +266,14 @@ class RunRecord:
     def _place(self, node: str) -> str | None:
         leaf = self._leaves.get(node)
         return None if leaf is None else leaf.place
+
+
+def _eye(world: str, scene: Scene) -> NDArray[np.float64]:
+    """Where a world's head camera is (3, base frame)."""
+    if world == "tabletop":
+        from sim.tabletop.scenery import look_at_table
+
+        return look_at_table(scene.table)[:3, 3]
+    from sim.workcell.cameras import head_camera_pose
+
+    return head_camera_pose()[:3, 3]

@@ -11,7 +11,7 @@ PUT_RIGHT = {
 
 script = offer_script(
     Offer(
-        question="I cannot find the {object}. Can you put it on the table?",
+        question="I cannot find the {object}. Can you put it on the table where I see it?",
         failed="I have now looked {times} for the {object} and cannot find it.",
         yes_effect="You put the {object} on the table; I pick it up and place it ({attempt}).",
         help=Help.PUT_BACK,

@@ -158,6 +158,18 @@ def test_of_equal_parts_any_may_be_the_one_that_is_gone(equal: bool) -> None:
     assert (judged == []) is equal
 
 
+def test_what_something_tall_hides_from_the_head_camera_need_not_be_seen() -> None:
+    tall = SCENE.objects["part_2"].model_copy(update={"size": (0.05, 0.05, 0.4)})
+    scene = SCENE.model_copy(update={"objects": {**SCENE.objects, "part_2": tall}})
+    part = STARTS.resting["part_1"]
+    assert part is not None
+    # The camera looks from the side of the robot.
+    for near_m, wrong in ((-0.06, []), (0.06, ["it lies on the table"])):
+        beside = replace(part, x=part.x + near_m)
+        world = replace(STARTS, resting={"part_1": part, "part_2": beside})
+        assert told(world, "missing", scene).say("I cannot find the part 1. Hm?").wrong() == wrong
+
+
 @pytest.mark.parametrize(
     ("text", "true", "untrue"),
     [
