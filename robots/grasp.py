@@ -87,10 +87,10 @@ def grasps_of(part: Part, gripper: GripperModel) -> list[Grasp]:
         for height_m in _heights(low_m, high_m, wide_m, gripper)
         for beside_m in (OPEN_BESIDE_M, OPEN_LEAST_M)
     ]
-    if not grasps:
+    if not grasps or high_m < least_height_m(gripper) - 1e-9:
         raise UngraspableError(
-            f"{_held(part)} is {high_m * _MM:.0f} mm high; for fingers of this gripper to hold it "
-            f"without touching what is below, it has to be at least "
+            f"{_held(part)} is {round(high_m * _MM, 1):g} mm high; for fingers of this gripper to "
+            f"hold it without touching what is below, it has to be at least "
             f"{least_height_m(gripper) * _MM:.0f} mm high"
         )
     return grasps

@@ -351,7 +351,7 @@ def deed_text(intervention: Intervention) -> str:
 def finished_text(missing: Sequence[ev.MissingPart], unseen: Sequence[ev.UnseenPart] = ()) -> str:
     """What a finished run came to: what was left out, and what nobody can see now."""
     hidden = joined([each.object for each in unseen])
-    return _without(missing) + (f"; something hides {hidden} from the last look" if hidden else "")
+    return _without(missing) + (f"; the last look did not show {hidden} there" if hidden else "")
 
 
 def _without(missing: Sequence[ev.MissingPart]) -> str:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from robots.behaviors.planning import Planner
 from robots.feasibility.doing import ArmCheck, Hindrance
 from robots.feasibility.handling import cannot_handle
+from robots.feasibility.merging import one_surface
 from robots.feasibility.moments import Job, Moment, Moments
 from robots.feasibility.sight import hidden
 from robots.feasibility.standing import Standing, at_place, starts
@@ -60,7 +61,7 @@ class _SceneCheck:
 
     def problems(self) -> list[SceneProblem]:
         """The plain mistakes first; what follows from one is not told as well."""
-        found = [*self._handling(), *self._standing(), *self._overlaps()]
+        found = [*self._handling(), *self._standing(), *self._overlaps(), *self._merging()]
         return [*found, *self._doing(_Told(found))]
 
     def _handling(self) -> list[SceneProblem]:
@@ -115,6 +116,10 @@ class _SceneCheck:
                     )
                     found.append(SceneProblem(job.place.where, message))
         return found
+
+    def _merging(self) -> list[SceneProblem]:
+        jobs = self._jobs if self._together else []
+        return list(one_surface(self._scene, list(self._starts.values()), jobs, self._order))
 
     def _doing(self, told: "_Told") -> list[SceneProblem]:
         found = []

@@ -89,6 +89,7 @@ IMPOSSIBLE = [
     ("too wide", changed(cup__size=[0.09, 0.09, 0.06]), ALL, "takes 12 to 78 mm"),
     ("too narrow", changed(cup__size=[0.006, 0.008, 0.06]), ALL, "takes 12 to 78 mm"),
     ("too low", changed(cup__size=[0.05, 0.05, 0.008]), ALL, "it has to be at least"),
+    ("hardly too low", changed(cup__size=[0.05, 0.05, 0.0195]), ALL, "it has to be at least 20 mm"),
     ("too heavy", changed(cup__mass_kg=3.0), ALL, "weighs 3.00 kg"),
     ("knob too wide", changed(lid__knob=[0.085, 0.09, 0.03]), ALL, "the knob of lid"),
     ("knob too narrow", changed(lid__knob=[0.005, 0.007, 0.03]), ALL, "the knob of lid"),
@@ -169,6 +170,16 @@ UNSEEN = [
         ALL,
         "cannot tell",
     ),
+    ("touching", changed(mug=equal("cup", 0.502, -0.5)), {"and": [BOX, LID]}, "cannot tell mug"),
+    (
+        "touching at their places",
+        {
+            **changed(mug=equal("cup", 0.58, -0.52)),
+            "places": {**POSSIBLE["places"], "mug": {"pose": {"x": 0.503, "y": -0.05}}},
+        },
+        {"and": [CUP, leaf("mug")]},
+        "cannot tell mug",
+    ),
     (
         "hidden",
         changed(
@@ -231,7 +242,8 @@ def test_there_are_enough_of_them() -> None:
         (changed(at_cup__pose={"x": 0.58, "y": -0.35}), {"then": [BOX, CUP]}),
         (changed(mug=equal("cup", 0.58, -0.52)), ALL),
         (changed(cup__size=[0.078, 0.078, 0.12], cup__mass_kg=0.5), ALL),
-        (changed(cup__size=[0.012, 0.02, 0.012]), ALL),
+        (changed(cup__size=[0.012, 0.02, 0.02]), ALL),
+        (changed(mug=equal("cup", 0.506, -0.5)), {"and": [BOX, LID]}),
         (changed(at_cup__pose={"x": 0.58, "y": 0.05}), {"or": [BOX, CUP]}),
         (changed(cup__pose__yaw=1.2, at_cup__pose__yaw=-2.5), ALL),
     ],

@@ -205,7 +205,7 @@ export function linesOf(event: Event): Line[] {
 /** What a finished run came to: what was left out, and what nobody can see now. */
 export function finishedWords({ missing, unseen = [] }: Pick<RunFinished, "missing" | "unseen">): string {
   const hidden = enumerated(unseen.map(({ object }) => plain(object)));
-  return without(missing) + (hidden === "" ? "" : `; something hides ${hidden} from the last look`);
+  return without(missing) + (hidden === "" ? "" : `; the last look did not show ${hidden} there`);
 }
 
 function without(missing: readonly MissingPart[]): string {
