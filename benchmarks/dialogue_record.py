@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from robots.body import Matrix4
 from robots.vision.line_of_sight import sight_of
 from robots.vision.seen_box import SeenBox
 from server.journal import events as ev
@@ -58,7 +59,7 @@ class RunRecord:
         self._moments = moments
         self._scene = Scene.model_validate(started.scene, strict=False)
         self._leaves = leaves_of(started)
-        self._eye = _eye(started.world, self._scene)
+        self._eye = _eye_of(started.world, self._scene)
         self._raised: dict[str, ev.IssueRaised] = {}
         self._opened: dict[Any, int] = {}
 
@@ -122,17 +123,19 @@ class RunRecord:
         return self._moments[self.raised_at(node)]
 
     def may_be_hidden(self, index: int, name: str | None) -> bool:
-        """Whether another part lies over one, or stands between it and the head camera."""
+        """Whether the head camera does not show where a part is, or another part may hide it."""
         resting = self._moments[index].resting
         rest = resting.get(name or "")
         if rest is None or name is None:
             return False
+        if not self._eye.shows(rest):
+            return True
         others = [
             self._box(other, each, math.hypot)
             for other, each in resting.items()
             if other != name and each is not None
         ]
-        seen = sight_of(self._eye, self._box(name, rest, min), others).share
+        seen = sight_of(self._eye.at, self._box(name, rest, min), others).share
         return seen < WHOLE_SHARE or self.buried(index, name)
 
     def buried(self, index: int, name: str | None) -> bool:
@@ -268,12 +271,33 @@ class RunRecord:
         return None if leaf is None else leaf.place
 
 
-def _eye(world: str, scene: Scene) -> NDArray[np.float64]:
-    """Where a world's head camera is (3, base frame)."""
+@dataclass(frozen=True, slots=True)
+class _Eye:
+    """A head camera: its optical frame in the base frame, and how far it sees to its sides."""
+
+    pose: Matrix4
+    slopes: tuple[float, float]
+
+    @property
+    def at(self) -> NDArray[np.float64]:
+        return np.asarray(self.pose[:3, 3])
+
+    def shows(self, rest: Rest) -> bool:
+        """Whether a spot is in its pictures."""
+        right, down, ahead = (np.array([rest.x, rest.y, rest.z]) - self.at) @ self.pose[:3, :3]
+        return bool(
+            abs(right) < self.slopes[0] * ahead and abs(down) < self.slopes[1] * ahead and ahead > 0
+        )
+
+
+def _eye_of(world: str, scene: Scene) -> _Eye:
     if world == "tabletop":
-        from sim.tabletop.scenery import look_at_table
+        from sim.tabletop.scenery import HEAD_FOCAL_PX, HEAD_SIZE, look_at_table
 
-        return look_at_table(scene.table)[:3, 3]
-    from sim.workcell.cameras import head_camera_pose
+        pose, size, focal_px = look_at_table(scene.table), HEAD_SIZE, HEAD_FOCAL_PX
+    else:
+        from sim.workcell.cameras import head_camera_pose, head_optics
 
-    return head_camera_pose()[:3, 3]
+        optics = head_optics()
+        pose, size, focal_px = head_camera_pose(), optics.size, optics.focal_px
+    return _Eye(pose, (size[0] / 2 / focal_px, size[1] / 2 / focal_px))

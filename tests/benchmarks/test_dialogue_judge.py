@@ -73,13 +73,13 @@ class Told:
         self.moments.append(self.world)
         return self
 
-    def begin(self, scene: Scene = SCENE) -> "Told":
+    def begin(self, scene: Scene = SCENE, world: str = "tabletop") -> "Told":
         self.add(
             ev.RunStarted,
             tree_name="tree",
             tree=definition_of({"then": LEAVES}).model_dump(mode="json"),
             scene=scene.model_dump(mode="json"),
-            world="tabletop",
+            world=world,
             robots=["robot"],
             seed=1,
             speed="max",
@@ -168,6 +168,20 @@ def test_what_something_tall_hides_from_the_head_camera_need_not_be_seen() -> No
         beside = replace(part, x=part.x + near_m)
         world = replace(STARTS, resting={"part_1": part, "part_2": beside})
         assert told(world, "missing", scene).say("I cannot find the part 1. Hm?").wrong() == wrong
+
+
+@pytest.mark.parametrize(
+    ("world", "x", "y", "wrong"),
+    [("tabletop", 0.5, -0.3, 1), ("workcell", 0.5, -0.3, 1), ("workcell", 0.99, 0.49, 0)],
+)
+def test_what_lies_beside_the_picture_need_not_be_seen(
+    world: str, x: float, y: float, wrong: int
+) -> None:
+    """The PR2's camera does not show the left end of its table."""
+    at = Rest(x, y, SCENE.table.height)
+    moved = replace(STARTS, resting={**STARTS.resting, "part_1": at})
+    run = Told().begin(SCENE, world).now(moved, 10.0).alarm("missing")
+    assert len(run.say("I cannot find the part 1. Hm?").wrong()) == wrong
 
 
 @pytest.mark.parametrize(
