@@ -37,6 +37,7 @@ _STEADY_S = 0.3
 _TRY_EVERY_S = 2.0
 """Where the picture cannot tell whether anything is held out, the fingers close that often."""
 _CLEAR_FORCE_N = 20.0
+"""What holds an arm up at its first try pushes harder; its own load and noise make at most 8 N."""
 _MOST_READINGS = 6
 
 
