@@ -1,8 +1,9 @@
 """How long a robot stands still once it was answered: from the answer to its next step.
 
-A person steals the part again and again while the robot reaches for it, and a live helper
-answers "no" twice, so that no physical help is awaited. In the workcell the
-fast camera is compared with PyBullet's renderer in the same run.
+A person steals the part again and again while the robot reaches for it, puts it back once the robot
+stands still, and a live helper answers "no" to all that is asked half a second later, so that no
+physical help is awaited. In the workcell the fast camera is compared with PyBullet's renderer in
+the same run.
 
     python benchmarks/recovery.py [--world workcell] [--answers 100] [--quick]
 """
@@ -26,6 +27,8 @@ from tasks.intervention import Act, Intervention
 PART = "green_leg"
 STEAL = Intervention(act=Act.STEAL, object=PART)
 PUT_BACK = Intervention(act=Act.PUT_BACK, object=PART)
+THINKS_S = 1.5
+"""So long after the part is back the helper answers."""
 
 
 async def measure(world: str, renderer: str | None, answers: int) -> list[float]:
@@ -65,8 +68,10 @@ async def _answer_no(service: Service, run: UUID, answers: int) -> list[float]:
                     if event["step"] == 2:
                         await service.runtime.intervene(run, STEAL)
                 case "robot_holding":
-                    still = True
                     await service.runtime.intervene(run, PUT_BACK)
+                case "intervention" if event["act"] == PUT_BACK.act:
+                    await asyncio.sleep(THINKS_S)
+                    still = True
                 case "prompt" if event["kind"] == "ask":
                     asked = UUID(event["dialogue"]), UUID(event["prompt"])
                 case "run_failed" | "run_finished":

@@ -63,10 +63,12 @@ class _Seen:
     """A head picture, and what was understood of it, by what else was looked for.
 
     It was taken while `held` was in the gripper. `blind` says why it shows nothing of the table.
-    `in_the_way` is what was found on ways and in rooms.
+    `in_the_way` is what was found on ways and in rooms. `latest` is the last picture that showed
+    nothing else.
     """
 
     image: CameraImage
+    latest: CameraImage
     held: str | None
     blind: str | None
     views: dict[Part | None, TableView | None] = field(default_factory=dict)
@@ -358,7 +360,7 @@ class Senses:
         """What is known of a head picture: all that was of an earlier one, if that still holds."""
         held, seen = self.held, self._seen
         doubted, self._doubted = self._doubted, False
-        if seen is not None and seen.held == held and is_same(seen.image, image):
+        if seen is not None and seen.held == held and is_same(seen.latest, image):
             return seen
         blind = why_blind(image, self.catalogue.table, self._is_own_arm)
         if (
@@ -370,7 +372,8 @@ class Senses:
             or shows_change(seen.image, image)
             or not _still_measures_all(seen, image)
         ):
-            self._seen = seen = _Seen(image, held, blind)
+            self._seen = seen = _Seen(image, image, held, blind)
+        seen.latest = image
         return seen
 
     def _understand(self, image: CameraImage, stranger: Part | None = None) -> TableView | None:

@@ -96,7 +96,8 @@ class DepthNoise:
         self, depth_m: Depth, bgr: NDArray[np.uint8], angle: Depth, edges: NDArray[np.bool_]
     ) -> NDArray[np.bool_]:
         chance = np.where(edges, np.float32(_LOST_AT_EDGES * min(self._scale, 1.0)), np.float32(0))
-        brightest = bgr.max(axis=2).astype(np.float32)
+        blue, green, red = cv2.split(bgr)
+        brightest = np.asarray(cv2.max(cv2.max(blue, green), red), np.float32)
         dark = np.clip((_BRIGHT - brightest) / (_BRIGHT - _BLACK), 0.0, 1.0)
         lost = self._rng.random(depth_m.shape, dtype=np.float32) < np.maximum(chance, dark)
         steep = (angle > _STEEPEST_RAD) & ~edges

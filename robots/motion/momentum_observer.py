@@ -14,6 +14,9 @@ from numpy.typing import NDArray
 
 Vector = NDArray[np.float64]
 
+_USUAL_FORCE_N = 1000.0
+"""Far more than an arm ever feels: it only matters in directions that no joint feels."""
+
 
 class ArmDynamics(Protocol):
     """The rigid-body model of an arm with n joints, at angles (rad) and velocities (rad/s)."""
@@ -67,8 +70,9 @@ class MomentumObserver:
 def force_at_tool(jacobian: NDArray[np.float64], torques: Vector, noise_nm: Vector) -> Vector:
     """The force (3, N, base frame) at the tool point that explains external torques best.
 
-    Weighted by how exactly each joint's torque is known; `noise_nm` are standard deviations.
+    Weighted by how exactly each joint's torque is known; `noise_nm` are standard deviations. What
+    the joints cannot feel where the arm is stretched is taken to be 0.
     """
-    weighted = jacobian.T / noise_nm[:, None]
-    force, *_ = np.linalg.lstsq(weighted, torques / noise_nm, rcond=None)
-    return np.asarray(force, np.float64)
+    weighted = jacobian / noise_nm
+    information = weighted @ weighted.T + np.eye(3) / _USUAL_FORCE_N**2
+    return np.asarray(np.linalg.solve(information, weighted @ (torques / noise_nm)), np.float64)

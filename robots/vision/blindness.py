@@ -64,7 +64,7 @@ def _share_measured(
     own_arm: Callable[[Points], NDArray[np.bool_]] | None,
 ) -> float:
     """The share of the rays to the table that end on it, or on what stands on it."""
-    rays = ground_rays(image)[:, ::_SPARSE, ::_SPARSE].reshape(3, -1).T
+    rays = ground_rays(image, every=_SPARSE).reshape(3, -1).T
     eye = image.pose[:3, 3]
     with np.errstate(divide="ignore", invalid="ignore"):
         away_m = (table.height - eye[2]) / rays[:, 2]

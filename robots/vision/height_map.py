@@ -37,11 +37,14 @@ class HeightMap:
     table_z: float
 
 
-def ground_rays(image: CameraImage) -> NDArray[np.float64]:
-    """Each pixel's ray (3, h, w) in the base frame, of length 1 along the optical axis."""
+def ground_rays(image: CameraImage, every: int = 1) -> NDArray[np.float64]:
+    """Each pixel's ray (3, h, w) in the base frame, of length 1 along the optical axis.
+
+    Of `every` so many rows and columns one.
+    """
     rows, columns = image.bgr.shape[:2]
-    across = (np.arange(columns) - image.center_px[0]) / image.focal_px
-    down = (np.arange(rows) - image.center_px[1]) / image.focal_px
+    across = (np.arange(0, columns, every) - image.center_px[0]) / image.focal_px
+    down = (np.arange(0, rows, every) - image.center_px[1]) / image.focal_px
     turn = image.pose[:3, :3]
     rays: NDArray[np.float64] = (
         turn[:, 0, None, None] * across[None, None, :]

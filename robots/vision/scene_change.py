@@ -25,6 +25,9 @@ _LEAST_DEPTH_M = 0.008
 """Smaller differences are those of light and of depth at edges, not of something that moved."""
 DARKEST, BRIGHTEST = 8.0, 247.0
 """Grey levels beyond which a pixel is under- or overexposed."""
+_WELL_EXPOSED = np.arange(256, dtype=np.float32)
+"""Every grey level; NaN for those that tell nothing."""
+_WELL_EXPOSED[(_WELL_EXPOSED < DARKEST) | (_WELL_EXPOSED > BRIGHTEST)] = np.nan
 _FEWEST_PX = 6
 _STILL_SHARE = 0.5
 """What is dark, or an edge, has depth in some pictures and none in others."""
@@ -83,31 +86,39 @@ def is_same(before: CameraImage, now: CameraImage) -> bool:
 
 def _equally_exposed(before: CameraImage, now: CameraImage) -> tuple[Picture, Picture]:
     """Both pictures at the later one's exposure; NaN where either is over- or underexposed."""
-    pictures = [each.bgr.astype(np.float32) for each in (before, now)]
-    for each in pictures:
-        each[(each < DARKEST) | (each > BRIGHTEST)] = np.nan
-    ratios = (pictures[1] / pictures[0])[::_SPARSE, ::_SPARSE]
+    earlier, later = (
+        np.asarray(cv2.LUT(each.bgr, _WELL_EXPOSED), np.float32) for each in (before, now)
+    )
+    ratios = later[::_SPARSE, ::_SPARSE] / earlier[::_SPARSE, ::_SPARSE]
     known = ratios[np.isfinite(ratios)]
-    gain = np.float32(np.median(known)) if known.size else np.float32(1.0)
-    return np.asarray(pictures[0] * gain), pictures[1]
+    if known.size:
+        earlier *= np.float32(np.median(known))
+    return earlier, later
 
 
 def _differ(before: Picture, now: Picture, least: float) -> bool:
     """Whether a patch differs by more than noise and by more than `least`."""
-    # What is missing in either picture says nothing.
-    known_before = np.nan_to_num(np.where(np.isnan(before), now, before))
-    known_now = np.where(np.isnan(now), known_before, now)
-    smooth_before, smooth_now = cv2.blur(known_before, _WINDOW), cv2.blur(known_now, _WINDOW)
+    smooth_before, smooth_now = (cv2.blur(each, _WINDOW) for each in _both_known(before, now))
+    difference = cv2.absdiff(smooth_now, smooth_before)
+    sigma = _MAD_TO_SIGMA * float(np.median(difference[::_SPARSE, ::_SPARSE]))
+    limit = max(_SIGMAS * sigma, least)
+    fewest_px = max(_FEWEST_PX, _LEAST_SHARE * before.shape[0] * before.shape[1])
+    if np.count_nonzero(np.asarray(difference) > limit) < fewest_px:
+        return False
     # At an edge any value between those of its two sides may come.
     highest, lowest = cv2.dilate(smooth_before, _NEIGHBORS), cv2.erode(smooth_before, _NEIGHBORS)
-    beyond = np.maximum(smooth_now - highest, lowest - smooth_now)
-    noise = np.abs(smooth_now - smooth_before)[::_SPARSE, ::_SPARSE]
-    sigma = _MAD_TO_SIGMA * float(np.median(noise))
-    changed = np.asarray(beyond > max(_SIGMAS * sigma, least)).astype(np.uint8)
-    if changed.ndim == 3:
-        changed = changed.max(axis=2)
-    fewest_px = max(_FEWEST_PX, _LEAST_SHARE * changed.size)
-    if int(changed.sum()) < fewest_px:
-        return False
+    beyond = cv2.max(cv2.subtract(smooth_now, highest), cv2.subtract(lowest, smooth_now))
+    patches = np.asarray(beyond > limit).reshape(*before.shape[:2], -1).any(axis=2)
+    changed = np.asarray(patches, np.uint8)
     _, _, stats, _ = cv2.connectedComponentsWithStats(changed)
-    return bool(stats[1:, cv2.CC_STAT_AREA].max() >= fewest_px)
+    return bool(stats[1:, cv2.CC_STAT_AREA].max(initial=0) >= fewest_px)
+
+
+def _both_known(before: Picture, now: Picture) -> tuple[Picture, Picture]:
+    """Two pictures that are equal where either is NaN: what is missing says nothing."""
+    before, now = before.copy(), now.copy()
+    np.copyto(before, now, where=np.isnan(before))
+    np.copyto(now, before, where=np.isnan(now))
+    for each in (before, now):
+        cv2.patchNaNs(each, 0.0)
+    return before, now

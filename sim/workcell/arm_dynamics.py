@@ -1,6 +1,6 @@
 """The PR2's right arm as a rigid-body model, in Pinocchio."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -42,7 +42,8 @@ class Pr2ArmDynamics:
         self._upper = np.triu(np.ones((self._model.nv, self._model.nv), bool))
         self._tool = self._model.getFrameId(TOOL_FRAME)
         joints = [self._model.joints[self._model.getJointId(name)] for name in ARM_JOINTS]
-        self._places: Sequence[tuple[int, int]] = [(each.idx_q, each.nq) for each in joints]
+        self._places = np.array([each.idx_q for each in joints])
+        self._round = np.array([each.nq == 2 for each in joints])
 
     def momentum(self, angles: Vector, velocities: Vector) -> Vector:
         mass = pin.crba(self._model, self._data, self._configuration(angles))
@@ -68,6 +69,6 @@ class Pr2ArmDynamics:
     def _configuration(self, angles: Vector) -> Vector:
         """Pinocchio keeps the angle of a joint without limits as its cosine and sine."""
         q = np.empty(self._model.nq)
-        for angle, (place, size) in zip(angles, self._places, strict=True):
-            q[place : place + size] = (np.cos(angle), np.sin(angle)) if size == 2 else angle
+        q[self._places] = np.where(self._round, np.cos(angles), angles)
+        q[self._places[self._round] + 1] = np.sin(angles[self._round])
         return q

@@ -43,6 +43,10 @@ _GRASP_ITERATIONS = 100
 _REST_ITERATIONS = 20
 """Solver iterations per step: what is grasped sags with few, what lies does not."""
 
+_NEIGHBORS_WITHIN_M = 0.005
+"""The engine wakes what sleeps within a few times this of something that moves; by default a
+gripper that comes down wakes a whole dense table (16 instead of 33 s of physics for 32 parts)."""
+
 _SETTLE_CYCLES = 120
 _REMEMBER_RESTS_CYCLES = 24
 _FOREARM_HZ = {"bullet": 10, "fast": 30}
@@ -66,7 +70,10 @@ class WorkcellWorld:
     def _build(self, options: WorkcellOptions) -> None:
         client = connect()
         client.setPhysicsEngineParameter(
-            fixedTimeStep=PERIOD_S, numSolverIterations=_REST_ITERATIONS, enableFileCaching=0
+            fixedTimeStep=PERIOD_S,
+            numSolverIterations=_REST_ITERATIONS,
+            contactBreakingThreshold=_NEIGHBORS_WITHIN_M,
+            enableFileCaching=0,
         )
         client.setGravity(0.0, 0.0, _GRAVITY_M_S2)
         self._client = client
