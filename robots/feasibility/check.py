@@ -61,7 +61,8 @@ class _SceneCheck:
 
     def problems(self) -> list[SceneProblem]:
         """The plain mistakes first; what follows from one is not told as well."""
-        found = [*self._handling(), *self._standing(), *self._overlaps(), *self._merging()]
+        found = [*self._handling()]
+        found += [*self._standing(_Told(found)), *self._overlaps(), *self._merging()]
         return [*found, *self._doing(_Told(found))]
 
     def _handling(self) -> list[SceneProblem]:
@@ -69,14 +70,16 @@ class _SceneCheck:
         objects = self._scene.objects
         return [p for name in names for p in cannot_handle(name, objects[name], self._gripper)]
 
-    def _standing(self) -> list[SceneProblem]:
+    def _standing(self, told: "_Told") -> list[SceneProblem]:
         found: dict[tuple[str, ...], SceneProblem] = {}
         standing = list(self._starts.values())
         for each in standing:
+            if told.of(each):
+                continue
             for problem in cannot_stand(each, standing, self._scene):
                 found.setdefault(problem.where, problem)
         for job in self._jobs:
-            if job.place is None:
+            if job.place is None or told.of(job.start):
                 continue
             others = [each.place for each in self._jobs if each.place and each is not job]
             unmoved = [each for each in standing if each.name != job.name]

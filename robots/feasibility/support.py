@@ -1,15 +1,17 @@
 """Whether parts stand: on the table or on each other, and firmly."""
 
+import math
 from collections.abc import Iterator, Sequence
 
 import shapely
 
+from robots.feasibility.stability import carried_by, stability_rad
 from robots.feasibility.standing import RESTS_M, Standing, beneath
 from tasks.scene import Scene, Table
 from tasks.scene_problem import SceneProblem
 
-FIRM_M = 0.005
-"""The middle of a part is at least so far inside the edge of what carries it."""
+LEAST_STABILITY_RAD = math.radians(8.0)
+"""What tips over when it leans by less does so when it is grasped, put down or touched."""
 
 
 def cannot_stand(
@@ -28,22 +30,33 @@ def cannot_stand(
                 standing.where,
                 f"{name} at {_at(standing)} reaches over the edge of {_extents(table)}",
             )
+        else:
+            yield from _tips_over(standing, others, (), scene)
     elif not carriers:
         yield SceneProblem(standing.where, _in_the_air(standing, others, table))
-    elif not _firm(standing, carriers):
-        below = " and ".join(each.name for each in carriers)
-        yield SceneProblem(
-            standing.where,
-            f"{name} would tip off {below}: its middle has to be at least {FIRM_M * 1e3:.0f} mm "
-            f"inside the edge of what carries it",
-        )
+    else:
+        yield from _tips_over(standing, others, carriers, scene)
 
 
-def _firm(standing: Standing, carriers: Sequence[Standing]) -> bool:
-    """Whether the middle is well over what is between the points of support."""
-    touching = shapely.union_all([each.ground.intersection(standing.ground) for each in carriers])
-    hull = touching.convex_hull.buffer(-FIRM_M)
-    return bool(hull.contains(shapely.Point(standing.pose.x, standing.pose.y)))
+def _tips_over(
+    standing: Standing, others: Sequence[Standing], carriers: Sequence[Standing], scene: Scene
+) -> Iterator[SceneProblem]:
+    weights = {name: each.mass_kg for name, each in scene.objects.items()}
+    lean_rad = stability_rad(standing, carriers, others, weights)
+    if lean_rad >= LEAST_STABILITY_RAD:
+        return
+    on_it = [each.name for each in carried_by(standing, others)]
+    name = f"{standing.name} with {' and '.join(on_it)} on it" if on_it else standing.name
+    below = " and ".join(each.name for each in carriers)
+    where = f"would tip off {below}" if carriers else "would tip over"
+    if lean_rad > 0.0:
+        where += f" as soon as it leans by {math.degrees(lean_rad):.0f} degrees"
+    mend = "put its middle further over what carries it" if carriers else "lay it on its side"
+    yield SceneProblem(
+        standing.where,
+        f"{name} {where}; at least {math.degrees(LEAST_STABILITY_RAD):.0f} are needed: {mend}, or "
+        "let it be lower or wider",
+    )
 
 
 def _in_the_air(standing: Standing, others: Sequence[Standing], table: Table) -> str:

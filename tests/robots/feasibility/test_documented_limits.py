@@ -1,13 +1,15 @@
 """The limits that `docs/worlds.md` tells are those that the code goes by."""
 
+import math
 import re
 from pathlib import Path
 
 import pytest
 
 from robots.clearance import ROOM_M
+from robots.feasibility.stability import PLACED_WITHIN_M
 from robots.feasibility.standing import RESTS_M
-from robots.feasibility.support import FIRM_M
+from robots.feasibility.support import LEAST_STABILITY_RAD
 from robots.grasp import OPEN_BESIDE_M, OPEN_LEAST_M, least_height_m
 from robots.gripper import GripperModel
 from sim.tabletop.arm import GRIPPER
@@ -45,7 +47,9 @@ def test_the_text_tells_the_other_limits() -> None:
     assert f"{REACH_MIN_M:.2f} to {REACH_MAX_M:.2f} m" in DOCUMENT
     text = " ".join(DOCUMENT.split())
     assert f"within {1e3 * RESTS_M:.0f} mm" in text
-    assert f"at least {1e3 * FIRM_M:.0f} mm inside" in text
+    assert f"leans by less than {math.degrees(LEAST_STABILITY_RAD):.0f} degrees" in text
+    assert f"{1e3 * PLACED_WITHIN_M:.0f} mm beside where it is to stand" in text
+    assert f"up to {1 / math.tan(LEAST_STABILITY_RAD):.0f} times as high as wide" in text
     assert f"with {1e3 * ROOM_M:.0f} mm to spare" in text
     assert f"opened {1e3 * OPEN_LEAST_M:.0f} to {1e3 * OPEN_BESIDE_M:.0f} mm beyond" in text
     tip, *_, high = PR2_GRIPPER.fingers
