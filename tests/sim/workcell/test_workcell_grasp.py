@@ -27,11 +27,14 @@ def test_a_part_is_placed_within_3_mm(hands: Hands, name: str) -> None:
     assert part.tilt_rad < 0.01
 
 
-def test_fingers_do_not_sink_into_small_light_parts() -> None:
+@pytest.mark.parametrize(
+    ("size", "mass_kg"), [((0.013, 0.013, 0.036), 0.007), ((0.012, 0.012, 0.020), 0.001)]
+)
+def test_fingers_do_not_sink_into_small_light_parts(
+    size: tuple[float, float, float], mass_kg: float
+) -> None:
     rng = np.random.default_rng(5)
-    pin = SceneObject(
-        color=(0.8, 0.1, 0.1), size=(0.013, 0.013, 0.036), mass_kg=0.007, pose=Pose(x=0.5, y=-0.3)
-    )
+    pin = SceneObject(color=(0.8, 0.1, 0.1), size=size, mass_kg=mass_kg, pose=Pose(x=0.5, y=-0.3))
     world = WorkcellWorld(Scene(name="one", objects={"pin": pin}, places={}), seed=7)
     hands = Hands(world)
     openings_m = []
