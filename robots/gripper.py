@@ -45,7 +45,9 @@ class GripperModel:
     """Lengths in metres; the tool point is in the middle between the fingers.
 
     It takes parts and knobs from `min_width_m` to `max_width_m` wide and at least `min_height_m`
-    high: smaller ones turn over or slip away between the closing fingers.
+    high: smaller ones turn over or slip away between the closing fingers. Parts may be up to
+    `max_length_m` long and, with their knobs, `max_height_m` high: held above the middle, larger
+    ones swing far at the ends.
 
     Closed on something the fingers press with `grip_force_n`. Closed, the tips reach `tip_reach_m`
     below the tool point. The fingers stay parallel on links of `link_m` whose far joints lie
@@ -58,6 +60,8 @@ class GripperModel:
     min_width_m: float
     max_width_m: float
     min_height_m: float
+    max_length_m: float
+    max_height_m: float
     max_opening_m: float
     max_mass_kg: float
     grip_force_n: float

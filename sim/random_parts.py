@@ -21,16 +21,16 @@ class DrawnSizes:
     """
 
     width_m: tuple[float, float] = (PR2_GRIPPER.min_width_m, PR2_GRIPPER.max_width_m)
-    length_m: tuple[float, float] = (PR2_GRIPPER.min_width_m, 0.200)
-    height_m: tuple[float, float] = (PR2_GRIPPER.min_height_m, 0.120)
-    slenderness: float = 4.0
+    length_m: tuple[float, float] = (PR2_GRIPPER.min_width_m, PR2_GRIPPER.max_length_m)
+    height_m: tuple[float, float] = (PR2_GRIPPER.min_height_m, PR2_GRIPPER.max_height_m)
+    slenderness: float = 6.0
     """A part is at most so many times as high as it is wide: higher ones fall over."""
-    plate_side_m: tuple[float, float] = (0.050, 0.200)
-    plate_height_m: tuple[float, float] = (0.008, 0.030)
-    knob_width_m: tuple[float, float] = (PR2_GRIPPER.min_width_m, 0.048)
-    knob_height_m: tuple[float, float] = (PR2_GRIPPER.min_height_m, 0.060)
-    density_kg_m3: tuple[float, float] = (300.0, 900.0)
-    mass_kg: tuple[float, float] = (0.01, PR2_GRIPPER.max_mass_kg)
+    plate_side_m: tuple[float, float] = (0.050, 0.300)
+    plate_height_m: tuple[float, float] = (0.004, 0.050)
+    knob_width_m: tuple[float, float] = (PR2_GRIPPER.min_width_m, PR2_GRIPPER.max_width_m)
+    knob_height_m: tuple[float, float] = (PR2_GRIPPER.min_height_m, 0.100)
+    density_kg_m3: tuple[float, float] = (100.0, 3000.0)
+    mass_kg: tuple[float, float] = (0.002, PR2_GRIPPER.max_mass_kg)
 
     def scaled(self, scale: float) -> "DrawnSizes":
         """The same with only the lowest fraction `scale` of every range of the boxes' sides."""
@@ -88,7 +88,7 @@ def draw_look(rng: np.random.Generator, sizes: DrawnSizes, earlier: list[PartLoo
 
 def draw_color(rng: np.random.Generator) -> Color:
     """Any colour, as linear RGB: bright, pale, dark and grey ones alike."""
-    hue, saturation, value = rng.random(), rng.random() ** 0.5, rng.uniform(0.14, 1.0)
+    hue, saturation, value = rng.random(), rng.random() ** 0.5, rng.uniform(0.0, 1.0)
     red, green, blue = colorsys.hsv_to_rgb(hue, saturation, value)
     return round(red, 2), round(green, 2), round(blue, 2)
 
@@ -104,7 +104,8 @@ def _draw_box(rng: np.random.Generator, sizes: DrawnSizes) -> tuple[Size, Size |
 
 def _draw_plate(rng: np.random.Generator, sizes: DrawnSizes) -> tuple[Size, Size | None]:
     length, width = rng.uniform(*sizes.plate_side_m), rng.uniform(*sizes.plate_side_m)
-    knob_width = rng.uniform(*sizes.knob_width_m)
+    least, most = sizes.knob_width_m
+    knob_width = rng.uniform(least, min(most, length, width))
     knob_length = rng.uniform(knob_width, min(length, width, 2 * knob_width))
     knob = (knob_width, knob_length) if rng.random() < 0.5 else (knob_length, knob_width)
     plate = _rounded(length, width, rng.uniform(*sizes.plate_height_m))

@@ -13,7 +13,7 @@ from robots.gripper import ToolBox
 from sim.workcell.gripper import PR2_GRIPPER
 from tasks.footprint import TOUCH_M, Footprint
 
-_GAP_M = 0.010
+_GAP_M = 0.003
 """Kept between what one site needs and what stands on another."""
 
 

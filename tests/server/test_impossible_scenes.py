@@ -119,6 +119,7 @@ IMPOSSIBLE = [
         {"then": [BOX, CUP, LID]},
         "would tip off box",
     ),
+    ("as high as a bottle rack", changed(cup__size=(0.06, 0.06, 0.28)), ALL, "is 280 mm high"),
     ("a needle on end", changed(cup__size=(0.014, 0.014, 0.11)), ALL, "would tip over as soon as"),
     # No room.
     ("one spot", changed(cup__pose={"x": 0.58, "y": -0.35}), ALL, "start in one spot"),

@@ -39,6 +39,8 @@ def test_the_table_tells_what_the_gripper_takes(column: int, gripper: GripperMod
     ]
     (height_mm,) = told("height of a box or of a knob, at least")
     assert height_mm == pytest.approx(1e3 * least_height_m(gripper))
+    assert told("length of the longer side, at most") == [pytest.approx(1e3 * gripper.max_length_m)]
+    assert told("height with the knob, at most") == [pytest.approx(1e3 * gripper.max_height_m)]
     assert told("weight, at most") == [gripper.max_mass_kg]
     assert told("fingers open at most") == [round(1e3 * gripper.max_opening_m)]
 

@@ -87,6 +87,8 @@ FREE = Pose(x=0.5, y=0.05)
         (box(0.5, -0.4, (0.09, 0.10, 0.05)), "size", "is 90 mm wide at its narrower side"),
         (box(0.5, -0.4, (0.006, 0.09, 0.05)), "size", "is only 6 mm wide"),
         (box(0.5, -0.4, (0.03, 0.05, 0.008)), "size", "is 8 mm high"),
+        (box(0.5, -0.4, (0.45, 0.05, 0.05), yaw=1.57), "size", "is 450 mm long"),
+        (box(0.5, -0.4, (0.06, 0.06, 0.26)), "size", "is 260 mm high"),
         (box(0.5, -0.4, mass_kg=0.9), "mass_kg", "weighs 0.90 kg"),
         (
             box(0.5, -0.4, (0.2, 0.2, 0.02), knob=(0.09, 0.1, 0.03)),
@@ -252,7 +254,7 @@ def test_a_height_that_is_given_hardly_too_low_takes_the_fingers_no_room() -> No
 
 def pillar(x: float, y: float) -> SceneObject:
     """So tall that the arm keeps away from it."""
-    return box(x, y, (0.05, 0.05, 0.3))
+    return box(x, y, (0.05, 0.05, 0.25))
 
 
 ASIDE, FAR = Pose(x=0.45, y=-0.2), Pose(x=0.6, y=0.2)
