@@ -68,8 +68,10 @@ class Detection(Message):
 
     `size_px` is the width and height of the camera's picture that the pixels count in; the picture
     that is sent along may be an enlarged one. `felt`: by force, not by a camera, so that no camera
-    can tell that it is over. `part` is what is in the way, if that is a known one. `explanation`
-    is a clause that people are told: what the robot sensed.
+    can tell that it is over. `part` is what is in the way, if that is a known one. `probability` is
+    that of the issue, from a monitor that weighs several cues; one that goes by what is plainly
+    seen, or not seen, gives none. `explanation` is a clause that people are told: what the robot
+    sensed.
     """
 
     camera: str
@@ -80,6 +82,7 @@ class Detection(Message):
     area_px: int = 0
     felt: bool = False
     part: str | None = None
+    probability: Annotated[float, Field(ge=0.0, le=1.0)] | None = None
     explanation: str = ""
 
 

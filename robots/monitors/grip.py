@@ -20,13 +20,15 @@ class GripMonitor(Monitor[NoParameters]):
         grip = view.grip
         if grip is None or grip.state is not self.state:
             return None
+        sure = 1.0 - grip.probability
         return Detection(
             camera="forearm",
             center=None if grip.blob is None else grip.blob.center,
             expected=grip.expected,
             tolerance_px=grip.tolerance_px,
             area_px=0 if grip.blob is None else grip.blob.area_px,
-            explanation=f"{grip.reason} ({_percent(1.0 - grip.probability)} % sure)",
+            probability=sure,
+            explanation=f"{grip.reason} ({_percent(sure)} % sure)",
         )
 
 

@@ -139,6 +139,8 @@ def test_missed_and_dropped_never_speak_of_the_same_grip(state: GripState) -> No
             assert detection.camera == "forearm"
             assert detection.center == BLOB.center
             assert detection.expected == (80.0, 60.0)
+            assert detection.probability is not None
+            assert 0.9 < detection.probability < 1.0
             assert detection.explanation == (
                 "the fingers closed to 3 mm where the pink bar is 30 mm wide (99 % sure)"
             )
