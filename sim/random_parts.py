@@ -21,14 +21,14 @@ class DrawnSizes:
     """
 
     width_m: tuple[float, float] = (PR2_GRIPPER.min_width_m, PR2_GRIPPER.max_width_m)
-    length_m: tuple[float, float] = (PR2_GRIPPER.min_width_m, PR2_GRIPPER.max_length_m)
-    height_m: tuple[float, float] = (PR2_GRIPPER.min_height_m, PR2_GRIPPER.max_height_m)
-    slenderness: float = 6.0
+    length_m: tuple[float, float] = (PR2_GRIPPER.min_width_m, 0.300)
+    height_m: tuple[float, float] = (PR2_GRIPPER.min_height_m, 0.150)
+    slenderness: float = 5.0
     """A part is at most so many times as high as it is wide: higher ones fall over."""
-    plate_side_m: tuple[float, float] = (0.050, 0.300)
-    plate_height_m: tuple[float, float] = (0.004, 0.050)
+    plate_side_m: tuple[float, float] = (0.050, 0.250)
+    plate_height_m: tuple[float, float] = (0.008, 0.050)
     knob_width_m: tuple[float, float] = (PR2_GRIPPER.min_width_m, PR2_GRIPPER.max_width_m)
-    knob_height_m: tuple[float, float] = (PR2_GRIPPER.min_height_m, 0.100)
+    knob_height_m: tuple[float, float] = (PR2_GRIPPER.min_height_m, 0.070)
     density_kg_m3: tuple[float, float] = (100.0, 3000.0)
     mass_kg: tuple[float, float] = (0.002, PR2_GRIPPER.max_mass_kg)
 
@@ -88,7 +88,7 @@ def draw_look(rng: np.random.Generator, sizes: DrawnSizes, earlier: list[PartLoo
 
 def draw_color(rng: np.random.Generator) -> Color:
     """Any colour, as linear RGB: bright, pale, dark and grey ones alike."""
-    hue, saturation, value = rng.random(), rng.random() ** 0.5, rng.uniform(0.0, 1.0)
+    hue, saturation, value = rng.random(), rng.random() ** 0.5, rng.uniform(0.14, 1.0)
     red, green, blue = colorsys.hsv_to_rgb(hue, saturation, value)
     return round(red, 2), round(green, 2), round(blue, 2)
 

@@ -23,21 +23,21 @@ SceneCheck = Callable[[Scene, Sequence[GoalNode | BehaviorNode]], list[SceneProb
 _X_M = (0.40, 0.68)
 _Y_M = (-0.62, 0.20)
 _MIDDLE_Y_M = -0.22
-_HIGHEST_M = 0.40
+_HIGHEST_M = 0.25
 """Stacks are at most so high."""
 _EQUAL = 0.2
 """So many of all parts are equal to an earlier one."""
 _ON_ANOTHER = 0.2
 """So many of all starts and places are on another part, where there is one for it."""
-_SUPPORT_MARGIN_M = 0.006
+_SUPPORT_MARGIN_M = 0.010
 """The middle of a part is at least so far from the edge of what it stands on."""
 _ROUNDING_M = 0.002
-_OVERHANG = 4.0
+_OVERHANG = 1.5
 """A part is at most so many times as long as what it stands on."""
 _POSES_TRIED = 60
 _SHRINK = 0.7
 _LOOKS_TRIED = 25
-_ROOMY = 8
+_ROOMY = 4
 """So many parts find room whatever their sizes; of more, more are small."""
 _SCENES_TRIED = 40
 _REPAIRS = 12
