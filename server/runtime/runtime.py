@@ -2,7 +2,8 @@
 
 import asyncio
 import logging
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from datetime import datetime
 from functools import partial
 from typing import Any, Literal, cast
@@ -70,6 +71,7 @@ class Runtime:
         self._runs: dict[UUID, Run] = {}
         self._tasks: dict[UUID, asyncio.Task[None]] = {}
         self._unreadable: set[UUID] = set()
+        self._promised: dict[str, UUID] = {}
         self._new_runs = NewRuns(trees, scenarios, worlds, utc_now)
         self._history = History(journal, scripts)
 
@@ -108,7 +110,21 @@ class Runtime:
         started = await self._new_runs.make(request)
         if request.world == LIVE:
             self._check_robots(request.robots)
+        with self._promise(started):
+            return await self._begin(started)
 
+    @contextmanager
+    def _promise(self, started: ev.RunStarted) -> Iterator[None]:
+        """While a run is being journaled no other may be given its robots."""
+        promised = dict.fromkeys(started.robots, started.run)
+        self._promised.update(promised)
+        try:
+            yield
+        finally:
+            for robot in promised:
+                del self._promised[robot]
+
+    async def _begin(self, started: ev.RunStarted) -> RunView:
         def fold(numbered: list[ev.Event]) -> None:
             self._states[started.run] = RunState(cast(ev.RunStarted, numbered[0]), self._scripts)
 
@@ -122,7 +138,11 @@ class Runtime:
             raise InvalidError(
                 "a run in the world 'live' needs 'robots': the ids of connected ones"
             )
+        twice = next((each for each in robots if robots.count(each) > 1), None)
+        if twice is not None:
+            raise InvalidError(f"'robots' names the robot '{twice}' more than once; once is enough")
         busy = {robot: run for run, each in self._runs.items() for robot in each.sides}
+        busy |= self._promised
         for robot in robots:
             if not self._robots.connected(robot):
                 raise NotFoundError(f"no robot '{robot}' is connected")
@@ -155,12 +175,24 @@ class Runtime:
         )
         hardware = RealRobots() if live else self._worlds.open(state, lambda: self._runs[state.id])
         run = Run(context, sides, dialogues, hardware, self._poses.open(state))
+        self._assign(run)
         self._runs[state.id] = run
-        for robot in sides:
-            self._robots.assign(robot, run)
         task = asyncio.create_task(run.main(), name=f"run {state.id}")
         task.add_done_callback(partial(self._ended, state))
         self._tasks[state.id] = task
+
+    def _assign(self, run: Run) -> None:
+        """Give a run all its robots, or none. Raises `ConflictError` if another run has one."""
+        given: list[str] = []
+        try:
+            for robot in run.sides:
+                self._robots.assign(robot, run)
+                given.append(robot)
+        except ConflictError:
+            for robot in given:
+                self._robots.unassign(robot)
+            self._poses.close(run.context.state.id)
+            raise
 
     def _ended(self, state: RunState, task: asyncio.Task[None]) -> None:
         for robot in state.started.robots:
@@ -217,8 +249,10 @@ class Runtime:
 
     def _running(self, run: UUID) -> Run:
         state = self._state(run)
-        if state.status.ended or run not in self._runs:
+        if state.status.ended:
             raise ConflictError(f"the run has ended ({state.status})")
+        if run not in self._runs:
+            raise ConflictError(f"nobody works on this run just now, though it is {state.status}")
         return self._runs[run]
 
     async def pause(self, run: UUID) -> RunView:
