@@ -20,6 +20,22 @@ PROTOCOL_VERSION = 1
 
 Identifier = Annotated[str, Field(min_length=1, max_length=128)]
 
+Time = Annotated[float, Field(ge=-1e12, le=1e12)]
+"""Seconds of the robot's clock; any zero, that of the calendar as well."""
+
+Span = Annotated[float, Field(ge=0, le=1e9)]
+"""How long something lasts, in seconds."""
+
+Coordinate = Annotated[float, Field(ge=-1e6, le=1e6)]
+"""Metres, radians, or what has no unit."""
+
+Pixels = Annotated[float, Field(ge=-1e9, le=1e9)]
+
+Count = Annotated[int, Field(ge=0, le=2**31 - 1)]
+
+Seq = Annotated[int, Field(le=2**53 - 1)]
+"""The number of a report: any reader of JSON can tell it from the next one."""
+
 
 def _require_json(value: dict[str, Any]) -> dict[str, Any]:
     """Refuse NaN and infinities, which `Any` lets through and JSON does not have."""
@@ -39,28 +55,28 @@ class Message(BaseModel):
 class Position(Message):
     """A point in the robot's base frame."""
 
-    x: float
-    y: float
-    z: float
+    x: Coordinate
+    y: Coordinate
+    z: Coordinate
 
 
 class Sighting(Message):
     """Where the head camera saw an object; `yaw` of its long axis; `time` of the picture."""
 
-    x: float
-    y: float
-    z: float
-    yaw: float
-    time: float
+    x: Coordinate
+    y: Coordinate
+    z: Coordinate
+    yaw: Coordinate
+    time: Time
 
 
 class ReachLimits(Message):
     """The graspable range in the plane: distances in metres from (x, y)."""
 
-    x: float
-    y: float
-    min_m: float
-    max_m: float
+    x: Coordinate
+    y: Coordinate
+    min_m: Coordinate
+    max_m: Coordinate
 
 
 class Detection(Message):
@@ -73,19 +89,19 @@ class Detection(Message):
     """
 
     camera: str
-    size_px: tuple[int, int] | None = None
-    center: tuple[float, float] | None = None
-    expected: tuple[float, float] | None = None
-    tolerance_px: float | None = None
-    area_px: int = 0
+    size_px: tuple[Count, Count] | None = None
+    center: tuple[Pixels, Pixels] | None = None
+    expected: tuple[Pixels, Pixels] | None = None
+    tolerance_px: Pixels | None = None
+    area_px: Count = 0
     felt: bool = False
     part: str | None = None
     explanation: str = ""
 
 
-Shown = Annotated[float, Field(ge=-1e6, le=1e6)]
-
-PoseValues = tuple[Shown, Shown, Shown, Shown, Shown, Shown, Shown]
+PoseValues = tuple[
+    Coordinate, Coordinate, Coordinate, Coordinate, Coordinate, Coordinate, Coordinate
+]
 """x, y, z (m), qx, qy, qz, qw."""
 
 _IDENTITY: PoseValues = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
@@ -100,9 +116,9 @@ class ShownObject(Message):
 
     name: Identifier
     kind: Literal["object", "obstacle"] = "object"
-    size: tuple[float, float, float]
-    knob: tuple[float, float, float] | None = None
-    color: tuple[float, float, float] | None = None
+    size: tuple[Coordinate, Coordinate, Coordinate]
+    knob: tuple[Coordinate, Coordinate, Coordinate] | None = None
+    color: tuple[Coordinate, Coordinate, Coordinate] | None = None
 
 
 class PoseLayout(Message):
@@ -130,7 +146,7 @@ class ActiveExecution(Message):
 
     execution: str
     state: Literal["running", "holding", "retreating"]
-    step: int
+    step: Count
 
 
 # --- Reports: robot to service, durable -------------------------------------------------------
@@ -141,7 +157,7 @@ class StepStarted(Message):
 
     type: Literal["step_started"] = "step_started"
     execution: str
-    step: int
+    step: Count
     name: str
 
 
@@ -151,7 +167,7 @@ class IssueDetected(Message):
     type: Literal["issue"] = "issue"
     execution: str
     issue: str
-    step: int
+    step: Count
     interrupts: bool
     detection: Detection | None = None
     jpeg: str | None = None
@@ -161,7 +177,7 @@ class IssueDetected(Message):
 class ClipPicture(Message):
     """One picture of a clip, a base64 JPEG; `before_s`: how long before the fault was detected."""
 
-    before_s: Annotated[float, Field(ge=0)]
+    before_s: Span
     jpeg: str
 
 
@@ -187,7 +203,7 @@ class Resumed(Message):
 
     type: Literal["resumed"] = "resumed"
     execution: str
-    step: int
+    step: Count
 
 
 class Finished(Message):
@@ -277,10 +293,10 @@ ReportBody = Annotated[
 class Location(Message):
     """A pose on a surface; `z` None means on the table."""
 
-    x: float
-    y: float
-    z: float | None = None
-    yaw: float = 0.0
+    x: Coordinate
+    y: Coordinate
+    z: Coordinate | None = None
+    yaw: Coordinate = 0.0
 
 
 WasDone = Literal["gone", "there"]
@@ -405,15 +421,15 @@ class Hello(Message):
     """
 
     type: Literal["hello"] = "hello"
-    protocol: int
+    protocol: Count
     robot: Identifier
     boot: Identifier
     behaviors: list[str]
     cameras: list[str]
     reach: ReachLimits
-    suitability: dict[str, float] = {}
+    suitability: dict[str, Annotated[float, Field(ge=0, le=1)]] = {}
     executing: ActiveExecution | None = None
-    time: float
+    time: Time
     simulated: bool = False
     shows: PoseLayout | None = None
 
@@ -428,8 +444,8 @@ class Report(Message):
 
     type: Literal["report"] = "report"
     boot: Identifier | None = None
-    seq: Annotated[int, Field(ge=1)]
-    time: float
+    seq: Annotated[Seq, Field(ge=1)]
+    time: Time
     body: ReportBody
     world: JsonObject | None = None
 
@@ -438,7 +454,7 @@ class Heartbeat(Message):
     """Sent at least every `heartbeat_s` of the welcome, in wall time; not durable."""
 
     type: Literal["heartbeat"] = "heartbeat"
-    time: float
+    time: Time
 
 
 class Taken(Message):
@@ -465,11 +481,11 @@ class Poses(Message):
     """
 
     type: Literal["poses"] = "poses"
-    time: float
-    joints: list[Shown] = []
+    time: Time
+    joints: list[Coordinate] = []
     base: PoseValues = _IDENTITY
     tool: PoseValues
-    opening_m: Shown
+    opening_m: Coordinate
     objects: list[ShownPose] = []
 
 
@@ -483,7 +499,7 @@ class Welcome(Message):
 
     type: Literal["welcome"] = "welcome"
     protocol: int
-    received: int
+    received: Seq
     heartbeat_s: float
 
 
@@ -492,7 +508,7 @@ class Ack(Message):
 
     type: Literal["ack"] = "ack"
     boot: Identifier | None = None
-    seq: int
+    seq: Seq
 
 
 class Command(Message):

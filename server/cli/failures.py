@@ -11,6 +11,7 @@ from robots.vision.color_model import ColorModelError
 from server.errors import InvalidError, ServiceError
 from server.journal.file_lock import JournalLockedError
 from server.journal.migrations import JournalSchemaError
+from server.journal.reader import UnreadableEventError
 from server.journal.upgrades import UnknownEventVersionError
 from server.settings import WrongSettingsError
 from sim.world import WorldUnavailableError
@@ -37,6 +38,7 @@ KNOWN_ERRORS = (
     PluginError,
     ServiceError,
     UnknownEventVersionError,
+    UnreadableEventError,
     VectorMapError,
     WorldUnavailableError,
     WrongSettingsError,

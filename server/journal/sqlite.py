@@ -9,7 +9,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, NoReturn, TypeVar
 from uuid import UUID
 
 from server.journal.events import Event, any_event
@@ -161,7 +161,7 @@ class SqliteJournal:
             event.model_copy(update={"seq": seq}) for seq, event in enumerate(events, self._next)
         ]
         return _Committed(
-            numbered, [Record(event.seq, event.model_dump_json()) for event in numbered], fold
+            numbered, [Record(event.seq, _text_of(event)) for event in numbered], fold
         )
 
     def _begin(self) -> None:
@@ -254,6 +254,19 @@ class SqliteJournal:
 def _type(event: Event) -> str:
     """The event's discriminator, which every event type declares for itself."""
     return str(vars(event)["type"])
+
+
+def _text_of(event: Event) -> str:
+    """An event as JSON. Raises `ValueError` for a number that JSON does not have."""
+    text = event.model_dump_json()
+    # The words may also stand in a string, which is why they are looked for before it is read.
+    if "NaN" in text or "Infinity" in text:
+        json.loads(text, parse_constant=partial(_refuse_number, event))
+    return text
+
+
+def _refuse_number(event: Event, number: str) -> NoReturn:
+    raise ValueError(f"an event '{_type(event)}' has a number that is none ({number})")
 
 
 def _refuse_duplicate(receipt: Receipt, connection: sqlite3.Connection) -> None:

@@ -51,6 +51,7 @@ class KnownRobot:
         self._pictures: dict[str, asyncio.Future[bytes]] = {}
         self._received: dict[str, int] = {}
         self._heard_of: set[str] = set()
+        self._refused: tuple[str, str] | None = None
         self._poses_hz = 0.0
         self._absence: asyncio.TimerHandle | None = None
         self._tasks: set[asyncio.Task[None]] = set()
@@ -86,6 +87,22 @@ class KnownRobot:
         session.do(self._announce)
         if self._poses_hz > 0.0:
             self._ask_for_poses()
+
+    def refuse(self, reason: str) -> None:
+        """End its connection, and let this start of its program in no more.
+
+        What it keeps in its outbox would only come again.
+        """
+        assert self.hello is not None, "who sends something has said hello"
+        assert self.session is not None, "who sends something is connected"
+        log.warning("robot %s is refused: %s", self.name, reason)
+        self._refused = self.hello.boot, reason
+        self.session.end_soon(reason)
+
+    def why_refused(self, hello: Hello) -> str | None:
+        """Why a start of its program is not let in; None if it is."""
+        boot, reason = self._refused or (None, "")
+        return f"start the robot's program again: {reason}" if boot == hello.boot else None
 
     def disconnect(self, session: RobotSession) -> None:
         """A connection has ended; after a while without a new one the robot is lost."""

@@ -9,11 +9,11 @@ from contextlib import suppress
 from pydantic import ValidationError
 
 from robots.link.channel import Channel, ChannelClosedError
-from robots.link.messages import PROTOCOL_VERSION, CommandBody, Hello, LinkError, robot_message
+from robots.link.messages import PROTOCOL_VERSION, CommandBody, Hello, LinkError
 from server.errors import ConflictError
 from server.journal.journal import Journal, JournalClosedError
 from server.robots.known_robot import KnownRobot
-from server.robots.session import RobotSession, sentence
+from server.robots.session import NoSenseError, RobotSession, read_message, sentence
 from server.robots.sink import RobotSink
 from server.robots.times import LinkTimes
 
@@ -127,6 +127,10 @@ class RobotRegistry:
 
     async def _serve_robot(self, channel: Channel, hello: Hello) -> None:
         robot = self._known(hello.robot)
+        refusal = robot.why_refused(hello)
+        if refusal is not None:
+            await _complain(channel, refusal)
+            return
         session = RobotSession(channel, robot, self._clock, self._times)
         try:
             async with robot.taking_over:
@@ -149,10 +153,13 @@ class RobotRegistry:
                         await _complain(channel, complaint)
                         return None
                     try:
-                        message = robot_message.validate_json(text)
+                        message = read_message(text)
                     except ValidationError as error:
                         await _complain(channel, sentence(error))
                         continue
+                    except NoSenseError as error:
+                        await _complain(channel, str(error))
+                        return None
                     if isinstance(message, Hello):
                         return message
                     await _complain(channel, "the first message of a connection is a hello")

@@ -99,6 +99,7 @@ async def test_run_is_paused_resumed_and_aborted(client: httpx.AsyncClient) -> N
         ({"seed": "7"}, 422),
         ({"seed": -1}, 422),
         ({"seed": 10**30}, 422),
+        ({"world_options": {"noise": 2**53}}, 422),
         ({"speed": 0}, 422),
         ({"speed": "fast"}, 422),
         ({"unknown": 1}, 422),

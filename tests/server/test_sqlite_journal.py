@@ -109,7 +109,7 @@ async def test_entry_that_cannot_be_written_is_refused_alone(journal: SqliteJour
         journal.append(Entry(events=[paused(4.0)])),
         return_exceptions=True,
     )
-    assert isinstance(outcomes[1], sqlite3.IntegrityError)
+    assert isinstance(outcomes[1], ValueError)
     assert isinstance(outcomes[2], ValueError)
     assert [event.time for event in await journal.read(0, 10)] == [1.0, 4.0]
     assert journal.head == 2
@@ -199,3 +199,25 @@ def test_journal_of_a_newer_mend_is_refused(tmp_path: Path) -> None:
     connection.close()
     with pytest.raises(JournalSchemaError, match="version 99"):
         SqliteJournal(tmp_path / "journal.db")
+
+
+@pytest.mark.parametrize("time", [math.inf, -math.inf, math.nan])
+async def test_an_event_with_a_number_that_is_none_is_refused_alone(
+    journal: SqliteJournal, time: float
+) -> None:
+    bad, good = await asyncio.gather(
+        journal.append(Entry(events=[paused(time)])),
+        journal.append(Entry(events=[paused(2.0)])),
+        return_exceptions=True,
+    )
+    assert isinstance(bad, ValueError)
+    assert "run_paused" in str(bad)
+    assert [each.time for each in await journal.read(0, 10)] == [2.0]
+    assert not isinstance(good, BaseException)
+
+
+async def test_the_names_of_such_numbers_may_stand_in_a_text(journal: SqliteJournal) -> None:
+    called = started().model_copy(update={"tree_name": "NaN and Infinity"})
+    await journal.append(Entry(events=[called]))
+    (kept,) = await journal.read(0, 10)
+    assert kept == called.model_copy(update={"seq": 1})

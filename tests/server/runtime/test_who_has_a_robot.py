@@ -59,9 +59,10 @@ async def test_a_run_that_cannot_be_journaled_leaves_its_robot_free(
         async def refuse(*_: object) -> None:
             raise ConflictError("not now")
 
-        with monkeypatch.context() as patched, pytest.raises(ConflictError):
+        with monkeypatch.context() as patched:
             patched.setattr(service.journal, "append", refuse)
-            await service.runtime.start_run(request_of("duo"))
+            with pytest.raises(ConflictError):
+                await service.runtime.start_run(request_of("duo"))
         assert (await service.runtime.start_run(request_of("duo"))).status is RunStatus.RUNNING
 
 
