@@ -6,6 +6,7 @@ import sqlite3
 import threading
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -14,15 +15,27 @@ from uuid import UUID
 
 from server.journal.events import Event, any_event
 from server.journal.file_lock import FileLock
-from server.journal.journal import DuplicateReceiptError, Entry, Fold, JournalClosedError, Receipt
+from server.journal.journal import (
+    DuplicateReceiptError,
+    Entry,
+    Fold,
+    JournalClosedError,
+    JournalWriteError,
+    Receipt,
+)
 from server.journal.migrations import migrate
 from server.journal.subscriptions import DEFAULT_CAPACITY, Record, Subscribers, Subscription
+from server.journal.trouble import Sleep, Trouble
 from server.journal.upgrades import current_version, upgrade_text
 from server.journal.writer import CommitStatistics, Done, GroupCommitWriter
 
 T = TypeVar("T")
 
 IN_MEMORY = ":memory:"
+
+PROBE = "probe"
+PROBE_BYTES = 64 * 1024
+"""Room for so much is room for most of what waits to be written."""
 
 INSERT_EVENT = "INSERT INTO events (seq, run, type, time, version, body) VALUES (?, ?, ?, ?, ?, ?)"
 
@@ -41,9 +54,12 @@ class SqliteJournal:
 
     Implements `server.journal.journal.Journal`. Raises `JournalLockedError` when another process
     has the file, `JournalSchemaError` when it cannot be read. Belongs to one event loop at a time.
+    `sleep` is what passes between two tries to write where that is not possible.
     """
 
-    def __init__(self, path: Path | str, *, busy_timeout_s: float = 5.0) -> None:
+    def __init__(
+        self, path: Path | str, *, busy_timeout_s: float = 5.0, sleep: Sleep = asyncio.sleep
+    ) -> None:
         self._lock: FileLock | None = None
         if str(path) != IN_MEMORY:
             path = Path(path)
@@ -63,8 +79,10 @@ class SqliteJournal:
             self._write_lock,
             on_begin=self._begin,
             on_rollback=self._roll_back,
-            on_commit=self._publish,
+            on_commit=self._committed,
+            on_failure=lambda reason: self._trouble.began(reason),
         )
+        self._trouble = Trouble(self._probe, sleep)
 
     def _open(self, path: str, busy_timeout_s: float) -> None:
         connect = partial(
@@ -96,15 +114,28 @@ class SqliteJournal:
     def subscribers(self) -> Subscribers:
         return self._subscribers
 
+    @property
+    def trouble(self) -> Trouble:
+        return self._trouble
+
     def commit_statistics(self) -> CommitStatistics:
         return self._writer.statistics()
 
     # --- writing ------------------------------------------------------------------------------
 
-    async def append(self, entry: Entry, fold: Fold | None = None) -> list[Event]:
+    async def append(
+        self, entry: Entry, fold: Fold | None = None, *, patient: bool = False
+    ) -> list[Event]:
         work = partial(self._write_entry, entry, fold)
-        committed: _Committed = await self._writer.submit(work)
-        return committed.events
+        while True:
+            try:
+                committed: _Committed = await self._writer.submit(work)
+            except JournalWriteError:
+                if not patient:
+                    raise
+                await self._trouble.over()
+            else:
+                return committed.events
 
     async def save_document(self, kind: str, name: str, text: str) -> None:
         await self._writer.submit(
@@ -125,6 +156,12 @@ class SqliteJournal:
             )
         )
         return deleted > 0
+
+    async def _probe(self) -> None:
+        """Try to write something that needs room, and take it away again."""
+        with suppress(JournalWriteError, JournalClosedError):
+            await self._writer.submit(_write_probe)
+            await self._writer.submit(_delete_probe)
 
     def _write_entry(
         self, entry: Entry, fold: Fold | None, connection: sqlite3.Connection
@@ -169,6 +206,10 @@ class SqliteJournal:
 
     def _roll_back(self) -> None:
         self._next = self._batch_start
+
+    def _committed(self, done: list[Done]) -> None:
+        self._publish(done)
+        self._trouble.ended(probed=all(each.result == PROBE for each in done))
 
     def _publish(self, done: list[Done]) -> None:
         entries = [each.result for each in done if isinstance(each.result, _Committed)]
@@ -239,6 +280,7 @@ class SqliteJournal:
         if self._closed:
             return
         self._closed = True
+        self._trouble.close()
         self._writer.close()
         self._subscribers.close()
         self._readers.shutdown()
@@ -249,6 +291,18 @@ class SqliteJournal:
     def _unlock(self) -> None:
         if self._lock is not None:
             self._lock.release()
+
+
+def _write_probe(connection: sqlite3.Connection) -> str:
+    connection.execute(
+        "INSERT OR REPLACE INTO pictures (id, jpeg) VALUES (?, zeroblob(?))", (PROBE, PROBE_BYTES)
+    )
+    return PROBE
+
+
+def _delete_probe(connection: sqlite3.Connection) -> str:
+    connection.execute("DELETE FROM pictures WHERE id = ?", (PROBE,))
+    return PROBE
 
 
 def _type(event: Event) -> str:

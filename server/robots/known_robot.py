@@ -265,7 +265,7 @@ class KnownRobot:
     async def _commit(self, report: Report, receipt: Receipt) -> None:
         try:
             if self._sink is None:
-                await self._journal.append(Entry(receipt=receipt))
+                await self._journal.append(Entry(receipt=receipt), patient=True)
             else:
                 await self._sink.robot_reported(self.name, report, receipt)
         except DuplicateReceiptError:

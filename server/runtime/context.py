@@ -32,7 +32,10 @@ class RunSettings:
 
 
 class RunContext:
-    """A run's state and the one way to change it: commit events, then fold them."""
+    """A run's state and the one way to change it: commit events, then fold them.
+
+    While it is `patient`, a commit waits until the journal can be written; else it is refused.
+    """
 
     def __init__(
         self,
@@ -47,7 +50,17 @@ class RunContext:
         self.settings = settings
         self.utc_now = utc_now
         self._journal = journal
+        self.patient = True
         self._noting: asyncio.Task[list[Event]] | None = None
+
+    @property
+    def trouble(self) -> str | None:
+        """Why the journal cannot be written now; None while it can be."""
+        return self._journal.trouble.reason
+
+    async def in_trouble(self) -> None:
+        """Wait until the journal cannot be written."""
+        await self._journal.trouble.begun()
 
     def stamp(self) -> dict[str, Any]:
         """What every event of this run has now."""
@@ -78,14 +91,15 @@ class RunContext:
             except Exception as error:
                 failures.append(error)
 
-        committed = await self._journal.append(entry, fold)
+        committed = await self._journal.append(entry, fold, patient=self.patient)
         if failures:
             raise failures[0]
         return committed
 
     def note(self, receipt: Receipt) -> None:
         """Commit the receipt of a report that says nothing new, beside what follows from it."""
-        self._noting = asyncio.create_task(self._journal.append(Entry(receipt=receipt)))
+        entry = Entry(receipt=receipt)
+        self._noting = asyncio.create_task(self._journal.append(entry, patient=True))
 
     async def noted(self) -> None:
         """Wait until what was noted is committed. Raises `DuplicateReceiptError`."""

@@ -74,6 +74,7 @@ class Runtime:
         self._promised: dict[str, UUID] = {}
         self._new_runs = NewRuns(trees, scenarios, worlds, utc_now)
         self._history = History(journal, scripts)
+        journal.trouble.watch(self._journal_troubled)
 
     # --- Beginning and ending -----------------------------------------------------------------
 
@@ -93,8 +94,13 @@ class Runtime:
             if not state.status.ended:
                 await self._take_up_or_fail(state)
 
+    def _journal_troubled(self, reason: str | None) -> None:
+        for run in tuple(self._runs.values()):
+            run.journal_troubled(reason)
+
     async def close(self) -> None:
         """Stop without ending any run: they are taken up at the next start."""
+        self._journal.trouble.unwatch(self._journal_troubled)
         for task in self._tasks.values():
             task.cancel()
         await asyncio.gather(*self._tasks.values(), return_exceptions=True)
@@ -215,7 +221,9 @@ class Runtime:
 
     def runs(self) -> list[RunSummary]:
         """All runs, newest first."""
-        return [summary(state, self._time(state)) for state in reversed(self._states.values())]
+        trouble = self._journal.trouble.reason
+        states = reversed(self._states.values())
+        return [summary(state, self._time(state), trouble) for state in states]
 
     def run(self, run: UUID) -> RunView:
         """Everything about one run. Raises `NotFoundError`."""
@@ -228,7 +236,7 @@ class Runtime:
         for side in run.sides.values() if run else ():
             potentials = np.maximum(potentials, potentials_for(state, side, leaves))
         by_leaf = dict(zip(leaves.tolist(), potentials.tolist(), strict=True))
-        return view(state, self._time(state), by_leaf)
+        return view(state, self._time(state), by_leaf, self._journal.trouble.reason)
 
     async def snapshot(self, seq: int | None) -> Snapshot:
         """The state after event `seq`, or after the last one without it."""
@@ -268,9 +276,12 @@ class Runtime:
         return self.run(run)
 
     async def abort(self, run: UUID) -> RunView:
-        """End a run. Raises `ConflictError` if it has ended."""
+        """End a run. Raises `ConflictError` if it has ended.
+
+        While the journal cannot be written its robots stop at once, and it has ended only later.
+        """
         running = self._running(run)
-        await running.request(running.abort)
+        await running.abort_at_once()
         return self.run(run)
 
     async def intervene(self, run: UUID, intervention: Intervention) -> None:

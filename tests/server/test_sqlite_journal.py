@@ -6,6 +6,7 @@ from pathlib import Path
 from uuid import UUID, uuid4
 
 import pytest
+from full_disk import FailingConnection, Passing
 from sample_events import RUN, paused, started
 
 from server.journal.file_lock import JournalLockedError
@@ -221,3 +222,70 @@ async def test_the_names_of_such_numbers_may_stand_in_a_text(journal: SqliteJour
     await journal.append(Entry(events=[called]))
     (kept,) = await journal.read(0, 10)
     assert kept == called.model_copy(update={"seq": 1})
+
+
+# --- A journal that cannot be written -----------------------------------------------------------
+
+
+def failing(journal: SqliteJournal) -> FailingConnection:
+    connection = FailingConnection(journal._write_connection)
+    journal._writer._connection = connection  # type: ignore[assignment]
+    return connection
+
+
+class PassingUntilGood(Passing):
+    """After so many pauses the journal can be written again."""
+
+    def __init__(self, tries: int) -> None:
+        super().__init__()
+        self.tries = tries
+        self.connection: FailingConnection | None = None
+
+    async def __call__(self, delay: float, /) -> None:
+        await super().__call__(delay)
+        if len(self.pauses) == self.tries and self.connection is not None:
+            self.connection.error = None
+
+
+async def test_who_is_patient_waits_until_the_journal_can_be_written(tmp_path: Path) -> None:
+    sleep = PassingUntilGood(9)
+    journal = SqliteJournal(tmp_path / "journal.db", sleep=sleep)
+    sleep.connection = failing(journal)
+    sleep.connection.error = "disk I/O error"
+    entries = [journal.append(Entry(events=[paused(float(i))]), patient=True) for i in range(3)]
+    refused = journal.append(Entry(events=[paused(9.0)]))
+    *kept, refusal = await asyncio.wait_for(
+        asyncio.gather(*entries, refused, return_exceptions=True), timeout=60
+    )
+    assert isinstance(refusal, JournalWriteError)
+    assert not [each for each in kept if isinstance(each, BaseException)]
+    assert [(each.seq, each.time) for each in await journal.read(0, 10)] == [
+        (1, 0.0), (2, 1.0), (3, 2.0),
+    ]  # fmt: skip
+    assert sleep.pauses == [0.1, 0.2, 0.4, 0.8, 1.6, 3.2, 5.0, 5.0, 5.0]
+    assert await journal.picture(UUID(int=0)) is None
+    journal.close()
+
+
+async def test_who_watches_is_told_when_trouble_begins_and_ends() -> None:
+    sleep = PassingUntilGood(2)
+    journal = SqliteJournal(":memory:", sleep=sleep)
+    told: list[str | None] = []
+    journal.trouble.watch(told.append)
+    sleep.connection = failing(journal)
+    sleep.connection.error = "disk I/O error"
+    with pytest.raises(JournalWriteError):
+        await journal.append(Entry(events=[paused()]))
+    await asyncio.wait_for(journal.trouble.over(), timeout=60)
+    assert told == ["the journal could not be written: disk I/O error", None]
+    journal.close()
+
+
+async def test_a_journal_that_is_closed_in_trouble_lets_nobody_wait_for_ever() -> None:
+    journal = SqliteJournal(":memory:")
+    failing(journal).error = "disk I/O error"
+    waiting = asyncio.create_task(journal.append(Entry(events=[paused()]), patient=True))
+    await asyncio.wait_for(journal.trouble.begun(), timeout=60)
+    journal.close()
+    with pytest.raises(JournalClosedError):
+        await asyncio.wait_for(waiting, timeout=60)

@@ -6,6 +6,7 @@ import math
 from collections.abc import AsyncIterator
 
 import pytest
+from full_disk import FailingConnection
 from recording_sink import RecordingSink
 
 from robots.link.channel import Channel, ChannelClosedError, memory_channel
@@ -457,6 +458,20 @@ async def test_a_report_that_could_not_be_committed_is_not_acknowledged(
     assert (await again.greet(hello())).received == 0
     assert (await again.deliver(report(1))).seq == 1
     assert [each.seq for each in sink.reports] == [1]
+
+
+async def test_a_report_waits_on_its_connection_while_the_journal_cannot_be_written(
+    registry: RobotRegistry, journal: SqliteJournal
+) -> None:
+    connection = FailingConnection(journal._write_connection)
+    journal._writer._connection = connection  # type: ignore[assignment]
+    connection.error = "disk I/O error"
+    robot = PlayedRobot(registry)
+    await robot.greet(hello())
+    await robot.say(report(1))
+    await asyncio.wait_for(journal.trouble.begun(), timeout=60)
+    connection.error = None
+    assert await robot.hear() == Ack(seq=1)
 
 
 async def test_a_simulated_robot_is_forgotten_when_nobody_owns_it(
