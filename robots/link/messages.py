@@ -18,7 +18,10 @@ from tasks.intervention import Intervention
 
 PROTOCOL_VERSION = 1
 
-Identifier = Annotated[str, Field(min_length=1, max_length=128)]
+Identifier = Annotated[
+    str, Field(min_length=1, max_length=128, pattern=r"^[^\x00-\x1f\x7f-\x9f\u2028\u2029]*$")
+]
+"""A name without control characters: it is written to logs and terminals as it is."""
 
 Time = Annotated[float, Field(ge=-1e12, le=1e12)]
 """Seconds of the robot's clock; any zero, that of the calendar as well."""

@@ -1,5 +1,6 @@
 """The gate before every HTTP request: Host, Origin, token and the size of the body."""
 
+from starlette.datastructures import MutableHeaders
 from starlette.exceptions import HTTPException
 from starlette.requests import HTTPConnection
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
@@ -26,11 +27,12 @@ class Gate:
             return
         connection = HTTPConnection(scope)
         refusal = self._refusal(scope, connection)
+        guarded = _guarded(send, private=scope["path"].startswith(PROTECTED))
         if refusal is None:
-            await self._app(scope, _limited(receive), send)
+            await self._app(scope, _limited(receive), guarded)
             return
         headers = {"WWW-Authenticate": "Bearer"} if refusal.status == 401 else {}
-        await problem_response(refusal, headers)(scope, receive, send)
+        await problem_response(refusal, headers)(scope, receive, guarded)
 
     def _refusal(self, scope: Scope, connection: HTTPConnection) -> Problem | None:
         path: str = scope["path"]
@@ -46,6 +48,20 @@ class Gate:
         if _declared_length(connection) > MAX_BODY_BYTES:
             return problem(413, _too_large())
         return None
+
+
+def _guarded(send: Send, *, private: bool) -> Send:
+    """Nothing is taken for another type than it says, and what is `private` is kept by nobody."""
+
+    async def guarded(message: Message) -> None:
+        if message["type"] == "http.response.start":
+            headers = MutableHeaders(scope=message)
+            headers.setdefault("X-Content-Type-Options", "nosniff")
+            if private:
+                headers.setdefault("Cache-Control", "no-store")
+        await send(message)
+
+    return guarded
 
 
 def _declared_length(connection: HTTPConnection) -> int:

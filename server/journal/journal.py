@@ -107,6 +107,10 @@ class JournalClosedError(Exception):
     """The journal no longer takes entries."""
 
 
+class JournalOpenError(Exception):
+    """The journal's file cannot be opened, or not be written."""
+
+
 class JournalWriteError(Exception):
     """An entry could not be made durable; nothing of it was committed or published."""
 

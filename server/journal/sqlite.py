@@ -15,11 +15,13 @@ from uuid import UUID
 
 from server.journal.events import Event, any_event
 from server.journal.file_lock import FileLock
+from server.journal.file_mode import OWNERS_FOLDER, keep_to_owner
 from server.journal.journal import (
     DuplicateReceiptError,
     Entry,
     Fold,
     JournalClosedError,
+    JournalOpenError,
     JournalWriteError,
     Receipt,
 )
@@ -53,7 +55,9 @@ class SqliteJournal:
     """A journal in one file, or in memory for tests and runs that nobody needs afterwards.
 
     Implements `server.journal.journal.Journal`. Raises `JournalLockedError` when another process
-    has the file, `JournalSchemaError` when it cannot be read. Belongs to one event loop at a time.
+    has the file, `JournalSchemaError` when it is no journal that can be read, `JournalOpenError`
+    when the file cannot be opened or written. Only its owner can read the file. Belongs to one
+    event loop at a time.
     `sleep` is what passes between two tries to write where that is not possible.
     """
 
@@ -63,7 +67,7 @@ class SqliteJournal:
         self._lock: FileLock | None = None
         if str(path) != IN_MEMORY:
             path = Path(path)
-            path.parent.mkdir(parents=True, exist_ok=True)
+            path.parent.mkdir(mode=OWNERS_FOLDER, parents=True, exist_ok=True)
             self._lock = FileLock(path)
         try:
             self._open(str(path), busy_timeout_s)
@@ -85,6 +89,15 @@ class SqliteJournal:
         self._trouble = Trouble(self._probe, sleep)
 
     def _open(self, path: str, busy_timeout_s: float) -> None:
+        try:
+            if path != IN_MEMORY:
+                keep_to_owner(Path(path))
+            self._connect(path, busy_timeout_s)
+        except (sqlite3.OperationalError, OSError) as error:
+            why = error.strerror if isinstance(error, OSError) else str(error)
+            raise JournalOpenError(f"the journal '{path}' cannot be opened: {why}") from error
+
+    def _connect(self, path: str, busy_timeout_s: float) -> None:
         connect = partial(
             sqlite3.connect, path, timeout=busy_timeout_s, isolation_level=None,
             check_same_thread=False,

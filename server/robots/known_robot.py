@@ -26,6 +26,7 @@ from robots.link.messages import (
 )
 from server.errors import ConflictError, NotFoundError
 from server.journal.journal import DuplicateReceiptError, Entry, Journal, Receipt
+from server.plain_text import plain
 from server.robots.session import MissingReportError, PictureError, RobotSession
 from server.robots.sink import RobotSink
 from server.robots.times import LinkTimes
@@ -95,7 +96,7 @@ class KnownRobot:
         """
         assert self.hello is not None, "who sends something has said hello"
         assert self.session is not None, "who sends something is connected"
-        log.warning("robot %s is refused: %s", self.name, reason)
+        log.warning("robot %s is refused: %s", self.name, plain(reason))
         self._refused = self.hello.boot, reason
         self.session.end_soon(reason)
 

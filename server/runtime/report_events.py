@@ -17,6 +17,7 @@ from robots.link.messages import (
     StepStarted,
 )
 from server.journal import events as ev
+from server.plain_text import plain
 from server.runtime.context import RunContext
 from server.runtime.dialogue_driver import DialogueDriver
 from server.runtime.robot_side import Doing, RobotSide
@@ -199,7 +200,7 @@ class ReportEvents:
 
     def _rejected(self, side: RobotSide, body: Rejected) -> list[ev.Event]:
         execution = self._context.state.executions.get(side.robot)
-        log.warning("robot %s rejected a command: %s", side.robot, body.reason)
+        log.warning("robot %s rejected a command: %s", side.robot, plain(body.reason))
         if execution is None or side.doing is not Doing.WORKING or body.command != side.command:
             return []
         reason = f"the robot refused: {body.reason}"

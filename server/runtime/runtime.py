@@ -14,7 +14,7 @@ import numpy as np
 from dialogue.script import Script
 from server.dialogues.answers import answer_source
 from server.dialogues.escalation import EscalationPolicy
-from server.errors import ConflictError, InvalidError, NotFoundError
+from server.errors import ConflictError, InvalidError, LostRaceError, NotFoundError
 from server.journal import events as ev
 from server.journal.journal import Entry, Journal
 from server.runtime.choosing import potentials_for
@@ -329,13 +329,17 @@ class Runtime:
         Raises `NotFoundError`, `LostRaceError` or `ConflictError`.
         """
         state, found = self._dialogue(dialogue)
-        run = self._runs.get(state.id)
-        if run is None:
-            raise ConflictError(f"the run has ended ({state.status})")
-        side = run.sides[found.opened.robot]
-        answered = await run.request(
-            lambda: run.dialogues.answer(found, prompt, answer, helper, side)
-        )
+        try:
+            run = self._running(state.id)
+            side = run.sides[found.opened.robot]
+            answered = await run.request(
+                lambda: run.dialogues.answer(found, prompt, answer, helper, side)
+            )
+        except ConflictError:
+            # Who was first is told also where that answer has ended the run.
+            if prompt in found.answers:
+                raise LostRaceError(prompt, found.answers[prompt].helper) from None
+            raise
         return cast(ev.Answered, answered)
 
     async def extend(self, dialogue: UUID, prompt: UUID, helper: str) -> ev.DeadlineExtended:

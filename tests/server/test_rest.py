@@ -375,6 +375,15 @@ async def test_an_abort_that_is_not_kept_yet_is_accepted(
     assert response.json()["status"] == "running"
 
 
+async def test_answers_say_what_they_are_and_are_kept_by_nobody(client: httpx.AsyncClient) -> None:
+    for path, status in (("/api/runs", 200), ("/api/nothing", 404)):
+        response = await client.get(path)
+        assert response.status_code == status
+        assert response.headers["x-content-type-options"] == "nosniff"
+        assert response.headers["cache-control"] == "no-store"
+    assert (await client.get("/healthz")).headers["x-content-type-options"] == "nosniff"
+
+
 async def test_openapi_names_every_operation_and_has_examples(client: httpx.AsyncClient) -> None:
     schema = (await client.get("/openapi.json")).json()
     operations = [operation for path in schema["paths"].values() for operation in path.values()]

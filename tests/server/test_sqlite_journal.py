@@ -14,6 +14,7 @@ from server.journal.journal import (
     DuplicateReceiptError,
     Entry,
     JournalClosedError,
+    JournalOpenError,
     JournalWriteError,
     Receipt,
 )
@@ -190,6 +191,35 @@ def test_file_that_is_no_journal_is_refused(tmp_path: Path) -> None:
     path.write_text("not a database" * 200)
     with pytest.raises(JournalSchemaError, match="not a journal"):
         SqliteJournal(path)
+
+
+def test_only_its_owner_can_read_a_journal(tmp_path: Path) -> None:
+    path = tmp_path / "deep" / "journal.db"
+    journal = SqliteJournal(path)
+    modes = {each.name: each.stat().st_mode & 0o777 for each in path.parent.iterdir()}
+    journal.close()
+    assert {"journal.db", "journal.db-wal", "journal.db.lock"} <= modes.keys()
+    assert set(modes.values()) == {0o600}
+    assert path.parent.stat().st_mode & 0o777 == 0o700
+    path.chmod(0o644)
+    SqliteJournal(path).close()
+    assert path.stat().st_mode & 0o777 == 0o600
+
+
+def test_a_journal_that_is_a_folder_is_refused_with_a_sentence(tmp_path: Path) -> None:
+    with pytest.raises(JournalOpenError, match="cannot be opened: Is a directory"):
+        SqliteJournal(tmp_path)
+
+
+def test_a_disk_that_fails_as_a_journal_is_opened_is_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(_: object) -> None:
+        raise sqlite3.OperationalError("disk I/O error")
+
+    monkeypatch.setattr("server.journal.sqlite.migrate", fail)
+    with pytest.raises(JournalOpenError, match=r"journal\.db' cannot be opened: disk I/O error"):
+        SqliteJournal(tmp_path / "journal.db")
 
 
 def test_journal_of_a_newer_mend_is_refused(tmp_path: Path) -> None:

@@ -152,3 +152,11 @@ async def test_a_hello_with_such_a_number_is_refused(registry: RobotRegistry) ->
     with pytest.raises(ChannelClosedError):
         await robot.hear()
     assert registry.known() == []
+
+
+@pytest.mark.parametrize("name", ["a\nb", "\x1b[31mred", "", "x" * 129, "a\u2028b", "\x9b1m"])
+async def test_a_robot_has_a_name_that_can_be_written(registry: RobotRegistry, name: str) -> None:
+    robot = RawRobot(registry)
+    await robot.say({**HELLO, "robot": name})
+    assert "at hello.robot: " in (await robot.hear())["detail"]
+    assert registry.known() == []
