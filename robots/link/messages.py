@@ -23,6 +23,15 @@ Identifier = Annotated[
 ]
 """A name without control characters: it is written to logs and terminals as it is."""
 
+Word = Annotated[str, Field(max_length=128)]
+"""A name or an id."""
+
+Sentence = Annotated[str, Field(max_length=4000)]
+"""What people are told."""
+
+MOST = 10_000
+"""So many objects, results or names are the most that one message tells of."""
+
 Time = Annotated[float, Field(ge=-1e12, le=1e12)]
 """Seconds of the robot's clock; any zero, that of the calendar as well."""
 
@@ -91,15 +100,15 @@ class Detection(Message):
     is a clause that people are told: what the robot sensed.
     """
 
-    camera: str
+    camera: Word
     size_px: tuple[Count, Count] | None = None
     center: tuple[Pixels, Pixels] | None = None
     expected: tuple[Pixels, Pixels] | None = None
     tolerance_px: Pixels | None = None
     area_px: Count = 0
     felt: bool = False
-    part: str | None = None
-    explanation: str = ""
+    part: Word | None = None
+    explanation: Sentence = ""
 
 
 PoseValues = tuple[
@@ -147,7 +156,7 @@ class ShownPose(Message):
 class ActiveExecution(Message):
     """What a robot was doing when it said hello."""
 
-    execution: str
+    execution: Word
     state: Literal["running", "holding", "retreating"]
     step: Count
 
@@ -159,17 +168,17 @@ class StepStarted(Message):
     """A behavior's step has begun; steps count from 1."""
 
     type: Literal["step_started"] = "step_started"
-    execution: str
+    execution: Word
     step: Count
-    name: str
+    name: Word
 
 
 class IssueDetected(Message):
     """A monitor detected a fault. `interrupts`: the robot stops the behavior by itself."""
 
     type: Literal["issue"] = "issue"
-    execution: str
-    issue: str
+    execution: Word
+    issue: Word
     step: Count
     interrupts: bool
     detection: Detection | None = None
@@ -188,8 +197,8 @@ class ClipTaken(Message):
     """What the forearm camera saw before an issue, oldest first; sent after the issue itself."""
 
     type: Literal["clip"] = "clip"
-    execution: str
-    issue: str
+    execution: Word
+    issue: Word
     pictures: Annotated[list[ClipPicture], Field(max_length=64)]
 
 
@@ -197,7 +206,7 @@ class Holding(Message):
     """The robot has stopped and holds: after an interrupt, or of itself after a fault."""
 
     type: Literal["holding"] = "holding"
-    execution: str | None = None
+    execution: Word | None = None
     at: Literal["neutral", "in_place", "hand_over"]
 
 
@@ -205,7 +214,7 @@ class Resumed(Message):
     """The behavior goes on, at `step`."""
 
     type: Literal["resumed"] = "resumed"
-    execution: str
+    execution: Word
     step: Count
 
 
@@ -213,15 +222,15 @@ class Finished(Message):
     """The behavior is through all its steps. `found_in_place`: there was nothing left to do."""
 
     type: Literal["finished"] = "finished"
-    execution: str
+    execution: Word
     found_in_place: bool = False
 
 
 class FinishedResult(Message):
     """What a finished leaf left behind: `object` rests at `place`."""
 
-    object: str
-    place: str
+    object: Word
+    place: Word
 
 
 class Looked(Message):
@@ -236,21 +245,21 @@ class Looked(Message):
     """
 
     type: Literal["looked"] = "looked"
-    command: str
-    objects: dict[str, Sighting]
+    command: Word
+    objects: Annotated[dict[Word, Sighting], Field(max_length=MOST)]
     gripper: Position
     fulfilled: bool | None = None
-    there: list[FinishedResult] = []
-    gone: list[FinishedResult] = []
-    held: str | None = None
-    blind: str | None = None
+    there: Annotated[list[FinishedResult], Field(max_length=MOST)] = []
+    gone: Annotated[list[FinishedResult], Field(max_length=MOST)] = []
+    held: Word | None = None
+    blind: Sentence | None = None
 
 
 class Held(Message):
     """The clock has reached what a `hold` command asked for."""
 
     type: Literal["held"] = "held"
-    command: str
+    command: Word
 
 
 class Intervened(Message):
@@ -261,18 +270,18 @@ class Intervened(Message):
 
     type: Literal["intervened"] = "intervened"
     intervention: Intervention
-    by: str
+    by: Word
     ok: bool = True
-    detail: str = ""
-    command: str | None = None
+    detail: Sentence = ""
+    command: Word | None = None
 
 
 class Rejected(Message):
     """The robot cannot carry out a command."""
 
     type: Literal["rejected"] = "rejected"
-    command: str
-    reason: str
+    command: Word
+    reason: Sentence
 
 
 ReportBody = Annotated[
@@ -427,10 +436,10 @@ class Hello(Message):
     protocol: Count
     robot: Identifier
     boot: Identifier
-    behaviors: list[str]
-    cameras: list[str]
+    behaviors: Annotated[list[Word], Field(max_length=MOST)]
+    cameras: Annotated[list[Word], Field(max_length=MOST)]
     reach: ReachLimits
-    suitability: dict[str, Annotated[float, Field(ge=0, le=1)]] = {}
+    suitability: dict[Word, Annotated[float, Field(ge=0, le=1)]] = {}
     executing: ActiveExecution | None = None
     time: Time
     simulated: bool = False
@@ -471,8 +480,8 @@ class Picture(Message):
     """A camera's picture, base64 JPEG; not durable. `command` asked for it."""
 
     type: Literal["picture"] = "picture"
-    command: str
-    camera: str
+    command: Word
+    camera: Word
     jpeg: str
 
 

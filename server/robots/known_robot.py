@@ -60,8 +60,12 @@ class KnownRobot:
     @property
     def forgettable(self) -> bool:
         """Whether nobody will ask for it again: a simulated robot whose run is over."""
-        gone = self.session is None and self._sink is None and not self.taking_over.locked()
-        return gone and (self.hello is None or self.hello.simulated)
+        return self.departed and (self.hello is None or self.hello.simulated)
+
+    @property
+    def departed(self) -> bool:
+        """Whether it has no connection and no run."""
+        return self.session is None and self._sink is None and not self.taking_over.locked()
 
     # --- Its connection -----------------------------------------------------------------------
 

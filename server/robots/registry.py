@@ -12,6 +12,7 @@ from robots.link.channel import Channel, ChannelClosedError
 from robots.link.messages import PROTOCOL_VERSION, CommandBody, Hello, LinkError
 from server.errors import ConflictError
 from server.journal.journal import Journal, JournalClosedError
+from server.limits import Limits
 from server.robots.known_robot import KnownRobot
 from server.robots.session import NoSenseError, RobotSession, read_message, sentence
 from server.robots.sink import RobotSink
@@ -29,11 +30,16 @@ class RobotRegistry:
     """
 
     def __init__(
-        self, journal: Journal, clock: Callable[[], float], times: LinkTimes | None = None
+        self,
+        journal: Journal,
+        clock: Callable[[], float],
+        times: LinkTimes | None = None,
+        limits: Limits | None = None,
     ) -> None:
         self._journal = journal
         self._clock = clock
         self._times = times or LinkTimes()
+        self._limits = limits or Limits()
         self._robots: dict[str, KnownRobot] = {}
         self._closed = False
 
@@ -113,6 +119,14 @@ class RobotRegistry:
         if name in self._robots and self._robots[name].forgettable:
             del self._robots[name]
 
+    def _forget_the_longest_gone(self, leaving: str) -> None:
+        """Of the robots that are gone only so many are kept, in the order in which they went."""
+        if leaving in self._robots:
+            self._robots[leaving] = self._robots.pop(leaving)
+        departed = [name for name, robot in self._robots.items() if robot.departed]
+        for name in departed[: -self._limits.departed_robots]:
+            del self._robots[name]
+
     # --- Connections --------------------------------------------------------------------------
 
     async def serve(self, channel: Channel) -> None:
@@ -141,6 +155,7 @@ class RobotRegistry:
         finally:
             robot.disconnect(session)
             self._forget(hello.robot)
+            self._forget_the_longest_gone(hello.robot)
 
     async def _greeted(self, channel: Channel) -> Hello | None:
         """The hello, or None if there is none to go on with."""
@@ -148,7 +163,7 @@ class RobotRegistry:
             async with asyncio.timeout(self._times.hello_s):
                 while True:
                     text = await channel.receive()
-                    complaint = _other_protocol(text)
+                    complaint = self._too_long(text) or _other_protocol(text)
                     if complaint is not None:
                         await _complain(channel, complaint)
                         return None
@@ -165,6 +180,13 @@ class RobotRegistry:
                     await _complain(channel, "the first message of a connection is a hello")
         except (ChannelClosedError, TimeoutError):
             return None
+
+    def _too_long(self, text: str) -> str | None:
+        """What to say to a first message that is too long to be kept."""
+        most = self._limits.hello_chars
+        if len(text) <= most:
+            return None
+        return f"a hello may have {most} characters; this one has {len(text)}"
 
 
 async def _complain(channel: Channel, detail: str) -> None:

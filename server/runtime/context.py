@@ -2,13 +2,14 @@
 
 import asyncio
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import datetime
 from typing import Any
 from uuid import UUID
 
 from server.journal.events import Event
 from server.journal.journal import Entry, Journal, Receipt
+from server.limits import Limits
 from server.runtime.clock import RunClock
 from server.runtime.run_state import RunState
 
@@ -29,6 +30,7 @@ class RunSettings:
     max_helped_retries: int = 20
     max_times_gone: int = 10
     claim_lease_s: float = 30.0
+    limits: Limits = field(default_factory=Limits)
 
 
 class RunContext:

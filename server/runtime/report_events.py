@@ -139,7 +139,8 @@ class ReportEvents:
             ),
             None,
         )
-        if dialogue is None:
+        # Of one issue there is one clip; who sends more has nothing new to show.
+        if dialogue is None or dialogue.clip:
             return []
         raised, clip = dialogue.raised, []
         for each in body.pictures:

@@ -72,7 +72,7 @@ class Runtime:
         self._tasks: dict[UUID, asyncio.Task[None]] = {}
         self._unreadable: set[UUID] = set()
         self._promised: dict[str, UUID] = {}
-        self._new_runs = NewRuns(trees, scenarios, worlds, utc_now)
+        self._new_runs = NewRuns(trees, scenarios, worlds, utc_now, settings.limits)
         self._history = History(journal, scripts)
         journal.trouble.watch(self._journal_troubled)
 

@@ -11,6 +11,7 @@ from recording_sink import RecordingSink
 
 from robots.link.channel import ChannelClosedError, memory_channel
 from server.journal.sqlite import SqliteJournal
+from server.limits import Limits
 from server.robots.registry import RobotRegistry
 from server.robots.times import LinkTimes
 
@@ -160,3 +161,40 @@ async def test_a_robot_has_a_name_that_can_be_written(registry: RobotRegistry, n
     await robot.say({**HELLO, "robot": name})
     assert "at hello.robot: " in (await robot.hear())["detail"]
     assert registry.known() == []
+
+
+async def test_a_hello_that_is_too_long_is_refused(journal: SqliteJournal) -> None:
+    registry = RobotRegistry(journal, lambda: 0.0, TIMES, Limits(hello_chars=1000))
+    robot = RawRobot(registry)
+    await robot.say({**HELLO, "behaviors": ["x" * 100] * 10})
+    assert "a hello may have 1000 characters" in (await robot.hear())["detail"]
+    with pytest.raises(ChannelClosedError):
+        await robot.hear()
+    assert registry.known() == []
+    registry.close()
+
+
+async def test_of_robots_that_are_gone_those_gone_longest_are_forgotten(
+    journal: SqliteJournal,
+) -> None:
+    registry = RobotRegistry(journal, lambda: 0.0, TIMES, Limits(departed_robots=2))
+    for name in ("a", "b", "c", "a", "d"):
+        robot = RawRobot(registry)
+        await robot.say({**HELLO, "robot": name})
+        await robot.hear()
+        await robot.channel.close()
+        await robot.serving
+    assert registry.known() == ["a", "d"]
+    registry.close()
+
+
+async def test_a_step_with_an_endless_name_is_not_taken(
+    registry: RobotRegistry, sink: RecordingSink
+) -> None:
+    robot = RawRobot(registry)
+    await robot.say(HELLO)
+    await robot.hear()
+    step = {"type": "step_started", "execution": "e", "step": 1, "name": "x" * 900_000}
+    await robot.say({**REPORT, "body": step})
+    assert "at report.body.step_started.name" in (await robot.hear())["detail"]
+    assert sink.reports == []
