@@ -35,6 +35,9 @@ log = logging.getLogger(__name__)
 
 MOST_UNTAKEN_COMMANDS = 1000
 
+MISSED_HEARTBEATS = 2
+"""After so many nobody can say that the program of a robot still runs."""
+
 
 class KnownRobot:
     """Implements `server.robots.session.Receiver`."""
@@ -107,7 +110,25 @@ class KnownRobot:
     def why_refused(self, hello: Hello) -> str | None:
         """Why a start of its program is not let in; None if it is."""
         boot, reason = self._refused or (None, "")
-        return f"start the robot's program again: {reason}" if boot == hello.boot else None
+        if boot == hello.boot:
+            return f"start the robot's program again: {reason}"
+        if self._is_another_program(hello):
+            return (
+                f"another program is connected as the robot '{self.name}': stop it first, or take "
+                "another name"
+            )
+        return None
+
+    def _is_another_program(self, hello: Hello) -> bool:
+        """Whether a hello is of a second program, while the first one is still there.
+
+        A program that has ended and was started again leaves a connection on which nothing comes.
+        A simulated robot's programs are started and ended by this service.
+        """
+        if self.session is None or self.hello is None or hello.simulated:
+            return False
+        lively = self.session.silent_for_s() <= MISSED_HEARTBEATS * self._times.heartbeat_s
+        return lively and self.hello.boot != hello.boot
 
     def disconnect(self, session: RobotSession) -> None:
         """A connection has ended; after a while without a new one the robot is lost."""

@@ -158,6 +158,7 @@ async def test_a_welcome_says_what_was_received_before(
     await first.leave()
     again = PlayedRobot(registry)
     assert (await again.greet(hello())).received == 1
+    await again.leave()
     rebooted = PlayedRobot(registry)
     assert (await rebooted.greet(hello(boot="b2"))).received == 0
     await sink.wait_until(lambda: [each.boot for each in sink.hellos] == ["b1", "b1", "b2"])
@@ -275,6 +276,24 @@ async def test_a_newer_connection_replaces_the_older_one(
     await newer.deliver(report(1))
     assert registry.connected("arm")
     assert sink.lost == []
+
+
+async def test_a_second_program_with_a_robots_name_is_refused_while_the_first_is_there(
+    registry: RobotRegistry, sink: RecordingSink, clock: FakeClock
+) -> None:
+    first, second = PlayedRobot(registry), PlayedRobot(registry)
+    await first.greet(hello(boot="b1"))
+    await second.say(hello(boot="b2"))
+    refusal = await second.hear()
+    assert isinstance(refusal, LinkError)
+    assert "another program is connected as the robot 'arm'" in refusal.detail
+    with pytest.raises(ChannelClosedError):
+        await second.hear()
+    assert (await first.deliver(report(1))).seq == 1
+    # Nothing comes of the first one any more.
+    clock.time_s += 3 * QUICK.heartbeat_s
+    await PlayedRobot(registry).greet(hello(boot="b2"))
+    await sink.wait_until(lambda: len(sink.hellos) == 2)
 
 
 async def test_a_robot_is_not_lost_while_a_newer_connection_is_being_made(
