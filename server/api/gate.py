@@ -1,5 +1,7 @@
 """The gate before every HTTP request: Host, Origin, token and the size of the body."""
 
+import asyncio
+
 from starlette.datastructures import MutableHeaders
 from starlette.exceptions import HTTPException
 from starlette.requests import HTTPConnection
@@ -70,12 +72,21 @@ def _declared_length(connection: HTTPConnection) -> int:
 
 
 def _limited(receive: Receive) -> Receive:
-    """A body without a declared length is counted as it comes."""
-    received = 0
+    """A body without a declared length is counted as it comes.
+
+    One that is still coming when the service stops is refused like anything else.
+    """
+    received, complete = 0, False
 
     async def limited() -> Message:
-        nonlocal received
-        message = await receive()
+        nonlocal received, complete
+        try:
+            message = await receive()
+        except asyncio.CancelledError:
+            if complete:
+                raise
+            raise HTTPException(503, "the service is shutting down") from None
+        complete = not message.get("more_body", False)
         received += len(message.get("body", b""))
         if received > MAX_BODY_BYTES:
             raise HTTPException(413, _too_large())

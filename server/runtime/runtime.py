@@ -72,6 +72,7 @@ class Runtime:
         self._tasks: dict[UUID, asyncio.Task[None]] = {}
         self._unreadable: set[UUID] = set()
         self._promised: dict[str, UUID] = {}
+        self._closing = False
         self._new_runs = NewRuns(trees, scenarios, worlds, utc_now, settings.limits)
         self._history = History(journal, scripts)
         journal.trouble.watch(self._journal_troubled)
@@ -100,7 +101,9 @@ class Runtime:
 
     async def close(self) -> None:
         """Stop without ending any run: they are taken up at the next start."""
-        self._journal.trouble.unwatch(self._journal_troubled)
+        if not self._closing:
+            self._closing = True
+            self._journal.trouble.unwatch(self._journal_troubled)
         for task in self._tasks.values():
             task.cancel()
         await asyncio.gather(*self._tasks.values(), return_exceptions=True)
@@ -114,6 +117,8 @@ class Runtime:
     async def start_run(self, request: RunRequest) -> RunView:
         """Begin a run. Raises `NotFoundError`, `InvalidError` or `ConflictError`."""
         started = await self._new_runs.make(request)
+        if self._closing:
+            raise ConflictError("the service is shutting down")
         if request.world == LIVE:
             self._check_robots(request.robots)
         with self._promise(started):
@@ -136,7 +141,9 @@ class Runtime:
 
         await self._journal.append(Entry(events=[started]), fold)
         state = self._states[started.run]
-        await self._take_up_or_fail(state)
+        # One that is journaled while the service stops is taken up at the next start.
+        if not self._closing:
+            await self._take_up_or_fail(state)
         return self.run(state.id)
 
     def _check_robots(self, robots: list[str]) -> None:

@@ -92,3 +92,13 @@ async def test_a_run_that_cannot_have_all_its_robots_keeps_none(
         assert failed.status is RunStatus.FAILED
         both = await service.runtime.start_run(request_of("one", "two"))
         assert both.status is RunStatus.RUNNING
+
+
+async def test_a_run_that_is_asked_for_while_the_service_stops_does_not_begin() -> None:
+    async with pretend_service(ONE_PART) as service:
+        connect(service, "duo")
+        starting = asyncio.create_task(service.runtime.start_run(request_of("duo")))
+        await service.runtime.close()
+        with pytest.raises(ConflictError, match="shutting down"):
+            await starting
+        assert service.journal.head == 0
