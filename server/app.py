@@ -34,6 +34,7 @@ from server.api.gate import Gate
 from server.api.parts import ObservedJournal, Parts, WorldList
 from server.api.problems import Problem, answer_errors_with_problems
 from server.documents import DocumentLibrary
+from server.log_secrets import hide_secrets
 from server.models import RobotModels
 from server.poses.feed import PoseSource
 from server.runtime.service import RunService
@@ -134,7 +135,7 @@ def described_app(lifespan: Lifespan | None = None) -> FastAPI:
 
 def serve_config(app: FastAPI, settings: Settings) -> uvicorn.Config:
     """How uvicorn serves the application."""
-    return uvicorn.Config(
+    config = uvicorn.Config(
         app,
         host=settings.host,
         port=settings.port,
@@ -146,6 +147,9 @@ def serve_config(app: FastAPI, settings: Settings) -> uvicorn.Config:
         timeout_graceful_shutdown=5,
         server_header=False,
     )
+    # After the configuration, which sets up uvicorn's loggers.
+    hide_secrets()
+    return config
 
 
 def drop_stuck_clients(listening: socket.socket) -> None:

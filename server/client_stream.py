@@ -106,6 +106,8 @@ class EventStream:
                         yield snapshot
                 elif message["type"] in ("result", "error"):
                     self._settle(message)
+                elif message["type"] == "trouble":
+                    continue  # Nothing follows from it: the service goes on by itself.
                 else:
                     # From the text: strict models take a list for a tuple in JSON only.
                     event: Event = any_event.validate_json(text)

@@ -77,11 +77,14 @@ async def _open(
         journal,
         time.monotonic,
         LinkTimes(heartbeat_s=settings.heartbeat_s, silence_s=settings.robot_hang_timeout_s),
+        settings.limits,
     )
     config_socket = listen(settings)
     url = f"http://{reachable_host(settings.host)}:{config_socket.getsockname()[1]}"
     adapters = load_plugins("mend.worlds")
-    library = build_library(journal, fixed_documents(given, settings.scenes), WorldChecks(adapters))
+    library = build_library(
+        journal, fixed_documents(given, settings.scenes), WorldChecks(adapters), settings.limits
+    )
     models = RobotModels(adapters.values())
     poses = PoseFeed(registry.show_poses, models.address, _pose_records(settings))
     worlds = SimulatedWorlds(
@@ -112,6 +115,7 @@ async def _open(
             max_helped_retries=settings.max_helped_retries,
             robot_lost_timeout_s=settings.robot_lost_timeout_s,
             claim_lease_s=settings.claim_lease_s,
+            limits=settings.limits,
         ),
         monotonic=time.monotonic,
         utc_now=lambda: datetime.now(UTC),

@@ -18,6 +18,7 @@ from server.documents import (
 )
 from server.errors import ConflictError, InvalidError, NotFoundError
 from server.journal.journal import Journal
+from server.limits import Limits
 
 Summarize = Callable[[str, bool, Mapping[str, Any] | None], DocumentSummary]
 """Makes the line about a document of its name, whether it is built in, and its definition."""
@@ -26,6 +27,7 @@ Summarize = Callable[[str, bool, Mapping[str, Any] | None], DocumentSummary]
 class JournaledDocuments:
     """A `DocumentLibrary` that keeps what is uploaded in the journal.
 
+    All that is uploaded has at most `most_chars` characters.
     `needs` are the kinds that a check looks up; `users` hold documents that may use these ones.
     """
 
@@ -35,6 +37,7 @@ class JournaledDocuments:
         journal: Journal,
         built_in: FixedDocuments,
         checker: DocumentChecker,
+        most_chars: int = Limits().uploaded_chars,
         *,
         needs: Iterable[DocumentKind] = (),
         users: "Sequence[JournaledDocuments]" = (),
@@ -44,6 +47,8 @@ class JournaledDocuments:
         self._journal = journal
         self._built_in = built_in
         self._checker = checker
+        self._most_chars = most_chars
+        self._saving = asyncio.Lock()
         self._needs = {kind, *needs}
         self._users = users
         self._summarize = summarize
@@ -109,7 +114,9 @@ class JournaledDocuments:
         new = name not in uploaded[self.kind]
         for users in () if new else self._users:
             await users.refuse_unfit(self.kind, name, text)
-        await self._journal.save_document(self.kind, name, text)
+        async with self._saving:
+            await self._refuse_too_much(name, text)
+            await self._journal.save_document(self.kind, name, text)
         definition = {**checked.definition, "name": name}
         kept = KeptDocument(
             name=name,
@@ -119,6 +126,16 @@ class JournaledDocuments:
             worlds=list(checked.worlds),
         )
         return kept, new
+
+    async def _refuse_too_much(self, name: str, text: str) -> None:
+        """Raises `ConflictError`."""
+        kept = await self._journal.documents(self.kind)
+        others = sum(len(each) for other, each in kept.items() if other != name)
+        if others + len(text) > self._most_chars:
+            raise ConflictError(
+                f"there is no room for the {SPOKEN[self.kind]} '{name}': all that are uploaded may "
+                f"have {self._most_chars} characters, and the others have {others}; delete some"
+            )
 
     async def delete(self, name: str) -> None:
         self._refuse_built_in(name)

@@ -17,6 +17,7 @@ from server.documents import (
 from server.errors import InvalidError, NotFoundError
 from server.journal.journal import Journal
 from server.journaled_documents import JournaledDocuments
+from server.limits import Limits
 from server.runtime.ports import LoadedTree
 from server.scene_checks import WorldChecks
 from tasks.library import NotInLibraryError
@@ -61,26 +62,38 @@ class Library:
 
 
 def build_library(
-    journal: Journal, fixed: Mapping[DocumentKind, FixedDocuments], worlds: WorldChecks
+    journal: Journal,
+    fixed: Mapping[DocumentKind, FixedDocuments],
+    worlds: WorldChecks,
+    limits: Limits | None = None,
 ) -> Library:
     """The documents that are fixed, and those that a journal keeps."""
+    most = (limits or Limits()).uploaded_chars
     tree, scene, scenario = DocumentKind.TREE, DocumentKind.SCENE, DocumentKind.SCENARIO
     scenarios = JournaledDocuments(
         scenario,
         journal,
         fixed[scenario],
         ScenarioChecker(fixed, worlds),
+        most,
         needs=(tree, scene),
         summarize=_about_scenario,
     )
     trees = JournaledDocuments(
-        tree, journal, fixed[tree], TreeChecker(fixed, worlds), needs=(scene,), users=[scenarios]
+        tree,
+        journal,
+        fixed[tree],
+        TreeChecker(fixed, worlds),
+        most,
+        needs=(scene,),
+        users=[scenarios],
     )
     scenes = JournaledDocuments(
         scene,
         journal,
         fixed[scene],
         SceneFileChecker(fixed, worlds),
+        most,
         users=[trees, scenarios],
         summarize=_about_scene,
     )

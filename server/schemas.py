@@ -192,6 +192,7 @@ def members_of(union: Any) -> Models:
 
 TO_HELPERS: Models = (
     helper_messages.SnapshotMessage,
+    helper_messages.TroubleMessage,
     helper_messages.Result,
     helper_messages.Error,
     *members_of(AnyEvent),

@@ -16,6 +16,7 @@ from pydantic_settings import (
 )
 
 from server.dialogues.mail import MailSettings
+from server.limits import Limits
 from server.speech.voice import VoiceChoice
 
 Seconds = Annotated[float, Field(gt=0, le=86_400, allow_inf_nan=False)]
@@ -81,6 +82,8 @@ class Settings(BaseSettings):
     """How many events may wait for one slow client before it is cut off."""
     record_poses: bool = True
     """Whether to record beside the journal where everything was, for replay."""
+    limits: Limits = Limits()
+    """How much of everything there may be."""
     speech_voice: VoiceChoice = "auto"
     """The robot's voice; `auto` takes piper where it has a voice file, flite, or espeak-ng."""
     speech_flite_voice: Annotated[str, Field(pattern=r"^[A-Za-z0-9_]{1,64}$")] = "slt"

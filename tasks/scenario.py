@@ -20,7 +20,7 @@ class Trigger(StrictModel):
     object: Name
     step: Annotated[int, Field(ge=1, le=64)]
     fraction: Fraction = 0.0
-    attempt: Annotated[int, Field(ge=1)] = 1
+    attempt: Annotated[int, Field(ge=1, le=1_000_000)] = 1
 
 
 class ScriptedIntervention(StrictModel):

@@ -18,7 +18,35 @@ from tasks.intervention import Intervention
 
 PROTOCOL_VERSION = 1
 
-Identifier = Annotated[str, Field(min_length=1, max_length=128)]
+Identifier = Annotated[
+    str, Field(min_length=1, max_length=128, pattern=r"^[^\x00-\x1f\x7f-\x9f\u2028\u2029]*$")
+]
+"""A name without control characters: it is written to logs and terminals as it is."""
+
+Word = Annotated[str, Field(max_length=128)]
+"""A name or an id."""
+
+Sentence = Annotated[str, Field(max_length=4000)]
+"""What people are told."""
+
+MOST = 10_000
+"""So many objects, results or names are the most that one message tells of."""
+
+Time = Annotated[float, Field(ge=-1e12, le=1e12)]
+"""Seconds of the robot's clock; any zero, that of the calendar as well."""
+
+Span = Annotated[float, Field(ge=0, le=1e9)]
+"""How long something lasts, in seconds."""
+
+Coordinate = Annotated[float, Field(ge=-1e6, le=1e6)]
+"""Metres, radians, or what has no unit."""
+
+Pixels = Annotated[float, Field(ge=-1e9, le=1e9)]
+
+Count = Annotated[int, Field(ge=0, le=2**31 - 1)]
+
+Seq = Annotated[int, Field(le=2**53 - 1)]
+"""The number of a report: any reader of JSON can tell it from the next one."""
 
 
 def _require_json(value: dict[str, Any]) -> dict[str, Any]:
@@ -39,28 +67,28 @@ class Message(BaseModel):
 class Position(Message):
     """A point in the robot's base frame."""
 
-    x: float
-    y: float
-    z: float
+    x: Coordinate
+    y: Coordinate
+    z: Coordinate
 
 
 class Sighting(Message):
     """Where the head camera saw an object; `yaw` of its long axis; `time` of the picture."""
 
-    x: float
-    y: float
-    z: float
-    yaw: float
-    time: float
+    x: Coordinate
+    y: Coordinate
+    z: Coordinate
+    yaw: Coordinate
+    time: Time
 
 
 class ReachLimits(Message):
     """The graspable range in the plane: distances in metres from (x, y)."""
 
-    x: float
-    y: float
-    min_m: float
-    max_m: float
+    x: Coordinate
+    y: Coordinate
+    min_m: Coordinate
+    max_m: Coordinate
 
 
 class Detection(Message):
@@ -74,21 +102,21 @@ class Detection(Message):
     sensed.
     """
 
-    camera: str
-    size_px: tuple[int, int] | None = None
-    center: tuple[float, float] | None = None
-    expected: tuple[float, float] | None = None
-    tolerance_px: float | None = None
-    area_px: int = 0
+    camera: Word
+    size_px: tuple[Count, Count] | None = None
+    center: tuple[Pixels, Pixels] | None = None
+    expected: tuple[Pixels, Pixels] | None = None
+    tolerance_px: Pixels | None = None
+    area_px: Count = 0
     felt: bool = False
-    part: str | None = None
+    part: Word | None = None
     probability: Annotated[float, Field(ge=0.0, le=1.0)] | None = None
-    explanation: str = ""
+    explanation: Sentence = ""
 
 
-Shown = Annotated[float, Field(ge=-1e6, le=1e6)]
-
-PoseValues = tuple[Shown, Shown, Shown, Shown, Shown, Shown, Shown]
+PoseValues = tuple[
+    Coordinate, Coordinate, Coordinate, Coordinate, Coordinate, Coordinate, Coordinate
+]
 """x, y, z (m), qx, qy, qz, qw."""
 
 _IDENTITY: PoseValues = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
@@ -103,9 +131,9 @@ class ShownObject(Message):
 
     name: Identifier
     kind: Literal["object", "obstacle"] = "object"
-    size: tuple[float, float, float]
-    knob: tuple[float, float, float] | None = None
-    color: tuple[float, float, float] | None = None
+    size: tuple[Coordinate, Coordinate, Coordinate]
+    knob: tuple[Coordinate, Coordinate, Coordinate] | None = None
+    color: tuple[Coordinate, Coordinate, Coordinate] | None = None
 
 
 class PoseLayout(Message):
@@ -131,9 +159,9 @@ class ShownPose(Message):
 class ActiveExecution(Message):
     """What a robot was doing when it said hello."""
 
-    execution: str
+    execution: Word
     state: Literal["running", "holding", "retreating"]
-    step: int
+    step: Count
 
 
 # --- Reports: robot to service, durable -------------------------------------------------------
@@ -143,18 +171,18 @@ class StepStarted(Message):
     """A behavior's step has begun; steps count from 1."""
 
     type: Literal["step_started"] = "step_started"
-    execution: str
-    step: int
-    name: str
+    execution: Word
+    step: Count
+    name: Word
 
 
 class IssueDetected(Message):
     """A monitor detected a fault. `interrupts`: the robot stops the behavior by itself."""
 
     type: Literal["issue"] = "issue"
-    execution: str
-    issue: str
-    step: int
+    execution: Word
+    issue: Word
+    step: Count
     interrupts: bool
     detection: Detection | None = None
     jpeg: str | None = None
@@ -164,7 +192,7 @@ class IssueDetected(Message):
 class ClipPicture(Message):
     """One picture of a clip, a base64 JPEG; `before_s`: how long before the fault was detected."""
 
-    before_s: Annotated[float, Field(ge=0)]
+    before_s: Span
     jpeg: str
 
 
@@ -172,8 +200,8 @@ class ClipTaken(Message):
     """What the forearm camera saw before an issue, oldest first; sent after the issue itself."""
 
     type: Literal["clip"] = "clip"
-    execution: str
-    issue: str
+    execution: Word
+    issue: Word
     pictures: Annotated[list[ClipPicture], Field(max_length=64)]
 
 
@@ -181,7 +209,7 @@ class Holding(Message):
     """The robot has stopped and holds: after an interrupt, or of itself after a fault."""
 
     type: Literal["holding"] = "holding"
-    execution: str | None = None
+    execution: Word | None = None
     at: Literal["neutral", "in_place", "hand_over"]
 
 
@@ -189,23 +217,23 @@ class Resumed(Message):
     """The behavior goes on, at `step`."""
 
     type: Literal["resumed"] = "resumed"
-    execution: str
-    step: int
+    execution: Word
+    step: Count
 
 
 class Finished(Message):
     """The behavior is through all its steps. `found_in_place`: there was nothing left to do."""
 
     type: Literal["finished"] = "finished"
-    execution: str
+    execution: Word
     found_in_place: bool = False
 
 
 class FinishedResult(Message):
     """What a finished leaf left behind: `object` rests at `place`."""
 
-    object: str
-    place: str
+    object: Word
+    place: Word
 
 
 class Looked(Message):
@@ -220,21 +248,21 @@ class Looked(Message):
     """
 
     type: Literal["looked"] = "looked"
-    command: str
-    objects: dict[str, Sighting]
+    command: Word
+    objects: Annotated[dict[Word, Sighting], Field(max_length=MOST)]
     gripper: Position
     fulfilled: bool | None = None
-    there: list[FinishedResult] = []
-    gone: list[FinishedResult] = []
-    held: str | None = None
-    blind: str | None = None
+    there: Annotated[list[FinishedResult], Field(max_length=MOST)] = []
+    gone: Annotated[list[FinishedResult], Field(max_length=MOST)] = []
+    held: Word | None = None
+    blind: Sentence | None = None
 
 
 class Held(Message):
     """The clock has reached what a `hold` command asked for."""
 
     type: Literal["held"] = "held"
-    command: str
+    command: Word
 
 
 class Intervened(Message):
@@ -245,18 +273,18 @@ class Intervened(Message):
 
     type: Literal["intervened"] = "intervened"
     intervention: Intervention
-    by: str
+    by: Word
     ok: bool = True
-    detail: str = ""
-    command: str | None = None
+    detail: Sentence = ""
+    command: Word | None = None
 
 
 class Rejected(Message):
     """The robot cannot carry out a command."""
 
     type: Literal["rejected"] = "rejected"
-    command: str
-    reason: str
+    command: Word
+    reason: Sentence
 
 
 ReportBody = Annotated[
@@ -280,10 +308,10 @@ ReportBody = Annotated[
 class Location(Message):
     """A pose on a surface; `z` None means on the table."""
 
-    x: float
-    y: float
-    z: float | None = None
-    yaw: float = 0.0
+    x: Coordinate
+    y: Coordinate
+    z: Coordinate | None = None
+    yaw: Coordinate = 0.0
 
 
 WasDone = Literal["gone", "there"]
@@ -408,15 +436,15 @@ class Hello(Message):
     """
 
     type: Literal["hello"] = "hello"
-    protocol: int
+    protocol: Count
     robot: Identifier
     boot: Identifier
-    behaviors: list[str]
-    cameras: list[str]
+    behaviors: Annotated[list[Word], Field(max_length=MOST)]
+    cameras: Annotated[list[Word], Field(max_length=MOST)]
     reach: ReachLimits
-    suitability: dict[str, float] = {}
+    suitability: dict[Word, Annotated[float, Field(ge=0, le=1)]] = {}
     executing: ActiveExecution | None = None
-    time: float
+    time: Time
     simulated: bool = False
     shows: PoseLayout | None = None
 
@@ -431,8 +459,8 @@ class Report(Message):
 
     type: Literal["report"] = "report"
     boot: Identifier | None = None
-    seq: Annotated[int, Field(ge=1)]
-    time: float
+    seq: Annotated[Seq, Field(ge=1)]
+    time: Time
     body: ReportBody
     world: JsonObject | None = None
 
@@ -441,7 +469,7 @@ class Heartbeat(Message):
     """Sent at least every `heartbeat_s` of the welcome, in wall time; not durable."""
 
     type: Literal["heartbeat"] = "heartbeat"
-    time: float
+    time: Time
 
 
 class Taken(Message):
@@ -455,8 +483,8 @@ class Picture(Message):
     """A camera's picture, base64 JPEG; not durable. `command` asked for it."""
 
     type: Literal["picture"] = "picture"
-    command: str
-    camera: str
+    command: Word
+    camera: Word
     jpeg: str
 
 
@@ -468,11 +496,11 @@ class Poses(Message):
     """
 
     type: Literal["poses"] = "poses"
-    time: float
-    joints: list[Shown] = []
+    time: Time
+    joints: list[Coordinate] = []
     base: PoseValues = _IDENTITY
     tool: PoseValues
-    opening_m: Shown
+    opening_m: Coordinate
     objects: list[ShownPose] = []
 
 
@@ -486,7 +514,7 @@ class Welcome(Message):
 
     type: Literal["welcome"] = "welcome"
     protocol: int
-    received: int
+    received: Seq
     heartbeat_s: float
 
 
@@ -495,7 +523,7 @@ class Ack(Message):
 
     type: Literal["ack"] = "ack"
     boot: Identifier | None = None
-    seq: int
+    seq: Seq
 
 
 class Command(Message):

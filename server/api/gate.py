@@ -1,5 +1,8 @@
 """The gate before every HTTP request: Host, Origin, token and the size of the body."""
 
+import asyncio
+
+from starlette.datastructures import MutableHeaders
 from starlette.exceptions import HTTPException
 from starlette.requests import HTTPConnection
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
@@ -26,11 +29,12 @@ class Gate:
             return
         connection = HTTPConnection(scope)
         refusal = self._refusal(scope, connection)
+        guarded = _guarded(send, private=scope["path"].startswith(PROTECTED))
         if refusal is None:
-            await self._app(scope, _limited(receive), send)
+            await self._app(scope, _limited(receive), guarded)
             return
         headers = {"WWW-Authenticate": "Bearer"} if refusal.status == 401 else {}
-        await problem_response(refusal, headers)(scope, receive, send)
+        await problem_response(refusal, headers)(scope, receive, guarded)
 
     def _refusal(self, scope: Scope, connection: HTTPConnection) -> Problem | None:
         path: str = scope["path"]
@@ -48,18 +52,41 @@ class Gate:
         return None
 
 
+def _guarded(send: Send, *, private: bool) -> Send:
+    """Nothing is taken for another type than it says, and what is `private` is kept by nobody."""
+
+    async def guarded(message: Message) -> None:
+        if message["type"] == "http.response.start":
+            headers = MutableHeaders(scope=message)
+            headers.setdefault("X-Content-Type-Options", "nosniff")
+            if private:
+                headers.setdefault("Cache-Control", "no-store")
+        await send(message)
+
+    return guarded
+
+
 def _declared_length(connection: HTTPConnection) -> int:
     declared = connection.headers.get("content-length", "0")
     return int(declared) if declared.isascii() and declared.isdigit() else 0
 
 
 def _limited(receive: Receive) -> Receive:
-    """A body without a declared length is counted as it comes."""
-    received = 0
+    """A body without a declared length is counted as it comes.
+
+    One that is still coming when the service stops is refused like anything else.
+    """
+    received, complete = 0, False
 
     async def limited() -> Message:
-        nonlocal received
-        message = await receive()
+        nonlocal received, complete
+        try:
+            message = await receive()
+        except asyncio.CancelledError:
+            if complete:
+                raise
+            raise HTTPException(503, "the service is shutting down") from None
+        complete = not message.get("more_body", False)
         received += len(message.get("body", b""))
         if received > MAX_BODY_BYTES:
             raise HTTPException(413, _too_large())

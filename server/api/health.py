@@ -7,6 +7,7 @@ from pydantic import BaseModel
 
 from server.api.parts import WithParts
 from server.api.problems import documented
+from server.journal.journal import JournalWriteError
 
 router = APIRouter(tags=["health"])
 
@@ -25,6 +26,8 @@ async def healthz() -> Health:
 
 @router.get("/readyz", operation_id="readyz", responses=documented(421, 503))
 async def readyz(parts: WithParts) -> Health:
-    """The journal can be read, so runs can be started and watched."""
+    """The journal can be read and written, so runs can be started and watched."""
+    if parts.journal.trouble.reason is not None:
+        raise JournalWriteError(parts.journal.trouble.reason)
     await parts.journal.read_records(parts.journal.head, 1)
     return Health()

@@ -96,6 +96,13 @@ class Result(ServerMessage):
     result: dict[str, Any] = {}
 
 
+class TroubleMessage(ServerMessage):
+    """Why the journal cannot be written, so that no run goes on; null once it can be again."""
+
+    type: Literal["trouble"] = "trouble"
+    reason: str | None
+
+
 class Error(ServerMessage):
     """It was not done. `answered_by`: who answered first."""
 

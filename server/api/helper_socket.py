@@ -1,5 +1,6 @@
 """The helpers' WebSocket: a snapshot, then every event after it; answers and claims come back."""
 
+import asyncio
 from typing import Annotated, Any
 
 from fastapi import APIRouter
@@ -23,6 +24,7 @@ from server.api.helper_messages import (
     Release,
     Result,
     SnapshotMessage,
+    TroubleMessage,
     client_message,
 )
 from server.api.parts import MAX_SEQ
@@ -56,7 +58,11 @@ class HelperSocket(HelperConnection[EventsQuery]):
     async def _serve(self, query: EventsQuery) -> None:
         """Send a snapshot, then events while taking messages, until one of the two ends."""
         seq = await self._send_snapshot(query.after)
-        await until_one_ends(self._send_events(seq), self._receive_messages(query.helper))
+        await until_one_ends(
+            self._send_events(seq),
+            self._send_trouble(),
+            self._receive_messages(query.helper),
+        )
 
     # --- to the helper ------------------------------------------------------------------------
 
@@ -72,6 +78,19 @@ class HelperSocket(HelperConnection[EventsQuery]):
                 await self._websocket.close(GOING_AWAY, "the service stops")
             else:
                 await self._websocket.close(GOING_AWAY, "the service stops")
+
+    async def _send_trouble(self) -> None:
+        """Tell at once if the journal cannot be written, and of every change of that."""
+        trouble = self._parts.journal.trouble
+        news: asyncio.Queue[str | None] = asyncio.Queue()
+        trouble.watch(news.put_nowait)
+        try:
+            if trouble.reason is not None:
+                await self._send(TroubleMessage(reason=trouble.reason))
+            while True:
+                await self._send(TroubleMessage(reason=await news.get()))
+        finally:
+            trouble.unwatch(news.put_nowait)
 
     async def _send_snapshot(self, after: int | None) -> int:
         head = self._parts.journal.head

@@ -50,6 +50,11 @@ class ServiceCollector(Collector):
         yield CounterMetricFamily(
             "mend_journal_failures", "Commits that failed.", value=commits.failures
         )
+        yield GaugeMetricFamily(
+            "mend_journal_writable",
+            "Whether the journal can be written.",
+            value=journal.trouble.reason is None,
+        )
         yield HistogramMetricFamily(
             "mend_journal_commit_seconds",
             "How long a durable commit took.",

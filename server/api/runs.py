@@ -25,7 +25,7 @@ RUN_EXAMPLES = [
 ]
 STEAL_EXAMPLE = [{"act": "steal", "object": "pink_bar"}]
 
-CHANGES = documented(401, 403, 404, 409, 421, 422)
+CHANGES = documented(401, 403, 404, 409, 421, 422, 503)
 
 
 @router.post(
@@ -72,10 +72,20 @@ async def resume_run(run: RunId, parts: WithParts) -> RunView:
     return await parts.runs.resume(run)
 
 
-@router.post("/{run}/abort", operation_id="abort_run", responses=CHANGES)
-async def abort_run(run: RunId, parts: WithParts) -> RunView:
+@router.post(
+    "/{run}/abort",
+    operation_id="abort_run",
+    responses={
+        202: {"model": RunView, "description": "Its robots stop; it has ended once that is kept."},
+        **CHANGES,
+    },
+)
+async def abort_run(run: RunId, parts: WithParts, response: Response) -> RunView:
     """End a run for good."""
-    return await parts.runs.abort(run)
+    view = await parts.runs.abort(run)
+    if not view.status.ended:
+        response.status_code = 202
+    return view
 
 
 @router.get(

@@ -10,7 +10,9 @@ from robots.localization.scan import InvalidScanError
 from robots.vision.color_model import ColorModelError
 from server.errors import InvalidError, ServiceError
 from server.journal.file_lock import JournalLockedError
+from server.journal.journal import JournalOpenError
 from server.journal.migrations import JournalSchemaError
+from server.journal.reader import UnreadableEventError
 from server.journal.upgrades import UnknownEventVersionError
 from server.settings import WrongSettingsError
 from sim.world import WorldUnavailableError
@@ -30,6 +32,7 @@ KNOWN_ERRORS = (
     InvalidFileError,
     InvalidScanError,
     JournalLockedError,
+    JournalOpenError,
     JournalSchemaError,
     LogError,
     NotInLibraryError,
@@ -37,6 +40,7 @@ KNOWN_ERRORS = (
     PluginError,
     ServiceError,
     UnknownEventVersionError,
+    UnreadableEventError,
     VectorMapError,
     WorldUnavailableError,
     WrongSettingsError,

@@ -4,6 +4,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from uuid import uuid4
 
+from server.journal.file_mode import OWNERS_FOLDER
 from server.settings import Settings, load_settings
 
 
@@ -18,7 +19,7 @@ def known_journals() -> list[Path]:
 def new_run_journal(settings: Settings, tree: str) -> Path:
     """A journal that is not there yet, for one run of a tree; its folder is made."""
     folder = _folder(settings)
-    folder.mkdir(parents=True, exist_ok=True)
+    folder.mkdir(mode=OWNERS_FOLDER, parents=True, exist_ok=True)
     return folder / f"{datetime.now(UTC):%Y%m%dT%H%M%SZ}-{tree}-{uuid4().hex[:6]}.sqlite"
 
 

@@ -9,6 +9,7 @@ from rich.table import Table
 from rich.text import Text
 
 from server.journal.events import Event
+from server.plain_text import plain
 from server.transcript import Line, Tone, Transcript
 
 STYLES: dict[Tone, str] = {
@@ -84,17 +85,17 @@ class LiveTranscript:
         style = STYLES[line.tone]
         text = Text.assemble(
             (f"{line.time_s:{TIME_WIDTH}.1f}  ", "dim"),
-            (line.opening, style),
-            (line.text, style),
+            (plain(line.opening), style),
+            (plain(line.text), style),
         )
         self._thread = line.thread
         self._column = len(text)
         self._print(text, end="" if line.thread else "\n")
 
     def _join(self, line: Line) -> None:
-        text = f" · {line.text}"
+        text = f" · {plain(line.text)}"
         if self._console.is_terminal and self._column + len(text) >= self._console.width:
-            text = f"\n{' ' * INDENT}{line.text}"
+            text = f"\n{' ' * INDENT}{plain(line.text)}"
             self._column = 0
         self._column += len(text)
         self._print(Text(text, STYLES[line.tone]), end="")

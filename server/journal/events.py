@@ -21,7 +21,8 @@ from tasks.resolution import Resolution
 class EventModel(BaseModel):
     """Base of events and their parts."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    # The journal's writer looks for these constants; a null would look like no number at all.
+    model_config = ConfigDict(extra="forbid", frozen=True, ser_json_inf_nan="constants")
 
 
 class Event(EventModel):

@@ -3,6 +3,8 @@
 import fcntl
 from pathlib import Path
 
+from server.journal.file_mode import keep_to_owner
+
 
 class JournalLockedError(Exception):
     """Another process has the journal open."""
@@ -13,6 +15,7 @@ class FileLock:
 
     def __init__(self, journal: Path) -> None:
         path = journal.with_name(journal.name + ".lock")
+        keep_to_owner(path)
         self._file = path.open("w")
         try:
             fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)

@@ -7,6 +7,7 @@ from uuid import UUID
 
 from server.journal.events import Event
 from server.journal.subscriptions import DEFAULT_CAPACITY, Record, Subscription
+from server.journal.trouble import Trouble
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,15 +45,22 @@ class Journal(Protocol):
         """The `seq` of the last committed event; 0 when there is none."""
         ...
 
-    async def append(self, entry: Entry, fold: Fold | None = None) -> list[Event]:
+    @property
+    def trouble(self) -> Trouble:
+        """Whether it can be written."""
+        ...
+
+    async def append(
+        self, entry: Entry, fold: Fold | None = None, *, patient: bool = False
+    ) -> list[Event]:
         """Commit an entry and return its events with their numbers, which have no gaps.
 
         `fold` is called with them once they are committed, in the same step in which they are
         published: whoever hears of an event finds the state already changed. It must not raise.
         Published to subscribers in the order of `seq`, after the commit. Raises
         `JournalClosedError` after `close`, `DuplicateReceiptError` if the receipt is there already
-        (nothing of the entry is then committed), `JournalWriteError` if it could not be written.
-        A cancelled caller does not take its entry back.
+        (nothing of the entry is then committed), `JournalWriteError` if it could not be written;
+        who is `patient` waits until it can be. A cancelled caller does not take its entry back.
         """
         ...
 
@@ -97,6 +105,10 @@ class Journal(Protocol):
 
 class JournalClosedError(Exception):
     """The journal no longer takes entries."""
+
+
+class JournalOpenError(Exception):
+    """The journal's file cannot be opened, or not be written."""
 
 
 class JournalWriteError(Exception):

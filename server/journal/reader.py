@@ -7,9 +7,15 @@ from types import TracebackType
 from typing import Self
 from uuid import UUID
 
+from pydantic import ValidationError
+
 from server.journal.events import Event, any_event
 from server.journal.migrations import MIGRATIONS, JournalSchemaError
 from server.journal.upgrades import upgrade_text
+
+
+class UnreadableEventError(Exception):
+    """An event is not what any Mend writes; the message says which."""
 
 
 class JournalReader:
@@ -22,6 +28,7 @@ class JournalReader:
     def __init__(self, path: Path) -> None:
         if not path.is_file():
             raise FileNotFoundError(2, "there is no such journal", str(path))
+        self._path = path
         self._connection = sqlite3.connect(f"{path.resolve().as_uri()}?mode=ro", uri=True)
         try:
             self._check_schema(path)
@@ -48,11 +55,25 @@ class JournalReader:
         return [UUID(run) for (run,) in rows]
 
     def events(self, run: UUID) -> list[Event]:
-        """Every event of a run, in order. Raises `UnknownEventVersionError`."""
+        """Every event of a run, in order.
+
+        Raises `UnknownEventVersionError` or `UnreadableEventError`.
+        """
         rows = self._connection.execute(
-            "SELECT body, version FROM events WHERE run = ? ORDER BY seq", (str(run),)
+            "SELECT seq, body, version FROM events WHERE run = ? ORDER BY seq", (str(run),)
         )
-        return [any_event.validate_json(upgrade_text(body, version)) for body, version in rows]
+        return [self._event(seq, upgrade_text(body, version)) for seq, body, version in rows]
+
+    def _event(self, seq: int, text: str) -> Event:
+        try:
+            event: Event = any_event.validate_json(text)
+        except ValidationError as error:
+            first = error.errors(include_url=False, include_input=False, include_context=False)[0]
+            where = ".".join(str(each) for each in first["loc"])
+            raise UnreadableEventError(
+                f"event {seq} of '{self._path}' cannot be read: {where}: {first['msg']}"
+            ) from error
+        return event
 
     def pictures(self, pictures: Iterable[UUID]) -> dict[UUID, bytes]:
         """Those of the pictures (JPEG) that the journal has."""

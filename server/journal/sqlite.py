@@ -6,23 +6,38 @@ import sqlite3
 import threading
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, NoReturn, TypeVar
 from uuid import UUID
 
 from server.journal.events import Event, any_event
 from server.journal.file_lock import FileLock
-from server.journal.journal import DuplicateReceiptError, Entry, Fold, JournalClosedError, Receipt
+from server.journal.file_mode import OWNERS_FOLDER, keep_to_owner
+from server.journal.journal import (
+    DuplicateReceiptError,
+    Entry,
+    Fold,
+    JournalClosedError,
+    JournalOpenError,
+    JournalWriteError,
+    Receipt,
+)
 from server.journal.migrations import migrate
 from server.journal.subscriptions import DEFAULT_CAPACITY, Record, Subscribers, Subscription
+from server.journal.trouble import Sleep, Trouble
 from server.journal.upgrades import current_version, upgrade_text
 from server.journal.writer import CommitStatistics, Done, GroupCommitWriter
 
 T = TypeVar("T")
 
 IN_MEMORY = ":memory:"
+
+PROBE = "probe"
+PROBE_BYTES = 64 * 1024
+"""Room for so much is room for most of what waits to be written."""
 
 INSERT_EVENT = "INSERT INTO events (seq, run, type, time, version, body) VALUES (?, ?, ?, ?, ?, ?)"
 
@@ -40,14 +55,19 @@ class SqliteJournal:
     """A journal in one file, or in memory for tests and runs that nobody needs afterwards.
 
     Implements `server.journal.journal.Journal`. Raises `JournalLockedError` when another process
-    has the file, `JournalSchemaError` when it cannot be read. Belongs to one event loop at a time.
+    has the file, `JournalSchemaError` when it is no journal that can be read, `JournalOpenError`
+    when the file cannot be opened or written. Only its owner can read the file. Belongs to one
+    event loop at a time.
+    `sleep` is what passes between two tries to write where that is not possible.
     """
 
-    def __init__(self, path: Path | str, *, busy_timeout_s: float = 5.0) -> None:
+    def __init__(
+        self, path: Path | str, *, busy_timeout_s: float = 5.0, sleep: Sleep = asyncio.sleep
+    ) -> None:
         self._lock: FileLock | None = None
         if str(path) != IN_MEMORY:
             path = Path(path)
-            path.parent.mkdir(parents=True, exist_ok=True)
+            path.parent.mkdir(mode=OWNERS_FOLDER, parents=True, exist_ok=True)
             self._lock = FileLock(path)
         try:
             self._open(str(path), busy_timeout_s)
@@ -63,10 +83,21 @@ class SqliteJournal:
             self._write_lock,
             on_begin=self._begin,
             on_rollback=self._roll_back,
-            on_commit=self._publish,
+            on_commit=self._committed,
+            on_failure=lambda reason: self._trouble.began(reason),
         )
+        self._trouble = Trouble(self._probe, sleep)
 
     def _open(self, path: str, busy_timeout_s: float) -> None:
+        try:
+            if path != IN_MEMORY:
+                keep_to_owner(Path(path))
+            self._connect(path, busy_timeout_s)
+        except (sqlite3.OperationalError, OSError) as error:
+            why = error.strerror if isinstance(error, OSError) else str(error)
+            raise JournalOpenError(f"the journal '{path}' cannot be opened: {why}") from error
+
+    def _connect(self, path: str, busy_timeout_s: float) -> None:
         connect = partial(
             sqlite3.connect, path, timeout=busy_timeout_s, isolation_level=None,
             check_same_thread=False,
@@ -96,15 +127,28 @@ class SqliteJournal:
     def subscribers(self) -> Subscribers:
         return self._subscribers
 
+    @property
+    def trouble(self) -> Trouble:
+        return self._trouble
+
     def commit_statistics(self) -> CommitStatistics:
         return self._writer.statistics()
 
     # --- writing ------------------------------------------------------------------------------
 
-    async def append(self, entry: Entry, fold: Fold | None = None) -> list[Event]:
+    async def append(
+        self, entry: Entry, fold: Fold | None = None, *, patient: bool = False
+    ) -> list[Event]:
         work = partial(self._write_entry, entry, fold)
-        committed: _Committed = await self._writer.submit(work)
-        return committed.events
+        while True:
+            try:
+                committed: _Committed = await self._writer.submit(work)
+            except JournalWriteError:
+                if not patient:
+                    raise
+                await self._trouble.over()
+            else:
+                return committed.events
 
     async def save_document(self, kind: str, name: str, text: str) -> None:
         await self._writer.submit(
@@ -125,6 +169,12 @@ class SqliteJournal:
             )
         )
         return deleted > 0
+
+    async def _probe(self) -> None:
+        """Try to write something that needs room, and take it away again."""
+        with suppress(JournalWriteError, JournalClosedError):
+            await self._writer.submit(_write_probe)
+            await self._writer.submit(_delete_probe)
 
     def _write_entry(
         self, entry: Entry, fold: Fold | None, connection: sqlite3.Connection
@@ -161,7 +211,7 @@ class SqliteJournal:
             event.model_copy(update={"seq": seq}) for seq, event in enumerate(events, self._next)
         ]
         return _Committed(
-            numbered, [Record(event.seq, event.model_dump_json()) for event in numbered], fold
+            numbered, [Record(event.seq, _text_of(event)) for event in numbered], fold
         )
 
     def _begin(self) -> None:
@@ -169,6 +219,10 @@ class SqliteJournal:
 
     def _roll_back(self) -> None:
         self._next = self._batch_start
+
+    def _committed(self, done: list[Done]) -> None:
+        self._publish(done)
+        self._trouble.ended(probed=all(each.result == PROBE for each in done))
 
     def _publish(self, done: list[Done]) -> None:
         entries = [each.result for each in done if isinstance(each.result, _Committed)]
@@ -239,6 +293,7 @@ class SqliteJournal:
         if self._closed:
             return
         self._closed = True
+        self._trouble.close()
         self._writer.close()
         self._subscribers.close()
         self._readers.shutdown()
@@ -251,9 +306,34 @@ class SqliteJournal:
             self._lock.release()
 
 
+def _write_probe(connection: sqlite3.Connection) -> str:
+    connection.execute(
+        "INSERT OR REPLACE INTO pictures (id, jpeg) VALUES (?, zeroblob(?))", (PROBE, PROBE_BYTES)
+    )
+    return PROBE
+
+
+def _delete_probe(connection: sqlite3.Connection) -> str:
+    connection.execute("DELETE FROM pictures WHERE id = ?", (PROBE,))
+    return PROBE
+
+
 def _type(event: Event) -> str:
     """The event's discriminator, which every event type declares for itself."""
     return str(vars(event)["type"])
+
+
+def _text_of(event: Event) -> str:
+    """An event as JSON. Raises `ValueError` for a number that JSON does not have."""
+    text = event.model_dump_json()
+    # The words may also stand in a string, which is why they are looked for before it is read.
+    if "NaN" in text or "Infinity" in text:
+        json.loads(text, parse_constant=partial(_refuse_number, event))
+    return text
+
+
+def _refuse_number(event: Event, number: str) -> NoReturn:
+    raise ValueError(f"an event '{_type(event)}' has a number that is none ({number})")
 
 
 def _refuse_duplicate(receipt: Receipt, connection: sqlite3.Connection) -> None:

@@ -41,8 +41,9 @@ class CommitStatistics:
 class GroupCommitWriter:
     """Runs work in one thread on one connection, as many pieces per transaction as are waiting.
 
-    `on_begin` and `on_rollback` are called in the writer's thread, `on_commit` with what was
-    committed in the event loop of those who wait, in the order of the commits.
+    `on_begin` and `on_rollback` are called in the writer's thread. In the event loop of those who
+    wait, in the order of the commits, `on_commit` is called with what was committed, and
+    `on_failure` with why nothing could be.
     """
 
     def __init__(
@@ -53,12 +54,14 @@ class GroupCommitWriter:
         on_begin: Callable[[], None],
         on_rollback: Callable[[], None],
         on_commit: Callable[[list[Done]], None],
+        on_failure: Callable[[str], None],
     ) -> None:
         self._connection = connection
         self._lock = lock
         self._on_begin = on_begin
         self._on_rollback = on_rollback
         self._on_commit = on_commit
+        self._on_failure = on_failure
         self._waiting: queue.SimpleQueue[tuple[Work, asyncio.Future[Any]] | None] = (
             queue.SimpleQueue()
         )
@@ -116,6 +119,7 @@ class GroupCommitWriter:
         began = time.perf_counter()
         done: list[Done] = []
         refused: list[tuple[asyncio.Future[Any], Exception]] = []
+        failure: JournalWriteError | None = None
         try:
             with self._lock:
                 self._on_begin()
@@ -136,7 +140,7 @@ class GroupCommitWriter:
             done = []
         else:
             self._measure(time.perf_counter() - began)
-        self._deliver(batch[0][1].get_loop(), done, refused)
+        self._deliver(batch[0][1].get_loop(), done, refused, failure)
 
     def _do(self, work: Work) -> Any:
         """Do one piece; the others of the batch stand if it is refused."""
@@ -167,9 +171,13 @@ class GroupCommitWriter:
         loop: asyncio.AbstractEventLoop,
         done: list[Done],
         refused: list[tuple["asyncio.Future[Any]", Exception]],
+        failure: JournalWriteError | None,
     ) -> None:
         def settle() -> None:
-            self._on_commit(done)
+            if failure is None:
+                self._on_commit(done)
+            else:
+                self._on_failure(str(failure))
             for each in done:
                 if not each.future.done():
                     each.future.set_result(each.result)

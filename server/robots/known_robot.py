@@ -26,6 +26,7 @@ from robots.link.messages import (
 )
 from server.errors import ConflictError, NotFoundError
 from server.journal.journal import DuplicateReceiptError, Entry, Journal, Receipt
+from server.plain_text import plain
 from server.robots.session import MissingReportError, PictureError, RobotSession
 from server.robots.sink import RobotSink
 from server.robots.times import LinkTimes
@@ -33,6 +34,9 @@ from server.robots.times import LinkTimes
 log = logging.getLogger(__name__)
 
 MOST_UNTAKEN_COMMANDS = 1000
+
+MISSED_HEARTBEATS = 2
+"""After so many nobody can say that the program of a robot still runs."""
 
 
 class KnownRobot:
@@ -51,6 +55,7 @@ class KnownRobot:
         self._pictures: dict[str, asyncio.Future[bytes]] = {}
         self._received: dict[str, int] = {}
         self._heard_of: set[str] = set()
+        self._refused: tuple[str, str] | None = None
         self._poses_hz = 0.0
         self._absence: asyncio.TimerHandle | None = None
         self._tasks: set[asyncio.Task[None]] = set()
@@ -58,8 +63,12 @@ class KnownRobot:
     @property
     def forgettable(self) -> bool:
         """Whether nobody will ask for it again: a simulated robot whose run is over."""
-        gone = self.session is None and self._sink is None and not self.taking_over.locked()
-        return gone and (self.hello is None or self.hello.simulated)
+        return self.departed and (self.hello is None or self.hello.simulated)
+
+    @property
+    def departed(self) -> bool:
+        """Whether it has no connection and no run."""
+        return self.session is None and self._sink is None and not self.taking_over.locked()
 
     # --- Its connection -----------------------------------------------------------------------
 
@@ -86,6 +95,40 @@ class KnownRobot:
         session.do(self._announce)
         if self._poses_hz > 0.0:
             self._ask_for_poses()
+
+    def refuse(self, reason: str) -> None:
+        """End its connection, and let this start of its program in no more.
+
+        What it keeps in its outbox would only come again.
+        """
+        assert self.hello is not None, "who sends something has said hello"
+        assert self.session is not None, "who sends something is connected"
+        log.warning("robot %s is refused: %s", self.name, plain(reason))
+        self._refused = self.hello.boot, reason
+        self.session.end_soon(reason)
+
+    def why_refused(self, hello: Hello) -> str | None:
+        """Why a start of its program is not let in; None if it is."""
+        boot, reason = self._refused or (None, "")
+        if boot == hello.boot:
+            return f"start the robot's program again: {reason}"
+        if self._is_another_program(hello):
+            return (
+                f"another program is connected as the robot '{self.name}': stop it first, or take "
+                "another name"
+            )
+        return None
+
+    def _is_another_program(self, hello: Hello) -> bool:
+        """Whether a hello is of a second program, while the first one is still there.
+
+        A program that has ended and was started again leaves a connection on which nothing comes.
+        A simulated robot's programs are started and ended by this service.
+        """
+        if self.session is None or self.hello is None or hello.simulated:
+            return False
+        lively = self.session.silent_for_s() <= MISSED_HEARTBEATS * self._times.heartbeat_s
+        return lively and self.hello.boot != hello.boot
 
     def disconnect(self, session: RobotSession) -> None:
         """A connection has ended; after a while without a new one the robot is lost."""
@@ -248,7 +291,7 @@ class KnownRobot:
     async def _commit(self, report: Report, receipt: Receipt) -> None:
         try:
             if self._sink is None:
-                await self._journal.append(Entry(receipt=receipt))
+                await self._journal.append(Entry(receipt=receipt), patient=True)
             else:
                 await self._sink.robot_reported(self.name, report, receipt)
         except DuplicateReceiptError:

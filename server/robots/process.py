@@ -17,6 +17,7 @@ from robots.link.client import run_agent
 from robots.link.clock import LoopClock
 from robots.link.outbox import IN_MEMORY, Outbox
 from server.errors import InvalidError
+from server.plain_text import plain
 from server.robots.registry import RobotRegistry
 from sim.robot_process import RobotProcessSetup, find_world
 from sim.world import WorldAdapter, WorldSetup, WorldUnavailableError
@@ -165,7 +166,7 @@ class RobotProcess:
         finally:
             complaints.cancel()
             ended.cancel()
-        log.warning("the process of robot %s is gone: %s", robot, reason)
+        log.warning("the process of robot %s is gone: %s", robot, plain(reason))
         await self._registry.end_connection(robot, reason)
         self._ended(reason)
 

@@ -9,11 +9,12 @@ from contextlib import suppress
 from pydantic import ValidationError
 
 from robots.link.channel import Channel, ChannelClosedError
-from robots.link.messages import PROTOCOL_VERSION, CommandBody, Hello, LinkError, robot_message
+from robots.link.messages import PROTOCOL_VERSION, CommandBody, Hello, LinkError
 from server.errors import ConflictError
 from server.journal.journal import Journal, JournalClosedError
+from server.limits import Limits
 from server.robots.known_robot import KnownRobot
-from server.robots.session import RobotSession, sentence
+from server.robots.session import NoSenseError, RobotSession, read_message, sentence
 from server.robots.sink import RobotSink
 from server.robots.times import LinkTimes
 
@@ -29,11 +30,16 @@ class RobotRegistry:
     """
 
     def __init__(
-        self, journal: Journal, clock: Callable[[], float], times: LinkTimes | None = None
+        self,
+        journal: Journal,
+        clock: Callable[[], float],
+        times: LinkTimes | None = None,
+        limits: Limits | None = None,
     ) -> None:
         self._journal = journal
         self._clock = clock
         self._times = times or LinkTimes()
+        self._limits = limits or Limits()
         self._robots: dict[str, KnownRobot] = {}
         self._closed = False
 
@@ -113,6 +119,14 @@ class RobotRegistry:
         if name in self._robots and self._robots[name].forgettable:
             del self._robots[name]
 
+    def _forget_the_longest_gone(self, leaving: str) -> None:
+        """Of the robots that are gone only so many are kept, in the order in which they went."""
+        if leaving in self._robots:
+            self._robots[leaving] = self._robots.pop(leaving)
+        departed = [name for name, robot in self._robots.items() if robot.departed]
+        for name in departed[: -self._limits.departed_robots]:
+            del self._robots[name]
+
     # --- Connections --------------------------------------------------------------------------
 
     async def serve(self, channel: Channel) -> None:
@@ -127,6 +141,10 @@ class RobotRegistry:
 
     async def _serve_robot(self, channel: Channel, hello: Hello) -> None:
         robot = self._known(hello.robot)
+        refusal = robot.why_refused(hello)
+        if refusal is not None:
+            await _complain(channel, refusal)
+            return
         session = RobotSession(channel, robot, self._clock, self._times)
         try:
             async with robot.taking_over:
@@ -137,6 +155,7 @@ class RobotRegistry:
         finally:
             robot.disconnect(session)
             self._forget(hello.robot)
+            self._forget_the_longest_gone(hello.robot)
 
     async def _greeted(self, channel: Channel) -> Hello | None:
         """The hello, or None if there is none to go on with."""
@@ -144,20 +163,30 @@ class RobotRegistry:
             async with asyncio.timeout(self._times.hello_s):
                 while True:
                     text = await channel.receive()
-                    complaint = _other_protocol(text)
+                    complaint = self._too_long(text) or _other_protocol(text)
                     if complaint is not None:
                         await _complain(channel, complaint)
                         return None
                     try:
-                        message = robot_message.validate_json(text)
+                        message = read_message(text)
                     except ValidationError as error:
                         await _complain(channel, sentence(error))
                         continue
+                    except NoSenseError as error:
+                        await _complain(channel, str(error))
+                        return None
                     if isinstance(message, Hello):
                         return message
                     await _complain(channel, "the first message of a connection is a hello")
         except (ChannelClosedError, TimeoutError):
             return None
+
+    def _too_long(self, text: str) -> str | None:
+        """What to say to a first message that is too long to be kept."""
+        most = self._limits.hello_chars
+        if len(text) <= most:
+            return None
+        return f"a hello may have {most} characters; this one has {len(text)}"
 
 
 async def _complain(channel: Channel, detail: str) -> None:

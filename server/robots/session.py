@@ -56,6 +56,37 @@ class Receiver(Protocol):
         """Raises `PictureError`."""
         ...
 
+    def refuse(self, reason: str) -> None:
+        """Have no more to do with this start of the robot's program; ends its connection."""
+        ...
+
+
+BEYOND_BOUNDS = frozenset(
+    {
+        "greater_than",
+        "greater_than_equal",
+        "less_than",
+        "less_than_equal",
+        "finite_number",
+        "int_parsing_size",
+    }
+)
+"""What pydantic calls a number that no robot means."""
+
+
+class NoSenseError(Exception):
+    """A message whose number is beyond all bounds: whoever sends it cannot be relied on."""
+
+
+def read_message(text: str) -> AnyRobotMessage:
+    """A robot's message. Raises `ValidationError`, or `NoSenseError` for a number beyond bounds."""
+    try:
+        return robot_message.validate_json(text)
+    except ValidationError as error:
+        if error.errors(include_url=False, include_input=False)[0]["type"] in BEYOND_BOUNDS:
+            raise NoSenseError(sentence(error)) from error
+        raise
+
 
 def sentence(error: ValidationError) -> str:
     """What is wrong with a message, and where."""
@@ -88,6 +119,10 @@ class RobotSession:
         self._ended = asyncio.Event()
         self._last_word = ""
         self.reason = "its connection was closed"
+
+    def silent_for_s(self) -> float:
+        """How long ago something last came."""
+        return self._clock() - self.last_heard
 
     def send(self, message: AnyServiceMessage) -> None:
         """Send a message after those that wait already; a robot that reads none is cut off."""
@@ -162,9 +197,12 @@ class RobotSession:
                 text = await self._channel.receive()
                 self.last_heard = self._clock()
                 try:
-                    await self._take(robot_message.validate_json(text))
+                    await self._take(read_message(text))
                 except ValidationError as error:
                     self.send(LinkError(detail=sentence(error)))
+                except NoSenseError as error:
+                    self._receiver.refuse(str(error))
+                    return
 
     async def _take(self, message: AnyRobotMessage) -> None:
         match message:

@@ -2,13 +2,14 @@
 
 import asyncio
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import datetime
 from typing import Any
 from uuid import UUID
 
 from server.journal.events import Event
 from server.journal.journal import Entry, Journal, Receipt
+from server.limits import Limits
 from server.runtime.clock import RunClock
 from server.runtime.run_state import RunState
 
@@ -29,10 +30,14 @@ class RunSettings:
     max_helped_retries: int = 20
     max_times_gone: int = 10
     claim_lease_s: float = 30.0
+    limits: Limits = field(default_factory=Limits)
 
 
 class RunContext:
-    """A run's state and the one way to change it: commit events, then fold them."""
+    """A run's state and the one way to change it: commit events, then fold them.
+
+    While it is `patient`, a commit waits until the journal can be written; else it is refused.
+    """
 
     def __init__(
         self,
@@ -47,7 +52,17 @@ class RunContext:
         self.settings = settings
         self.utc_now = utc_now
         self._journal = journal
+        self.patient = True
         self._noting: asyncio.Task[list[Event]] | None = None
+
+    @property
+    def trouble(self) -> str | None:
+        """Why the journal cannot be written now; None while it can be."""
+        return self._journal.trouble.reason
+
+    async def in_trouble(self) -> None:
+        """Wait until the journal cannot be written."""
+        await self._journal.trouble.begun()
 
     def stamp(self) -> dict[str, Any]:
         """What every event of this run has now."""
@@ -78,14 +93,15 @@ class RunContext:
             except Exception as error:
                 failures.append(error)
 
-        committed = await self._journal.append(entry, fold)
+        committed = await self._journal.append(entry, fold, patient=self.patient)
         if failures:
             raise failures[0]
         return committed
 
     def note(self, receipt: Receipt) -> None:
         """Commit the receipt of a report that says nothing new, beside what follows from it."""
-        self._noting = asyncio.create_task(self._journal.append(Entry(receipt=receipt)))
+        entry = Entry(receipt=receipt)
+        self._noting = asyncio.create_task(self._journal.append(entry, patient=True))
 
     async def noted(self) -> None:
         """Wait until what was noted is committed. Raises `DuplicateReceiptError`."""

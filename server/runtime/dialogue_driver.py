@@ -223,8 +223,11 @@ class DialogueDriver:
         helper: str,
         side: RobotSide,
     ) -> ev.Answered:
-        answered = self._make(dialogue).answered(ask, answer, helper)
-        committed = await self._converse(dialogue, answer, [answered], side, helper)
+        make = self._make(dialogue)
+        before: list[ev.Event] = [make.answered(ask, answer, helper)]
+        if dialogue.claim is not None and dialogue.claim.helper != helper:
+            before.insert(0, make.released(dialogue.claim.helper, expired=False))
+        committed = await self._converse(dialogue, answer, before, side, helper)
         return next(each for each in committed if isinstance(each, ev.Answered))
 
     async def _nobody_answered(

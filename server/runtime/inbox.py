@@ -14,10 +14,14 @@ Task = Callable[[], Awaitable[object]]
 
 @dataclass(slots=True)
 class Item:
-    """`asked_for`: somebody waits for what comes of it, and is told if it is refused."""
+    """`asked_for`: somebody waits for what comes of it, and is told if it is refused.
+
+    `patient`: it is not refused because the journal cannot be written, but waits until it can be.
+    """
 
     task: Task
     asked_for: bool
+    patient: bool = True
     done: asyncio.Future[object] = field(default_factory=asyncio.Future)
 
     def succeed(self, result: object) -> None:
@@ -40,14 +44,14 @@ class Inbox:
     def tell(self, task: Task) -> None:
         """Have something done in turn; nobody waits for it."""
         item = Item(task, asked_for=False)
-        item.done.add_done_callback(_log_failure)
+        item.done.add_done_callback(log_failure)
         self._items.put_nowait(item)
 
-    async def ask(self, task: Task) -> object:
-        """Have something done in turn, and wait for what comes of it. Raises what that raises."""
-        item = Item(task, asked_for=True)
+    def ask(self, task: Task, *, patient: bool) -> asyncio.Future[object]:
+        """Have something done in turn; the future has what comes of it, or what that raises."""
+        item = Item(task, asked_for=True, patient=patient)
         self._items.put_nowait(item)
-        return await item.done
+        return item.done
 
     async def next(self, timeout_s: float | None) -> Item | None:
         """The next item; None if none comes in time."""
@@ -61,8 +65,18 @@ class Inbox:
         while not self._items.empty():
             self._items.get_nowait().fail(error)
 
+    def refuse_impatient(self, error: Exception) -> None:
+        """Tell those who would not wait for a journal that it comes to nothing."""
+        waiting = [self._items.get_nowait() for _ in range(self._items.qsize())]
+        for item in waiting:
+            if item.patient:
+                self._items.put_nowait(item)
+            else:
+                item.fail(error)
 
-def _log_failure(done: asyncio.Future[object]) -> None:
+
+def log_failure(done: asyncio.Future[object]) -> None:
+    """Log what became of something that nobody waits for, if that is a fault of ours."""
     error = None if done.cancelled() else done.exception()
     if error is not None and not isinstance(error, ConflictError):
         log.error("a run could not take a robot's news", exc_info=error)

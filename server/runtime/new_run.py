@@ -8,6 +8,7 @@ from uuid import uuid4
 from server.behaviors import behavior_step_counts
 from server.errors import InvalidError
 from server.journal import events as ev
+from server.limits import Limits
 from server.runtime.ports import LIVE, ScenarioSource, TreeSource, Worlds
 from server.runtime.requests import RunRequest
 from tasks.definition import TaskTreeDefinition
@@ -25,14 +26,17 @@ class NewRuns:
         scenarios: ScenarioSource,
         worlds: Worlds,
         utc_now: Callable[[], datetime],
+        limits: Limits,
     ) -> None:
         self._trees = trees
         self._scenarios = scenarios
         self._worlds = worlds
         self._utc_now = utc_now
+        self._limits = limits
 
     async def make(self, request: RunRequest) -> ev.RunStarted:
         """Raises `NotFoundError` or `InvalidError`."""
+        _refuse_too_much(request, self._limits)
         scenario = None
         if request.scenario:
             scenario = await self._scenarios.load_scenario(request.scenario)
@@ -72,6 +76,26 @@ class NewRuns:
             script=None if scenario is None else scenario.model_dump(mode="json"),
             options=request.model_dump(mode="json"),
         )
+
+
+def _refuse_too_much(request: RunRequest, limits: Limits) -> None:
+    """Raises `InvalidError`."""
+    answers = request.answers if isinstance(request.answers, list) else []
+    if len(answers) > limits.answers:
+        raise InvalidError(
+            f"'answers' has {len(answers)} entries; at most {limits.answers} are taken"
+        )
+    if len(request.world_options) > limits.world_options:
+        raise InvalidError(
+            f"'world_options' has {len(request.world_options)} entries; "
+            f"at most {limits.world_options} are taken"
+        )
+    for name, value in request.world_options.items():
+        if max(len(name), len(str(value))) > limits.option_chars:
+            raise InvalidError(
+                f"the world option '{name[:40]}' is too long: its name and its text may have "
+                f"{limits.option_chars} characters each"
+            )
 
 
 def _moved(scene: Scene, scenario: Scenario, tree: TaskTreeDefinition) -> Scene:

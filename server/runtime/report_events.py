@@ -17,6 +17,7 @@ from robots.link.messages import (
     StepStarted,
 )
 from server.journal import events as ev
+from server.plain_text import plain
 from server.runtime.context import RunContext
 from server.runtime.dialogue_driver import DialogueDriver
 from server.runtime.robot_side import Doing, RobotSide
@@ -138,7 +139,8 @@ class ReportEvents:
             ),
             None,
         )
-        if dialogue is None:
+        # Of one issue there is one clip; who sends more has nothing new to show.
+        if dialogue is None or dialogue.clip:
             return []
         raised, clip = dialogue.raised, []
         for each in body.pictures:
@@ -199,7 +201,7 @@ class ReportEvents:
 
     def _rejected(self, side: RobotSide, body: Rejected) -> list[ev.Event]:
         execution = self._context.state.executions.get(side.robot)
-        log.warning("robot %s rejected a command: %s", side.robot, body.reason)
+        log.warning("robot %s rejected a command: %s", side.robot, plain(body.reason))
         if execution is None or side.doing is not Doing.WORKING or body.command != side.command:
             return []
         reason = f"the robot refused: {body.reason}"

@@ -6,6 +6,16 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from tasks.scenario import Person
 
+MOST = 2**53 - 1
+"""Up to here any reader of JSON can tell whole numbers from their neighbours."""
+
+WorldOption = (
+    bool
+    | Annotated[int, Field(ge=-MOST, le=MOST)]
+    | Annotated[float, Field(ge=-MOST, le=MOST)]
+    | str
+)
+
 
 class RunRequest(BaseModel):
     """Start a run of a task tree in a world.
@@ -30,4 +40,4 @@ class RunRequest(BaseModel):
     person: Person | None = None
     robots: Annotated[list[str], Field(max_length=64)] = []
     max_attempts: Annotated[int, Field(ge=1, le=100)] = 3
-    world_options: dict[str, bool | int | float | str] = {}
+    world_options: dict[str, WorldOption] = {}

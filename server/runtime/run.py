@@ -7,6 +7,8 @@ whatever the state demands, so that a run that is taken up after a crash goes on
 
 import asyncio
 import logging
+from functools import partial
+from typing import Any
 from uuid import uuid4
 
 from robots.link.messages import (
@@ -27,7 +29,7 @@ from robots.link.messages import (
 )
 from server.errors import ConflictError, ServiceError
 from server.journal import events as ev
-from server.journal.journal import DuplicateReceiptError, Receipt
+from server.journal.journal import DuplicateReceiptError, JournalWriteError, Receipt
 from server.runtime.choosing import choose
 from server.runtime.claims import Claims
 from server.runtime.context import RunContext
@@ -36,7 +38,7 @@ from server.runtime.dialogue_driver import DialogueDriver
 from server.runtime.failure import fail_run, why_it_stopped
 from server.runtime.giving_up import GivingUp
 from server.runtime.hardware import Hardware
-from server.runtime.inbox import Inbox, Item, Task
+from server.runtime.inbox import Inbox, Item, Task, log_failure
 from server.runtime.interventions import Interventions
 from server.runtime.pose_sink import PoseSink
 from server.runtime.presence import Presence
@@ -49,7 +51,7 @@ from tasks.intervention import Intervention
 
 log = logging.getLogger(__name__)
 
-REFUSALS = (ServiceError, DuplicateReceiptError)
+REFUSALS = (ServiceError, DuplicateReceiptError, JournalWriteError)
 """What a request or a report may be answered with; anything else is a fault of ours."""
 
 
@@ -88,6 +90,7 @@ class Run:
         self._results = Results(context, self._reports, cutting_short)
         self._giving_up = GivingUp(context, sides, self._reports, cutting_short)
         self.ended = asyncio.Event()
+        self._aborting = False
 
     @property
     def context(self) -> RunContext:
@@ -133,14 +136,20 @@ class Run:
             await self._claims.expire()
             await self._settle()
 
-    async def request(self, task: Task) -> object:
+    async def request(self, task: Task, *, patient: bool = False) -> object:
         """Have something done in turn, and wait for what comes of it.
 
-        Raises what the task raises, and `ConflictError` if the run has ended.
+        Raises what the task raises, `ConflictError` if the run has ended, and unless `patient`
+        `JournalWriteError` while the journal cannot be written.
         """
+        self._require_going()
+        if self._context.trouble is not None and not patient:
+            raise JournalWriteError(self._context.trouble)
+        return await self._inbox.ask(task, patient=patient)
+
+    def _require_going(self) -> None:
         if self.ended.is_set():
             raise ConflictError(f"the run has ended ({self._context.state.status})")
-        return await self._inbox.ask(task)
 
     async def _next_item(self) -> Item | None:
         waits = [self._claims.expire_in_s()]
@@ -152,7 +161,11 @@ class Run:
 
     async def _carry_out(self, item: Item) -> None:
         try:
-            result = await item.task()
+            self._context.patient = item.patient
+            try:
+                result = await item.task()
+            finally:
+                self._context.patient = True
             # Before anybody hears of it: a simulated robot that knows its report was taken lets
             # time pass, and what follows from the report is to reach it before that.
             await self._go_on()
@@ -187,7 +200,8 @@ class Run:
     async def robot_reported(self, robot: str, report: Report, receipt: Receipt) -> None:
         """Take a report; returns when it and what follows from it are committed."""
         try:
-            await self.request(lambda: self._reported(self._sides[robot], report, receipt))
+            take = partial(self._reported, self._sides[robot], report, receipt)
+            await self.request(take, patient=True)
         except ConflictError:
             # A service that shuts down takes nothing more: the robot sends it again afterwards.
             if not self._context.state.status.ended:
@@ -266,10 +280,15 @@ class Run:
         while await self._settle_once():
             pass
 
+    @property
+    def _halted(self) -> bool:
+        """Whether nothing new is to begin, though the state says that the run goes on."""
+        return self._aborting or self._context.trouble is not None
+
     async def _settle_once(self) -> bool:
         """Do one thing that the state demands; True if that changed the state."""
         state = self._context.state
-        if state.status is not RunStatus.RUNNING:
+        if state.status is not RunStatus.RUNNING or self._halted:
             return False
         results = list(results_of(state))
         for side in self._sides.values():
@@ -375,6 +394,9 @@ class Run:
         self._require(RunStatus.RUNNING, "pause")
         await self._context.commit([ev.RunPaused(**self._context.stamp())])
         self._context.clock.pause()
+        self._stop_robots()
+
+    def _stop_robots(self) -> None:
         for side in self._sides.values():
             if side.doing is Doing.WORKING or side.interruptible or side.doing is Doing.LOOKING:
                 side.stop()
@@ -394,6 +416,38 @@ class Run:
         aborted = ev.RunAborted(**self._context.stamp(), reason=reason)
         await self._context.commit([*closings, aborted])
 
+    async def abort_at_once(self) -> None:
+        """End the run; while the journal cannot be written its robots stop, and it ends later.
+
+        Raises `ConflictError` if it has ended.
+        """
+        self._require_going()
+        aborted = self._inbox.ask(self.abort, patient=True)
+        troubled = asyncio.create_task(self._context.in_trouble())
+        either: list[asyncio.Future[Any]] = [aborted, troubled]
+        await asyncio.wait(either, return_when=asyncio.FIRST_COMPLETED)
+        troubled.cancel()
+        if aborted.done():
+            aborted.result()
+            return
+        aborted.add_done_callback(log_failure)
+        self._aborting = True
+        for side in self._sides.values():
+            if side.doing is not Doing.ABSENT:
+                side.retreat()
+
+    def journal_troubled(self, reason: str | None) -> None:
+        """The journal cannot be written any more (`reason`), or can be again.
+
+        What follows from a robot's reports cannot be committed then, so it is to hold.
+        """
+        if reason is None:
+            self._inbox.tell(_nothing)
+            return
+        self._inbox.refuse_impatient(JournalWriteError(reason))
+        if not self._context.state.status.ended:
+            self._stop_robots()
+
     async def fail(self, reason: str) -> None:
         """End the run because it cannot go on."""
         if not self._context.state.status.ended:
@@ -408,3 +462,7 @@ class Run:
         now = self._context.state.status
         if now is not status:
             raise ConflictError(f"a run can be {what}d only while it is {status}; it is {now}")
+
+
+async def _nothing() -> None:
+    """What is done only so that the state is settled after it."""

@@ -17,8 +17,8 @@ from server.runtime.views import (
 from tasks.definition import NodeKind
 
 
-def summary(state: RunState, time: float) -> RunSummary:
-    """One line about a run."""
+def summary(state: RunState, time: float, trouble: str | None) -> RunSummary:
+    """One line about a run; `trouble`: why the journal cannot be written, if it cannot."""
     started = state.started
     return RunSummary(
         id=started.run,
@@ -32,13 +32,16 @@ def summary(state: RunState, time: float) -> RunSummary:
         started=started.wall_time,
         robots=started.robots,
         result=state.result,
+        trouble=None if state.status.ended else trouble,
     )
 
 
-def view(state: RunState, time: float, leaf_potentials: Mapping[int, float]) -> RunView:
+def view(
+    state: RunState, time: float, leaf_potentials: Mapping[int, float], trouble: str | None
+) -> RunView:
     """Everything about a run; `leaf_potentials` by leaf (0 where not given)."""
     return RunView(
-        **summary(state, time).model_dump(),
+        **summary(state, time, trouble).model_dump(),
         seq=state.seq,
         nodes=node_views(state, leaf_potentials),
         dialogues=[dialogue_view(each) for each in state.open_dialogues],

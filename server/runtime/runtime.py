@@ -2,7 +2,8 @@
 
 import asyncio
 import logging
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from datetime import datetime
 from functools import partial
 from typing import Any, Literal, cast
@@ -13,7 +14,7 @@ import numpy as np
 from dialogue.script import Script
 from server.dialogues.answers import answer_source
 from server.dialogues.escalation import EscalationPolicy
-from server.errors import ConflictError, InvalidError, NotFoundError
+from server.errors import ConflictError, InvalidError, LostRaceError, NotFoundError
 from server.journal import events as ev
 from server.journal.journal import Entry, Journal
 from server.runtime.choosing import potentials_for
@@ -70,8 +71,11 @@ class Runtime:
         self._runs: dict[UUID, Run] = {}
         self._tasks: dict[UUID, asyncio.Task[None]] = {}
         self._unreadable: set[UUID] = set()
-        self._new_runs = NewRuns(trees, scenarios, worlds, utc_now)
+        self._promised: dict[str, UUID] = {}
+        self._closing = False
+        self._new_runs = NewRuns(trees, scenarios, worlds, utc_now, settings.limits)
         self._history = History(journal, scripts)
+        journal.trouble.watch(self._journal_troubled)
 
     # --- Beginning and ending -----------------------------------------------------------------
 
@@ -91,8 +95,15 @@ class Runtime:
             if not state.status.ended:
                 await self._take_up_or_fail(state)
 
+    def _journal_troubled(self, reason: str | None) -> None:
+        for run in tuple(self._runs.values()):
+            run.journal_troubled(reason)
+
     async def close(self) -> None:
         """Stop without ending any run: they are taken up at the next start."""
+        if not self._closing:
+            self._closing = True
+            self._journal.trouble.unwatch(self._journal_troubled)
         for task in self._tasks.values():
             task.cancel()
         await asyncio.gather(*self._tasks.values(), return_exceptions=True)
@@ -106,15 +117,33 @@ class Runtime:
     async def start_run(self, request: RunRequest) -> RunView:
         """Begin a run. Raises `NotFoundError`, `InvalidError` or `ConflictError`."""
         started = await self._new_runs.make(request)
+        if self._closing:
+            raise ConflictError("the service is shutting down")
         if request.world == LIVE:
             self._check_robots(request.robots)
+        with self._promise(started):
+            return await self._begin(started)
 
+    @contextmanager
+    def _promise(self, started: ev.RunStarted) -> Iterator[None]:
+        """While a run is being journaled no other may be given its robots."""
+        promised = dict.fromkeys(started.robots, started.run)
+        self._promised.update(promised)
+        try:
+            yield
+        finally:
+            for robot in promised:
+                del self._promised[robot]
+
+    async def _begin(self, started: ev.RunStarted) -> RunView:
         def fold(numbered: list[ev.Event]) -> None:
             self._states[started.run] = RunState(cast(ev.RunStarted, numbered[0]), self._scripts)
 
         await self._journal.append(Entry(events=[started]), fold)
         state = self._states[started.run]
-        await self._take_up_or_fail(state)
+        # One that is journaled while the service stops is taken up at the next start.
+        if not self._closing:
+            await self._take_up_or_fail(state)
         return self.run(state.id)
 
     def _check_robots(self, robots: list[str]) -> None:
@@ -122,7 +151,11 @@ class Runtime:
             raise InvalidError(
                 "a run in the world 'live' needs 'robots': the ids of connected ones"
             )
+        twice = next((each for each in robots if robots.count(each) > 1), None)
+        if twice is not None:
+            raise InvalidError(f"'robots' names the robot '{twice}' more than once; once is enough")
         busy = {robot: run for run, each in self._runs.items() for robot in each.sides}
+        busy |= self._promised
         for robot in robots:
             if not self._robots.connected(robot):
                 raise NotFoundError(f"no robot '{robot}' is connected")
@@ -155,12 +188,24 @@ class Runtime:
         )
         hardware = RealRobots() if live else self._worlds.open(state, lambda: self._runs[state.id])
         run = Run(context, sides, dialogues, hardware, self._poses.open(state))
+        self._assign(run)
         self._runs[state.id] = run
-        for robot in sides:
-            self._robots.assign(robot, run)
         task = asyncio.create_task(run.main(), name=f"run {state.id}")
         task.add_done_callback(partial(self._ended, state))
         self._tasks[state.id] = task
+
+    def _assign(self, run: Run) -> None:
+        """Give a run all its robots, or none. Raises `ConflictError` if another run has one."""
+        given: list[str] = []
+        try:
+            for robot in run.sides:
+                self._robots.assign(robot, run)
+                given.append(robot)
+        except ConflictError:
+            for robot in given:
+                self._robots.unassign(robot)
+            self._poses.close(run.context.state.id)
+            raise
 
     def _ended(self, state: RunState, task: asyncio.Task[None]) -> None:
         for robot in state.started.robots:
@@ -183,7 +228,9 @@ class Runtime:
 
     def runs(self) -> list[RunSummary]:
         """All runs, newest first."""
-        return [summary(state, self._time(state)) for state in reversed(self._states.values())]
+        trouble = self._journal.trouble.reason
+        states = reversed(self._states.values())
+        return [summary(state, self._time(state), trouble) for state in states]
 
     def run(self, run: UUID) -> RunView:
         """Everything about one run. Raises `NotFoundError`."""
@@ -196,7 +243,7 @@ class Runtime:
         for side in run.sides.values() if run else ():
             potentials = np.maximum(potentials, potentials_for(state, side, leaves))
         by_leaf = dict(zip(leaves.tolist(), potentials.tolist(), strict=True))
-        return view(state, self._time(state), by_leaf)
+        return view(state, self._time(state), by_leaf, self._journal.trouble.reason)
 
     async def snapshot(self, seq: int | None) -> Snapshot:
         """The state after event `seq`, or after the last one without it."""
@@ -217,8 +264,10 @@ class Runtime:
 
     def _running(self, run: UUID) -> Run:
         state = self._state(run)
-        if state.status.ended or run not in self._runs:
+        if state.status.ended:
             raise ConflictError(f"the run has ended ({state.status})")
+        if run not in self._runs:
+            raise ConflictError(f"nobody works on this run just now, though it is {state.status}")
         return self._runs[run]
 
     async def pause(self, run: UUID) -> RunView:
@@ -234,9 +283,12 @@ class Runtime:
         return self.run(run)
 
     async def abort(self, run: UUID) -> RunView:
-        """End a run. Raises `ConflictError` if it has ended."""
+        """End a run. Raises `ConflictError` if it has ended.
+
+        While the journal cannot be written its robots stop at once, and it has ended only later.
+        """
         running = self._running(run)
-        await running.request(running.abort)
+        await running.abort_at_once()
         return self.run(run)
 
     async def intervene(self, run: UUID, intervention: Intervention) -> None:
@@ -284,13 +336,17 @@ class Runtime:
         Raises `NotFoundError`, `LostRaceError` or `ConflictError`.
         """
         state, found = self._dialogue(dialogue)
-        run = self._runs.get(state.id)
-        if run is None:
-            raise ConflictError(f"the run has ended ({state.status})")
-        side = run.sides[found.opened.robot]
-        answered = await run.request(
-            lambda: run.dialogues.answer(found, prompt, answer, helper, side)
-        )
+        try:
+            run = self._running(state.id)
+            side = run.sides[found.opened.robot]
+            answered = await run.request(
+                lambda: run.dialogues.answer(found, prompt, answer, helper, side)
+            )
+        except ConflictError:
+            # Who was first is told also where that answer has ended the run.
+            if prompt in found.answers:
+                raise LostRaceError(prompt, found.answers[prompt].helper) from None
+            raise
         return cast(ev.Answered, answered)
 
     async def extend(self, dialogue: UUID, prompt: UUID, helper: str) -> ev.DeadlineExtended:

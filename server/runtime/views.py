@@ -117,6 +117,8 @@ class RunSummary(View):
     started: datetime
     robots: list[str]
     result: RunResult | None
+    trouble: str | None = None
+    """Why the run goes no further for now: the journal cannot be written."""
 
 
 class RunView(RunSummary):

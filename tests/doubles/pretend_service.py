@@ -1,5 +1,6 @@
 """A runtime over pretend robots and an in-memory journal, for tests of what runs do."""
 
+import asyncio
 import time
 from collections.abc import AsyncIterator, Mapping
 from contextlib import asynccontextmanager
@@ -15,6 +16,7 @@ from dialogue.script import Script
 from server.dialogues.escalation import EscalationPolicy
 from server.journal import events as ev
 from server.journal.sqlite import SqliteJournal
+from server.journal.trouble import Sleep
 from server.poses.feed import PoseFeed
 from server.runtime.context import RunSettings
 from server.runtime.ports import LoadedTree
@@ -102,10 +104,11 @@ async def pretend_service(
     scripts: Mapping[str, Script] | None = None,
     scene: Scene = BARE,
     settings: RunSettings | None = None,
+    sleep: Sleep = asyncio.sleep,
     **robot: Any,
 ) -> AsyncIterator[PretendService]:
     """A runtime whose robots run into `faults` (object -> issue and step, in turn)."""
-    kept = SqliteJournal(journal or ":memory:")
+    kept = SqliteJournal(journal or ":memory:", sleep=sleep)
     robots = PretendRobots()
     robots.make = lambda name: PretendRobot(
         name, faults={part: list(each) for part, each in (faults or {}).items()}, **robot

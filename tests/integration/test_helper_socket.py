@@ -55,6 +55,21 @@ async def test_snapshot_comes_first_then_every_event_after_it(service: ServiceUn
         assert [each["value"] for each in prompt["answers"]] == ["yes", "no"]
 
 
+async def test_helpers_are_told_when_the_journal_cannot_be_written(
+    service: ServiceUnderTest,
+) -> None:
+    async with helper(service) as before:
+        assert (await receive(before))["type"] == "snapshot"
+        service.journal.trouble.began("the disk is full")
+        assert await receive(before) == {"type": "trouble", "reason": "the disk is full"}
+        async with helper(service) as later:
+            assert (await receive(later))["type"] == "snapshot"
+            assert await receive(later) == {"type": "trouble", "reason": "the disk is full"}
+            service.journal.trouble.ended(probed=True)
+            for socket in (before, later):
+                assert await receive(socket) == {"type": "trouble", "reason": None}
+
+
 async def test_after_replays_what_was_missed(service: ServiceUnderTest) -> None:
     run = await service.runs.start_run(REQUEST)
     for _ in range(3):

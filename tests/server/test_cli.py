@@ -3,6 +3,7 @@
 import json
 import os
 import signal
+import sqlite3
 import subprocess
 import sys
 from collections.abc import Callable, Sequence
@@ -492,6 +493,19 @@ def test_replay_asks_for_more_of_an_id_that_fits_several_runs(
     assert outcome.code == 2
     assert "say more of it" in outcome.err
     assert mend("replay", "ab").code == 0
+
+
+def test_replay_says_which_event_of_a_poisoned_journal_cannot_be_read(
+    mend: Mend, service: Callable[..., RecordedService], tmp_path: Path
+) -> None:
+    run = played(mend, service)
+    (path,) = tmp_path.rglob("*.sqlite")
+    with sqlite3.connect(path) as connection:
+        connection.execute("UPDATE events SET body = json_set(body, '$.time', NULL) WHERE seq = 3")
+    outcome = mend("replay", run)
+    assert outcome.code == 2
+    assert "event 3 of" in outcome.err
+    assert "Traceback" not in outcome.err
 
 
 def test_replay_reads_a_journal_that_is_being_written(

@@ -7,9 +7,11 @@ import pytest
 from service_under_test import build
 
 from server.documents import DocumentKind
+from server.errors import ConflictError
 from server.fixed_documents import GivenFiles, fixed_documents
 from server.journal.sqlite import SqliteJournal
 from server.library import Library, build_library
+from server.limits import Limits
 from server.scene_checks import WorldChecks
 from tasks.library import SCENES
 from tasks.scene_problem import SceneProblem
@@ -319,4 +321,20 @@ async def test_documents_of_two_kinds_may_have_one_name() -> None:
     assert await journal.delete_document("tree", "x")
     assert await journal.documents("scene") == {"x": "a scene"}
     assert await journal.documents("tree") == {}
+    journal.close()
+
+
+async def test_all_that_is_uploaded_of_one_kind_has_a_limit() -> None:
+    checks, fixed = WorldChecks({}), fixed_documents(GivenFiles(), None)
+    journal = SqliteJournal(":memory:")
+    limits = Limits(uploaded_chars=len(SCENE) + 10)
+    scenes = build_library(journal, fixed, checks, limits).scenes
+    await scenes.save("bench", SCENE)
+    with pytest.raises(ConflictError, match="no room for the scene 'other'"):
+        await scenes.save("other", SCENE)
+    _, new = await scenes.save("bench", SCENE + "# kept")
+    assert not new
+    assert (await scenes.get("bench")).text.endswith("# kept")
+    await scenes.delete("bench")
+    await scenes.save("other", SCENE)
     journal.close()

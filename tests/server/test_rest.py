@@ -2,12 +2,14 @@
 
 from collections.abc import AsyncIterator
 from typing import Any
+from uuid import UUID
 
 import httpx
 import pytest
 from service_under_test import ServiceUnderTest, build
 
 from server.runtime.requests import RunRequest
+from server.runtime.views import RunView
 from tasks.library import SCENARIOS
 
 # Fixed, so that every worker collects the same tests.
@@ -99,6 +101,7 @@ async def test_run_is_paused_resumed_and_aborted(client: httpx.AsyncClient) -> N
         ({"seed": "7"}, 422),
         ({"seed": -1}, 422),
         ({"seed": 10**30}, 422),
+        ({"world_options": {"noise": 2**53}}, 422),
         ({"speed": 0}, 422),
         ({"speed": "fast"}, 422),
         ({"unknown": 1}, 422),
@@ -344,6 +347,41 @@ async def test_readiness_is_a_problem_once_the_journal_is_closed(
     assert response.status_code == 503
     problem_in(response)
     assert (await client.get("/healthz")).status_code == 200
+
+
+async def test_readiness_says_why_the_journal_cannot_be_written(
+    client: httpx.AsyncClient, service: ServiceUnderTest
+) -> None:
+    service.journal.trouble.began("the journal could not be written: disk is full")
+    response = await client.get("/readyz")
+    assert response.status_code == 503
+    assert problem_in(response)["detail"] == "the journal could not be written: disk is full"
+    assert "mend_journal_writable 0.0" in (await client.get("/metrics")).text
+    service.journal.trouble.ended(probed=True)
+    assert (await client.get("/readyz")).status_code == 200
+
+
+async def test_an_abort_that_is_not_kept_yet_is_accepted(
+    client: httpx.AsyncClient, service: ServiceUnderTest, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    run = await start(client)
+
+    async def stop(run: UUID) -> RunView:
+        return service.runs.run(run)
+
+    monkeypatch.setattr(service.runs, "abort", stop)
+    response = await client.post(f"/api/runs/{run}/abort")
+    assert response.status_code == 202
+    assert response.json()["status"] == "running"
+
+
+async def test_answers_say_what_they_are_and_are_kept_by_nobody(client: httpx.AsyncClient) -> None:
+    for path, status in (("/api/runs", 200), ("/api/nothing", 404)):
+        response = await client.get(path)
+        assert response.status_code == status
+        assert response.headers["x-content-type-options"] == "nosniff"
+        assert response.headers["cache-control"] == "no-store"
+    assert (await client.get("/healthz")).headers["x-content-type-options"] == "nosniff"
 
 
 async def test_openapi_names_every_operation_and_has_examples(client: httpx.AsyncClient) -> None:

@@ -2,6 +2,7 @@ from pathlib import Path
 
 import pytest
 
+from server.limits import Limits
 from server.settings import Settings, WrongSettingsError, default_data_dir, load_settings
 
 TOKEN = "a-long-enough-token"
@@ -142,3 +143,17 @@ def test_every_setting_is_in_the_documentation() -> None:
     documented = (Path(__file__).parents[2] / "docs" / "settings.md").read_text()
     for name in Settings.model_fields:
         assert f"| `{name}` |" in documented
+
+
+def test_every_limit_has_a_row_with_its_default() -> None:
+    documented = (Path(__file__).parents[2] / "docs" / "limits.md").read_text()
+    for name, default in Limits().model_dump().items():
+        assert f"| `{name}` | `{default}` | " in documented
+
+
+def test_limits_are_set_by_variables(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("MEND_LIMITS__ANSWERS", "7")
+    assert load_settings().limits == Limits(answers=7)
+    monkeypatch.setenv("MEND_LIMITS__ANSWERS", "0")
+    with pytest.raises(WrongSettingsError, match=r"limits\.answers"):
+        load_settings()

@@ -6,6 +6,7 @@ from pathlib import Path
 from uuid import UUID, uuid4
 
 import pytest
+from full_disk import FailingConnection, Passing
 from sample_events import RUN, paused, started
 
 from server.journal.file_lock import JournalLockedError
@@ -13,6 +14,7 @@ from server.journal.journal import (
     DuplicateReceiptError,
     Entry,
     JournalClosedError,
+    JournalOpenError,
     JournalWriteError,
     Receipt,
 )
@@ -109,7 +111,7 @@ async def test_entry_that_cannot_be_written_is_refused_alone(journal: SqliteJour
         journal.append(Entry(events=[paused(4.0)])),
         return_exceptions=True,
     )
-    assert isinstance(outcomes[1], sqlite3.IntegrityError)
+    assert isinstance(outcomes[1], ValueError)
     assert isinstance(outcomes[2], ValueError)
     assert [event.time for event in await journal.read(0, 10)] == [1.0, 4.0]
     assert journal.head == 2
@@ -191,6 +193,35 @@ def test_file_that_is_no_journal_is_refused(tmp_path: Path) -> None:
         SqliteJournal(path)
 
 
+def test_only_its_owner_can_read_a_journal(tmp_path: Path) -> None:
+    path = tmp_path / "deep" / "journal.db"
+    journal = SqliteJournal(path)
+    modes = {each.name: each.stat().st_mode & 0o777 for each in path.parent.iterdir()}
+    journal.close()
+    assert {"journal.db", "journal.db-wal", "journal.db.lock"} <= modes.keys()
+    assert set(modes.values()) == {0o600}
+    assert path.parent.stat().st_mode & 0o777 == 0o700
+    path.chmod(0o644)
+    SqliteJournal(path).close()
+    assert path.stat().st_mode & 0o777 == 0o600
+
+
+def test_a_journal_that_is_a_folder_is_refused_with_a_sentence(tmp_path: Path) -> None:
+    with pytest.raises(JournalOpenError, match="cannot be opened: Is a directory"):
+        SqliteJournal(tmp_path)
+
+
+def test_a_disk_that_fails_as_a_journal_is_opened_is_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(_: object) -> None:
+        raise sqlite3.OperationalError("disk I/O error")
+
+    monkeypatch.setattr("server.journal.sqlite.migrate", fail)
+    with pytest.raises(JournalOpenError, match=r"journal\.db' cannot be opened: disk I/O error"):
+        SqliteJournal(tmp_path / "journal.db")
+
+
 def test_journal_of_a_newer_mend_is_refused(tmp_path: Path) -> None:
     SqliteJournal(tmp_path / "journal.db").close()
     connection = sqlite3.connect(tmp_path / "journal.db")
@@ -199,3 +230,92 @@ def test_journal_of_a_newer_mend_is_refused(tmp_path: Path) -> None:
     connection.close()
     with pytest.raises(JournalSchemaError, match="version 99"):
         SqliteJournal(tmp_path / "journal.db")
+
+
+@pytest.mark.parametrize("time", [math.inf, -math.inf, math.nan])
+async def test_an_event_with_a_number_that_is_none_is_refused_alone(
+    journal: SqliteJournal, time: float
+) -> None:
+    bad, good = await asyncio.gather(
+        journal.append(Entry(events=[paused(time)])),
+        journal.append(Entry(events=[paused(2.0)])),
+        return_exceptions=True,
+    )
+    assert isinstance(bad, ValueError)
+    assert "run_paused" in str(bad)
+    assert [each.time for each in await journal.read(0, 10)] == [2.0]
+    assert not isinstance(good, BaseException)
+
+
+async def test_the_names_of_such_numbers_may_stand_in_a_text(journal: SqliteJournal) -> None:
+    called = started().model_copy(update={"tree_name": "NaN and Infinity"})
+    await journal.append(Entry(events=[called]))
+    (kept,) = await journal.read(0, 10)
+    assert kept == called.model_copy(update={"seq": 1})
+
+
+# --- A journal that cannot be written -----------------------------------------------------------
+
+
+def failing(journal: SqliteJournal) -> FailingConnection:
+    connection = FailingConnection(journal._write_connection)
+    journal._writer._connection = connection  # type: ignore[assignment]
+    return connection
+
+
+class PassingUntilGood(Passing):
+    """After so many pauses the journal can be written again."""
+
+    def __init__(self, tries: int) -> None:
+        super().__init__()
+        self.tries = tries
+        self.connection: FailingConnection | None = None
+
+    async def __call__(self, delay: float, /) -> None:
+        await super().__call__(delay)
+        if len(self.pauses) == self.tries and self.connection is not None:
+            self.connection.error = None
+
+
+async def test_who_is_patient_waits_until_the_journal_can_be_written(tmp_path: Path) -> None:
+    sleep = PassingUntilGood(9)
+    journal = SqliteJournal(tmp_path / "journal.db", sleep=sleep)
+    sleep.connection = failing(journal)
+    sleep.connection.error = "disk I/O error"
+    entries = [journal.append(Entry(events=[paused(float(i))]), patient=True) for i in range(3)]
+    refused = journal.append(Entry(events=[paused(9.0)]))
+    *kept, refusal = await asyncio.wait_for(
+        asyncio.gather(*entries, refused, return_exceptions=True), timeout=60
+    )
+    assert isinstance(refusal, JournalWriteError)
+    assert not [each for each in kept if isinstance(each, BaseException)]
+    assert [(each.seq, each.time) for each in await journal.read(0, 10)] == [
+        (1, 0.0), (2, 1.0), (3, 2.0),
+    ]  # fmt: skip
+    assert sleep.pauses == [0.1, 0.2, 0.4, 0.8, 1.6, 3.2, 5.0, 5.0, 5.0]
+    assert await journal.picture(UUID(int=0)) is None
+    journal.close()
+
+
+async def test_who_watches_is_told_when_trouble_begins_and_ends() -> None:
+    sleep = PassingUntilGood(2)
+    journal = SqliteJournal(":memory:", sleep=sleep)
+    told: list[str | None] = []
+    journal.trouble.watch(told.append)
+    sleep.connection = failing(journal)
+    sleep.connection.error = "disk I/O error"
+    with pytest.raises(JournalWriteError):
+        await journal.append(Entry(events=[paused()]))
+    await asyncio.wait_for(journal.trouble.over(), timeout=60)
+    assert told == ["the journal could not be written: disk I/O error", None]
+    journal.close()
+
+
+async def test_a_journal_that_is_closed_in_trouble_lets_nobody_wait_for_ever() -> None:
+    journal = SqliteJournal(":memory:")
+    failing(journal).error = "disk I/O error"
+    waiting = asyncio.create_task(journal.append(Entry(events=[paused()]), patient=True))
+    await asyncio.wait_for(journal.trouble.begun(), timeout=60)
+    journal.close()
+    with pytest.raises(JournalClosedError):
+        await asyncio.wait_for(waiting, timeout=60)

@@ -6,6 +6,7 @@ import math
 from collections.abc import AsyncIterator
 
 import pytest
+from full_disk import FailingConnection
 from recording_sink import RecordingSink
 
 from robots.link.channel import Channel, ChannelClosedError, memory_channel
@@ -157,6 +158,7 @@ async def test_a_welcome_says_what_was_received_before(
     await first.leave()
     again = PlayedRobot(registry)
     assert (await again.greet(hello())).received == 1
+    await again.leave()
     rebooted = PlayedRobot(registry)
     assert (await rebooted.greet(hello(boot="b2"))).received == 0
     await sink.wait_until(lambda: [each.boot for each in sink.hellos] == ["b1", "b1", "b2"])
@@ -276,6 +278,24 @@ async def test_a_newer_connection_replaces_the_older_one(
     assert sink.lost == []
 
 
+async def test_a_second_program_with_a_robots_name_is_refused_while_the_first_is_there(
+    registry: RobotRegistry, sink: RecordingSink, clock: FakeClock
+) -> None:
+    first, second = PlayedRobot(registry), PlayedRobot(registry)
+    await first.greet(hello(boot="b1"))
+    await second.say(hello(boot="b2"))
+    refusal = await second.hear()
+    assert isinstance(refusal, LinkError)
+    assert "another program is connected as the robot 'arm'" in refusal.detail
+    with pytest.raises(ChannelClosedError):
+        await second.hear()
+    assert (await first.deliver(report(1))).seq == 1
+    # Nothing comes of the first one any more.
+    clock.time_s += 3 * QUICK.heartbeat_s
+    await PlayedRobot(registry).greet(hello(boot="b2"))
+    await sink.wait_until(lambda: len(sink.hellos) == 2)
+
+
 async def test_a_robot_is_not_lost_while_a_newer_connection_is_being_made(
     registry: RobotRegistry,
     sink: RecordingSink,
@@ -346,8 +366,7 @@ async def test_a_robot_that_beats_is_not_cut_off(
         ('{"type": "dance"}', "Input tag 'dance'"),
         ('{"type": "heartbeat"}', "at heartbeat.time: Field required"),
         ('{"type": "heartbeat", "time": "1"}', "at heartbeat.time"),
-        ('{"type": "heartbeat", "time": NaN}', "at heartbeat.time"),
-        ('{"type": "report", "seq": 0, "time": 1, "body": {}}', "at report"),
+        ('{"type": "report", "seq": 1, "time": 1, "body": {}}', "at report"),
         ('{"type": "picture", "command": "c", "camera": "head", "jpeg": "!"}', "is not base64"),
         ("[" * 100_000, "the message was not understood"),
     ],
@@ -458,6 +477,20 @@ async def test_a_report_that_could_not_be_committed_is_not_acknowledged(
     assert (await again.greet(hello())).received == 0
     assert (await again.deliver(report(1))).seq == 1
     assert [each.seq for each in sink.reports] == [1]
+
+
+async def test_a_report_waits_on_its_connection_while_the_journal_cannot_be_written(
+    registry: RobotRegistry, journal: SqliteJournal
+) -> None:
+    connection = FailingConnection(journal._write_connection)
+    journal._writer._connection = connection  # type: ignore[assignment]
+    connection.error = "disk I/O error"
+    robot = PlayedRobot(registry)
+    await robot.greet(hello())
+    await robot.say(report(1))
+    await asyncio.wait_for(journal.trouble.begun(), timeout=60)
+    connection.error = None
+    assert await robot.hear() == Ack(seq=1)
 
 
 async def test_a_simulated_robot_is_forgotten_when_nobody_owns_it(

@@ -1,6 +1,7 @@
 """What helpers may do with an open question: answer it, claim it, take it over, get more time."""
 
 import asyncio
+import base64
 from collections.abc import AsyncIterator
 from pathlib import Path
 
@@ -8,7 +9,7 @@ import pytest
 from answer_races import ONE_PART, race
 from pretend_service import PretendService, pretend_service
 
-from robots.link.messages import ClipTaken
+from robots.link.messages import ClipPicture, ClipTaken
 from server.dialogues.escalation import EscalationPolicy
 from server.errors import ConflictError, NotFoundError
 from server.journal import events as ev
@@ -207,3 +208,20 @@ async def test_a_clip_of_no_dialogue_is_not_kept(service: PretendService) -> Non
     await service.robots.report(robot, clip)
     assert service.journal.head == head
     assert service.runtime.dialogue(view.dialogue).clip == []
+
+
+async def test_a_second_clip_of_one_issue_is_not_kept() -> None:
+    async with pretend_service(ONE_PART, FAULT, patient=True, films=True) as service:
+        view = await open_question(service)
+        async with asyncio.timeout(60):
+            while not (first := service.runtime.dialogue(view.dialogue).clip):  # noqa: ASYNC110
+                await asyncio.sleep(0)
+        events = await service.journal.read(0, 1000)
+        raised = next(each for each in events if isinstance(each, ev.IssueRaised))
+        (robot,) = service.robots.robots.values()
+        picture = ClipPicture(before_s=0.1, jpeg=base64.b64encode(b"third").decode())
+        again = ClipTaken(execution=str(raised.execution), issue="missed", pictures=[picture])
+        await service.robots.report(robot, again)
+        kept = await service.journal.read(0, 1000)
+        assert sum(isinstance(each, ev.ClipRecorded) for each in kept) == 1
+        assert service.runtime.dialogue(view.dialogue).clip == first

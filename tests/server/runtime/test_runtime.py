@@ -236,6 +236,21 @@ async def test_a_claim_shows_and_does_not_keep_another_from_answering() -> None:
         )
         assert answered.helper == "bob"
         assert service.runtime.dialogue(dialogue.dialogue).claimed_by is None
+        events = await service.journal.read(0, 1000, dialogue.run)
+    released = [(each.helper, each.expired) for each in of_type(events, ev.Released)]
+    assert released == [("ann", False)]
+
+
+@pytest.mark.usefixtures("deaf_watch")
+async def test_who_answers_after_the_winning_answer_ended_the_run_is_told_who_won() -> None:
+    async with pretend_service(TWO_PARTS, HELD) as service:
+        dialogue = await open_question(service)
+        prompt = prompt_of(dialogue)
+        await service.runtime.answer(dialogue.dialogue, prompt, "yes", "ann")
+        await service.runtime.abort(dialogue.run)
+        await service.runtime.wait_for_end(dialogue.run)
+        with pytest.raises(LostRaceError, match="ann"):
+            await service.runtime.answer(dialogue.dialogue, prompt, "no", "bob")
 
 
 @pytest.mark.usefixtures("deaf_watch")

@@ -1,5 +1,6 @@
-// Says calmly that the connection is lost, since when, and that nothing is lost with it.
-import { hurry, lostSince } from "../state/service";
+// Says calmly that the connection is lost, since when, and that nothing is lost with it; or that the
+// service cannot keep what happens, so that the robots hold.
+import { hurry, lostSince, trouble } from "../state/service";
 
 const CLOCK = new Intl.DateTimeFormat("en-GB", { timeStyle: "medium" });
 
@@ -11,6 +12,11 @@ export function ConnectionBar() {
         <p>
           <strong>No connection since {CLOCK.format(since)}.</strong> Nothing is lost: the service keeps every
           question, and this page catches up by itself.
+        </p>
+      )}
+      {since === null && trouble.value !== null && (
+        <p>
+          <strong>The robots are told to hold: {trouble.value}.</strong> Everything goes on by itself once it can be.
         </p>
       )}
       {since !== null && (

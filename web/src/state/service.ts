@@ -15,6 +15,8 @@ export const tokenRequired = signal(false);
 export const connection = signal<ConnectionState>("connecting");
 /** When the connection was lost, as `Date.now()`; null while there is one. */
 export const lostSince = signal<number | null>(null);
+/** Why the service cannot keep what happens, so that no run goes on; null while it can. */
+export const trouble = signal<string | null>(null);
 export const runs = signal<ReadonlyMap<string, RunSummary>>(new Map());
 
 const STATUS_AFTER: Readonly<Partial<Record<Event["type"], RunStatus>>> = {
@@ -90,6 +92,9 @@ function connect(): void {
     snapshot: takeSnapshot,
     event: takeEvent,
     state: becomes,
+    trouble: (reason) => {
+      trouble.value = reason;
+    },
     mayReconnect,
   });
   socket.connect();

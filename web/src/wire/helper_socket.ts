@@ -14,6 +14,8 @@ export interface Receiver {
   snapshot(snapshot: SnapshotMessage): void;
   event(event: Event): void;
   state(state: ConnectionState): void;
+  /** Why the service cannot keep what happens, so that no run goes on; null once it can. */
+  trouble(reason: string | null): void;
   /** Called before each new try; false gives up (the session has ended, say). */
   mayReconnect(): Promise<boolean>;
 }
@@ -93,7 +95,11 @@ export class HelperSocket {
         this.#seen = message.seq;
         this.#pause = FIRST_PAUSE_MS;
         this.receiver.state("connected");
+        this.receiver.trouble(null);
         this.receiver.snapshot(message);
+        return;
+      case "trouble":
+        this.receiver.trouble(message.reason);
         return;
       case "result":
         this.#settle(message.id)?.resolve(message.result);

@@ -1,0 +1,26 @@
+"""How much of everything there may be; `docs/limits.md` has a row for each."""
+
+from typing import Annotated
+
+from pydantic import BaseModel, ConfigDict, Field
+
+AtLeastOne = Annotated[int, Field(ge=1, le=2**31 - 1)]
+
+
+class Limits(BaseModel):
+    """What is beyond a limit is refused with a sentence that names it, and changes nothing."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    answers: AtLeastOne = 10_000
+    """Scripted answers of one run."""
+    world_options: AtLeastOne = 100
+    """Options of one run for its world."""
+    option_chars: AtLeastOne = 1000
+    """Characters of the name of such an option, and of one that is text."""
+    hello_chars: AtLeastOne = 128 * 1024
+    """Characters of a robot's `hello`."""
+    departed_robots: AtLeastOne = 100
+    """Robots without connection and run that are still listed; those gone longest are forgotten."""
+    uploaded_chars: AtLeastOne = 32 * 1024**2
+    """Characters of all uploaded files of one kind together."""

@@ -1,0 +1,26 @@
+"""Tokens and sessions do not belong in a log, not even in that of every byte."""
+
+import logging
+import re
+
+SECRETS = re.compile(r'(?i)((?:authorization|cookie): |"token": ?")[^"\r\n]*')
+
+
+class HideSecrets(logging.Filter):
+    """Puts stars in the place of every secret of a record."""
+
+    def filter(self, record: logging.LogRecord) -> bool:
+        """Keep the record, without what nobody may read."""
+        text = record.getMessage()
+        hidden = SECRETS.sub(r"\1***", text)
+        if hidden != text:
+            record.msg, record.args = hidden, ()
+        return True
+
+
+def hide_secrets() -> None:
+    """Hide them where uvicorn logs what comes and goes on WebSockets."""
+    for name in ("uvicorn.error", "uvicorn.access"):
+        logger = logging.getLogger(name)
+        if not any(isinstance(each, HideSecrets) for each in logger.filters):
+            logger.addFilter(HideSecrets())

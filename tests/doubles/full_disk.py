@@ -1,0 +1,73 @@
+"""Disks that are full, and connections that cannot write."""
+
+import contextlib
+import sqlite3
+import subprocess
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+
+class Passing:
+    """Time that passes at once; `pauses` are those that were asked for."""
+
+    def __init__(self) -> None:
+        self.pauses: list[float] = []
+
+    async def __call__(self, delay: float, /) -> None:
+        self.pauses.append(delay)
+
+
+class SmallDisk:
+    """A file system of its own, which can be filled to the last byte."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self._ballast = folder / "ballast"
+
+    def fill(self) -> None:
+        with self._ballast.open("ab", buffering=0) as ballast:
+            for size in (1 << 16, 1 << 12, 1):
+                self._append_until_full(ballast, bytes(size))
+
+    def _append_until_full(self, ballast: Any, block: bytes) -> None:
+        with contextlib.suppress(OSError):
+            while ballast.write(block) == len(block):
+                pass
+
+    def free(self) -> None:
+        self._ballast.unlink()
+
+
+@contextmanager
+def small_disk(folder: Path) -> Iterator[SmallDisk]:
+    """A disk of 2 MB; the test is skipped where this user may not mount one."""
+    folder.mkdir()
+    mount = ["mount", "-t", "tmpfs", "-o", "size=2m", "none", str(folder)]
+    with contextlib.suppress(FileNotFoundError):
+        if subprocess.run(mount, capture_output=True, check=False).returncode == 0:
+            try:
+                yield SmallDisk(folder)
+            finally:
+                subprocess.run(["umount", "-l", str(folder)], check=True)
+            return
+    pytest.skip("a file system of its own needs the right to mount one")
+
+
+class FailingConnection:
+    """A connection whose commits fail while `error` is set."""
+
+    def __init__(self, connection: sqlite3.Connection) -> None:
+        self._connection = connection
+        self.error: str | None = None
+
+    def execute(self, statement: str, *parameters: Any) -> Any:
+        if statement == "COMMIT" and self.error is not None:
+            raise sqlite3.OperationalError(self.error)
+        return self._connection.execute(statement, *parameters)
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._connection, name)

@@ -1,0 +1,40 @@
+"""What a log of every byte shows of secrets."""
+
+import io
+import logging
+
+import pytest
+
+from server.app import described_app, serve_config
+from server.log_secrets import SECRETS
+from server.settings import Settings
+
+
+@pytest.mark.parametrize(
+    ("said", "logged"),
+    [
+        ("< authorization: Bearer abc", "< authorization: ***"),
+        ("< Cookie: mend_session=1.ab; theme=dark", "< Cookie: ***"),
+        ("> Set-Cookie: mend_session=1.ab; HttpOnly", "> Set-Cookie: ***"),
+        (
+            """< TEXT '{"type": "auth", "token": "abc"}' [33 bytes]""",
+            """< TEXT '{"type": "auth", "token": "***"}' [33 bytes]""",
+        ),
+        ("""'{"token":"abc","type":"auth"}'""", """'{"token":"***","type":"auth"}'"""),
+        ("< host: localhost", "< host: localhost"),
+    ],
+)
+def test_secrets_are_starred_out(said: str, logged: str) -> None:
+    assert SECRETS.sub(r"\1***", said) == logged
+
+
+def test_the_log_of_the_service_shows_no_token() -> None:
+    serve_config(described_app(), Settings(port=0, log_level="debug"))
+    logger, written = logging.getLogger("uvicorn.error"), io.StringIO()
+    handler = logging.StreamHandler(written)
+    logger.addHandler(handler)
+    try:
+        logger.debug("< %s: %s", "authorization", "Bearer abc")
+    finally:
+        logger.removeHandler(handler)
+    assert written.getvalue() == "< authorization: ***\n"
