@@ -33,6 +33,7 @@ describe("a detection on a picture", () => {
     area_px: 314,
     felt: false,
     part: null,
+    probability: null,
     explanation: "",
   };
 
