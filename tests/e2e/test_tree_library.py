@@ -181,6 +181,8 @@ async def test_tab_leaves_the_text_and_enter_keeps_the_indentation(open_page: Op
     await text_of(page).press("Enter")
     await text_of(page).press_sequentially("b")
     await expect(text_of(page)).to_have_value("tree:\n  then:\n    - a\n      b")
+    # The mistakes come anew with each check, and Tab leads to the first of them.
+    await expect(page.get_by_label("Mistakes")).to_contain_text('"a b"')
     await text_of(page).press("Tab")
     await expect(text_of(page)).not_to_be_focused()
     await page.keyboard.press("Shift+Tab")
