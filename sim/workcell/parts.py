@@ -11,11 +11,11 @@ from tasks.scene import Pose, SceneObject
 _FRICTION = 0.8
 _SPIN_FRICTION = 0.01
 
-_LEAST_MASS_KG = 0.01
+_LEAST_MASS_KG = 0.03
 _LEAST_INERTIA_KG_M2 = 5e-5
 """Parts move as if they had at least this mass, and this moment of inertia, that of a 120 g cube of
 50 mm: the engine's solver does not converge for less between fingers that are far heavier, which
-then sink into the part and lose it (every pick of 3 g, half of 13 x 13 x 36 mm and 7 g)."""
+then sink into the part and lose it (every pick of 3 g), or leave it up to 3.6 mm off (10 g)."""
 
 _AWAY_X_M = -3.0
 _AWAY_SPACING_M = 0.5
