@@ -7,7 +7,7 @@ import numpy as np
 
 from robots.vision.color_model import ColorModel
 from tasks.definition import BehaviorNode, GoalNode
-from tasks.part_boxes import boxes_of
+from tasks.part_boxes import Size, boxes_of
 from tasks.scene import Scene, SceneObject
 from tasks.scene_problem import SceneProblem
 
@@ -18,6 +18,12 @@ DARKEST = 0.14
 LOWEST_M = 0.008
 NARROWEST_M = 0.010
 """What is lower, or narrower, does not stand out from the table in a noisy picture."""
+RIM_M = 0.005
+"""Of a plate under a square knob so much has to be seen beside that."""
+_SQUARE_M = 0.0025
+"""A knob, or a plate, is square if its sides differ by less."""
+_OBLONG_M = 0.008
+"""Which way round a plate lies that is longer by so much is seen however wide its rim is."""
 
 
 def find_lookalikes(
@@ -58,6 +64,20 @@ def _unseen(name: str, each: SceneObject) -> Iterator[str]:
             f"'{name}' is {min(each.size[:2]) * 1e3:g} mm wide, which the head camera cannot see "
             f"well enough: make it at least {NARROWEST_M * 1e3:g} mm wide"
         )
+    if each.knob is not None and _hides_its_turn(each.size, each.knob):
+        yield (
+            f"the cameras cannot tell which way round '{name}' lies: its knob is square and "
+            f"covers all but a narrow rim of a plate that is not. Make the plate square too, or "
+            f"{_OBLONG_M * 1e3:g} mm longer than wide, or its rim at least {RIM_M * 1e3:g} mm wide"
+        )
+
+
+def _hides_its_turn(plate: Size, knob: Size) -> bool:
+    """Whether a quarter turn of a plate and its knob would hardly show."""
+    oblong_m = abs(plate[0] - plate[1])
+    rim_m = (plate[0] - knob[0] if plate[0] > plate[1] else plate[1] - knob[1]) / 2
+    is_square = abs(knob[0] - knob[1]) < _SQUARE_M
+    return is_square and _SQUARE_M <= oblong_m < _OBLONG_M and rim_m < RIM_M
 
 
 def _look_alike(scene: Scene, one: str, other: str, model: ColorModel) -> bool:

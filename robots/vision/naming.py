@@ -69,6 +69,12 @@ class Match:
     swapped: bool
     upright: bool
 
+    @property
+    def knob(self) -> Top | None:
+        """The part's knob, where it is seen."""
+        by_knob_alone = self.upright and self.height_m > self.part.size[2]
+        return self.top if by_knob_alone else self.top.knob
+
 
 @dataclass(frozen=True, slots=True)
 class _Way:
@@ -156,7 +162,10 @@ class Namer:
         return matches, unknown
 
     def _with_knobs(self, tops: Sequence[Top], surfaces: Surfaces) -> list[Top]:
-        """What has a knob's size and place on a plate is that plate's knob."""
+        """What has a knob's size and place on a plate is that plate's knob.
+
+        Where an end of the plate is hidden the knob may name the part better by itself.
+        """
         knob_of: dict[int, Top] = {}
         taken: set[int] = set()
         for plate in tops:
@@ -164,7 +173,8 @@ class Namer:
                 if other is plate or not self._is_knob(other, plate, surfaces):
                     continue
                 knob_of[id(plate)] = other
-                taken.add(id(other))
+                if all(plate.fitted.whole):
+                    taken.add(id(other))
         return [
             Top(each.surface, each.fitted, knob_of.get(id(each)))
             for each in tops
@@ -174,14 +184,13 @@ class Namer:
     def _is_knob(self, knob: Top, plate: Top, surfaces: Surfaces) -> bool:
         """Whether one surface stands on another as some part's knob stands on its plate."""
         on, under = knob.fitted.rectangle, plate.fitted.rectangle
-        near_m = _KNOB_WITHIN_M if all(plate.fitted.whole) else max(under.extents)
-        if math.hypot(on.x - under.x, on.y - under.y) > near_m:
-            return False
+        apart_m, whole = math.hypot(on.x - under.x, on.y - under.y), all(plate.fitted.whole)
         if np.abs(knob.surface.color - plate.surface.color).max() > surfaces.alike:
             return False
         rise_m = knob.surface.top_z - plate.surface.top_z
         return any(
             abs(rise_m - part.knob[2]) <= surfaces.tolerance_m
+            and apart_m <= (_KNOB_WITHIN_M if whole else math.hypot(*part.size[:2]) / 2)
             and _can_measure(knob, part.knob)
             and _can_measure(plate, part.size)
             for part in self._parts

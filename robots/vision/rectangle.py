@@ -6,6 +6,7 @@ what was seen (Levenberg-Marquardt). Pixels behind something nearer say nothing.
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import cv2
@@ -15,44 +16,18 @@ from numpy.typing import NDArray
 from shapely.affinity import rotate, translate
 
 from maps.compiled import compiled
-from robots.body import CameraImage
+from robots.vision.evidence import Evidence
 from robots.vision.level_rectangle import Rectangle
-from robots.vision.level_surfaces import Surface, Surfaces
-from robots.vision.projection import pixel_area_m2
 
 Array = NDArray[np.float64]
+Ends = NDArray[np.int64]
+Extents = tuple[float, float]
 
-_AROUND_PX = 5
-_DEEP = np.ones((25, 25), np.uint8)
 _COARSE_TO_FINE = (3.0, 1.5, 1.0)
 """Widths of the rim in pixels: a wide one first draws the rectangle near."""
 _ITERATIONS = 8
-_SPLINTER = 0.3
-"""What is as high as a surface and smaller than this share of it may be a splinter of its rim."""
-_SAME_HUE = 0.25
-"""A surface in another shade has all channels changed by the same factor, so far."""
 _SEEN_SIDE = 0.5
 """A side is seen if just outside more than this share of it nothing hides the view."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Evidence:
-    """What the pixels around a surface say, on the plane at its height.
-
-    `points` (n, 2); `inside` 1 where the pixel shows the surface; `weight` 0 where it says
-    nothing; `measured` where it has a depth, so that more than its colour says where it is.
-    `rim` (2,): sides that face the camera draw the surface out by this much, as far as they are
-    within its height's tolerance. `pixel_m` is what a pixel spans across there, `pixel_m2` the area
-    that it covers.
-    """
-
-    points: NDArray[np.float64]
-    inside: NDArray[np.float64]
-    weight: NDArray[np.float64]
-    measured: NDArray[np.bool_]
-    rim: NDArray[np.float64]
-    pixel_m: float
-    pixel_m2: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,83 +68,6 @@ class Fitted:
         return self.sides_seen[0] and self.sides_seen[1], self.sides_seen[2] and self.sides_seen[3]
 
 
-def gather(
-    surface: Surface, surfaces: Surfaces, pixels: NDArray[np.bool_] | None = None
-) -> Evidence:
-    """The evidence for one surface, or for those of its `pixels` that are chosen."""
-    seen = surfaces.heights
-    image = seen.image
-    left, top = surface.us.min() - _AROUND_PX, surface.vs.min() - _AROUND_PX
-    right, bottom = surface.us.max() + _AROUND_PX, surface.vs.max() + _AROUND_PX
-    patch = np.s_[max(top, 0) : bottom + 1, max(left, 0) : right + 1]
-    height, labels = seen.height_m[patch], surfaces.labels[patch]
-    inside = labels == surface.label
-    if pixels is not None:
-        chosen = np.zeros(labels.shape, np.bool_)
-        chosen[surface.vs[pixels] - max(top, 0), surface.us[pixels] - max(left, 0)] = True
-        inside = chosen
-    with np.errstate(invalid="ignore"):
-        low = height < surface.top_z - surfaces.tolerance_m
-    near = set(np.unique(labels).tolist())
-    splinters = [
-        each.label
-        for each in surfaces.all
-        if each.label in near and _is_splinter(each, surface, surfaces)
-    ]
-    other = (labels > 0) & ~inside & ~np.isin(labels, splinters)
-    # Without depth only the table's own colour says that nothing is in front.
-    off = np.abs(image.bgr[patch].astype(np.float64) - surfaces.table_color).max(axis=2)
-    distinct = np.abs(surface.color - surfaces.table_color).max() > 2 * surfaces.alike
-    table = np.isnan(height) & (off < surfaces.alike) & distinct & ~inside
-    with np.errstate(invalid="ignore"):
-        in_front = height > surface.top_z + surfaces.tolerance_m
-    weight = (inside | low | other | table) & ~in_front
-    # Deep inside nothing changes, however the rectangle is moved to fit.
-    weight &= np.asarray(cv2.erode(inside.astype(np.uint8), _DEEP)) == 0
-    vs, us = np.mgrid[
-        patch[0].start : patch[0].start + height.shape[0],
-        patch[1].start : patch[1].start + height.shape[1],
-    ]
-    points = _on_plane(image, us.ravel(), vs.ravel(), surface.top_z)
-    middle = points[inside.ravel()].mean(axis=0)
-    to_eye = image.pose[:3, 3] - np.append(middle, surface.top_z)
-    pixel_m = float(np.linalg.norm(to_eye)) / image.focal_px
-    tolerance = min(surfaces.tolerance_m, surface.top_z - seen.table_z)
-    return Evidence(
-        points,
-        inside.ravel().astype(np.float64),
-        weight.ravel().astype(np.float64),
-        ~np.isnan(height).ravel(),
-        to_eye[:2] * (tolerance / to_eye[2]),
-        pixel_m,
-        pixel_area_m2(image, (float(middle[0]), float(middle[1]), surface.top_z)),
-    )
-
-
-def _is_splinter(other: Surface, surface: Surface, surfaces: Surfaces) -> bool:
-    """Whether what is as high as a surface may be a piece of its rim, or of its side just below.
-
-    Such a piece is small, or smaller and of the same hue in another shade.
-    """
-    if other is surface or abs(other.top_z - surface.top_z) > surfaces.tolerance_m:
-        return False
-    shades = (other.color + 1.0) / (surface.color + 1.0)
-    same_hue = np.ptp(shades) < _SAME_HUE * shades.mean()
-    return bool(other.core_px < (1.0 if same_hue else _SPLINTER) * surface.core_px)
-
-
-def _on_plane(
-    image: CameraImage, us: NDArray[np.intp], vs: NDArray[np.intp], z: float
-) -> NDArray[np.float64]:
-    """Where pixels' rays meet the level plane at `z`, (n, 2)."""
-    across = (us - image.center_px[0]) / image.focal_px
-    down = (vs - image.center_px[1]) / image.focal_px
-    turn = image.pose[:3, :3]
-    rays = [turn[axis, 0] * across + turn[axis, 1] * down + turn[axis, 2] for axis in range(3)]
-    depth = (z - image.pose[2, 3]) / rays[2]
-    return np.stack([image.pose[axis, 3] + rays[axis] * depth for axis in range(2)], axis=1)
-
-
 def fit_any(evidence: Evidence) -> Fitted:
     """The rectangle of whatever size that fits best."""
     points = evidence.points[evidence.inside > 0]
@@ -181,30 +79,54 @@ def fit_any(evidence: Evidence) -> Fitted:
         math.radians(angle),
         (max(length / 1e3, evidence.pixel_m), max(width / 1e3, evidence.pixel_m)),
     )
-    return _cut_to_seen(evidence, _fit(evidence, start, sized=False))
+    return _cut_to_seen(evidence, _fit([evidence], start))
 
 
 def fit_sized(evidence: Evidence, start: Rectangle) -> Fitted:
     """The rectangle of the size of `start` that fits best near there."""
-    return _fit(evidence, start, sized=True)
+    return _fit([evidence], start, [start.extents])
 
 
-def _fit(evidence: Evidence, start: Rectangle, *, sized: bool) -> Fitted:
-    given = np.array([start.x, start.y, start.yaw, *start.extents])
-    telling = evidence.weight > 0
-    found, misfit = _descend(
-        evidence.points[telling],
-        evidence.inside[telling],
-        evidence.weight[telling],
-        evidence.rim,
-        given,
-        3 if sized else 5,
-        np.array(_COARSE_TO_FINE) * evidence.pixel_m,
+def fit_with_knob(plate: Evidence, knob: Evidence, start: Rectangle, extents: Extents) -> Fitted:
+    """The plate of the size of `start` that fits best near there, with a knob on its middle.
+
+    `extents` of the knob along the plate's axes: one pose explains both surfaces. What is `shown`
+    of the knob counts as the plate that is under it.
+    """
+    found = _fit([plate, knob], start, [start.extents, extents])
+    on_top = replace(found.rectangle, extents=extents)
+    sides = zip(found.sides_seen, _sides_seen(knob, on_top), strict=True)
+    left, right, near, far = (one or other for one, other in sides)
+    share = math.prod(extents) / math.prod(start.extents)
+    return replace(
+        found,
+        sides_seen=(left, right, near, far),
+        shown=found.shown + share * _shown(knob, on_top),
     )
-    x, y, yaw, length, width = (float(each) for each in found)
+
+
+def _fit(
+    evidence: Sequence[Evidence], start: Rectangle, sizes: Sequence[Extents] | None = None
+) -> Fitted:
+    """Rectangles with one centre and direction, of given sizes; of free size where none is."""
+    telling = [each.weight > 0 for each in evidence]
+    chosen = list(zip(evidence, telling, strict=True))
+    found, misfit = _descend(
+        np.concatenate([each.points[told] for each, told in chosen]),
+        np.concatenate([each.inside[told] for each, told in chosen]),
+        np.cumsum([0, *(np.count_nonzero(each) for each in telling)]),
+        np.array([each.rim for each in evidence]),
+        np.array([start.x, start.y, start.yaw, *np.ravel(sizes or [start.extents])]),
+        5 if sizes is None else 3,
+        np.array(_COARSE_TO_FINE) * evidence[0].pixel_m,
+    )
+    x, y, yaw, length, width = (float(each) for each in found[:5])
     rectangle = Rectangle(x, y, yaw, (length, width))
     return Fitted(
-        rectangle, _sides_seen(evidence, rectangle), float(misfit), _shown(evidence, rectangle)
+        rectangle,
+        _sides_seen(evidence[0], rectangle),
+        float(misfit),
+        _shown(evidence[0], rectangle),
     )
 
 
@@ -258,11 +180,23 @@ def _shown(evidence: Evidence, found: Rectangle) -> float:
 
 @compiled
 def _residuals(
-    points: Array, inside: Array, weight: Array, rim: Array, given: Array, rim_m: float, out: Array
+    points: Array, inside: Array, ends: Ends, rims: Array, given: Array, rim_m: float, out: Array
 ) -> float:
-    """Coverage less what was seen, per pixel, of the rectangle swept along the rim."""
-    cos, sin = math.cos(given[2]), math.sin(given[2])
-    half_x, half_y = given[3] / 2, given[4] / 2
+    """Coverage less what was seen, per pixel, of the rectangles swept along their rims."""
+    total = 0.0
+    for k in range(rims.shape[0]):
+        one = slice(ends[k], ends[k + 1])
+        box = given[3 + 2 * k : 5 + 2 * k]
+        total += _coverage_off(points[one], inside[one], rims[k], given, box, rim_m, out[one])
+    return total
+
+
+@compiled
+def _coverage_off(
+    points: Array, inside: Array, rim: Array, pose: Array, extents: Array, rim_m: float, out: Array
+) -> float:
+    cos, sin = math.cos(pose[2]), math.sin(pose[2])
+    half_x, half_y = extents[0] / 2, extents[1] / 2
     rx, ry = cos * rim[0] + sin * rim[1], cos * rim[1] - sin * rim[0]
     length = math.sqrt(rx * rx + ry * ry)
     ax, ay = (rx / length, ry / length) if length > 1e-9 else (1.0, 0.0)
@@ -271,10 +205,7 @@ def _residuals(
     low_y, high_y = -half_y + min(ry, 0.0), half_y + max(ry, 0.0)
     total = 0.0
     for i in range(points.shape[0]):
-        if weight[i] == 0.0:
-            out[i] = 0.0
-            continue
-        dx, dy = points[i, 0] - given[0], points[i, 1] - given[1]
+        dx, dy = points[i, 0] - pose[0], points[i, 1] - pose[1]
         x, y = cos * dx + sin * dy, cos * dy - sin * dx
         outside = max(max(low_x - x, x - high_x), max(low_y - y, y - high_y))
         if length > 1e-9:
@@ -287,7 +218,7 @@ def _residuals(
 
 @compiled
 def _descend(
-    points: Array, inside: Array, weight: Array, rim: Array, given: Array, free: int, rims_m: Array
+    points: Array, inside: Array, ends: Ends, rims: Array, given: Array, free: int, rims_m: Array
 ) -> tuple[Array, float]:
     """Levenberg-Marquardt over the first `free` parameters; the best, and its misfit."""
     n = points.shape[0]
@@ -298,13 +229,13 @@ def _descend(
     for stage in range(rims_m.shape[0]):
         rim_m = rims_m[stage]
         damping = 1e-3
-        cost = _residuals(points, inside, weight, rim, best, rim_m, base)
+        cost = _residuals(points, inside, ends, rims, best, rim_m, base)
         for _ in range(_ITERATIONS):
             for k in range(free):
                 step = 1e-4 if k != 2 else 1e-4 / max(best[3], best[4], 0.01)
                 trial[:] = best
                 trial[k] += step
-                _residuals(points, inside, weight, rim, trial, rim_m, moved)
+                _residuals(points, inside, ends, rims, trial, rim_m, moved)
                 for i in range(n):
                     jacobian[k, i] = (moved[i] - base[i]) / step
             normal = jacobian @ jacobian.T
@@ -320,7 +251,7 @@ def _descend(
                     limit = 2.0 * rim_m if k != 2 else 0.3
                     trial[k] -= min(max(change[k], -limit), limit)
                 trial[3], trial[4] = max(trial[3], 1e-3), max(trial[4], 1e-3)
-                new = _residuals(points, inside, weight, rim, trial, rim_m, moved)
+                new = _residuals(points, inside, ends, rims, trial, rim_m, moved)
                 if new < cost:
                     gain = cost - new
                     best[:] = trial
@@ -332,5 +263,5 @@ def _descend(
                 damping *= 5.0
             if not improved:
                 break
-    around = 2.0 * (best[3] + best[4]) / rims_m[rims_m.shape[0] - 1]
+    around = 2.0 * best[3:].sum() / rims_m[rims_m.shape[0] - 1]
     return best, cost / max(around, 1.0)

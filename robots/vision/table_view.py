@@ -15,18 +15,21 @@ from robots.grasp import half_turn
 from robots.link.messages import Location
 from robots.vision.blob import Blob
 from robots.vision.color_model import ColorModel
+from robots.vision.evidence import gather, gather_under
 from robots.vision.head import HeadSighting
 from robots.vision.height_map import IN_FRONT_M, HeightMap, measure_heights
 from robots.vision.level_rectangle import Rectangle
 from robots.vision.level_surfaces import Pixels, Surface, Surfaces, find_surfaces
 from robots.vision.naming import Match, Namer, Top
 from robots.vision.projection import Points, unproject
-from robots.vision.rectangle import Fitted, fit_any, fit_sized, gather
+from robots.vision.rectangle import Fitted, fit_any, fit_sized, fit_with_knob
 from robots.vision.seen_box import SeenBox
 from robots.vision.tracking import LastSeen
+from tasks.part_boxes import Size
 from tasks.scene import Table
 
 _TURNS_RAD = (math.pi / 4, math.pi / 2, -math.pi / 4)
+_QUARTERS_RAD = (0.0, math.pi / 2)
 _COMPLETE_SHARE = 0.8
 _AS_WELL = 1.2
 """A rectangle fits a half hidden surface as well as another if its misfit is not larger by more."""
@@ -92,7 +95,7 @@ def view_table(
         found = []
         for match in matches:
             fitted = _fit_match(match, surfaces, last_seen.seen_whole(match.part.name))
-            found.append((match, _sighting(match, _centred_by_knob(match, fitted), image)))
+            found.append((match, _sighting(match, fitted, image)))
         kept, more = _without_pieces(found, last_seen)
         if not more:
             break
@@ -122,10 +125,12 @@ def _fit_match(match: Match, surfaces: Surfaces, stood: Location | None) -> Fitt
         for axis, (low, high) in enumerate((rough.sides_seen[:2], rough.sides_seen[2:]))
     ]
     start = Rectangle(*at.point(*shifts), at.yaw, match.extents)
+    if match.upright and match.part.knob is not None and (knob := match.knob) is not None:
+        return _fit_with_knob(knob, match.part.size, match.part.knob, start, surfaces)
     evidence = gather(match.top.surface, surfaces)
     fits = [fit_sized(evidence, start)]
-    if all(rough.sides_seen) and match.top.knob is None:
-        # A rectangle of a few pixels, fitted without its size, may lie any way round; a knob tells.
+    if all(rough.sides_seen):
+        # A rectangle of a few pixels, fitted without its size, may lie any way round.
         fits += [fit_sized(evidence, replace(start, yaw=at.yaw + turn)) for turn in _TURNS_RAD]
     best = min(fits, key=lambda each: each.misfit)
     if all(rough.sides_seen) or stood is None or not _is_so_high(match, stood, surfaces):
@@ -135,21 +140,25 @@ def _fit_match(match: Match, surfaces: Surfaces, stood: Location | None) -> Fitt
     return still if still.misfit <= _AS_WELL * best.misfit else best
 
 
+def _fit_with_knob(
+    knob: Top, size: Size, on_top: Size, rough: Rectangle, surfaces: Surfaces
+) -> Fitted:
+    """One pose for a plate and its knob; where the knob is square the plate's rim says which."""
+    on = knob.fitted.rectangle
+    starts = [Rectangle(on.x, on.y, on.yaw + turn, size[:2]) for turn in _QUARTERS_RAD]
+    starts.append(replace(rough, extents=size[:2]))
+    plate = gather_under(knob.surface, knob.surface.top_z - on_top[2], starts, surfaces)
+    over = gather(knob.surface, surfaces)
+    fits = [fit_with_knob(plate, over, each, on_top[:2]) for each in starts]
+    return min(fits, key=lambda each: each.misfit)
+
+
 def _is_so_high(match: Match, stood: Location, surfaces: Surfaces) -> bool:
     """Whether a surface is as high as the part's top was."""
     if not match.upright or stood.z is None:
         return False
     off_m = stood.z + match.height_m - match.top.surface.top_z
     return abs(off_m) <= 2 * surfaces.tolerance_m
-
-
-def _centred_by_knob(match: Match, fitted: Fitted) -> Fitted:
-    """A plate of which an end is hidden is where its knob is."""
-    knob = match.top.knob
-    if knob is None or all(fitted.whole) or not all(knob.fitted.whole):
-        return fitted
-    at = replace(fitted.rectangle, x=knob.fitted.rectangle.x, y=knob.fitted.rectangle.y)
-    return replace(fitted, rectangle=at)
 
 
 def _sighting(match: Match, fitted: Fitted, image: CameraImage) -> HeadSighting:
@@ -173,20 +182,21 @@ def _sighting(match: Match, fitted: Fitted, image: CameraImage) -> HeadSighting:
 
 
 def _visible_share(match: Match, found: Rectangle, image: CameraImage) -> float:
-    """The share of a plate that its own knob does not hide."""
+    """The share of a plate that its own knob does not hide, with the knob's top if that is seen."""
     knob = match.part.knob
-    if knob is None or not match.upright or match.height_m > match.part.size[2] + 1e-6:
+    if knob is None or not match.upright:
         return 1.0
-    base_z = match.top.surface.top_z
+    base_z = match.top.surface.top_z - match.height_m + match.part.size[2]
     eye = image.pose[:3, 3]
     base = replace(found, extents=knob[:2]).corners()
     stretch = (eye[2] - base_z) / (eye[2] - base_z - knob[2])
     hidden = cv2.convexHull(
         np.concatenate([base, eye[:2] + (base - eye[:2]) * stretch]).astype(np.float32)
     )
-    plate = replace(found, extents=match.extents).corners().astype(np.float32)
-    covered, _ = cv2.intersectConvexConvex(hidden, cv2.convexHull(plate))
-    return max(1.0 - covered / (match.extents[0] * match.extents[1]), 0.1)
+    plate = cv2.convexHull(found.corners().astype(np.float32))
+    covered, _ = cv2.intersectConvexConvex(hidden, plate)
+    on_top_m2 = 0.0 if match.knob is None else knob[0] * knob[1]
+    return max(1.0 - (covered - on_top_m2) / math.prod(found.extents), 0.1)
 
 
 def _boxes(match: Match, at: HeadSighting) -> list[SeenBox]:

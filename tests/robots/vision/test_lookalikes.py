@@ -81,3 +81,26 @@ def test_lookalikes_that_no_leaf_needs_are_no_problem() -> None:
 def test_what_the_head_camera_cannot_see_is_said(bad: SceneObject, words: str) -> None:
     (message,) = check({"bad": bad})
     assert words in message
+
+
+@pytest.mark.parametrize(
+    "size",
+    [(0.065, 0.060, 0.02), (0.060, 0.066, 0.02), (0.063, 0.060, 0.02)],
+)
+def test_a_square_knob_that_hides_which_way_round_its_plate_lies_is_refused(size) -> None:
+    (message,) = check({"one": part(size=size, knob=(0.06, 0.06, 0.03))})
+    assert "which way round 'one' lies" in message
+
+
+@pytest.mark.parametrize(
+    ("size", "knob"),
+    [
+        ((0.065, 0.065, 0.02), (0.06, 0.06, 0.03)),
+        ((0.068, 0.060, 0.02), (0.06, 0.06, 0.03)),
+        ((0.065, 0.060, 0.02), (0.05, 0.05, 0.03)),
+        ((0.065, 0.060, 0.02), (0.06, 0.05, 0.03)),
+    ],
+    ids=["a square plate", "a long plate", "a wide rim", "a long knob"],
+)
+def test_plates_that_show_how_they_lie_are_taken(size, knob) -> None:
+    assert check({"one": part(size=size, knob=knob)}) == []

@@ -108,3 +108,35 @@ def test_the_two_sides_of_one_plate_are_not_two_plates(both_there: bool) -> None
     assert all("one" in names for names in looks)
     # A plate of which hardly more than its knob shows is now and then not named.
     assert sum("other" in names for names in looks) >= (7 if both_there else 0)
+
+
+@pytest.mark.parametrize(
+    ("size", "knob"),
+    [
+        ((0.089, 0.070, 0.031), (0.070, 0.070, 0.019)),
+        ((0.099, 0.065, 0.045), (0.062, 0.062, 0.024)),
+        ((0.077, 0.061, 0.042), (0.061, 0.061, 0.036)),
+        ((0.089, 0.033, 0.032), (0.061, 0.033, 0.029)),
+    ],
+)
+def test_the_rim_of_a_plate_tells_how_it_lies_under_a_wide_knob(
+    size: tuple[float, float, float], knob: tuple[float, float, float]
+) -> None:
+    noisy = WorkcellOptions(camera_noise=4.0, light=1.0, depth_noise=1.0)
+    rng = np.random.default_rng(8)
+    for seed in range(6):
+        at = Pose(x=rng.uniform(0.42, 0.68), y=rng.uniform(-0.5, 0.1), yaw=rng.uniform(-3, 3))
+        plate = SceneObject(color=(0.2, 0.3, 0.7), size=size, knob=knob, mass_kg=0.2, pose=at)
+        scene = Scene(name="plate", objects={"plate": plate}, places={})
+        world = WorkcellWorld(scene, seed, noisy)
+        catalogue, model = Catalogue.from_scene(scene), learn_colors(scene, noisy.camera_noise)
+        view = view_table(
+            world.head.capture(), scene.table, catalogue.parts, model, LastSeen(catalogue.starts)
+        )
+        world.close()
+        assert view is not None
+        seen = view.sightings["plate"]
+        assert seen.complete
+        assert math.hypot(seen.x - at.x, seen.y - at.y) < 0.0012
+        assert abs(math.remainder(seen.yaw - at.yaw, math.pi)) < math.radians(3)
+        assert [each.name for each in view.boxes] == ["plate", "plate"]
