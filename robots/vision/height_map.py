@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 
 import cv2
 import numpy as np
@@ -40,17 +41,39 @@ class HeightMap:
 def ground_rays(image: CameraImage, every: int = 1) -> NDArray[np.float64]:
     """Each pixel's ray (3, h, w) in the base frame, of length 1 along the optical axis.
 
-    Of `every` so many rows and columns one.
+    Of `every` so many rows and columns one. Not to be written to: they are kept for the next
+    picture of a camera that stands still.
     """
-    rows, columns = image.bgr.shape[:2]
-    across = (np.arange(0, columns, every) - image.center_px[0]) / image.focal_px
-    down = (np.arange(0, rows, every) - image.center_px[1]) / image.focal_px
-    turn = image.pose[:3, :3]
+    return _rays(_optics_of(image), every)
+
+
+@dataclass(frozen=True, slots=True)
+class _Optics:
+    """What rays depend on: a camera's pose, as bytes, and its lens."""
+
+    pose: bytes
+    size: tuple[int, ...]
+    center_px: tuple[float, float]
+    focal_px: float
+
+
+def _optics_of(image: CameraImage) -> _Optics:
+    pose = np.asarray(image.pose, np.float64).tobytes()
+    return _Optics(pose, image.bgr.shape[:2], image.center_px, image.focal_px)
+
+
+@lru_cache(maxsize=4)
+def _rays(optics: _Optics, every: int) -> NDArray[np.float64]:
+    rows, columns = optics.size
+    across = (np.arange(0, columns, every) - optics.center_px[0]) / optics.focal_px
+    down = (np.arange(0, rows, every) - optics.center_px[1]) / optics.focal_px
+    turn = np.frombuffer(optics.pose).reshape(4, 4)[:3, :3]
     rays: NDArray[np.float64] = (
         turn[:, 0, None, None] * across[None, None, :]
         + turn[:, 1, None, None] * down[None, :, None]
         + turn[:, 2, None, None]
     )
+    rays.flags.writeable = False
     return rays
 
 
@@ -81,17 +104,22 @@ def measure_heights(
     return HeightMap(
         image,
         height.astype(np.float32),
-        _drop_m(image, rays, table.height),
+        _drop_m(_optics_of(image), table.height),
         noise_m,
         np.asarray(near & (np.abs(height - table.height) < 3 * noise_m + 1e-4)),
         table.height,
     )
 
 
-def _drop_m(image: CameraImage, rays: NDArray[np.float64], table_z: float) -> Heights:
-    depth_m = (table_z - image.pose[2, 3]) / rays[2]
+@lru_cache(maxsize=4)
+def _drop_m(optics: _Optics, table_z: float) -> Heights:
+    rays = _rays(optics, 1)
+    eye_z = np.frombuffer(optics.pose).reshape(4, 4)[2, 3]
+    depth_m = (table_z - eye_z) / rays[2]
     level = np.maximum(np.hypot(rays[0], rays[1]), 0.1)
-    return np.asarray(depth_m / image.focal_px / level, np.float32)
+    drop_m = np.asarray(depth_m / optics.focal_px / level, np.float32)
+    drop_m.flags.writeable = False
+    return drop_m
 
 
 def _fit_plane(

@@ -7,7 +7,7 @@ sum of squares of deviations in units of their standard deviations.
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
@@ -16,6 +16,7 @@ from scipy.optimize import linear_sum_assignment
 
 from robots.catalogue import Part
 from robots.vision.color_model import ColorModel, Segmentation, tint_sigma
+from robots.vision.evidence import Evidence
 from robots.vision.level_rectangle import Rectangle
 from robots.vision.level_surfaces import Surface, Surfaces
 from robots.vision.rectangle import Fitted
@@ -50,6 +51,7 @@ class Top:
     """A surface as it was measured, with the knob that stands on it if there is one."""
 
     surface: Surface
+    evidence: Evidence
     fitted: Fitted
     knob: "Top | None" = None
 
@@ -175,11 +177,7 @@ class Namer:
                 knob_of[id(plate)] = other
                 if all(plate.fitted.whole):
                     taken.add(id(other))
-        return [
-            Top(each.surface, each.fitted, knob_of.get(id(each)))
-            for each in tops
-            if id(each) not in taken
-        ]
+        return [replace(each, knob=knob_of.get(id(each))) for each in tops if id(each) not in taken]
 
     def _is_knob(self, knob: Top, plate: Top, surfaces: Surfaces) -> bool:
         """Whether one surface stands on another as some part's knob stands on its plate."""

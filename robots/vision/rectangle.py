@@ -26,6 +26,9 @@ Extents = tuple[float, float]
 _COARSE_TO_FINE = (3.0, 1.5, 1.0)
 """Widths of the rim in pixels: a wide one first draws the rectangle near."""
 _ITERATIONS = 8
+_STEP_M = 1e-4
+"""So far the parameters are moved to see what changes; an angle, so that the ends move so far."""
+_BESIDE_RIM_M = 5 * _STEP_M
 _SEEN_SIDE = 0.5
 """A side is seen if just outside more than this share of it nothing hides the view."""
 
@@ -79,25 +82,29 @@ def fit_any(evidence: Evidence) -> Fitted:
         math.radians(angle),
         (max(length / 1e3, evidence.pixel_m), max(width / 1e3, evidence.pixel_m)),
     )
-    return _cut_to_seen(evidence, _fit([evidence], start))
+    return _cut_to_seen(evidence, _fitted(evidence, *_fit([evidence], start)))
 
 
-def fit_sized(evidence: Evidence, start: Rectangle) -> Fitted:
-    """The rectangle of the size of `start` that fits best near there."""
-    return _fit([evidence], start, [start.extents])
+def fit_sized(evidence: Evidence, starts: Sequence[Rectangle]) -> Fitted:
+    """The rectangle of the size of `starts` that fits best near one of them."""
+    fits = [_fit([evidence], start, [start.extents]) for start in starts]
+    return _fitted(evidence, *min(fits, key=lambda each: each[1]))
 
 
-def fit_with_knob(plate: Evidence, knob: Evidence, start: Rectangle, extents: Extents) -> Fitted:
-    """The plate of the size of `start` that fits best near there, with a knob on its middle.
+def fit_with_knob(
+    plate: Evidence, knob: Evidence, starts: Sequence[Rectangle], extents: Extents
+) -> Fitted:
+    """The plate of the size of `starts` that fits best near one, with a knob on its middle.
 
     `extents` of the knob along the plate's axes: one pose explains both surfaces. What is `shown`
     of the knob counts as the plate that is under it.
     """
-    found = _fit([plate, knob], start, [start.extents, extents])
+    fits = [_fit([plate, knob], start, [start.extents, extents]) for start in starts]
+    found = _fitted(plate, *min(fits, key=lambda each: each[1]))
     on_top = replace(found.rectangle, extents=extents)
     sides = zip(found.sides_seen, _sides_seen(knob, on_top), strict=True)
     left, right, near, far = (one or other for one, other in sides)
-    share = math.prod(extents) / math.prod(start.extents)
+    share = math.prod(extents) / math.prod(found.rectangle.extents)
     return replace(
         found,
         sides_seen=(left, right, near, far),
@@ -107,8 +114,11 @@ def fit_with_knob(plate: Evidence, knob: Evidence, start: Rectangle, extents: Ex
 
 def _fit(
     evidence: Sequence[Evidence], start: Rectangle, sizes: Sequence[Extents] | None = None
-) -> Fitted:
-    """Rectangles with one centre and direction, of given sizes; of free size where none is."""
+) -> tuple[Rectangle, float]:
+    """Rectangles with one centre and direction, of given sizes; of free size where none is.
+
+    The first of them, and their misfit.
+    """
     telling = [each.weight > 0 for each in evidence]
     chosen = list(zip(evidence, telling, strict=True))
     found, misfit = _descend(
@@ -121,13 +131,11 @@ def _fit(
         np.array(_COARSE_TO_FINE) * evidence[0].pixel_m,
     )
     x, y, yaw, length, width = (float(each) for each in found[:5])
-    rectangle = Rectangle(x, y, yaw, (length, width))
-    return Fitted(
-        rectangle,
-        _sides_seen(evidence[0], rectangle),
-        float(misfit),
-        _shown(evidence[0], rectangle),
-    )
+    return Rectangle(x, y, yaw, (length, width)), float(misfit)
+
+
+def _fitted(evidence: Evidence, found: Rectangle, misfit: float) -> Fitted:
+    return Fitted(found, _sides_seen(evidence, found), misfit, _shown(evidence, found))
 
 
 def _cut_to_seen(evidence: Evidence, found: Fitted) -> Fitted:
@@ -180,21 +188,33 @@ def _shown(evidence: Evidence, found: Rectangle) -> float:
 
 @compiled
 def _residuals(
-    points: Array, inside: Array, ends: Ends, rims: Array, given: Array, rim_m: float, out: Array
+    points: Array,
+    inside: Array,
+    ends: Ends,
+    rims: Array,
+    given: Array,
+    rim_m: float,
+    out: Array,
+    outside: Array,
 ) -> float:
-    """Coverage less what was seen, per pixel, of the rectangles swept along their rims."""
+    """Coverage less what was seen, per pixel, of the rectangles swept along their rims.
+
+    `outside` gets how far outside of its rectangle each pixel is.
+    """
     total = 0.0
     for k in range(rims.shape[0]):
         one = slice(ends[k], ends[k + 1])
         box = given[3 + 2 * k : 5 + 2 * k]
-        total += _coverage_off(points[one], inside[one], rims[k], given, box, rim_m, out[one])
+        _measure_outside(points[one], rims[k], given, box, outside[one])
+    for i in range(points.shape[0]):
+        cover = min(max(0.5 - outside[i] / rim_m, 0.0), 1.0)
+        out[i] = cover - inside[i]
+        total += out[i] * out[i]
     return total
 
 
 @compiled
-def _coverage_off(
-    points: Array, inside: Array, rim: Array, pose: Array, extents: Array, rim_m: float, out: Array
-) -> float:
+def _measure_outside(points: Array, rim: Array, pose: Array, extents: Array, out: Array) -> None:
     cos, sin = math.cos(pose[2]), math.sin(pose[2])
     half_x, half_y = extents[0] / 2, extents[1] / 2
     rx, ry = cos * rim[0] + sin * rim[1], cos * rim[1] - sin * rim[0]
@@ -203,17 +223,45 @@ def _coverage_off(
     across_most = half_x * abs(ay) + half_y * abs(ax)
     low_x, high_x = -half_x + min(rx, 0.0), half_x + max(rx, 0.0)
     low_y, high_y = -half_y + min(ry, 0.0), half_y + max(ry, 0.0)
-    total = 0.0
     for i in range(points.shape[0]):
         dx, dy = points[i, 0] - pose[0], points[i, 1] - pose[1]
         x, y = cos * dx + sin * dy, cos * dy - sin * dx
-        outside = max(max(low_x - x, x - high_x), max(low_y - y, y - high_y))
+        out[i] = max(max(low_x - x, x - high_x), max(low_y - y, y - high_y))
         if length > 1e-9:
-            outside = max(outside, abs(x * ay - y * ax) - across_most)
-        cover = min(max(0.5 - outside / rim_m, 0.0), 1.0)
-        out[i] = cover - inside[i]
-        total += out[i] * out[i]
-    return total
+            out[i] = max(out[i], abs(x * ay - y * ax) - across_most)
+
+
+@compiled
+def _jacobian(
+    points: Array,
+    inside: Array,
+    ends: Ends,
+    rims: Array,
+    given: Array,
+    free: int,
+    rim_m: float,
+    base: Array,
+    outside: Array,
+) -> tuple[Array, Array]:
+    """How the residuals change with the first `free` parameters, and what they are.
+
+    Of the pixels at the rim: of all others, coverage stays 0 or 1.
+    """
+    at_rim = np.abs(outside) < rim_m / 2 + _BESIDE_RIM_M
+    near, near_inside = points[at_rim], inside[at_rim]
+    near_ends = np.zeros_like(ends)
+    for k in range(rims.shape[0]):
+        near_ends[k + 1] = near_ends[k] + np.sum(at_rim[ends[k] : ends[k + 1]])
+    jacobian = np.zeros((free, near.shape[0]))
+    trial, unused = given.copy(), np.zeros(near.shape[0])
+    rest = base[at_rim]
+    for k in range(free):
+        step = _STEP_M if k != 2 else _STEP_M / max(given[3], given[4], 0.01)
+        trial[:] = given
+        trial[k] += step
+        _residuals(near, near_inside, near_ends, rims, trial, rim_m, jacobian[k], unused)
+        jacobian[k] = (jacobian[k] - rest) / step
+    return jacobian, rest
 
 
 @compiled
@@ -224,22 +272,16 @@ def _descend(
     n = points.shape[0]
     best, trial = given.copy(), given.copy()
     base, moved = np.zeros(n), np.zeros(n)
-    jacobian = np.zeros((free, n))
+    outside, moved_outside = np.zeros(n), np.zeros(n)
     cost = 0.0
     for stage in range(rims_m.shape[0]):
         rim_m = rims_m[stage]
         damping = 1e-3
-        cost = _residuals(points, inside, ends, rims, best, rim_m, base)
+        cost = _residuals(points, inside, ends, rims, best, rim_m, base, outside)
         for _ in range(_ITERATIONS):
-            for k in range(free):
-                step = 1e-4 if k != 2 else 1e-4 / max(best[3], best[4], 0.01)
-                trial[:] = best
-                trial[k] += step
-                _residuals(points, inside, ends, rims, trial, rim_m, moved)
-                for i in range(n):
-                    jacobian[k, i] = (moved[i] - base[i]) / step
+            jacobian, rest = _jacobian(points, inside, ends, rims, best, free, rim_m, base, outside)
             normal = jacobian @ jacobian.T
-            slope = jacobian @ base
+            slope = jacobian @ rest
             improved = False
             for _ in range(4):
                 damped = normal.copy()
@@ -251,11 +293,10 @@ def _descend(
                     limit = 2.0 * rim_m if k != 2 else 0.3
                     trial[k] -= min(max(change[k], -limit), limit)
                 trial[3], trial[4] = max(trial[3], 1e-3), max(trial[4], 1e-3)
-                new = _residuals(points, inside, ends, rims, trial, rim_m, moved)
+                new = _residuals(points, inside, ends, rims, trial, rim_m, moved, moved_outside)
                 if new < cost:
                     gain = cost - new
-                    best[:] = trial
-                    base[:] = moved
+                    best[:], base[:], outside[:] = trial, moved, moved_outside
                     cost = new
                     damping = max(damping * 0.3, 1e-6)
                     improved = gain > 1e-6 * (1.0 + cost)

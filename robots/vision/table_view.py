@@ -29,6 +29,7 @@ from tasks.part_boxes import Size
 from tasks.scene import Table
 
 _TURNS_RAD = (math.pi / 4, math.pi / 2, -math.pi / 4)
+_SMALL_PX = 10.0
 _QUARTERS_RAD = (0.0, math.pi / 2)
 _COMPLETE_SHARE = 0.8
 _AS_WELL = 1.2
@@ -86,7 +87,8 @@ def view_table(
     if heights is None:
         return None
     surfaces = find_surfaces(heights)
-    tops = [Top(each, fit_any(gather(each, surfaces))) for each in surfaces.all]
+    seen = [(each, gather(each, surfaces)) for each in surfaces.all]
+    tops = [Top(each, evidence, fit_any(evidence)) for each, evidence in seen]
     known = {name: part for name, part in parts.items() if name in model.names}
     namer, segmentation = Namer(known, model), model.segment(image.bgr)
     pieces: list[Top] = []
@@ -127,16 +129,15 @@ def _fit_match(match: Match, surfaces: Surfaces, stood: Location | None) -> Fitt
     start = Rectangle(*at.point(*shifts), at.yaw, match.extents)
     if match.upright and match.part.knob is not None and (knob := match.knob) is not None:
         return _fit_with_knob(knob, match.part.size, match.part.knob, start, surfaces)
-    evidence = gather(match.top.surface, surfaces)
-    fits = [fit_sized(evidence, start)]
-    if all(rough.sides_seen):
+    evidence, starts = match.top.evidence, [start]
+    if all(rough.sides_seen) and min(match.extents) < _SMALL_PX * evidence.pixel_m:
         # A rectangle of a few pixels, fitted without its size, may lie any way round.
-        fits += [fit_sized(evidence, replace(start, yaw=at.yaw + turn)) for turn in _TURNS_RAD]
-    best = min(fits, key=lambda each: each.misfit)
+        starts += [replace(start, yaw=at.yaw + turn) for turn in _TURNS_RAD]
+    best = fit_sized(evidence, starts)
     if all(rough.sides_seen) or stood is None or not _is_so_high(match, stood, surfaces):
         return best
     # Of a corner that is seen the rest may lie either way: it stands as it did if that fits, too.
-    still = fit_sized(evidence, Rectangle(stood.x, stood.y, stood.yaw, match.extents))
+    still = fit_sized(evidence, [Rectangle(stood.x, stood.y, stood.yaw, match.extents)])
     return still if still.misfit <= _AS_WELL * best.misfit else best
 
 
@@ -148,9 +149,7 @@ def _fit_with_knob(
     starts = [Rectangle(on.x, on.y, on.yaw + turn, size[:2]) for turn in _QUARTERS_RAD]
     starts.append(replace(rough, extents=size[:2]))
     plate = gather_under(knob.surface, knob.surface.top_z - on_top[2], starts, surfaces)
-    over = gather(knob.surface, surfaces)
-    fits = [fit_with_knob(plate, over, each, on_top[:2]) for each in starts]
-    return min(fits, key=lambda each: each.misfit)
+    return fit_with_knob(plate, knob.evidence, starts, on_top[:2])
 
 
 def _is_so_high(match: Match, stood: Location, surfaces: Surfaces) -> bool:
