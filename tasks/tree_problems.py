@@ -71,7 +71,10 @@ def _twice(
         right = "give one of them another place, or make them alternatives of one OR"
     else:
         what = f"the object '{name}' is placed twice"
-        right = "give one of them another object, or make them alternatives of one OR"
+        right = (
+            "a task brings each object to one place, so drop one of them, or make them "
+            "alternatives of one OR"
+        )
     by = f"by '{nodes[first].name}' and by '{nodes[second].name}'"
     return TreeProblem(max(first, second), parameter, f"{what}, {by}: {right}")
 
