@@ -13,16 +13,29 @@ from server.runtime.requests import RunRequest
 from server.runtime.views import RunStatus, RunView
 from server.settings import Settings
 
+BEGINNING = {
+    "name": "beginning",
+    "scene": "eket",
+    "tree": {
+        "then": [
+            {"behavior": "pick_and_place", "object": part, "place": part}
+            for part in ("green_leg", "pink_bar")
+        ]
+    },
+}
+"""The first two parts of the EKET base."""
+
 
 async def build(
-    tmp_path: Path, interventions: list[dict[str, Any]], **request: Any
+    tmp_path: Path, interventions: list[dict[str, Any]], tree: str = "eket", **request: Any
 ) -> tuple[RunView, list[ev.Event]]:
     """The EKET base while people do what the scenario says."""
-    scenario = {"name": "dark", "tree": "eket", "interventions": interventions}
+    scenario = {"name": "dark", "tree": tree, "interventions": interventions}
     settings = Settings(port=0, data_dir=tmp_path, speech_voice="none", log_level="error")
     async with open_service(settings) as service:
+        await service.library.trees.save("beginning", yaml.safe_dump(BEGINNING))
         await service.library.scenarios.save("dark", yaml.safe_dump(scenario))
-        asked = {"tree": "eket", "speed": "max", "seed": 7, "scenario": "dark", **request}
+        asked = {"tree": tree, "speed": "max", "seed": 7, "scenario": "dark", **request}
         run = await service.runtime.start_run(RunRequest.model_validate(asked))
         view = await service.runtime.wait_for_end(run.id)
         events = await service.journal.read(0, 100_000, run.id)
@@ -45,7 +58,7 @@ async def test_a_covered_camera_is_told_and_uncovered_and_the_task_is_done(
     world: str, tmp_path: Path
 ) -> None:
     dark = [during("pink_bar", 5, "cover")]
-    view, events = await build(tmp_path, dark, world=world, answers=["yes"] * 20)
+    view, events = await build(tmp_path, dark, tree="beginning", world=world, answers=["yes"] * 20)
     assert view.status is RunStatus.FINISHED
     assert raised(events) == [("blind", "pink_bar")]
     [issue] = [each for each in events if isinstance(each, ev.IssueRaised) and each.interrupts]

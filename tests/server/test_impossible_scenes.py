@@ -9,11 +9,11 @@ import pytest
 from server.behaviors import behavior_parameters
 from server.errors import InvalidError
 from server.scene_checks import load_world_checks
-from tasks.library import SCENES, TREES
+from tasks.library import SCENES
 from tasks.problem import InvalidFileError
 from tasks.scene import Scene
 from tasks.scene_file import built_in_scene, check_scene_text
-from tasks.task_file import check_built_in_task, check_task_text
+from tasks.task_file import check_task_text
 
 WORLDS = ("tabletop", "workcell")
 
@@ -254,15 +254,6 @@ def test_what_is_possible_is_never_refused(
     document: dict[str, Any], tree: dict[str, Any], world: str
 ) -> None:
     assert told(document, tree, world) == []
-
-
-@pytest.mark.parametrize("world", WORLDS)
-@pytest.mark.parametrize("name", TREES.names())
-def test_everything_in_the_library_is_possible(name: str, world: str) -> None:
-    task = check_built_in_task(name, behavior_parameters())
-    assert task.scene is not None
-    checks = load_world_checks().only(world)
-    assert checks.try_tree(task.scene, task.definition) == {world: []}
 
 
 @pytest.mark.parametrize("name", SCENES.names())
