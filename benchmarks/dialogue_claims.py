@@ -167,18 +167,25 @@ def _next_try(record: RunRecord, index: int, event: ev.Prompt, said: re.Match[st
     again = any(isinstance(each, ev.NodeStarted) and each.node == event.node for each in later)
     ended = isinstance(later[-1], ev.RunFailed) and later[-1].node != event.node
     dropped = any(isinstance(each, ev.NodeAbandoned) for each in later)
-    return None if again or ended or dropped else "it was never tried again"
+    instead = re.search(r"or I take (.*?) instead", event.text)
+    replaced = instead is not None and any(_is_begun(each, instead[1]) for each in later)
+    return None if again or ended or dropped or replaced else "it was never tried again"
+
+
+def _is_begun(event: ev.Event, names: str) -> bool:
+    """Whether one of the parts of a sentence is begun with."""
+    named = re.findall(r"the ([\w ]+?)(?=,| or |$)", names)
+    return isinstance(event, ev.NodeStarted) and event.name.replace("_", " ") in named
 
 
 def _then_with(record: RunRecord, index: int, event: ev.Prompt, said: re.Match[str]) -> str | None:
     """What is to go first, or instead, is begun before the leaf is begun again."""
     if event.kind == "ask" or "another part" in said[1] or " or I take" in event.text:
         return None
-    names = re.findall(r"the ([\w ]+?)(?=,| or |$)", said[1])
     for each in record.following(index):
         if isinstance(each, ev.NodeStarted) and each.node == event.node:
             return "it was tried again before that"
-        if isinstance(each, ev.NodeStarted) and each.name.replace("_", " ") in names:
+        if _is_begun(each, said[1]):
             return None
     return None
 
