@@ -1,7 +1,6 @@
 """Whether a part is still where it was put, as far as a picture can tell."""
 
 import math
-from collections.abc import Collection
 from collections.abc import Set as AbstractSet
 from enum import StrEnum
 
@@ -54,7 +53,7 @@ def judge_presence(
     if equals <= {box.name for box in view.boxes if box.complete}:
         # Whatever may be hidden here, it is none of them: all are seen elsewhere.
         return Presence.GONE
-    if any(_keeps_out(box, room, equals) for box in view.boxes):
+    if any(_keeps_out(box, room) for box in view.boxes):
         return Presence.GONE
     return Presence.GONE if is_seen_through(view.heights, room) else Presence.HIDDEN
 
@@ -75,12 +74,13 @@ def _stands_at(box: SeenBox, room: SeenBox) -> bool:
     return near and abs(box.bottom_z - room.bottom_z) <= AT_PLACE_HEIGHT_M
 
 
-def _keeps_out(box: SeenBox, room: SeenBox, equals: Collection[str]) -> bool:
-    """Whether something else fills so much of the room that the part cannot be in it.
+def _keeps_out(box: SeenBox, room: SeenBox) -> bool:
+    """Whether what is not at its place fills so much of the room that the part cannot be in it.
 
-    Something unknown of the part's own height may be the part, badly seen.
+    That may be the part itself, or an equal one. Something unknown of the part's own height may be
+    the part, badly seen.
     """
-    if box.name in equals or not box.complete:
+    if not box.complete:
         return False
     overlap_m = min(box.top_z, room.top_z) - max(box.bottom_z, room.bottom_z)
     if overlap_m < AT_PLACE_HEIGHT_M / 2 or not _fills(box, room):

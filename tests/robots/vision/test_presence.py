@@ -26,3 +26,9 @@ def test_what_lies_across_an_end_of_the_room_leaves_no_room_for_the_part() -> No
 
 def test_what_hardly_reaches_into_the_room_says_nothing() -> None:
     assert presence(yellow_bar=Resting(0.55, -0.31)) is Presence.HIDDEN
+
+
+def test_a_part_beside_its_place_is_not_there_wherever_its_equals_are() -> None:
+    view = view_of(DrawnScene({"green_leg": Resting(0.55, -0.172)}).picture())
+    leg, equals = PARTS["green_leg"], {"green_leg", "leg_that_is_hidden"}
+    assert judge_presence(view, leg, equals, STOOD, TABLE_Z) is Presence.GONE
