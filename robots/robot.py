@@ -364,10 +364,7 @@ class Robot:
             arm=self._arm,
             senses=self._senses,
             report=self._report,
-            execution=None if held is None else held.id,
-            way=[] if held is None else held.way,
-            destination=None if held is None else held.destination,
-            obstruction=None if held is None else held.obstruction,
+            held=held,
             may_move=may_move and not self._senses.holds(),
             finished=finished,
         )
