@@ -9,6 +9,8 @@ from robots.arm import Arm, Routine
 from robots.behaviors.behavior import Behavior
 from robots.behaviors.execution import Execution
 from robots.behaviors.execution_state import ExecutionState
+from robots.behaviors.progress import Progress
+from robots.behaviors.work import Work
 from robots.body import Body, CameraImage
 from robots.catalogue import Catalogue
 from robots.clip import encode_clip
@@ -270,7 +272,9 @@ class Robot:
             for name, kind in self._monitors.items()
         ]
         self._senses.clip.begin()
-        self._execution = Execution(assignment, monitors, self._arm, self._senses, self._report)
+        progress = Progress(assignment.was_done)
+        work = Work(assignment, progress, self._arm, self._senses, self._report)
+        self._execution = Execution(work, monitors)
         self._activity = self._execution.run()
 
     def _interrupt(self, interrupt: Interrupt) -> None:

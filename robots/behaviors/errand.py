@@ -3,8 +3,9 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from robots.behaviors.assignment import Assignment, Findings
+from robots.behaviors.assignment import Assignment
 from robots.behaviors.behavior import Situation, Step
+from robots.behaviors.findings import Findings
 from robots.catalogue import Part
 from robots.grasp import Grasp
 from robots.link.messages import Location

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from robots.arm import Arm, Routine
 from robots.behaviors.execution import Execution
-from robots.behaviors.preparation import LOOK_AGAIN_S
+from robots.behaviors.search import LOOK_AGAIN_S
 from robots.body import CameraImage
 from robots.link.messages import FinishedResult, Looked, ReportBody
 from robots.result import Result
