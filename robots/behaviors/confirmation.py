@@ -17,14 +17,14 @@ def look_at_outcome(part: Part, target: Location, arm: Arm, senses: Senses) -> R
         if outcome.presence is Presence.THERE:
             break
         yield from arm.wait(LOOK_AGAIN_S)
-        senses.doubt()
+        senses.head.doubt()
         outcome = _look(part, target, senses)
     return outcome
 
 
 def _look(part: Part, target: Location, senses: Senses) -> Outcome:
-    image = senses.look()
-    blind = senses.why_blind(image)
+    image = senses.head.look()
+    blind = senses.head.why_blind(image)
     if blind is not None:
         return Outcome(image, None, Presence.HIDDEN, blind)
-    return Outcome(image, senses.sight(part, image), senses.presence(image, part, target))
+    return Outcome(image, senses.head.sight(part, image), senses.head.presence(image, part, target))

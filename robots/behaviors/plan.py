@@ -28,7 +28,7 @@ def make_plan(work: Work) -> Routine[Plan | None]:
     part = assignment.part
     if part is not None and findings.sighting is None and not findings.carrying:
         return None
-    boxes = others(part, senses.seen_boxes(findings.image or senses.look()))
+    boxes = others(part, senses.head.seen_boxes(findings.image or senses.head.look()))
     errand, table = errand_of(assignment, senses, findings), senses.catalogue.table
     try:
         found = yield from plan_amid(errand, work.arm.body, table, boxes)
@@ -52,7 +52,7 @@ def _bar(
     barred: Barred, errand: Errand, boxes: Sequence[SeenBox], work: Work
 ) -> Routine[Obstruction | None]:
     """What could be taken away so that there is a path. Raises `UngraspableError`."""
-    image, reason = work.progress.seen.image or work.senses.look(), barred.reason
+    image, reason = work.progress.seen.image or work.senses.head.look(), barred.reason
     if isinstance(reason, Crowding):
         if not reason.at_place:
             return None
@@ -91,7 +91,7 @@ def _judge_way(way: Sequence[ToolPose], work: Work) -> None:
     findings.obstruction = None
     image, part, target = findings.image, work.assignment.part, work.assignment.target
     if image is not None:
-        findings.obstruction = senses.obstruction(image, way, part)
+        findings.obstruction = senses.head.obstruction(image, way, part)
     if findings.obstruction is None and part is not None:
-        image = image or senses.look()
-        findings.obstruction = senses.occupant(image, part, findings.sighting, target)
+        image = image or senses.head.look()
+        findings.obstruction = senses.head.occupant(image, part, findings.sighting, target)

@@ -23,7 +23,7 @@ def prepare(work: Work, watch: Watch) -> Routine[Plan | None]:
     progress = work.progress
     earlier, before = progress.plan, progress.seen.sighting
     progress.start_again()
-    work.senses.want(work.assignment.part)
+    work.senses.head.want(work.assignment.part)
     held = yield from feel_for_object(work)
     progress.seen.carrying = held and _goes_on_carrying(work)
     if progress.seen.carrying:
@@ -70,7 +70,7 @@ def _plan_to_fetch_it(work: Work, watch: Watch) -> Routine[None]:
     if seen.sighting is None or (progress.plan is not None and not seen.obstruction):
         return
     progress.start_again()
-    work.senses.doubt()
+    work.senses.head.doubt()
     yield from work.arm.wait(LOOK_AGAIN_S)
     yield from find_object(work)
     _require_sight(work, watch)
@@ -120,7 +120,7 @@ def _is_in_place(work: Work) -> bool:
     ):
         return True
     # What is out of sight at its place since it was seen there needs nobody to fetch it.
-    hidden = senses.presence(seen.image, part, target) is Presence.HIDDEN
+    hidden = senses.head.presence(seen.image, part, target) is Presence.HIDDEN
     return work.progress.was_done == "there" and hidden
 
 
@@ -130,4 +130,4 @@ def _is_hidden(work: Work, before: HeadSighting | None) -> bool:
     if seen.sighting is not None or part is None or seen.image is None or before is None:
         return False
     where = Location(x=before.x, y=before.y, z=before.z, yaw=before.yaw)
-    return work.senses.presence(seen.image, part, where) is Presence.HIDDEN
+    return work.senses.head.presence(seen.image, part, where) is Presence.HIDDEN

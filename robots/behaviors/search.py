@@ -11,12 +11,12 @@ LOOK_AGAIN_S = 0.1
 def feel_for_object(work: Work) -> Routine[bool]:
     """Whether the object is in the gripper now, by fresh forearm pictures."""
     part, senses = work.assignment.part, work.senses
-    if part is None or not senses.holds(part.name):
+    if part is None or not senses.hand.holds(part.name):
         return False
     for _ in range(LOOKS):
         senses.read_grip()
-        yield from work.arm.wait(senses.forearm_period_s)
-    return senses.holds(part.name)
+        yield from work.arm.wait(senses.hand.period_s)
+    return senses.hand.holds(part.name)
 
 
 def find_object(work: Work) -> Routine[None]:
@@ -29,19 +29,19 @@ def find_object(work: Work) -> Routine[None]:
         if attempt:
             yield from work.arm.wait(LOOK_AGAIN_S)
             if findings.sighting is None:
-                senses.doubt()
-        findings.image = senses.look()
-        findings.blind = senses.why_blind(findings.image)
+                senses.head.doubt()
+        findings.image = senses.head.look()
+        findings.blind = senses.head.why_blind(findings.image)
         if findings.blind is not None:
             continue
         if part is None:
             return
-        findings.sighting = senses.sight(part, findings.image)
+        findings.sighting = senses.head.sight(part, findings.image)
         if findings.sighting is not None and findings.sighting.complete:
             return
     unseen = part is not None and findings.sighting is None and findings.blind is None
     if part is not None and unseen and findings.image is not None:
-        findings.sighting = senses.recall(part, findings.image)
+        findings.sighting = senses.head.recall(part, findings.image)
 
 
 def find_table(work: Work) -> Routine[None]:
@@ -50,6 +50,6 @@ def find_table(work: Work) -> Routine[None]:
     for attempt in range(LOOKS):
         if attempt:
             yield from work.arm.wait(LOOK_AGAIN_S)
-        findings.blind = senses.why_blind(senses.look())
+        findings.blind = senses.head.why_blind(senses.head.look())
         if findings.blind is None:
             return

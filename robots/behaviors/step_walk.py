@@ -69,7 +69,7 @@ class StepWalk:
         for count, each in enumerate(tries[begin:], start=begin + 1):
             felt = yield from self._try(number, each)
             if felt is None:
-                askew = self._senses.has_askew
+                askew = self._senses.hand.has_askew
                 if askew:
                     yield from self._let_go_to_regrasp()
                 return not askew
@@ -128,7 +128,7 @@ class StepWalk:
         elif step.action.to == "closed":
             if part is not None and step.phase is Phase.GRASP:
                 regrasp = self._progress.regrasps < _MOST_REGRASPS
-                self._senses.watch_grip(part, plan.grasp, regrasp=regrasp)
+                self._senses.hand.watch_grip(part, plan.grasp, regrasp=regrasp)
             self._arm.start_closing()
         else:
             self._senses.let_go()

@@ -56,7 +56,7 @@ class Watch:
         now = self._work.arm.body.time_s()
         if now < self._next_check_s - 1e-9:
             return
-        self._next_check_s = now + self._work.senses.forearm_period_s
+        self._next_check_s = now + self._work.senses.hand.period_s
         looking = self._judges_grip(self._progress.phase) and not self._closing()
         self._read_s = now if looking else self._read_s
         self.check(self._work.senses.read_grip() if looking else None)
@@ -95,7 +95,7 @@ class Watch:
 
         The last step in which they are looked at ends with one taken after the arm has arrived.
         """
-        grip, plan = self._work.senses.grip, self._progress.plan
+        grip, plan = self._work.senses.hand.grip, self._progress.plan
         if grip is None or plan is None or not self._judges_grip(self._progress.phase):
             return False
         following = plan.steps[self._progress.step : self._progress.step + 1]

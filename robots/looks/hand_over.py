@@ -22,19 +22,19 @@ def take_from_person(looker: Looker, command: str, part: Part, within_s: float) 
     end_s = arm.body.time_s() + within_s
     if not can_grasp(part, arm.body.gripper):
         return looker.answer(command, fulfilled=False)
-    if not senses.holds(part.name):
+    if not senses.hand.holds(part.name):
         senses.let_go()
         yield from arm.go_to_hand_over()
         yield from arm.open_gripper()
     looker.report(Holding(execution=None if held is None else held.id, at="hand_over"))
-    while not senses.holds(part.name):
+    while not senses.hand.holds(part.name):
         offered = yield from _wait_until_offered(looker, part, end_s)
         if not offered:
             return looker.answer(command, fulfilled=False)
         yield from arm.close_gripper()
-        senses.watch_grip(part)
+        senses.hand.watch_grip(part)
         yield from _judge_grip(looker)
-        if not senses.holds(part.name):
+        if not senses.hand.holds(part.name):
             senses.let_go()
             yield from arm.open_gripper()
     return looker.answer(command, fulfilled=True)
@@ -42,8 +42,8 @@ def take_from_person(looker: Looker, command: str, part: Part, within_s: float) 
 
 def _wait_until_offered(looker: Looker, part: Part, end_s: float) -> Routine[bool]:
     """Watch until the part is held still between the fingers, or it is time to close and feel."""
-    watch = looker.senses.new_watch(part)
-    period_s = looker.senses.forearm_period_s
+    watch = looker.senses.hand.new_watch(part)
+    period_s = looker.senses.hand.period_s
     needed = max(3, math.ceil(_STEADY_S / period_s))
     shown, begin_s = 0, looker.arm.body.time_s()
     while looker.arm.body.time_s() < end_s - 1e-9:
@@ -61,4 +61,4 @@ def _judge_grip(looker: Looker) -> Routine[None]:
         reading = looker.senses.read_grip()
         if reading is None or reading.state is not GripState.UNDECIDED:
             return
-        yield from looker.arm.wait(looker.senses.forearm_period_s)
+        yield from looker.arm.wait(looker.senses.hand.period_s)

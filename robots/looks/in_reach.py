@@ -35,14 +35,14 @@ class InReach:
         senses, image = self._looker.senses, self._looker.look_at_table()
         if image is None:
             return False
-        before, self._before = self._before, senses.sight(self._part, image)
+        before, self._before = self._before, senses.head.sight(self._part, image)
         now = self._before
         if before is None or now is None or not now.upright(senses.catalogue.table.height):
             return False
         moved_m = math.dist((now.x, now.y, now.z), (before.x, before.y, before.z))
         if moved_m > _STILL_M:
             return False
-        return self._can_lift(now, others(self._part, senses.seen_boxes(image)))
+        return self._can_lift(now, others(self._part, senses.head.seen_boxes(image)))
 
     def _can_lift(self, at: HeadSighting, around: Sequence[SeenBox]) -> bool:
         """Whether there is a plan for that; where there was none, only once something has moved."""

@@ -21,7 +21,7 @@ def look_as_told(
     if look.expect is None:
         return look_once(looker, command)
     if look.expect not in ("way_clear", "view_clear"):
-        looker.senses.want(understanding.object_of(look))
+        looker.senses.head.want(understanding.object_of(look))
     if look.expect == "in_gripper":
         part = understanding.object_of(look)
         return take_from_person(looker, command, part, look.within_s)
@@ -52,7 +52,7 @@ def look_until(
         left_s = end_s - looker.arm.body.time_s()
         if left_s <= _PERIOD_S:
             # That nothing changes is not enough to say that it is not so.
-            looker.senses.doubt()
+            looker.senses.head.doubt()
         fulfilled = expectation.is_fulfilled()
         if fulfilled or left_s <= 1e-9:
             return (yield from looker.answer_and_judge(command, fulfilled))

@@ -35,7 +35,7 @@ class Looker:
 
     def answer(self, command: str, fulfilled: bool | None) -> Looked:
         """All that the head camera sees now; it judges no results."""
-        return self._looked(command, fulfilled, self.senses.look(), {})
+        return self._looked(command, fulfilled, self.senses.head.look(), {})
 
     def answer_and_judge(self, command: str, fulfilled: bool | None) -> Routine[Looked]:
         """All that the head camera sees, and what became of the finished results.
@@ -43,29 +43,29 @@ class Looker:
         What seems gone, or a picture that shows no table, has to be so in a second picture as
         well: a hand may pass by. With the arm in view it judges none.
         """
-        image = self.senses.look()
+        image = self.senses.head.look()
         results = self.finished if self.arm.at_neutral else ()
         verdicts = self._judge(image, results)
         doubted = [each for each in results if verdicts[each.message] is Presence.GONE]
-        blind = self.senses.why_blind(image) is not None
+        blind = self.senses.head.why_blind(image) is not None
         if doubted or blind:
             yield from self.arm.wait(LOOK_AGAIN_S)
-            self.senses.doubt()
-            image = self.senses.look()
+            self.senses.head.doubt()
+            image = self.senses.head.look()
             verdicts |= self._judge(image, results if blind else doubted)
         return self._looked(command, fulfilled, image, verdicts)
 
     def look_at_table(self) -> CameraImage | None:
         """A head picture; None if it shows nothing of the table."""
-        image = self.senses.look()
-        return image if self.senses.why_blind(image) is None else None
+        image = self.senses.head.look()
+        return image if self.senses.head.why_blind(image) is None else None
 
     def _judge(
         self, image: CameraImage, results: Sequence[Result]
     ) -> dict[FinishedResult, Presence]:
-        if self.senses.why_blind(image) is not None:
+        if self.senses.head.why_blind(image) is not None:
             return {each.message: Presence.HIDDEN for each in results}
-        presence = self.senses.presence
+        presence = self.senses.head.presence
         return {each.message: presence(image, each.part, each.target) for each in results}
 
     def _looked(
@@ -75,14 +75,14 @@ class Looker:
         image: CameraImage,
         verdicts: Mapping[FinishedResult, Presence],
     ) -> Looked:
-        blind = self.senses.why_blind(image)
+        blind = self.senses.head.why_blind(image)
         return Looked(
             command=command,
-            objects=self.senses.sight_all(image) if blind is None else {},
-            gripper=self.senses.gripper(),
+            objects=self.senses.head.sight_all(image) if blind is None else {},
+            gripper=self.senses.hand.position,
             fulfilled=fulfilled,
             there=[each for each, so in verdicts.items() if so is Presence.THERE],
             gone=[each for each, so in verdicts.items() if so is Presence.GONE],
-            held=self.senses.held,
+            held=self.senses.hand.held,
             blind=blind,
         )

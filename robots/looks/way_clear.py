@@ -36,11 +36,11 @@ class WayClear:
         senses, held = self._looker.senses, self._looker.held
         before = None if held is None else held.obstruction
         part, target = (None if held is None else held.destination) or (None, None)
-        if before is not None and senses.shows_anything(image, before.position, but=part):
+        if before is not None and senses.head.shows_anything(image, before.position, but=part):
             return False
-        if senses.obstruction(image, way, part) is not None:
+        if senses.head.obstruction(image, way, part) is not None:
             return False
         if part is None:
             return True
-        sighting = None if senses.holds(part.name) else senses.sight(part, image)
-        return senses.occupant(image, part, sighting, target) is None
+        sighting = None if senses.hand.holds(part.name) else senses.head.sight(part, image)
+        return senses.head.occupant(image, part, sighting, target) is None
