@@ -9,6 +9,8 @@ from robots.arm import Arm, Routine
 from robots.behaviors.behavior import Behavior
 from robots.behaviors.execution import Execution
 from robots.behaviors.execution_state import ExecutionState
+from robots.behaviors.progress import Progress
+from robots.behaviors.work import Work
 from robots.body import Body, CameraImage
 from robots.catalogue import Catalogue
 from robots.clip import encode_clip
@@ -106,7 +108,7 @@ class Robot:
         self._monitor_parameters = dict(monitor_parameters or {})
         self._arm = Arm(body)
         self._senses = senses or Senses(body, model, catalogue)
-        self._understanding = Understanding(behaviors, catalogue, self._senses.known_colors)
+        self._understanding = Understanding(behaviors, catalogue, model.names)
         self._emit: Emit | None = None
         self._emit_picture: EmitPicture | None = None
         self._activity: Routine[None] | None = None
@@ -195,7 +197,7 @@ class Robot:
                 self._body.advance_cycle()
                 self._decided = None
                 if self._films and self._walking:
-                    self._senses.film()
+                    self._senses.hand.film()
             else:
                 break
         return self.busy
@@ -269,8 +271,10 @@ class Robot:
             kind.create(self._monitor_parameters.get(name, {}))
             for name, kind in self._monitors.items()
         ]
-        self._senses.clip.begin()
-        self._execution = Execution(assignment, monitors, self._arm, self._senses, self._report)
+        self._senses.hand.clip.begin()
+        progress = Progress(assignment.was_done)
+        work = Work(assignment, progress, self._arm, self._senses, self._report)
+        self._execution = Execution(work, monitors)
         self._activity = self._execution.run()
 
     def _interrupt(self, interrupt: Interrupt) -> None:
@@ -364,11 +368,8 @@ class Robot:
             arm=self._arm,
             senses=self._senses,
             report=self._report,
-            execution=None if held is None else held.id,
-            way=[] if held is None else held.way,
-            destination=None if held is None else held.destination,
-            obstruction=None if held is None else held.obstruction,
-            may_move=may_move and not self._senses.holds(),
+            held=held,
+            may_move=may_move and not self._senses.hand.holds(),
             finished=finished,
         )
 
@@ -390,7 +391,7 @@ class Robot:
         if isinstance(body, _SEEN_AT_ONCE):
             self._reported = True
         if isinstance(body, IssueDetected) and body.step > BEFORE_FIRST_STEP:
-            images = self._senses.clip.images()
+            images = self._senses.hand.clip.images()
             if images:
                 self._owed_clip = _OwedClip(body.execution, body.issue, self.time_s(), images)
         if isinstance(body, Looked) and body.blind is None:

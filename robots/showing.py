@@ -78,8 +78,8 @@ class PoseDisplay:
         )
 
     def _shown(self, part: Part) -> ShownPose:
-        if self._senses.grip is not None and self._senses.holds(part.name):
-            held = self._body.tool_pose() @ part_in_tool(self._senses.grip.grasp)
+        if self._senses.hand.grip is not None and self._senses.hand.holds(part.name):
+            held = self._body.tool_pose() @ part_in_tool(self._senses.hand.grip.grasp)
             return ShownPose(pose=pose_values(held), held=True)
         located = self.located.get(part.name)
         if located is None:

@@ -15,6 +15,9 @@ Radians = Annotated[float, Field(ge=-6.2832, le=6.2832, allow_inf_nan=False), Un
 Name = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_\-]{0,63}$")]
 Channel = Annotated[float, Field(ge=0.0, le=1.0, allow_inf_nan=False)]
 
+RESTS_M = 0.006
+"""What is so near to a surface rests on it."""
+
 
 class StrictModel(BaseModel):
     """A model that takes neither unknown fields nor values of another type."""

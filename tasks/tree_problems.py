@@ -7,12 +7,9 @@ from typing import Literal
 from tasks.definition import BehaviorNode, GoalNode
 from tasks.footprint import Footprint
 from tasks.leaf_order import LeafOrder
-from tasks.scene import Pose, Scene, SceneObject
+from tasks.scene import RESTS_M, Pose, Scene, SceneObject
 
 Nodes = Sequence[GoalNode | BehaviorNode]
-
-_SAME_HEIGHT_M = 0.006
-"""What is so near to the top of a part rests on it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,15 +91,13 @@ class _Standing:
     """Where something may stand on it."""
 
     def carries(self, other: "_Standing") -> bool:
-        return abs(self.top_m - other.bottom_m) < _SAME_HEIGHT_M and self.ground.overlaps(
-            other.ground
-        )
+        return abs(self.top_m - other.bottom_m) < RESTS_M and self.ground.overlaps(other.ground)
 
     def fills(self, other: "_Standing") -> bool:
         """Whether both are in one space."""
         return min(self.top_m, other.top_m) - max(
             self.bottom_m, other.bottom_m
-        ) > _SAME_HEIGHT_M and self.ground.overlaps(other.ground)
+        ) > RESTS_M and self.ground.overlaps(other.ground)
 
 
 def _wrongly_stacked(nodes: Nodes, scene: Scene) -> Iterator[TreeProblem]:
@@ -145,9 +140,9 @@ def _stacked(standing: Sequence[_Standing]) -> Iterator[tuple[_Standing, _Standi
     """Every pair of which the first one carries the second one."""
     by_top: dict[int, list[_Standing]] = {}
     for each in standing:
-        by_top.setdefault(round(each.top_m / _SAME_HEIGHT_M), []).append(each)
+        by_top.setdefault(round(each.top_m / RESTS_M), []).append(each)
     for upper in standing:
-        level = round(upper.bottom_m / _SAME_HEIGHT_M)
+        level = round(upper.bottom_m / RESTS_M)
         for near in (level - 1, level, level + 1):
             for lower in by_top.get(near, ()):
                 if lower.part != upper.part and lower.carries(upper):

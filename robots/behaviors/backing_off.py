@@ -4,13 +4,13 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 
-from robots.arm import Arm, Routine
+from robots.arm import Routine
 from robots.behaviors.contact import Contact, ContactWatch
 from robots.behaviors.execution_state import ExecutionState
 from robots.behaviors.phase import Phase
 from robots.behaviors.planning import waypoints_of
-from robots.behaviors.progress import Progress
 from robots.behaviors.watch import Watch
+from robots.behaviors.work import Work
 from robots.body import ToolPose
 
 _SPEED = 0.3
@@ -18,11 +18,10 @@ _BIDE_S = 0.5
 """Who pulls at what the fingers hold has it in three times this, or has let go of it."""
 
 
-def back_off(
-    progress: Progress, way_back: Sequence[ToolPose], arm: Arm, watch: Watch
-) -> Routine[None]:
+def back_off(work: Work, watch: Watch, way_back: Sequence[ToolPose]) -> Routine[None]:
     """Go back through these poses; where no way leads back, bide a while. Raises `Interruption`."""
-    progress.move_to(ExecutionState.BACKING_OFF)
+    arm = work.arm
+    work.progress.move_to(ExecutionState.BACKING_OFF)
     back = arm.body.plan_path(way_back) if way_back else None
     if back is None:
         yield from _watched(arm.wait(_BIDE_S), watch)
@@ -39,25 +38,27 @@ def _watched(routine: Routine[None], watch: Watch) -> Routine[None]:
         yield
 
 
-def try_again(progress: Progress, contact: Contact, arm: Arm, watch: Watch, *, last: bool) -> None:
+def try_again(work: Work, watch: Watch, contact: Contact, *, last: bool) -> None:
     """Plan the way on; after the last try, or where none leads on, judge what was felt.
 
     Raises `Interruption`.
     """
+    progress = work.progress
     steps = progress.planned.steps
-    again = None if last else arm.body.plan_path(waypoints_of(steps[progress.step - 1 :]))
+    again = None if last else work.arm.body.plan_path(waypoints_of(steps[progress.step - 1 :]))
     if again is None:
         watch.judge(contact)
     progress.plan = replace(progress.planned, first=progress.step, path=again)
     progress.move_to(ExecutionState.RUNNING)
 
 
-def get_out_of_view(progress: Progress, arm: Arm, watch: Watch) -> Routine[None]:
+def get_out_of_view(work: Work, watch: Watch) -> Routine[None]:
     """Get out of the head camera's view; an arm that felt something goes feeling its way.
 
     Raises `Interruption`.
     """
-    tries = watch.tries(Phase.PREPARE) if progress.felt is not None else ()
+    arm = work.arm
+    tries = watch.tries(Phase.PREPARE) if work.progress.felt is not None else ()
     feeling = ContactWatch(tries[0].limit_n if tries else math.inf)
     for _ in arm.go_to_neutral():
         yield

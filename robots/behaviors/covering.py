@@ -37,7 +37,7 @@ class Covering:
         if now_s < self._next_look_s - 1e-9 and not self._doubted:
             return
         self._next_look_s = now_s + LOOK_PERIOD_S
-        gone = self._senses.seen_gone(self._senses.look(), self._watched)
+        gone = self._senses.head.seen_gone(self._senses.head.look(), self._watched)
         sure = [each for each in gone if each in self._doubted]
         self._watched = [each for each in self._watched if each not in sure]
         self._doubted = [each for each in gone if each not in sure]

@@ -3,8 +3,9 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from robots.behaviors.assignment import Assignment, Findings
+from robots.behaviors.assignment import Assignment
 from robots.behaviors.behavior import Situation, Step
+from robots.behaviors.findings import Findings
 from robots.catalogue import Part
 from robots.grasp import Grasp
 from robots.link.messages import Location
@@ -30,7 +31,7 @@ class Errand:
 
 def errand_of(assignment: Assignment, senses: Senses, findings: Findings) -> Errand:
     """What is to be executed, with the object where it was seen."""
-    behavior, seen, grip = assignment.behavior, findings.sighting, senses.grip
+    behavior, seen, grip = assignment.behavior, findings.sighting, senses.hand.grip
     found = None
     if seen is not None and assignment.part is not None:
         found = Location(x=seen.x, y=seen.y, z=seen.z, yaw=seen.yaw)

@@ -4,40 +4,38 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 
-from robots.arm import Arm, Routine
-from robots.behaviors.assignment import Assignment, Findings
+from robots.arm import Routine
 from robots.behaviors.errand import Errand, errand_of
 from robots.behaviors.grasp_choice import Crowding, others
 from robots.behaviors.planning import Barred, Plan, bar_of, plan_amid
+from robots.behaviors.work import Work
 from robots.body import ToolPose
 from robots.catalogue import Part
 from robots.grasp import UngraspableError
-from robots.senses import Senses
 from robots.vision.carriers import bears
 from robots.vision.obstruction import Obstruction, obstruction_at
 from robots.vision.seen_box import SeenBox
 
 
-def make_plan(
-    assignment: Assignment, arm: Arm, senses: Senses, findings: Findings
-) -> Routine[Plan | None]:
+def make_plan(work: Work) -> Routine[Plan | None]:
     """Lay out the steps and plan their path; None if there is none, or the object is not seen.
 
-    What it finds out about the way goes to `findings`. What keeps the arm from it is in the way if
-    there is one without it, or if it leaves no room at the place; everything else is a reason to
-    refuse.
+    What it finds out about the way goes to what is seen. What keeps the arm from it is in the way
+    if there is one without it, or if it leaves no room at the place; everything else is a reason
+    to refuse.
     """
+    assignment, senses, findings = work.assignment, work.senses, work.progress.seen
     part = assignment.part
     if part is not None and findings.sighting is None and not findings.carrying:
         return None
-    boxes = others(part, senses.seen_boxes(findings.image or senses.look()))
+    boxes = others(part, senses.head.seen_boxes(findings.image or senses.head.look()))
     errand, table = errand_of(assignment, senses, findings), senses.catalogue.table
     try:
-        found = yield from plan_amid(errand, arm.body, table, boxes)
-        _judge_way(found.way, assignment, senses, findings)
+        found = yield from plan_amid(errand, work.arm.body, table, boxes)
+        _judge_way(found.way, work)
         if isinstance(found, Plan):
             return found
-        bar = yield from _bar(found, errand, arm, boxes, senses, findings)
+        bar = yield from _bar(found, errand, boxes, work)
     except UngraspableError as error:
         findings.refusal = str(error)
         return None
@@ -51,24 +49,19 @@ def make_plan(
 
 
 def _bar(
-    barred: Barred,
-    errand: Errand,
-    arm: Arm,
-    boxes: Sequence[SeenBox],
-    senses: Senses,
-    findings: Findings,
+    barred: Barred, errand: Errand, boxes: Sequence[SeenBox], work: Work
 ) -> Routine[Obstruction | None]:
     """What could be taken away so that there is a path. Raises `UngraspableError`."""
-    image, reason = findings.image or senses.look(), barred.reason
+    image, reason = work.progress.seen.image or work.senses.head.look(), barred.reason
     if isinstance(reason, Crowding):
         if not reason.at_place:
             return None
         return replace(obstruction_at(reason.by, image), what=str(reason))
-    table = senses.catalogue.table
+    body, table = work.arm.body, work.senses.catalogue.table
     bar = yield from bar_of(
         barred,
         boxes,
-        lambda fewer: plan_amid(errand, arm.body, table, fewer),
+        lambda fewer: plan_amid(errand, body, table, fewer),
         lambda box: carries(box, errand, table.height),
     )
     if bar is None:
@@ -91,15 +84,14 @@ def _name(part: Part | None) -> str:
     return "the place" if part is None else part.name
 
 
-def _judge_way(
-    way: Sequence[ToolPose], assignment: Assignment, senses: Senses, findings: Findings
-) -> None:
+def _judge_way(way: Sequence[ToolPose], work: Work) -> None:
     """Note what is seen on the way, on the object, or at the place where that is to go."""
+    senses, findings = work.senses, work.progress.seen
     findings.way = way
     findings.obstruction = None
-    image, part = findings.image, assignment.part
+    image, part, target = findings.image, work.assignment.part, work.assignment.target
     if image is not None:
-        findings.obstruction = senses.obstruction(image, way, part)
+        findings.obstruction = senses.head.obstruction(image, way, part)
     if findings.obstruction is None and part is not None:
-        image = image or senses.look()
-        findings.obstruction = senses.occupant(image, part, findings.sighting, assignment.target)
+        image = image or senses.head.look()
+        findings.obstruction = senses.head.occupant(image, part, findings.sighting, target)

@@ -1,64 +1,133 @@
-"""Before a plan is made: whether the object is held, and where it is."""
+"""Before the first step: what is seen and held, and the plan to walk that follows from it."""
 
-from robots.arm import Arm, Routine
-from robots.behaviors.assignment import Assignment, Findings
+from robots.arm import Routine
+from robots.behaviors.backing_off import get_out_of_view
 from robots.behaviors.errand import errand_of
+from robots.behaviors.execution_state import ExecutionTransitionError
+from robots.behaviors.findings import Findings
 from robots.behaviors.grasp_choice import ways_to_grasp
-from robots.catalogue import Part
-from robots.senses import Senses
-
-LOOKS = 3
-"""So often a part that is not wholly seen is looked for before that is believed."""
-LOOK_AGAIN_S = 0.1
-
-
-def check_carrying(part: Part | None, arm: Arm, senses: Senses) -> Routine[bool]:
-    """Whether the object is in the gripper now, by fresh forearm pictures."""
-    if part is None or not senses.holds(part.name):
-        return False
-    for _ in range(LOOKS):
-        senses.read_grip()
-        yield from arm.wait(senses.forearm_period_s)
-    return senses.holds(part.name)
+from robots.behaviors.phase import Phase
+from robots.behaviors.plan import make_plan
+from robots.behaviors.planning import Plan
+from robots.behaviors.put_down import put_down, set_down
+from robots.behaviors.search import LOOK_AGAIN_S, feel_for_object, find_object, find_table
+from robots.behaviors.watch import Watch
+from robots.behaviors.work import Work
+from robots.link.messages import Location
+from robots.vision.head import HeadSighting
+from robots.vision.presence import Presence, is_at
 
 
-def find(part: Part | None, arm: Arm, senses: Senses, findings: Findings) -> Routine[None]:
-    """Look for the object, again if it, or the table, is not wholly seen.
-
-    What something hides is taken to be where it was last seen whole: the fingers will tell.
-    """
-    for attempt in range(LOOKS):
-        if attempt:
-            yield from arm.wait(LOOK_AGAIN_S)
-            if findings.sighting is None:
-                senses.doubt()
-        findings.image = senses.look()
-        findings.blind = senses.why_blind(findings.image)
-        if findings.blind is not None:
-            continue
-        if part is None:
-            return
-        findings.sighting = senses.sight(part, findings.image)
-        if findings.sighting is not None and findings.sighting.complete:
-            return
-    unseen = part is not None and findings.sighting is None and findings.blind is None
-    if part is not None and unseen and findings.image is not None:
-        findings.sighting = senses.recall(part, findings.image)
-
-
-def check_sight(arm: Arm, senses: Senses, findings: Findings) -> Routine[None]:
-    """Whether the head camera shows the table past the arm; again while it does not."""
-    for attempt in range(LOOKS):
-        if attempt:
-            yield from arm.wait(LOOK_AGAIN_S)
-        findings.blind = senses.why_blind(senses.look())
-        if findings.blind is None:
-            return
+def prepare(work: Work, watch: Watch) -> Routine[Plan | None]:
+    """The plan to walk; None if there is nothing left to do. Raises `Interruption`."""
+    progress = work.progress
+    earlier, before = progress.plan, progress.seen.sighting
+    progress.start_again()
+    work.senses.head.want(work.assignment.part)
+    held = yield from feel_for_object(work)
+    progress.seen.carrying = held and _goes_on_carrying(work)
+    if progress.seen.carrying:
+        yield from _plan_with_it_held(work, watch)
+    if not progress.seen.carrying:
+        yield from _look_with_empty_hands(work, watch)
+        if _is_in_place(work) and not progress.inexact:
+            return None
+        if progress.felt is not None and _is_hidden(work, before):
+            progress.plan = earlier
+            watch.judge(progress.felt)
+        yield from _plan_to_fetch_it(work, watch)
+    if progress.plan is None and progress.inexact and _is_in_place(work):
+        # There is no way to place it better.
+        return None
+    return _judged(work, watch)
 
 
-def goes_on_carrying(assignment: Assignment, arm: Arm, senses: Senses) -> bool:
+def _plan_with_it_held(work: Work, watch: Watch) -> Routine[None]:
+    """Go on from where it is held; what cannot be placed as it is held is set down instead."""
+    progress = work.progress
+    yield from find_table(work)
+    _require_sight(work, watch)
+    progress.plan = yield from make_plan(work)
+    refused = progress.plan is None and progress.seen.refusal is not None
+    if refused and (yield from set_down(work.arm, work.senses, progress.picked_at)):
+        # Held otherwise it may fit.
+        progress.start_again()
+
+
+def _look_with_empty_hands(work: Work, watch: Watch) -> Routine[None]:
+    yield from put_down(work.arm, work.senses, work.progress.picked_at)
+    yield from get_out_of_view(work, watch)
+    yield from find_object(work)
+    _require_sight(work, watch)
+
+
+def _plan_to_fetch_it(work: Work, watch: Watch) -> Routine[None]:
+    """Plan for what is seen, twice if there is no way: what one picture shows may be wrong."""
+    progress = work.progress
+    progress.picked_at = None
+    progress.plan = yield from make_plan(work)
+    seen = progress.seen
+    if seen.sighting is None or (progress.plan is not None and not seen.obstruction):
+        return
+    progress.start_again()
+    work.senses.head.doubt()
+    yield from work.arm.wait(LOOK_AGAIN_S)
+    yield from find_object(work)
+    _require_sight(work, watch)
+    progress.plan = yield from make_plan(work)
+
+
+def _judged(work: Work, watch: Watch) -> Plan:
+    """The plan, once the monitors have let it pass. Raises `Interruption`."""
+    progress = work.progress
+    watch.check(work.senses.read_grip() if progress.seen.carrying else None)
+    if progress.felt is not None and progress.felt.tries >= len(watch.tries(Phase.PREPARE)):
+        # Nothing that is seen explains it.
+        watch.judge(progress.felt)
+    if progress.plan is None:
+        raise ExecutionTransitionError(
+            f"expected a path for {work.assignment.behavior.name} or an issue, got neither"
+        )
+    progress.picked_at = progress.plan.picked_at or progress.picked_at
+    return progress.plan
+
+
+def _require_sight(work: Work, watch: Watch) -> None:
+    """Raises `Interruption` where the head camera shows nothing of the table."""
+    blind = work.progress.seen.blind
+    if blind is not None:
+        watch.check(None)
+        raise ExecutionTransitionError(f"expected an issue, as {blind}, got none")
+
+
+def _goes_on_carrying(work: Work) -> bool:
     """Whether the behavior has a step at which to go on with its object in the gripper."""
+    assignment, senses = work.assignment, work.senses
     errand = errand_of(assignment, senses, Findings(carrying=True))
-    (situation, *_) = ways_to_grasp(errand, arm.body.gripper, senses.catalogue.table.height, ())
+    table_z = senses.catalogue.table.height
+    (situation, *_) = ways_to_grasp(errand, work.arm.body.gripper, table_z, ())
     steps = assignment.behavior.steps(assignment.parameters, situation)
     return assignment.behavior.first_carrying(steps) is not None
+
+
+def _is_in_place(work: Work) -> bool:
+    seen, senses = work.progress.seen, work.senses
+    part, target = work.assignment.part, work.assignment.target
+    if part is None or target is None or seen.image is None:
+        return False
+    if seen.sighting is not None and is_at(
+        seen.sighting, target, senses.catalogue.height_of(target)
+    ):
+        return True
+    # What is out of sight at its place since it was seen there needs nobody to fetch it.
+    hidden = senses.head.presence(seen.image, part, target) is Presence.HIDDEN
+    return work.progress.was_done == "there" and hidden
+
+
+def _is_hidden(work: Work, before: HeadSighting | None) -> bool:
+    """Whether something may hide the object where it was seen before."""
+    part, seen = work.assignment.part, work.progress.seen
+    if seen.sighting is not None or part is None or seen.image is None or before is None:
+        return False
+    where = Location(x=before.x, y=before.y, z=before.z, yaw=before.yaw)
+    return work.senses.head.presence(seen.image, part, where) is Presence.HIDDEN

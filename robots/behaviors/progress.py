@@ -2,10 +2,9 @@
 
 from dataclasses import dataclass, field
 
-from robots.behaviors.assignment import Findings
-from robots.behaviors.confirmation import Outcome
 from robots.behaviors.contact import Contact
 from robots.behaviors.execution_state import ExecutionState, ExecutionTransitionError, follow
+from robots.behaviors.findings import Findings, Outcome
 from robots.behaviors.phase import Phase
 from robots.behaviors.planning import Plan, waypoints_of
 from robots.body import ToolPose
@@ -21,7 +20,8 @@ class Progress:
     `felt` what the empty hand felt last on its way to the object. `inexact`: the object is at its
     place, but so far off that it is placed once more; `unconfirmed`: it was let go of there, and
     nothing could be seen. `regrasps`: so often it was let go of, as
-    something had pushed it askew, to be grasped anew.
+    something had pushed it askew, to be grasped anew. `picked_at` is the tool pose at which what is
+    held was picked up, None if a person handed it over.
     """
 
     was_done: WasDone | None
@@ -35,6 +35,7 @@ class Progress:
     inexact: bool = False
     unconfirmed: bool = False
     regrasps: int = 0
+    picked_at: ToolPose | None = None
 
     def move_to(self, state: ExecutionState) -> None:
         """Become this. Raises `ExecutionTransitionError`."""

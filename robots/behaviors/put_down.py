@@ -42,8 +42,8 @@ def set_down(arm: Arm, senses: Senses, picked_at: ToolPose | None) -> Routine[bo
 
     Whether that was done: without a way there it is still held.
     """
-    grip = senses.grip
-    if grip is None or not senses.holds():
+    grip = senses.hand.grip
+    if grip is None or not senses.hand.holds():
         return False
     yield from arm.lift()
     path = _way_down(arm, senses, grip.part, grip.grasp, picked_at)
@@ -60,7 +60,7 @@ def _way_down(
 ) -> ArmPath | None:
     """The path to the best spot that the arm can put something down at."""
     table = senses.catalogue.table
-    boxes = others(part, senses.seen_boxes(senses.look()))
+    boxes = others(part, senses.head.seen_boxes(senses.head.look()))
     spots = [] if picked_at is None else [picked_at]
     here = arm.tool_pose()
     if here is not None:

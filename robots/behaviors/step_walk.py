@@ -1,11 +1,10 @@
 """Walking a step of a plan on a body, again and more gently while something is felt."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
-from robots.arm import Arm, Routine
-from robots.behaviors.assignment import Assignment
+from robots.arm import Routine
 from robots.behaviors.backing_off import back_off, try_again
 from robots.behaviors.behavior import Move, Step
 from robots.behaviors.contact import Contact, ContactWatch, Track, Try, hindering_n, is_arrival
@@ -13,11 +12,10 @@ from robots.behaviors.covering import Covering
 from robots.behaviors.execution_state import ExecutionState, ExecutionTransitionError
 from robots.behaviors.phase import Phase
 from robots.behaviors.planning import Plan
-from robots.behaviors.progress import Progress
 from robots.behaviors.watch import Watch
+from robots.behaviors.work import Work
 from robots.body import ToolPose
-from robots.link.messages import ReportBody, StepStarted
-from robots.senses import Senses
+from robots.link.messages import StepStarted
 
 _MOST_REGRASPS = 2
 """Who pushes a part aside more often than this is told that it was missed."""
@@ -34,22 +32,11 @@ class _Felt:
 class StepWalk:
     """Walks the steps of the plan in an execution's progress, one at a time."""
 
-    def __init__(
-        self,
-        assignment: Assignment,
-        progress: Progress,
-        watch: Watch,
-        arm: Arm,
-        senses: Senses,
-        report: Callable[[ReportBody], None],
-    ) -> None:
-        self._assignment = assignment
-        self._progress = progress
+    def __init__(self, work: Work, watch: Watch) -> None:
+        self._work = work
+        self._progress, self._arm, self._senses = work.progress, work.arm, work.senses
         self._watch = watch
-        self._arm = arm
-        self._senses = senses
-        self._report = report
-        self._covering = Covering(assignment, senses)
+        self._covering = Covering(work.assignment, work.senses)
 
     def take_all(self, plan: Plan) -> Routine[bool]:
         """All steps; False if what they were planned for has to be looked at again.
@@ -71,7 +58,9 @@ class StepWalk:
         progress, watch = self._progress, self._watch
         progress.step, progress.was_done = number, None
         name = progress.planned.steps[number - 1].name
-        self._report(StepStarted(execution=self._assignment.execution, step=number, name=name))
+        self._work.report(
+            StepStarted(execution=self._work.assignment.execution, step=number, name=name)
+        )
         tries = watch.tries(progress.phase) or [Try(math.inf, 1.0)]
         looks = progress.phase is Phase.APPROACH and bool(watch.tries(Phase.PREPARE))
         if not looks:
@@ -80,17 +69,17 @@ class StepWalk:
         for count, each in enumerate(tries[begin:], start=begin + 1):
             felt = yield from self._try(number, each)
             if felt is None:
-                askew = self._senses.has_askew
+                askew = self._senses.hand.has_askew
                 if askew:
                     yield from self._let_go_to_regrasp()
                 return not askew
             contact = Contact(felt.force_n, count)
-            yield from back_off(progress, felt.way_back, self._arm, watch)
+            yield from back_off(self._work, watch, felt.way_back)
             if looks:
                 progress.felt = contact
                 progress.move_to(ExecutionState.PREPARING)
                 return False
-            try_again(progress, contact, self._arm, watch, last=count == len(tries))
+            try_again(self._work, watch, contact, last=count == len(tries))
         raise ExecutionTransitionError(f"expected a try of step {number}, got none")
 
     def _let_go_to_regrasp(self) -> Routine[None]:
@@ -130,7 +119,7 @@ class StepWalk:
                     return _Felt(force_n, track.way_back())
 
     def _begin(self, number: int, step: Step, speed: float) -> None:
-        part, plan = self._assignment.part, self._progress.planned
+        part, plan = self._work.assignment.part, self._progress.planned
         if isinstance(step.action, Move):
             if plan.path is not None:
                 if step.action.opening_m is not None:
@@ -139,7 +128,7 @@ class StepWalk:
         elif step.action.to == "closed":
             if part is not None and step.phase is Phase.GRASP:
                 regrasp = self._progress.regrasps < _MOST_REGRASPS
-                self._senses.watch_grip(part, plan.grasp, regrasp=regrasp)
+                self._senses.hand.watch_grip(part, plan.grasp, regrasp=regrasp)
             self._arm.start_closing()
         else:
             self._senses.let_go()

@@ -1,20 +1,18 @@
 """The monitors of one execution: what they are shown, and what they report."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any, NoReturn
 
-from robots.arm import Arm
-from robots.behaviors.assignment import Assignment
 from robots.behaviors.behavior import SetGripper
 from robots.behaviors.contact import Contact, Try
 from robots.behaviors.execution_state import ExecutionTransitionError
 from robots.behaviors.phase import Phase
-from robots.behaviors.progress import Progress
+from robots.behaviors.work import Work
 from robots.grip import GripReading
-from robots.link.messages import Detection, IssueDetected, ReportBody
+from robots.link.messages import Detection, IssueDetected
 from robots.monitors.monitor import Monitor, MonitorView
-from robots.senses import FOREARM, HEAD, Senses
+from robots.senses import FOREARM, HEAD
 from robots.vision.drawing import draw_detection, encode_jpeg
 
 _CAREFUL = 0.5
@@ -32,21 +30,10 @@ class Interruption(Exception):  # noqa: N818 - control flow, not an error
 class Watch:
     """Lets the monitors of the step under way judge what is seen and felt."""
 
-    def __init__(
-        self,
-        assignment: Assignment,
-        progress: Progress,
-        monitors: Sequence[Monitor[Any]],
-        arm: Arm,
-        senses: Senses,
-        report: Callable[[ReportBody], None],
-    ) -> None:
-        self._assignment = assignment
-        self._progress = progress
+    def __init__(self, work: Work, monitors: Sequence[Monitor[Any]]) -> None:
+        self._work = work
+        self._progress = work.progress
         self._monitors = monitors
-        self._arm = arm
-        self._senses = senses
-        self._report = report
         self._raised: set[str] = set()
         self._forces_n: list[float] = []
         self._next_check_s = -math.inf
@@ -66,13 +53,13 @@ class Watch:
 
     def check_if_due(self) -> None:
         """Check at the forearm camera's period. Raises `Interruption`."""
-        now = self._arm.body.time_s()
+        now = self._work.arm.body.time_s()
         if now < self._next_check_s - 1e-9:
             return
-        self._next_check_s = now + self._senses.forearm_period_s
+        self._next_check_s = now + self._work.senses.hand.period_s
         looking = self._judges_grip(self._progress.phase) and not self._closing()
         self._read_s = now if looking else self._read_s
-        self.check(self._senses.read_grip() if looking else None)
+        self.check(self._work.senses.read_grip() if looking else None)
 
     def check(self, grip: GripReading | None) -> None:
         """Let the monitors of this step judge. Raises `Interruption` for the first that must."""
@@ -87,10 +74,10 @@ class Watch:
             if detection is None:
                 continue
             if monitor.interrupts:
-                self._arm.stop()
+                self._work.arm.stop()
             else:
                 self._raised.add(monitor.issue)
-                self._arm.be_careful(_CAREFUL)
+                self._work.arm.be_careful(_CAREFUL)
             self._report_issue(monitor, detection, view)
             if monitor.interrupts:
                 raise Interruption(monitor)
@@ -108,7 +95,7 @@ class Watch:
 
         The last step in which they are looked at ends with one taken after the arm has arrived.
         """
-        grip, plan = self._senses.grip, self._progress.plan
+        grip, plan = self._work.senses.hand.grip, self._progress.plan
         if grip is None or plan is None or not self._judges_grip(self._progress.phase):
             return False
         following = plan.steps[self._progress.step : self._progress.step + 1]
@@ -120,13 +107,13 @@ class Watch:
         return any(each.camera == FOREARM for each in self._watching(phase))
 
     def _watching(self, phase: Phase) -> list[Monitor[Any]]:
-        name = self._assignment.behavior.monitored_as
+        name = self._work.assignment.behavior.monitored_as
         return [each for each in self._monitors if each.watches(name, phase)]
 
     def _closing(self) -> bool:
         """Whether the fingers are still on their way together."""
         plan = self._progress.plan
-        if plan is None or not self._arm.body.moving:
+        if plan is None or not self._work.arm.body.moving:
             return False
         return plan.steps[self._progress.step - 1].action == SetGripper("closed")
 
@@ -139,15 +126,15 @@ class Watch:
         if grip is not None:
             pictures[FOREARM] = grip.image
         return MonitorView(
-            time_s=self._arm.body.time_s(),
+            time_s=self._work.arm.body.time_s(),
             step=progress.step,
             phase=progress.phase,
-            part=self._assignment.part,
-            needs_help=self._assignment.needs_help,
-            target=self._assignment.target,
+            part=self._work.assignment.part,
+            needs_help=self._work.assignment.needs_help,
+            target=self._work.assignment.target,
             was_done=progress.was_done,
-            reach=self._arm.body.reach,
-            table_z=self._senses.catalogue.table.height,
+            reach=self._work.arm.body.reach,
+            table_z=self._work.senses.catalogue.table.height,
             sighting=progress.seen.sighting,
             refusal=progress.seen.refusal,
             obstruction=progress.seen.obstruction,
@@ -164,12 +151,12 @@ class Watch:
         image = view.pictures.get(detection.camera)
         fresh = view.phase in (Phase.PREPARE, Phase.CONFIRM)
         if image is None or (detection.camera == HEAD and not fresh):
-            image = self._arm.body.cameras[detection.camera].capture()
+            image = self._work.arm.body.cameras[detection.camera].capture()
         height, width = image.bgr.shape[:2]
         detection = detection.model_copy(update={"size_px": (width, height)})
-        self._report(
+        self._work.report(
             IssueDetected(
-                execution=self._assignment.execution,
+                execution=self._work.assignment.execution,
                 issue=monitor.issue,
                 step=view.step,
                 interrupts=monitor.interrupts,

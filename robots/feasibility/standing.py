@@ -7,13 +7,10 @@ import shapely
 
 from robots.catalogue import Part
 from robots.vision.seen_box import SeenBox
-from tasks.scene import Pose, Scene
+from tasks.scene import RESTS_M, Pose, Scene
 
-TOUCH_M = 0.001
+_OVERLAP_M = 0.001
 """What overlaps by less only touches."""
-
-RESTS_M = 0.006
-"""What is so near to a surface rests on it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,6 +84,6 @@ def _intersect(one: SeenBox, two: SeenBox) -> bool:
     deep_m = min(one.top_z, two.top_z) - max(one.bottom_z, two.bottom_z)
     if deep_m <= RESTS_M:
         return False
-    outlines = (shapely.Polygon(each.corners()).buffer(-TOUCH_M / 2) for each in (one, two))
+    outlines = (shapely.Polygon(each.corners()).buffer(-_OVERLAP_M / 2) for each in (one, two))
     first, second = outlines
     return bool(first.intersects(second))

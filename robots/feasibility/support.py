@@ -6,8 +6,8 @@ from collections.abc import Iterator, Sequence
 import shapely
 
 from robots.feasibility.stability import carried_by, stability_rad
-from robots.feasibility.standing import RESTS_M, Standing, beneath
-from tasks.scene import Scene, Table
+from robots.feasibility.standing import Standing, beneath
+from tasks.scene import RESTS_M, Scene, Table
 from tasks.scene_problem import SceneProblem
 
 LEAST_STABILITY_RAD = math.radians(8.0)

@@ -7,7 +7,7 @@ import shapely
 
 from robots.vision.seen_box import SeenBox
 
-_RESTS_M = 0.01
+_HELD_UP_M = 0.01
 """What is so near to something's top is held up by it."""
 
 
@@ -20,7 +20,7 @@ def below(box: SeenBox, table_z: float) -> SeenBox:
 
 def unseen_carriers(boxes: Sequence[SeenBox], table_z: float) -> list[SeenBox]:
     """What must be below those of the known boxes that nothing seen holds up."""
-    high = [each for each in boxes if each.name and each.bottom_z > table_z + _RESTS_M]
+    high = [each for each in boxes if each.name and each.bottom_z > table_z + _HELD_UP_M]
     return [below(box, table_z) for box in high if not any(_holds_up(o, box) for o in boxes)]
 
 
@@ -28,11 +28,11 @@ def bears(box: SeenBox, spot: tuple[float, float, float], radius_m: float) -> bo
     """Whether what stands there (its bottom's middle), and is so wide, may rest on a box."""
     x, y, z = spot
     apart_m = shapely.Polygon(box.corners()).distance(shapely.Point(x, y))
-    return abs(box.top_z - z) <= _RESTS_M and apart_m < radius_m
+    return abs(box.top_z - z) <= _HELD_UP_M and apart_m < radius_m
 
 
 def _holds_up(lower: SeenBox, box: SeenBox) -> bool:
-    if lower is box or abs(lower.top_z - box.bottom_z) > _RESTS_M:
+    if lower is box or abs(lower.top_z - box.bottom_z) > _HELD_UP_M:
         return False
     outlines = [shapely.Polygon(each.corners()) for each in (lower, box)]
     return bool(outlines[0].intersects(outlines[1]))

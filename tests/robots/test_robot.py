@@ -31,7 +31,7 @@ from robots.link.messages import (
     TakePicture,
 )
 from robots.robot import Robot
-from robots.senses import Senses
+from robots.senses.head import HeadSense
 from robots.vision.obstruction import Obstruction
 from tasks.plugins import load_plugins
 
@@ -155,7 +155,7 @@ def test_what_stands_only_in_a_way_that_is_not_taken_blocks_nothing(
         return Obstruction((0.5, -0.1, 0.9), (80.0, 60.0), 500) if is_high(way) else None
 
     monkeypatch.setattr(bench.body, "plan_among", plan_low)
-    monkeypatch.setattr(Senses, "obstruction", see_high)
+    monkeypatch.setattr(HeadSense, "obstruction", see_high)
     bench.start("pink_bar")
     bench.run()
     assert bench.of(IssueDetected) == []

@@ -4,8 +4,8 @@ import pytest
 from drawn_scene import DrawnScene
 
 from robots.behaviors.behavior import Move, SetGripper, Step
-from robots.behaviors.confirmation import Outcome
 from robots.behaviors.execution_state import ExecutionState, ExecutionTransitionError
+from robots.behaviors.findings import Outcome
 from robots.behaviors.phase import Phase
 from robots.behaviors.planning import Plan
 from robots.behaviors.progress import Progress

@@ -8,13 +8,13 @@ import pytest
 
 from robots.clearance import ROOM_M
 from robots.feasibility.stability import PLACED_WITHIN_M
-from robots.feasibility.standing import RESTS_M
 from robots.feasibility.support import LEAST_STABILITY_RAD
 from robots.grasp import OPEN_BESIDE_M, OPEN_LEAST_M, least_height_m
 from robots.gripper import GripperModel
 from sim.tabletop.arm import GRIPPER
 from sim.tabletop.world import REACH_MAX_M, REACH_MIN_M
 from sim.workcell.gripper import PR2_GRIPPER
+from tasks.scene import RESTS_M
 
 DOCUMENT = (Path(__file__).parents[3] / "docs" / "worlds.md").read_text()
 ROWS = {

@@ -4,7 +4,7 @@ import pytest
 from drawn_scene import PARTS, TABLE_Z, DrawnScene
 from scripted_body import STARTS, ScriptedBody, catalogue, trained_model
 
-import robots.senses
+import robots.senses.understanding
 from robots.body import CameraImage
 from robots.senses import Senses
 from robots.vision.table_view import TableView, view_table
@@ -19,7 +19,7 @@ def understood(monkeypatch: pytest.MonkeyPatch) -> list[CameraImage]:
         pictures.append(image)
         return view_table(image, *rest)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(robots.senses, "view_table", view)
+    monkeypatch.setattr(robots.senses.understanding, "view_table", view)
     return pictures
 
 
@@ -33,16 +33,16 @@ def test_noise_alone_is_no_reason_to_understand_a_picture_anew(
 ) -> None:
     senses = Senses(ScriptedBody(STARTS), trained_model(), catalogue())
     for seed in range(3):
-        assert senses.sight(PARTS["pink_bar"], picture(seed)) is not None
+        assert senses.head.sight(PARTS["pink_bar"], picture(seed)) is not None
     assert len(understood) == 1
 
 
 def test_what_is_doubted_is_understood_anew_once(understood: list[CameraImage]) -> None:
     senses = Senses(ScriptedBody(STARTS), trained_model(), catalogue())
-    senses.sight(PARTS["pink_bar"], picture(0))
-    senses.doubt()
+    senses.head.sight(PARTS["pink_bar"], picture(0))
+    senses.head.doubt()
     for seed in (1, 2):
-        senses.sight(PARTS["pink_bar"], picture(seed))
+        senses.head.sight(PARTS["pink_bar"], picture(seed))
     assert len(understood) == 2
 
 
@@ -51,8 +51,8 @@ def test_the_very_same_picture_shows_the_same_however_much_it_is_doubted(
 ) -> None:
     senses = Senses(ScriptedBody(STARTS), trained_model(), catalogue())
     for _ in range(2):
-        senses.sight(PARTS["pink_bar"], picture(0))
-        senses.doubt()
+        senses.head.sight(PARTS["pink_bar"], picture(0))
+        senses.head.doubt()
     assert len(understood) == 1
 
 
@@ -63,7 +63,7 @@ BEFORE_PINK = [((0.36, -0.25, TABLE_Z), (0.05, 0.2, 0.2))]
 def names_seen(senses: Senses, *, without: str = "", hidden: bool) -> set[str | None]:
     parts = {name: each.matrix() for name, each in STARTS.items() if name != without}
     image = DrawnScene(parts, grey_boxes=BEFORE_PINK if hidden else []).picture()
-    return {box.name for box in senses.seen_boxes(image)}
+    return {box.name for box in senses.head.seen_boxes(image)}
 
 
 def test_what_is_hidden_is_taken_to_stand_where_it_was_seen() -> None:

@@ -1,4 +1,4 @@
-"""Before a plan is made: what something hides is where it was last seen whole."""
+"""The search for an object: what something hides is where it was last seen whole."""
 
 from drawn_scene import TABLE_Z
 from robot_bench import RobotBench

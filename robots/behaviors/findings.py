@@ -1,0 +1,51 @@
+"""What the head camera shows of an assignment: before the first step, and after the last."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from robots.body import CameraImage, ToolPose
+from robots.link.messages import Location
+from robots.vision.head import HeadSighting
+from robots.vision.obstruction import Obstruction
+from robots.vision.presence import AT_PLACE_M, Presence
+
+_EXACT_M = 0.006
+"""The arm places a part less than 3 mm off, and the camera sees it less than 2 mm off."""
+
+
+@dataclass(slots=True)
+class Findings:
+    """What was seen before the first step; `carrying`: the object is in the gripper already.
+
+    `blind` says why the head camera shows nothing of the table, `refusal` why the object cannot be
+    grasped and placed as it was seen. `obstruction` is what stands in `way`, through which the tool
+    point is to go.
+    """
+
+    carrying: bool = False
+    image: CameraImage | None = None
+    blind: str | None = None
+    sighting: HeadSighting | None = None
+    refusal: str | None = None
+    obstruction: Obstruction | None = None
+    way: Sequence[ToolPose] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What the head camera showed once the arm was out of its view."""
+
+    image: CameraImage
+    sighting: HeadSighting | None
+    presence: Presence
+    blind: str | None = None
+    """Why the picture shows nothing of the table."""
+
+    def is_inexact(self, target: Location) -> bool:
+        """Whether it is wholly seen at its place, but farther off than arm and camera err."""
+        seen = self.sighting
+        if self.presence is not Presence.THERE or seen is None or not seen.complete:
+            return False
+        off_m = math.hypot(seen.x - target.x, seen.y - target.y)
+        return _EXACT_M < off_m <= AT_PLACE_M

@@ -1,0 +1,55 @@
+"""Before a plan is made: whether the object is held, and where it is."""
+
+from robots.arm import Routine
+from robots.behaviors.work import Work
+
+LOOKS = 3
+"""So often a part that is not wholly seen is looked for before that is believed."""
+LOOK_AGAIN_S = 0.1
+
+
+def feel_for_object(work: Work) -> Routine[bool]:
+    """Whether the object is in the gripper now, by fresh forearm pictures."""
+    part, senses = work.assignment.part, work.senses
+    if part is None or not senses.hand.holds(part.name):
+        return False
+    for _ in range(LOOKS):
+        senses.read_grip()
+        yield from work.arm.wait(senses.hand.period_s)
+    return senses.hand.holds(part.name)
+
+
+def find_object(work: Work) -> Routine[None]:
+    """Look for the object, again if it, or the table, is not wholly seen.
+
+    What something hides is taken to be where it was last seen whole: the fingers will tell.
+    """
+    part, senses, findings = work.assignment.part, work.senses, work.progress.seen
+    for attempt in range(LOOKS):
+        if attempt:
+            yield from work.arm.wait(LOOK_AGAIN_S)
+            if findings.sighting is None:
+                senses.head.doubt()
+        findings.image = senses.head.look()
+        findings.blind = senses.head.why_blind(findings.image)
+        if findings.blind is not None:
+            continue
+        if part is None:
+            return
+        findings.sighting = senses.head.sight(part, findings.image)
+        if findings.sighting is not None and findings.sighting.complete:
+            return
+    unseen = part is not None and findings.sighting is None and findings.blind is None
+    if part is not None and unseen and findings.image is not None:
+        findings.sighting = senses.head.recall(part, findings.image)
+
+
+def find_table(work: Work) -> Routine[None]:
+    """Whether the head camera shows the table past the arm; again while it does not."""
+    findings, senses = work.progress.seen, work.senses
+    for attempt in range(LOOKS):
+        if attempt:
+            yield from work.arm.wait(LOOK_AGAIN_S)
+        findings.blind = senses.head.why_blind(senses.head.look())
+        if findings.blind is None:
+            return

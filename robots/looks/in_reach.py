@@ -1,0 +1,64 @@
+"""The expectation that an object stands where the arm can lift it."""
+
+import math
+from collections.abc import Sequence
+
+from robots.behaviors.errand import Errand
+from robots.behaviors.grasp_choice import others
+from robots.behaviors.pick_and_place import lifting
+from robots.behaviors.planning import Plan, at_once, plan_amid
+from robots.catalogue import Part
+from robots.grasp import can_grasp
+from robots.link.messages import Location
+from robots.looks.looker import Looker
+from robots.vision.head import HeadSighting
+from robots.vision.seen_box import SeenBox
+
+_STILL_M = 0.006
+"""An object is at rest if it is this near to where the look before saw it."""
+
+_Spot = tuple[str | None, float, float, float]
+"""What stands somewhere: its name, x, y and height."""
+
+
+class InReach:
+    """An object rests, standing, where the arm can lift it amid all that is seen."""
+
+    def __init__(self, looker: Looker, part: Part) -> None:
+        self._looker, self._part = looker, part
+        self._before: HeadSighting | None = None
+        self._barred: Sequence[_Spot] = ()
+
+    def is_fulfilled(self) -> bool:
+        if not can_grasp(self._part, self._looker.arm.body.gripper):
+            return False
+        senses, image = self._looker.senses, self._looker.look_at_table()
+        if image is None:
+            return False
+        before, self._before = self._before, senses.head.sight(self._part, image)
+        now = self._before
+        if before is None or now is None or not now.upright(senses.catalogue.table.height):
+            return False
+        moved_m = math.dist((now.x, now.y, now.z), (before.x, before.y, before.z))
+        if moved_m > _STILL_M:
+            return False
+        return self._can_lift(now, others(self._part, senses.head.seen_boxes(image)))
+
+    def _can_lift(self, at: HeadSighting, around: Sequence[SeenBox]) -> bool:
+        """Whether there is a plan for that; where there was none, only once something has moved."""
+        spots = [(None, at.x, at.y, at.z), *((e.name, e.x, e.y, e.top_z) for e in around)]
+        if _alike(spots, self._barred):
+            return False
+        body, table = self._looker.arm.body, self._looker.senses.catalogue.table
+        errand = Errand(lifting, self._part, Location(x=at.x, y=at.y, z=at.z, yaw=at.yaw), None)
+        plan = at_once(plan_amid(errand, body, table, around))
+        self._barred = () if isinstance(plan, Plan) else spots
+        return isinstance(plan, Plan)
+
+
+def _alike(spots: Sequence[_Spot], before: Sequence[_Spot]) -> bool:
+    """Whether the same things stand where they stood before."""
+    return len(spots) == len(before) and all(
+        one[0] == other[0] and math.dist(one[1:], other[1:]) <= _STILL_M
+        for one, other in zip(spots, before, strict=True)
+    )

@@ -1,0 +1,88 @@
+"""What a look works with: a robot's arm and senses, and what they answer the service."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+from robots.arm import Arm, Routine
+from robots.behaviors.execution import Execution
+from robots.behaviors.search import LOOK_AGAIN_S
+from robots.body import CameraImage
+from robots.link.messages import FinishedResult, Looked, ReportBody
+from robots.result import Result
+from robots.senses import Senses
+from robots.vision.presence import Presence
+
+
+@dataclass(frozen=True, slots=True)
+class Looker:
+    """What a look works with, and answers.
+
+    `held` is the execution that waits meanwhile. `may_move`: the arm may go to neutral to free the
+    head camera's view. `finished`: the results that it is to judge.
+    """
+
+    arm: Arm
+    senses: Senses
+    report: Callable[[ReportBody], None]
+    held: Execution | None
+    may_move: bool
+    finished: Sequence[Result] = ()
+
+    def free_view(self) -> Routine[None]:
+        """Move the arm out of the head camera's view if that is allowed."""
+        if self.may_move:
+            yield from self.arm.go_to_neutral()
+
+    def answer(self, command: str, fulfilled: bool | None) -> Looked:
+        """All that the head camera sees now; it judges no results."""
+        return self._looked(command, fulfilled, self.senses.head.look(), {})
+
+    def answer_and_judge(self, command: str, fulfilled: bool | None) -> Routine[Looked]:
+        """All that the head camera sees, and what became of the finished results.
+
+        What seems gone, or a picture that shows no table, has to be so in a second picture as
+        well: a hand may pass by. With the arm in view it judges none.
+        """
+        image = self.senses.head.look()
+        results = self.finished if self.arm.at_neutral else ()
+        verdicts = self._judge(image, results)
+        doubted = [each for each in results if verdicts[each.message] is Presence.GONE]
+        blind = self.senses.head.why_blind(image) is not None
+        if doubted or blind:
+            yield from self.arm.wait(LOOK_AGAIN_S)
+            self.senses.head.doubt()
+            image = self.senses.head.look()
+            verdicts |= self._judge(image, results if blind else doubted)
+        return self._looked(command, fulfilled, image, verdicts)
+
+    def look_at_table(self) -> CameraImage | None:
+        """A head picture; None if it shows nothing of the table."""
+        image = self.senses.head.look()
+        return image if self.senses.head.why_blind(image) is None else None
+
+    def _judge(
+        self, image: CameraImage, results: Sequence[Result]
+    ) -> dict[FinishedResult, Presence]:
+        if self.senses.head.why_blind(image) is not None:
+            return {each.message: Presence.HIDDEN for each in results}
+        presence = self.senses.head.presence
+        return {each.message: presence(image, each.part, each.target) for each in results}
+
+    def _looked(
+        self,
+        command: str,
+        fulfilled: bool | None,
+        image: CameraImage,
+        verdicts: Mapping[FinishedResult, Presence],
+    ) -> Looked:
+        blind = self.senses.head.why_blind(image)
+        return Looked(
+            command=command,
+            objects=self.senses.head.sight_all(image) if blind is None else {},
+            gripper=self.senses.hand.position,
+            fulfilled=fulfilled,
+            there=[each for each, so in verdicts.items() if so is Presence.THERE],
+            gone=[each for each, so in verdicts.items() if so is Presence.GONE],
+            held=self.senses.hand.held,
+            blind=blind,
+        )
