@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator, Mapping
 import numpy as np
 
 from sim.workcell.parts import Part, PartPose
-from sim.workcell.physics import Client
+from sim.workcell.physics import LEAST_DISTANCE_M, Client
 from sim.workcell.pr2 import Pr2
 from tasks.scene import Scene, Table
 
@@ -60,7 +60,8 @@ class Bench:
         for other in self.parts.values():
             if other is part or other.stolen:
                 continue
-            points = self._client.getClosestPoints(part.body_id, other.body_id, max(0.0, apart_m))
+            within_m = max(LEAST_DISTANCE_M, apart_m)
+            points = self._client.getClosestPoints(part.body_id, other.body_id, within_m)
             if any(point[8] < apart_m for point in points):
                 yield other
 

@@ -21,7 +21,7 @@ from sim.workcell.obstacle import (
     sinks,
 )
 from sim.workcell.parts import Part, PartPose
-from sim.workcell.physics import Client, Point
+from sim.workcell.physics import LEAST_DISTANCE_M, Client, Point
 from sim.workcell.pr2 import Pr2
 from tasks.footprint import Footprint
 from tasks.scene import Pose
@@ -222,7 +222,7 @@ class Person(Acts[Part, PartPose]):
         other = next(self._bench.intersecting(part), None)
         if other is not None:
             return f"'{other.name}'"
-        if self._client.getClosestPoints(part.body_id, self._pr2.body_id, 0.0):
+        if self._client.getClosestPoints(part.body_id, self._pr2.body_id, LEAST_DISTANCE_M):
             return "the robot's arm"
         return None
 

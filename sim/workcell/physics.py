@@ -13,6 +13,9 @@ Client = Any
 Quaternion = tuple[float, float, float, float]
 Point = tuple[float, float, float]
 
+LEAST_DISTANCE_M = 1e-6
+"""To ask for bodies within this: within 0 the engine overlooks some that intersect."""
+
 CONTROL_HZ = 240
 """Control cycles, and physics steps, per simulated second."""
 

@@ -90,6 +90,17 @@ def test_nothing_is_brought_back_to_where_something_else_lies(world: WorkcellWor
 
 
 @pytest.mark.slow
+def test_nothing_is_brought_back_into_a_plate_with_a_knob(hands: Hands) -> None:
+    world = hands.world
+    x, y, _ = world.parts["plate"].pose().position
+    do(world, Act.STEAL, "leg")
+    hands.wait(5.0)
+    problem = do(world, Act.MOVE, "leg", to=Pose(x=x, y=y))
+    assert problem.endswith("so 'leg' cannot be put there")
+    assert world.parts["leg"].stolen
+
+
+@pytest.mark.slow
 def test_a_part_vanishes_from_between_the_fingers(hands: Hands) -> None:
     hands.pick("bar")
     assert do(hands.world, Act.STEAL, "bar") == ""
