@@ -7,6 +7,7 @@ from dialogue.evidence import Change, PutRight
 from dialogue.outlook import Outlook
 from dialogue.script import (
     ATTEMPT_FAILED,
+    EXPECTED,
     Ask,
     AskState,
     AwaitHelp,
@@ -50,6 +51,7 @@ _SEEN_NOW = {
     Expectation.IN_REACH: "I see the {object} within my reach now.",
     Expectation.WAY_CLEAR: "I see nothing in my way now.",
     Expectation.VIEW_CLEAR: "I see the table now.",
+    Expectation.IN_GRIPPER: "I have the {object} between my fingers.",
 }
 
 
@@ -133,7 +135,10 @@ class Conversation:
     def help_seen(self, change: Change) -> list[Turn]:
         """The camera saw what was promised; `change`: what it saw to change since the question."""
         state = self._require_help_state("help_seen")
-        said = self._word(state.thanks if change.by_a_person else state.unchanged)
+        said = state.thanks if change.by_a_person else state.unchanged
+        if change is Change.UNKNOWN:
+            said = _SEEN_NOW[EXPECTED[state.help]]
+        said = self._word(said)
         return self._settle(CloseReason.RESOLVED, state.resolution, said, change)
 
     def help_not_seen(self) -> list[Turn]:

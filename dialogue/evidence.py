@@ -38,7 +38,7 @@ class Change(StrEnum):
     """What was seen to change since the question was put."""
 
     UNKNOWN = "unknown"
-    """Nobody has looked before, so that nothing can be compared."""
+    """Nothing was seen before, so that nothing can be compared."""
     NONE = "none"
     APPEARED = "appeared"
     """The object was not to be seen, and now is."""
@@ -56,10 +56,14 @@ class Change(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Look:
-    """What one look saw: what is so of what matters, and where the object is (None: unseen)."""
+    """What one look saw: what is so of what matters, and where the object is (None: unseen).
+
+    `blind`: the camera showed nothing of the table, so that the look tells of nothing there.
+    """
 
     fulfilled: frozenset[Expectation]
     position: Point | None
+    blind: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +78,12 @@ def change_between(first: Look | None, now: Look) -> Change:
     """What a look sees changed since the first one."""
     if first is None:
         return Change.UNKNOWN
-    if {Expectation.WAY_CLEAR, Expectation.VIEW_CLEAR} & (now.fulfilled - first.fulfilled):
+    cleared = now.fulfilled - first.fulfilled
+    if Expectation.VIEW_CLEAR in cleared:
+        return Change.CLEARED
+    if first.blind:
+        return Change.UNKNOWN
+    if Expectation.WAY_CLEAR in cleared:
         return Change.CLEARED
     if now.position is None:
         return Change.NONE

@@ -104,6 +104,16 @@ class Expectation(StrEnum):
     """The head camera shows the table."""
 
 
+EXPECTED: Mapping[Help, Expectation] = {
+    Help.PLACE: Expectation.AT_PLACE,
+    Help.PUT_BACK: Expectation.IN_REACH,
+    Help.HAND_OVER: Expectation.IN_GRIPPER,
+    Help.CLEAR_WAY: Expectation.WAY_CLEAR,
+    Help.CLEAR_VIEW: Expectation.VIEW_CLEAR,
+}
+"""What a robot has to see before a promise counts as kept."""
+
+
 ATTEMPT_FAILED = "{attempt} has failed, and {later}."
 """What an answer, or silence, does that leaves the leaf to a later try."""
 

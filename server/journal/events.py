@@ -184,12 +184,13 @@ class FirstLook(DialogueEvent):
     """What the robot saw first after it had put its question: later looks are compared with it.
 
     `fulfilled`: what was so already. `position`: where the object was seen (base frame, metres),
-    None if it was not.
+    None if it was not. `blind`: the camera showed nothing of the table, so that nothing was seen.
     """
 
     type: Literal["first_look"] = "first_look"
     fulfilled: list[Expectation]
     position: tuple[float, float, float] | None
+    blind: bool = False
 
 
 class Claimed(DialogueEvent):

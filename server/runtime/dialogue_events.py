@@ -91,7 +91,10 @@ class DialogueEvents:
 
     def first_look(self, look: Look) -> ev.FirstLook:
         return ev.FirstLook(
-            **self._fields(), fulfilled=sorted(look.fulfilled), position=look.position
+            **self._fields(),
+            fulfilled=sorted(look.fulfilled),
+            position=look.position,
+            blind=look.blind,
         )
 
     def suspected_false_alarm(

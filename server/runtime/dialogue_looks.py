@@ -13,13 +13,13 @@ from dialogue.evidence import (
     has_moved,
     put_right,
 )
-from dialogue.script import Expectation, Help
+from dialogue.script import EXPECTED, Expectation, Help
 from robots.link.messages import FinishedResult
 from server.journal import events as ev
 from server.runtime.clock import has_come
 from server.runtime.context import RunContext
 from server.runtime.robot_side import Doing, Purpose, RobotSide
-from server.runtime.run_state import EXPECTED, DialogueState
+from server.runtime.run_state import DialogueState
 
 FIRST_LOOK_S = 1.0
 """So long the first look may take to see whether an object rests within reach."""
@@ -74,7 +74,7 @@ class DialogueLooks:
             Purpose.HELP,
             object=dialogue.raised.object,
             place=dialogue.raised.place,
-            expect=EXPECTED[awaiting.help],
+            expect=str(EXPECTED[awaiting.help]),
             within_s=max(0.0, awaiting.until - self._context.clock.now()),
             rate=self._rate,
             finished=_result_of(dialogue),
@@ -89,7 +89,7 @@ class DialogueLooks:
             return awaiting.time
         felt = dialogue.raised.detection is not None and dialogue.raised.detection.felt
         base = self._base(dialogue)
-        already = base is not None and EXPECTED[awaiting.help] in map(str, base.fulfilled)
+        already = base is not None and EXPECTED[awaiting.help] in base.fulfilled
         if already or (felt and awaiting.help is Help.CLEAR_WAY):
             return min(awaiting.time + HELP_TAKES_S, awaiting.until)
         return awaiting.time
@@ -198,8 +198,8 @@ class DialogueLooks:
         if helped_with is Help.HAND_OVER:
             held_before = base is not None and Expectation.IN_GRIPPER in base.fulfilled
             return Change.NONE if held_before else Change.HANDED_OVER
-        seen = Expectation(EXPECTED[helped_with])
-        return change_since(self._earlier(dialogue), self._seen(dialogue, side, seen))
+        now = self._seen(dialogue, side, EXPECTED[helped_with])
+        return change_since(self._earlier(dialogue), now)
 
     def _base(self, dialogue: DialogueState) -> Look | None:
         """What a look is compared with to see whether anything is right that was not."""
@@ -208,13 +208,17 @@ class DialogueLooks:
     def _earlier(self, dialogue: DialogueState) -> list[Look]:
         """The first look, and a later one that saw what was right to be so no more."""
         first, later = dialogue.first_look, self._compared_with.get(dialogue.id)
-        looks = [] if first is None else [Look(frozenset(first.fulfilled), first.position)]
+        looks = []
+        if first is not None:
+            looks.append(Look(frozenset(first.fulfilled), first.position, blind=first.blind))
         return looks if later is None else [*looks, later]
 
     def _seen(self, dialogue: DialogueState, side: RobotSide, expected: Expectation | None) -> Look:
         fulfilled = set() if expected is None else {expected}
         if self._is_at_place(dialogue, side):
             fulfilled.add(Expectation.AT_PLACE)
+        if side.blind is not None:
+            return Look(frozenset(fulfilled), None, blind=True)
         return Look(frozenset(fulfilled), seen_at(side, dialogue.raised.object))
 
     def _is_at_place(self, dialogue: DialogueState, side: RobotSide) -> bool:

@@ -74,7 +74,7 @@ def _unchanged(state: RunState, leaf: int, raised: ev.IssueRaised) -> int:
     if dialogue is None or (dialogue.resolved is not None and dialogue.resolved.helped):
         return 1
     looked = dialogue.first_look
-    then = before.last_seen if looked is None else looked.position
+    then = before.last_seen if looked is None or looked.blind else looked.position
     put_right = state.scripts[raised.issue].put_right
     about_the_part = not {Expectation.WAY_CLEAR, Expectation.VIEW_CLEAR} & set(put_right)
     if about_the_part and _is_elsewhere(then, raised.last_seen):

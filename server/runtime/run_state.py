@@ -5,13 +5,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import datetime
 from functools import singledispatchmethod
-from typing import Literal
 from uuid import UUID
 
 from dialogue.conversation import Conversation
 from dialogue.evidence import Change, PutRight
 from dialogue.outlook import Outlook
-from dialogue.script import CloseReason, Expectation, Help, Script, Turn
+from dialogue.script import CloseReason, Expectation, Script, Turn
 from robots.link.messages import Detection
 from server.journal import events as ev
 from server.runtime.requests import RunRequest
@@ -459,15 +458,3 @@ class RunState:
     @_apply.register
     def _(self, event: ev.RobotBack) -> None:
         self.lost.discard(event.robot)
-
-
-HelpExpectation = Literal["at_place", "in_reach", "in_gripper", "way_clear", "view_clear"]
-
-EXPECTED: dict[Help, HelpExpectation] = {
-    Help.PLACE: "at_place",
-    Help.PUT_BACK: "in_reach",
-    Help.HAND_OVER: "in_gripper",
-    Help.CLEAR_WAY: "way_clear",
-    Help.CLEAR_VIEW: "view_clear",
-}
-"""What a camera has to see before a promise counts as kept."""

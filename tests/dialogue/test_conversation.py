@@ -37,6 +37,7 @@ CALLS: dict[str, Call] = {
     "no": lambda conversation: conversation.answer("no"),
     "seen": lambda conversation: conversation.help_seen(Change.MOVED),
     "seen as before": lambda conversation: conversation.help_seen(Change.NONE),
+    "seen, not before": lambda conversation: conversation.help_seen(Change.UNKNOWN),
     "not seen": Conversation.help_not_seen,
     "at place": lambda conversation: conversation.put_right(
         PutRight(Expectation.AT_PLACE, Change.MOVED)
@@ -216,6 +217,12 @@ def test_only_a_change_that_was_seen_is_thanked_for(kind: str, calls: list[str])
     assert "thank" not in last_word(unchanged).lower()
     closes = changed[-1], unchanged[-1]
     assert [each.helped for each in closes if isinstance(each, Close)] == [True, False]
+
+
+def test_of_what_was_not_seen_before_nothing_is_said_but_that_it_is_seen_now() -> None:
+    turns = walk("blind", "no", "yes", "seen, not before")
+    assert last_word(turns) == "I see the pink bar at its place now. I go on."
+    assert turns[-1] == GOES_ON
 
 
 def test_a_withdrawn_question_says_what_is_seen() -> None:

@@ -40,6 +40,13 @@ def test_a_part_that_moved_since_the_question_has_though_not_since_the_last_look
     assert change_since([], look(Expectation.IN_REACH)) is Change.UNKNOWN
 
 
+def test_what_is_seen_after_the_dark_was_perhaps_there_all_the_time() -> None:
+    dark, now = Look(frozenset(), None, blind=True), look(Expectation.AT_PLACE)
+    assert change_between(dark, now) is Change.UNKNOWN
+    assert put_right(LOST, dark, now) == PutRight(Expectation.AT_PLACE, Change.UNKNOWN)
+    assert change_between(dark, look(Expectation.VIEW_CLEAR)) is Change.CLEARED
+
+
 def test_a_part_that_is_set_upright_where_it_lay_has_moved() -> None:
     # What lies is seen as far below the table as it is lower than when it stands.
     lying, upright = look(at=(0.5, 0.1, 0.684)), look(Expectation.IN_REACH, at=(0.505, 0.1, 0.701))

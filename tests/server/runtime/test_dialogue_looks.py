@@ -14,17 +14,19 @@ from server.runtime.dialogue_looks import DialogueLooks
 HERE, THERE = (0.5, 0.1), (0.5, 0.3)
 
 
-def about_cup() -> Any:
-    """A dialogue whose first look saw the cup within reach."""
+def about_cup(*, blind: bool = False) -> Any:
+    """A dialogue whose first look saw the cup within reach, or nothing at all."""
     raised = SimpleNamespace(object="cup", place=None, detection=None, interrupts=True)
-    first = SimpleNamespace(fulfilled=["in_reach"], position=(*HERE, 0.7))
+    first = SimpleNamespace(fulfilled=["in_reach"], position=(*HERE, 0.7), blind=False)
+    if blind:
+        first = SimpleNamespace(fulfilled=[], position=None, blind=True)
     watched = SimpleNamespace(watched_for=(Expectation.IN_REACH,))
     return SimpleNamespace(id=UUID(int=1), raised=raised, first_look=first, conversation=watched)
 
 
-def seeing(at: tuple[float, float]) -> Any:
+def seeing(at: tuple[float, float], *, blind: str | None = None) -> Any:
     cup = Sighting(x=at[0], y=at[1], z=0.7, yaw=0.0, time=1.0)
-    return SimpleNamespace(seen={"cup": cup}, there=frozenset(), held=None)
+    return SimpleNamespace(seen={"cup": cup}, there=frozenset(), held=None, blind=blind)
 
 
 @pytest.mark.parametrize(
@@ -45,3 +47,18 @@ def test_what_moved_since_the_question_has_moved_whenever_that_was(
     for at in by_and_by[:-1]:
         assert looks.put_right(dialogue, seeing(at), fulfilled=False) is None
     assert looks.change_seen(dialogue, seeing(by_and_by[-1]), Help.PUT_BACK) is change
+
+
+def test_a_first_look_in_the_dark_tells_of_no_place() -> None:
+    context: Any = None
+    first = DialogueLooks(context, None).first_look(
+        about_cup(), seeing(HERE, blind="the picture is black"), fulfilled=False
+    )
+    assert first.blind
+    assert first.position is None
+
+
+def test_what_was_not_seen_when_it_was_dark_is_not_taken_for_moved_since() -> None:
+    context: Any = None
+    looks = DialogueLooks(context, None)
+    assert looks.change_seen(about_cup(blind=True), seeing(THERE), Help.PUT_BACK) is Change.UNKNOWN
