@@ -1,9 +1,9 @@
 """How long a robot stands still once it was answered: from the answer to its next step.
 
 A person steals the part again and again while the robot reaches for it, puts it back once the robot
-stands still, and a live helper answers "no" to all that is asked half a second later, so that no
-physical help is awaited. In the workcell the fast camera is compared with PyBullet's renderer in
-the same run.
+stands still, and a live helper answers "no" to all that is asked, a second and a half later, so
+that no physical help is awaited. In the workcell the fast camera is compared with PyBullet's
+renderer in the same run.
 
     python benchmarks/recovery.py [--world workcell] [--answers 100] [--quick]
 """

@@ -25,15 +25,15 @@ _SPLINTER = 0.3
 _SAME_HUE = 0.25
 """A surface in another shade has all channels changed by the same factor, so far."""
 _BESIDE = np.ones((7, 7), np.uint8)
-"""Where a plate may be nothing is looked for farther outside."""
+"""So many pixels around where a plate may be still tell of its rim."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Evidence:
     """What the pixels around a surface say, on the plane at its height.
 
-    `points` (n, 2); `inside` 1 where the pixel shows the surface; `weight` 0 where it says
-    nothing; `measured` where it has a depth, so that more than its colour says where it is.
+    `points` (n, 2); `inside` 1 where the pixel shows the surface, else 0; `telling` where it says
+    whether it does; `measured` where it has a depth, so that more than its colour says where it is.
     `rim` (2,): sides that face the camera draw the surface out by this much, as far as they are
     within its height's tolerance. `pixel_m` is what a pixel spans across there, `pixel_m2` the area
     that it covers.
@@ -41,8 +41,8 @@ class Evidence:
 
     points: NDArray[np.float64]
     inside: NDArray[np.float64]
-    weight: NDArray[np.float64]
-    measured: NDArray[np.bool_]
+    telling: Bits
+    measured: Bits
     rim: NDArray[np.float64]
     pixel_m: float
     pixel_m2: float
@@ -136,7 +136,7 @@ def _weigh(
     return Evidence(
         points,
         inside.ravel().astype(np.float64),
-        telling.ravel().astype(np.float64),
+        telling.ravel(),
         ~np.isnan(height).ravel(),
         to_eye[:2] * (tolerance / to_eye[2]),
         float(np.linalg.norm(to_eye)) / image.focal_px,

@@ -119,12 +119,10 @@ def _fit(
 
     The first of them, and their misfit.
     """
-    telling = [each.weight > 0 for each in evidence]
-    chosen = list(zip(evidence, telling, strict=True))
     found, misfit = _descend(
-        np.concatenate([each.points[told] for each, told in chosen]),
-        np.concatenate([each.inside[told] for each, told in chosen]),
-        np.cumsum([0, *(np.count_nonzero(each) for each in telling)]),
+        np.concatenate([each.points[each.telling] for each in evidence]),
+        np.concatenate([each.inside[each.telling] for each in evidence]),
+        np.cumsum([0, *(np.count_nonzero(each.telling) for each in evidence)]),
         np.array([each.rim for each in evidence]),
         np.array([start.x, start.y, start.yaw, *np.ravel(sizes or [start.extents])]),
         5 if sizes is None else 3,
@@ -175,7 +173,7 @@ def _sides_seen(evidence: Evidence, found: Rectangle) -> tuple[bool, bool, bool,
             drawn_out = max(sign * rim[axis], 0.0)
             beyond = sign * local[:, axis] - half - drawn_out
             strip = along & (beyond > 0.3 * evidence.pixel_m) & (beyond <= reach)
-            told = evidence.weight[strip] * (1.0 - evidence.inside[strip])
+            told = evidence.telling[strip] * (1.0 - evidence.inside[strip])
             answers.append(bool(len(told) > 0 and told.mean() > _SEEN_SIDE))
     return answers[0], answers[1], answers[2], answers[3]
 

@@ -249,25 +249,14 @@ def test_what_presses_along_the_way_that_is_left_is_not_in_it() -> None:
         assert looked(bench).fulfilled is clear
 
 
-def test_what_stands_in_the_way_is_seen_even_where_no_path_was_found() -> None:
+@pytest.mark.parametrize("unplannable", [False, True], ids=["held", "no path was found"])
+def test_what_stands_in_the_way_of_a_start_is_seen_until_it_is_gone(unplannable: bool) -> None:
     bench = RobotBench()
-    bench.body.unplannable = True
+    bench.body.unplannable = unplannable
     bench.body.grey_boxes.append(((0.5, -0.12, 0.7), (0.12, 0.12, 0.2)))
     bench.start("pink_bar")
     bench.run()
     assert bench.of(IssueDetected)[-1].issue == "blocked"
-    bench.look(expect="way_clear", within_s=1.0)
-    assert looked(bench).fulfilled is False
-    bench.body.grey_boxes.clear()
-    bench.look(expect="way_clear", within_s=1.0)
-    assert looked(bench).fulfilled is True
-
-
-def test_what_stands_in_the_way_of_a_held_start_is_seen_until_it_is_gone() -> None:
-    bench = RobotBench()
-    bench.body.grey_boxes.append(((0.5, -0.12, 0.7), (0.12, 0.12, 0.2)))
-    bench.start("pink_bar")
-    bench.run()
     bench.look(expect="way_clear", within_s=1.0)
     assert looked(bench).fulfilled is False
     bench.body.grey_boxes.clear()
