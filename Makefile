@@ -5,7 +5,10 @@ VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 
-.PHONY: help setup demo types console screenshots serve test console-tests arm-kernels fleet-kernels steady lint bench lock clean
+# Much is done by processes that begin anew: each would compile every module once more.
+unexport PYTHONDONTWRITEBYTECODE
+
+.PHONY: help setup demo types console screenshots serve test console-tests arm-kernels fleet-kernels test-modules steady lint bench lock clean
 
 help:  ## Say what there is
 	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 10
@@ -43,13 +46,16 @@ screenshots: console  ## The console's pictures in docs/images, from situations 
 	$(BIN)/python scripts/screenshots.py
 
 test: console  ## Every test, in random order; one in a browser that fails is run once more
-	@# The kernels are compiled once here, not by many processes at a time.
-	$(MAKE) --no-print-directory -j -O console-tests arm-kernels fleet-kernels
+	@# The kernels and the tests are compiled once here, not by many processes at a time.
+	$(MAKE) --no-print-directory -j -O console-tests test-modules arm-kernels fleet-kernels
 	@command -v chromium google-chrome >/dev/null || echo 'There is no Chromium on this machine: the tests in a browser are skipped.'
 	$(BIN)/python scripts/run_tests.py
 
 console-tests:
 	cd web && PATH="$(CURDIR)/$(BIN):$$PATH" npm test --silent
+
+test-modules:
+	$(BIN)/pytest --collect-only -q >/dev/null
 
 # Vision, kinematics, drawing and localization.
 arm-kernels:

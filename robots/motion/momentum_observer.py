@@ -17,16 +17,17 @@ Vector = NDArray[np.float64]
 _USUAL_FORCE_N = 1000.0
 """Far more than an arm ever feels: it only matters in directions that no joint feels."""
 
+_KNOWN_BEFORE = np.eye(3) / _USUAL_FORCE_N**2
+
 
 class ArmDynamics(Protocol):
     """The rigid-body model of an arm with n joints, at angles (rad) and velocities (rad/s)."""
 
-    def momentum(self, angles: Vector, velocities: Vector) -> Vector:
-        """The generalized momentum M(q) v (n)."""
-        ...
+    def momentum_and_drift(self, angles: Vector, velocities: Vector) -> tuple[Vector, Vector]:
+        """The generalized momentum M(q) v (n), and C(q, v)^T v - g(q) (n), N m.
 
-    def momentum_drift(self, angles: Vector, velocities: Vector) -> Vector:
-        """C(q, v)^T v - g(q) (n): what changes the momentum but the joints' torques, N m."""
+        The second is what changes the momentum but the joints' torques.
+        """
         ...
 
     def tool_jacobian(self, angles: Vector) -> NDArray[np.float64]:
@@ -52,13 +53,12 @@ class MomentumObserver:
 
     def update(self, angles: Vector, velocities: Vector, torques: Vector, period_s: float) -> None:
         """Take the torques that acted during the last cycle into account."""
-        momentum = self._dynamics.momentum(angles, velocities)
+        momentum, drift = self._dynamics.momentum_and_drift(angles, velocities)
         if self._started_with is None:
             self._started_with = momentum
             self._integral = np.zeros_like(momentum)
             self.residual = np.zeros_like(momentum)
             return
-        drift = self._dynamics.momentum_drift(angles, velocities)
         self._integral = self._integral + (torques + drift + self.residual) * period_s
         # Solved for the residual at the end of the cycle, which is stable at any gain.
         change = momentum - self._started_with - self._integral
@@ -74,5 +74,5 @@ def force_at_tool(jacobian: NDArray[np.float64], torques: Vector, noise_nm: Vect
     the joints cannot feel where the arm is stretched is taken to be 0.
     """
     weighted = jacobian / noise_nm
-    information = weighted @ weighted.T + np.eye(3) / _USUAL_FORCE_N**2
+    information = weighted @ weighted.T + _KNOWN_BEFORE
     return np.asarray(np.linalg.solve(information, weighted @ (torques / noise_nm)), np.float64)

@@ -45,16 +45,14 @@ class Pr2ArmDynamics:
         self._places = np.array([each.idx_q for each in joints])
         self._round = np.array([each.nq == 2 for each in joints])
 
-    def momentum(self, angles: Vector, velocities: Vector) -> Vector:
-        mass = pin.crba(self._model, self._data, self._configuration(angles))
-        # Only the upper triangle of the symmetric matrix is computed.
-        return np.asarray(np.where(self._upper, mass, mass.T) @ velocities)
-
-    def momentum_drift(self, angles: Vector, velocities: Vector) -> Vector:
+    def momentum_and_drift(self, angles: Vector, velocities: Vector) -> tuple[Vector, Vector]:
         q = self._configuration(angles)
+        mass = pin.crba(self._model, self._data, q)
+        # Only the upper triangle of the symmetric matrix is computed.
+        momentum = np.where(self._upper, mass, mass.T) @ velocities
         coriolis = pin.computeCoriolisMatrix(self._model, self._data, q, velocities)
         drift = coriolis.T @ velocities - pin.computeGeneralizedGravity(self._model, self._data, q)
-        return np.asarray(drift)
+        return momentum, np.asarray(drift)
 
     def tool_jacobian(self, angles: Vector) -> NDArray[np.float64]:
         jacobian = pin.computeFrameJacobian(

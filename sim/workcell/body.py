@@ -115,6 +115,7 @@ class WorkcellBody:
         self._pr2.drive(self._target, velocities, self._gripper.target_rad, self._braking)
         self._braking = False
         self._step()
+        self._pr2.sense()
         self._touch.feel(*self._pr2.arm_motion())
         self.cycle += 1
 

@@ -26,11 +26,10 @@ class EffortSensors:
         self._rng = rng
         self._bias = _BIAS_SHARE * ARM_NOISE_NM * rng.standard_normal(len(ARM_NOISE_NM))
         self._kept = math.exp(-period_s / _BIAS_LASTS_S)
+        self._wander: Vector = math.sqrt(1.0 - self._kept**2) * _BIAS_SHARE * ARM_NOISE_NM
 
     def read(self, torques_nm: Vector) -> Vector:
         """One reading of the torques that really act."""
-        count = len(ARM_NOISE_NM)
-        wander = math.sqrt(1.0 - self._kept**2) * _BIAS_SHARE * ARM_NOISE_NM
-        self._bias = self._kept * self._bias + wander * self._rng.standard_normal(count)
-        noise: Vector = ARM_NOISE_NM * self._rng.standard_normal(count)
-        return torques_nm + self._bias + noise
+        wander, noise = self._rng.standard_normal((2, len(ARM_NOISE_NM)))
+        self._bias = self._kept * self._bias + self._wander * wander
+        return np.asarray(torques_nm + self._bias + ARM_NOISE_NM * noise)

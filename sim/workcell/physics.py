@@ -26,7 +26,15 @@ def connect() -> Client:
         import pybullet
         from pybullet_utils.bullet_client import BulletClient
 
-        return BulletClient(pybullet.DIRECT)
+        class Engine(BulletClient):  # type: ignore[misc]
+            """A client that binds each function only once: some are called every cycle."""
+
+            def __getattr__(self, name: str) -> Any:
+                bound = super().__getattr__(name)
+                setattr(self, name, bound)
+                return bound
+
+        return Engine(pybullet.DIRECT)
 
 
 def arrangement(client: Client) -> bytes:

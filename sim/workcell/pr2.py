@@ -86,6 +86,18 @@ class Pr2:
             self._client.resetJointState(self.body_id, link, angle)
         for link in self._fingers:
             self._client.resetJointState(self.body_id, link, FINGERS_OPEN_RAD)
+        self.sense()
+
+    def sense(self) -> None:
+        """Read the joints' sensors: what they tell holds until the next physics step."""
+        states = self._client.getJointStates(self.body_id, [*self._arm, *self._fingers])
+        angles, velocities, _, torques = zip(*states, strict=True)
+        arm = len(self._arm)
+        self._arm_angles: Joints = np.array(angles[:arm])
+        self._arm_velocities: Joints = np.array(velocities[:arm])
+        self._arm_torques_nm: Joints = np.array(torques[:arm])
+        self._finger_angles: tuple[float, ...] = angles[arm:]
+        self._finger_torques_nm: tuple[float, ...] = torques[arm:]
 
     def drive(
         self, joints: Joints, velocities: Joints, fingers_rad: float, brake: bool = False
@@ -120,13 +132,11 @@ class Pr2:
 
     def arm_joints(self) -> Joints:
         """The measured joint angles of the arm."""
-        states = self._client.getJointStates(self.body_id, self._arm)
-        return np.array([state[0] for state in states])
+        return self._arm_angles.copy()
 
     def joint_positions(self) -> list[float]:
         """The measured angles of the arm's joints, then of the fingers'."""
-        states = self._client.getJointStates(self.body_id, [*self._arm, *self._fingers])
-        return [float(state[0]) for state in states]
+        return [*self._arm_angles.tolist(), *self._finger_angles]
 
     def forearm_camera_pose(self) -> Matrix4:
         """The forearm camera's optical frame, from the measured joint angles."""
@@ -139,8 +149,8 @@ class Pr2:
 
     def finger_angles(self) -> tuple[float, float]:
         """The measured angles of the left and the right finger."""
-        left, right = self._client.getJointStates(self.body_id, self._fingers[:2])
-        return left[0], right[0]
+        left, right, *_ = self._finger_angles
+        return left, right
 
     def gripper_opening_m(self) -> float:
         """The distance between the pads, which stay parallel; negative where they press together.
@@ -151,15 +161,12 @@ class Pr2:
 
     def gripper_effort_n(self) -> float:
         """The force with which the fingers press together, by their motors' torques."""
-        states = self._client.getJointStates(self.body_id, self._fingers[:2])
-        closing_nm = -sum(float(state[3]) for state in states) / 2
+        closing_nm = -sum(self._finger_torques_nm[:2]) / 2
         return max(0.0, closing_nm / _FINGER_LENGTH_M)
 
     def finger_hulls(self) -> Sequence[Hull]:
         """The gripper's convex pieces in the tool frame, by the measured finger angles."""
-        states = self._client.getJointStates(self.body_id, self._fingers)
-        angles = {name: state[0] for name, state in zip(FINGER_JOINTS, states, strict=True)}
-        return self._hulls.at(angles)
+        return self._hulls.at(dict(zip(FINGER_JOINTS, self._finger_angles, strict=True)))
 
     def touched_by(self, body_id: int) -> tuple[bool, bool]:
         """Whether the left and the right finger touch a body."""
@@ -175,9 +182,7 @@ class Pr2:
 
     def arm_motion(self) -> tuple[Joints, Joints, Joints]:
         """The arm joints' angles (rad), velocities (rad/s) and motor torques (N m)."""
-        states = self._client.getJointStates(self.body_id, self._arm)
-        angles, velocities, _, torques = zip(*states, strict=True)
-        return np.array(angles), np.array(velocities), np.array(torques)
+        return self.arm_joints(), self._arm_velocities.copy(), self._arm_torques_nm.copy()
 
     def dynamics(self) -> Pr2ArmDynamics:
         """The arm as a rigid-body model, with its links as the engine weighs them."""

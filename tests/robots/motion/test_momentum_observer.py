@@ -16,11 +16,10 @@ class Pendulum:
 
     inertia = MASS_KG * LENGTH_M**2
 
-    def momentum(self, angles: np.ndarray, velocities: np.ndarray) -> np.ndarray:  # noqa: ARG002
-        return self.inertia * velocities
-
-    def momentum_drift(self, angles: np.ndarray, velocities: np.ndarray) -> np.ndarray:  # noqa: ARG002
-        return -MASS_KG * GRAVITY * LENGTH_M * np.sin(angles)
+    def momentum_and_drift(
+        self, angles: np.ndarray, velocities: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        return self.inertia * velocities, -MASS_KG * GRAVITY * LENGTH_M * np.sin(angles)
 
     def tool_jacobian(self, angles: np.ndarray) -> np.ndarray:
         return LENGTH_M * np.array([[np.cos(angles[0])], [0.0], [np.sin(angles[0])]])
@@ -33,7 +32,7 @@ def swing(motor_nm: float, outside_nm: float, cycles: int, begins: int) -> list[
     observer.update(angle, velocity, np.array([motor_nm]), PERIOD_S)
     for cycle in range(cycles):
         outside = outside_nm if cycle >= begins else 0.0
-        drift = model.momentum_drift(angle, velocity)
+        _, drift = model.momentum_and_drift(angle, velocity)
         velocity = velocity + (motor_nm + outside + drift) / model.inertia * PERIOD_S
         angle = angle + velocity * PERIOD_S
         observer.update(angle, velocity, np.array([motor_nm]), PERIOD_S)
