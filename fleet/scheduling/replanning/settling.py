@@ -234,17 +234,21 @@ class Settling:
     # --- selling ----------------------------------------------------------------------------------
 
     def _sell(self, items: Sequence[int]) -> dict[int, Conflict[Constraint] | None]:
-        """Sell items, with transfers or without as is better; what is left over."""
+        """Sell items, with transfers or without as is better; what is left over.
+
+        Each way also with what had no place offered first.
+        """
         if not items:
             return {}
-        sales = [self._auction(items, True)]
-        if self.problem.transfers.places and len(items) > 1:
-            sales.append(self._auction(items, False))
-        if all(sale.unsold for sale in sales):
-            hard = [item for item in items if item in sales[0].unsold]
-            easy = [item for item in items if item not in sales[0].unsold]
-            if easy:
-                sales.append(self._auction(hard, True, easy))
+        ways = (True, False) if self.problem.transfers.places and len(items) > 1 else (True,)
+        sales: list[Sale] = []
+        for way in ways:
+            sale = self._auction(items, way)
+            hard = [item for item in items if item in sale.unsold]
+            easy = [item for item in items if item not in sale.unsold]
+            sales.append(sale)
+            if hard and easy:
+                sales.append(self._auction(hard, way, easy))
         best = min(sales, key=lambda sale: (len(sale.unsold), self._cost(sale)))
         self.routes = list(best.routes)
         self._begun = {item: k for item, k in self._begun.items() if item in best.unsold}

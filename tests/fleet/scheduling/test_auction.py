@@ -4,14 +4,14 @@ from dataclasses import replace
 
 import pytest
 from delivery_problems import corridor, corridor_items, parcel
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from fleet.scheduling.auction import offer, sell
 from fleet.scheduling.growing_routes import GrowingRoutes
 from fleet.scheduling.objective import cost
 from fleet.scheduling.partial_routes import part_schedule, without_items
-from fleet.scheduling.problem import Item, Problem, Robot, Transfers, Weights
+from fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit, Weights, Window
 from fleet.scheduling.replanning.settling import Settling
 from fleet.scheduling.schedule import Action, Task
 
@@ -75,7 +75,20 @@ def test_offer_moves_nothing_else(items: tuple[Item, ...], transfers: Transfers)
     assert set(second.unsold) <= {len(items)}
 
 
+URGENT = Window(19.0, 63.0)
+"""Without transfers the far one has no place but before the others, and there it is cheaper."""
+
+
 @given(corridor_items(), kinds_of_transfers, kinds_of_weights)
+@example(
+    items=(
+        Item("far", 1.0, Visit(4, URGENT, service_s=3.0), Visit(0, URGENT)),
+        Item("middle", 1.0, Visit(1, Window(39.0, 63.0), service_s=1.0), Visit(0)),
+        Item("near", 1.0, Visit(2, URGENT, service_s=2.0), Visit(2, URGENT)),
+    ),
+    transfers=Transfers((1, 2, 3), together=True),
+    weights=Weights(0.5, 0.0, 1.0, 1.0, 30.0),
+)
 @settings(deadline=None, max_examples=40)
 def test_what_is_sold_is_never_worse_than_without_transfers(
     items: tuple[Item, ...], transfers: Transfers, weights: Weights
