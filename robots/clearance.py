@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 from numpy.typing import NDArray
+from scipy.spatial.distance import cdist
 
 from robots.body import ToolPose
 from robots.gripper import GripperModel, ToolBox
@@ -18,6 +19,8 @@ _SIGNS = np.array([[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]])
 ROOM_M = 0.002
 """Enough between the gripper and what stands beside it: scenes are checked for so much. It is more
 than what is seen may be off by."""
+
+_ROUNDING_M = 1e-9
 
 _NEAR_M = 0.05
 """What is farther away leaves room enough, however much that is."""
@@ -52,14 +55,22 @@ def room_around(
     boxes = [each for each in boxes if _apart_m(each, tool) < spread_m + stray_m + _NEAR_M]
     if not boxes:
         return None
-    outlines = np.asarray(shapely.polygons(corners))
-    others = np.asarray(shapely.polygons(np.array([box.corners() for box in boxes])))
-    apart = np.asarray(shapely.distance(outlines[:, None], others[None, :])) - stray_m
-    tops = np.array([box.top_z for box in boxes])
     bottoms = np.array([tool.z + room.bottom_m for room in rooms])
-    left = np.maximum(apart, bottoms[:, None] - tops[None, :]).min(axis=0)
+    above = bottoms[:, None] - np.array([box.top_z for box in boxes])[None, :]
+    outlines = np.asarray(shapely.polygons(corners))
+
+    def left_m(some: NDArray[np.intp]) -> NDArray[np.float64]:
+        others = np.asarray(shapely.polygons(np.array([boxes[each].corners() for each in some])))
+        apart = np.asarray(shapely.distance(outlines[:, None], others[None, :])) - stray_m
+        return np.asarray(np.maximum(apart, above[:, some]).min(axis=0))
+
+    # Circles tell of most boxes that another one is nearer.
+    least_m = np.maximum(_circles_apart_m(corners, boxes) - stray_m, above).min(axis=0)
+    enough_m = left_m(least_m.argmin(keepdims=True))[0]
+    some = np.flatnonzero(least_m <= enough_m)
+    left = left_m(some)
     nearest = int(left.argmin())
-    return Room(float(left[nearest]), boxes[nearest])
+    return Room(float(left[nearest]), boxes[some[nearest]])
 
 
 def in_the_way(
@@ -93,6 +104,15 @@ def _outlines(rooms: Sequence[ToolBox], tool: ToolPose) -> NDArray[np.float64]:
     local = _SIGNS * extents[:, None] + middles[:, None]
     turned: NDArray[np.float64] = local @ np.array([[cos, sin], [-sin, cos]])
     return np.asarray(turned + np.array([tool.x, tool.y]))
+
+
+def _circles_apart_m(corners: NDArray[np.float64], boxes: Sequence[SeenBox]) -> NDArray[np.float64]:
+    """At least so far is each outline (n, 4, 2) from each box (m), from above: (n, m)."""
+    middles = corners.mean(axis=1)
+    radii_m = np.linalg.norm(corners - middles[:, None], axis=-1).max(axis=1)
+    boxes_m = np.array([math.hypot(*box.size[:2]) / 2 for box in boxes])
+    away_m = cdist(middles, np.array([(box.x, box.y) for box in boxes]))
+    return np.asarray(away_m - radii_m[:, None] - boxes_m - _ROUNDING_M)
 
 
 def _apart_m(box: SeenBox, tool: ToolPose) -> float:

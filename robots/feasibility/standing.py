@@ -1,5 +1,6 @@
 """Where the parts of a scene stand, or are to stand, as upright boxes."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -82,7 +83,8 @@ def _standing(scene: Scene, name: str, pose: Pose, where: tuple[str, ...]) -> St
 
 def _intersect(one: SeenBox, two: SeenBox) -> bool:
     deep_m = min(one.top_z, two.top_z) - max(one.bottom_z, two.bottom_z)
-    if deep_m <= RESTS_M:
+    reach_m = (math.hypot(*one.size[:2]) + math.hypot(*two.size[:2])) / 2
+    if deep_m <= RESTS_M or math.hypot(one.x - two.x, one.y - two.y) >= reach_m:
         return False
     outlines = (shapely.Polygon(each.corners()).buffer(-_OVERLAP_M / 2) for each in (one, two))
     first, second = outlines
