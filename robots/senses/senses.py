@@ -11,6 +11,7 @@ from robots.senses.head import HeadSense
 from robots.senses.own_arm import OwnArm
 from robots.senses.understanding import TableUnderstanding
 from robots.vision.color_model import ColorModel
+from robots.vision.picture_memory import keep_picture_memory
 from robots.vision.seen_box import SeenBox
 
 
@@ -18,6 +19,7 @@ class Senses:
     """A body's cameras with the colour model that understands their pictures, and its hand."""
 
     def __init__(self, body: Body, model: ColorModel, catalogue: Catalogue) -> None:
+        keep_picture_memory()
         self.catalogue = catalogue
         self.hand = HandSense(body, model)
         own_arm = OwnArm(body, self.hand)

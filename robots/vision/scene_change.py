@@ -98,18 +98,21 @@ def _equally_exposed(before: CameraImage, now: CameraImage) -> tuple[Picture, Pi
 
 def _differ(before: Picture, now: Picture, least: float) -> bool:
     """Whether a patch differs by more than noise and by more than `least`."""
-    smooth_before, smooth_now = (cv2.blur(each, _WINDOW) for each in _both_known(before, now))
-    difference = cv2.absdiff(smooth_now, smooth_before)
-    sigma = _MAD_TO_SIGMA * float(np.median(difference[::_SPARSE, ::_SPARSE]))
+    # What is missing in either says nothing.
+    difference = cv2.patchNaNs(cv2.subtract(now, before), 0.0)
+    smooth = np.abs(cv2.blur(difference, _WINDOW))
+    sigma = _MAD_TO_SIGMA * float(np.median(smooth[::_SPARSE, ::_SPARSE]))
     limit = max(_SIGMAS * sigma, least)
     fewest_px = max(_FEWEST_PX, _LEAST_SHARE * before.shape[0] * before.shape[1])
-    if np.count_nonzero(np.asarray(difference) > limit) < fewest_px:
+    if np.count_nonzero(smooth > limit) < fewest_px:
         return False
+    smooth_before, smooth_now = (cv2.blur(each, _WINDOW) for each in _both_known(before, now))
     # At an edge any value between those of its two sides may come.
     highest, lowest = cv2.dilate(smooth_before, _NEIGHBORS), cv2.erode(smooth_before, _NEIGHBORS)
     beyond = cv2.max(cv2.subtract(smooth_now, highest), cv2.subtract(lowest, smooth_now))
-    patches = np.asarray(beyond > limit).reshape(*before.shape[:2], -1).any(axis=2)
-    changed = np.asarray(patches, np.uint8)
+    changed = np.asarray(np.asarray(beyond) > limit, np.uint8)
+    if changed.ndim == 3:
+        changed = changed.max(axis=2)
     _, _, stats, _ = cv2.connectedComponentsWithStats(changed)
     return bool(stats[1:, cv2.CC_STAT_AREA].max(initial=0) >= fewest_px)
 
