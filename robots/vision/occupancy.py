@@ -66,8 +66,9 @@ def find_occupant(view: TableView, room: Room, fit: Fit) -> Obstruction | None:
     """What is in `room` that is not its part."""
     us, vs, points = view.standing_out(room.bottom_z + fit.tolerance_m)
     volume = _volume(room, fit)
-    inside = volume.holds(points, margin_m=0.0)
     column = replace(volume, size=(*volume.size[:2], np.inf)).holds(points, margin_m=0.0)
+    us, vs, points = us[column], vs[column], points[column]
+    inside = volume.holds(points, margin_m=0.0)
     free = np.zeros(len(points), np.bool_)
     for box in view.boxes:
         beside = room.over_part and box.name is not None and _is_lower(box, room, fit)
@@ -75,7 +76,7 @@ def find_occupant(view: TableView, room: Room, fit: Fit) -> Obstruction | None:
             free |= box.holds(points)
         elif box.bottom_z < volume.top_z:
             # Of what is taller than the room only a top above it may be seen.
-            inside |= column & box.holds(points)
+            inside |= box.holds(points)
     inside &= ~free
     at = (room.at.x, room.at.y, room.bottom_z)
     floor_px = pixels_covered(view.heights.image, at, room.part.size[:2])
