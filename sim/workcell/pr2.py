@@ -36,6 +36,8 @@ JOINT_DAMPING_NM_S = 0.1
 # two finger angles does it instead; stiffer or stronger than this, a part slides away sideways.
 _GRIP_TORQUE_NM = 3.0
 _FINGER_COUPLING_NM_RAD = 60.0
+_FINGER_DAMPING_NM_S_RAD = 0.2
+"""The stiffness acts a cycle late: without damping a heavy part swings between the fingers."""
 _LEAST_GRIP_TORQUE_NM = 0.3
 _TIP_TORQUE_NM = 100.0
 _FINGER_GAINS = (0.1, 0.1, 0.5, 0.5)
@@ -97,6 +99,7 @@ class Pr2:
         self._arm_velocities: Joints = np.array(velocities[:arm])
         self._arm_torques_nm: Joints = np.array(torques[:arm])
         self._finger_angles: tuple[float, ...] = angles[arm:]
+        self._finger_velocities: tuple[float, ...] = velocities[arm:]
         self._finger_torques_nm: tuple[float, ...] = torques[arm:]
 
     def drive(
@@ -116,6 +119,7 @@ class Pr2:
         )
         left, right = self.finger_angles()
         pull = _FINGER_COUPLING_NM_RAD * (left - right)
+        pull += _FINGER_DAMPING_NM_S_RAD * (self._finger_velocities[0] - self._finger_velocities[1])
         client.setJointMotorControlArray(
             self.body_id,
             self._fingers,

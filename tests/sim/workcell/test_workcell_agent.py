@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 
+import numpy as np
 import pytest
 from workcell_hands import TABLE_M, distance_m
 
@@ -19,6 +20,7 @@ from robots.link.messages import (
 )
 from sim.simulated_agent import SimulatedAgent
 from sim.workcell.adapter import adapter
+from sim.workcell.body import PERIOD_S
 from sim.workcell.parts import PartPose
 from sim.workcell.world import WorkcellWorld
 from sim.world import SceneChecker, WorldSetup
@@ -72,6 +74,38 @@ def do(
     while agent.advance(1.0):
         pass
     return reports
+
+
+def test_a_heavy_part_does_not_swing_between_the_fingers() -> None:
+    part = SceneObject(
+        color=(0.8, 0.2, 0.1),
+        size=(0.072, 0.030, 0.122),
+        mass_kg=0.493,
+        pose=Pose(x=0.6441, y=-0.3548),
+    )
+    target = Location(x=0.492, y=-0.1365, yaw=-2.05)
+    scene = Scene(name="one", objects={"part": part}, places={"there": Place(pose=Pose(x=0, y=0))})
+    agent = adapter.create_agent(WorldSetup(robot="r1", scene=scene, seed=1, speed=None))
+    parameters = {"object": "part", "place": "there"}
+    agent.attach(lambda _body, _time, _world: None, lambda _picture: None)
+    agent.handle(
+        "1",
+        Start(
+            execution="e",
+            node="/",
+            behavior="pick_and_place",
+            parameters=parameters,
+            target=target,
+        ),
+    )
+    world, positions_m = world_of(agent), []
+    while agent.advance(PERIOD_S):
+        positions_m.append(world.parts["part"].pose().position)
+    carried = np.array([each for each in positions_m if each[2] > TABLE_M + 0.03])
+    jerks_m = np.diff(carried[:, :2], 2, axis=0)
+    world.close()
+    assert len(carried) > 500
+    assert math.sqrt((jerks_m**2).mean()) < 3e-5
 
 
 def world_of(agent: SimulatedAgent) -> WorkcellWorld:
