@@ -157,9 +157,10 @@ def _nothing_between(
     if max(int(us.max()) - left, int(vs.max()) - top) > _LONGEST_PX:
         return False
     canvas = np.zeros((int(vs.max()) - top + 1, int(us.max()) - left + 1), np.uint8)
-    hull = cv2.convexHull(np.stack([us - left, vs - top], axis=1).astype(np.int32))
-    cv2.fillConvexPoly(canvas, hull, 1)
-    canvas[vs - top, us - left] = 0
+    # What stands on a piece, as a knob on its plate, is not between it and another one.
+    for (some_us, some_vs), value in (((us, vs), 1), (one, 0), (other, 0)):
+        hull = cv2.convexHull(np.stack([some_us - left, some_vs - top], axis=1).astype(np.int32))
+        cv2.fillConvexPoly(canvas, hull, value)
     between = seen.height_m[top : top + canvas.shape[0], left : left + canvas.shape[1]][canvas > 0]
     with np.errstate(invalid="ignore"):
         higher = int(np.count_nonzero(between > top_z + tolerance_m))

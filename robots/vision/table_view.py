@@ -15,30 +15,27 @@ from robots.grasp import half_turn
 from robots.link.messages import Location
 from robots.vision.blob import Blob
 from robots.vision.color_model import ColorModel
-from robots.vision.evidence import gather, gather_under
+from robots.vision.evidence import gather
 from robots.vision.head import HeadSighting
 from robots.vision.height_map import IN_FRONT_M, HeightMap, measure_heights
 from robots.vision.level_rectangle import Rectangle
-from robots.vision.level_surfaces import Pixels, Surface, Surfaces, find_surfaces
+from robots.vision.level_surfaces import Pixels, Surface, find_surfaces
+from robots.vision.match_fit import carried_by, fit_match
 from robots.vision.naming import Match, Namer, Top
 from robots.vision.projection import Points, unproject
-from robots.vision.rectangle import Fitted, fit_any, fit_sized, fit_with_knob
+from robots.vision.rectangle import Fitted, fit_any
 from robots.vision.seen_box import SeenBox
 from robots.vision.tracking import LastSeen
-from tasks.part_boxes import Size
 from tasks.scene import Table
 
-_TURNS_RAD = (math.pi / 4, math.pi / 2, -math.pi / 4)
-_SMALL_PX = 10.0
-_QUARTERS_RAD = (0.0, math.pi / 2)
 _COMPLETE_SHARE = 0.8
-_AS_WELL = 1.2
-"""A rectangle fits a half hidden surface as well as another if its misfit is not larger by more."""
 _SHARED = 0.4
 _APART_M = 0.005
 """Where badly seen boxes share less of their outline, or of their height, each may be right."""
 _OWN_M = 0.004
-"""What is within a part's outline, so much wider, and not above it is the part itself."""
+_OF_KNOWN = 0.5
+"""What is within parts' outlines, so much wider, and not above them is the parts themselves; of a
+surface at least this share."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -96,7 +93,9 @@ def view_table(
         matches, unknown = namer.name(tops, surfaces, segmentation, last_seen.spots, wanted)
         found = []
         for match in matches:
-            fitted = _fit_match(match, surfaces, last_seen.seen_whole(match.part.name))
+            carried = carried_by(match, matches, surfaces.tolerance_m)
+            stood = last_seen.seen_whole(match.part.name)
+            fitted = fit_match(match, surfaces, stood, carried)
             found.append((match, _sighting(match, fitted, image)))
         kept, more = _without_pieces(found, last_seen)
         if not more:
@@ -111,53 +110,9 @@ def view_table(
     strange = [
         _unknown_box(top, table.height)
         for top in unknown
-        if not any(_is_of(top, box, surfaces.tolerance_m) for box in boxes)
+        if not _is_of(top, boxes, surfaces.tolerance_m)
     ]
     return TableView(heights, sightings, [*boxes, *strange])
-
-
-def _fit_match(match: Match, surfaces: Surfaces, stood: Location | None) -> Fitted:
-    """Where exactly the surface is, now that its size is known; `stood`: when last seen whole."""
-    rough = match.top.fitted.turned() if match.swapped else match.top.fitted
-    at = rough.rectangle
-    # What is hidden goes on from the end that is seen.
-    hidden = np.array(match.extents) - at.extents
-    shifts = [
-        hidden[axis] / 2 * (int(low) - int(high))
-        for axis, (low, high) in enumerate((rough.sides_seen[:2], rough.sides_seen[2:]))
-    ]
-    start = Rectangle(*at.point(*shifts), at.yaw, match.extents)
-    if match.upright and match.part.knob is not None and (knob := match.knob) is not None:
-        return _fit_with_knob(knob, match.part.size, match.part.knob, start, surfaces)
-    evidence, starts = match.top.evidence, [start]
-    if all(rough.sides_seen) and min(match.extents) < _SMALL_PX * evidence.pixel_m:
-        # A rectangle of a few pixels, fitted without its size, may lie any way round.
-        starts += [replace(start, yaw=at.yaw + turn) for turn in _TURNS_RAD]
-    best = fit_sized(evidence, starts)
-    if all(rough.sides_seen) or stood is None or not _is_so_high(match, stood, surfaces):
-        return best
-    # Of a corner that is seen the rest may lie either way: it stands as it did if that fits, too.
-    still = fit_sized(evidence, [Rectangle(stood.x, stood.y, stood.yaw, match.extents)])
-    return still if still.misfit <= _AS_WELL * best.misfit else best
-
-
-def _fit_with_knob(
-    knob: Top, size: Size, on_top: Size, rough: Rectangle, surfaces: Surfaces
-) -> Fitted:
-    """One pose for a plate and its knob; where the knob is square the plate's rim says which."""
-    on = knob.fitted.rectangle
-    starts = [Rectangle(on.x, on.y, on.yaw + turn, size[:2]) for turn in _QUARTERS_RAD]
-    starts.append(replace(rough, extents=size[:2]))
-    plate = gather_under(knob.surface, knob.surface.top_z - on_top[2], starts, surfaces)
-    return fit_with_knob(plate, knob.evidence, starts, on_top[:2])
-
-
-def _is_so_high(match: Match, stood: Location, surfaces: Surfaces) -> bool:
-    """Whether a surface is as high as the part's top was."""
-    if not match.upright or stood.z is None:
-        return False
-    off_m = stood.z + match.height_m - match.top.surface.top_z
-    return abs(off_m) <= 2 * surfaces.tolerance_m
 
 
 def _sighting(match: Match, fitted: Fitted, image: CameraImage) -> HeadSighting:
@@ -267,12 +222,14 @@ def _shared(one: SeenBox, other: SeenBox) -> float:
     return outlines[0].intersection(outlines[1]).area / min(each.area for each in outlines)
 
 
-def _is_of(top: Top, box: SeenBox, tolerance_m: float) -> bool:
-    """Whether a surface is a piece of a box that is known already."""
-    if top.surface.top_z > box.top_z + tolerance_m:
-        return False
-    middle = top.fitted.rectangle
-    return bool(box.outline.holds(np.array([[middle.x, middle.y]]), _OWN_M)[0])
+def _is_of(top: Top, boxes: Sequence[SeenBox], tolerance_m: float) -> bool:
+    """Whether most of a surface is pieces of boxes that are known already."""
+    points = top.evidence.points[top.evidence.inside > 0.0]
+    known = np.zeros(len(points), np.bool_)
+    for box in boxes:
+        if top.surface.top_z <= box.top_z + tolerance_m:
+            known |= box.outline.holds(points, _OWN_M)
+    return float(known.mean()) > _OF_KNOWN
 
 
 def _blob(surface: Surface, image: CameraImage) -> Blob:
