@@ -32,6 +32,10 @@ _BESIDE_M = 0.12
 _HARDLY_M = 0.0015
 """Sides that differ by no more are now and then taken for one another by the head camera."""
 
+_SMALL_M = 0.018
+_TURNS_RAD = tuple(math.radians(each) for each in (5.0, -5.0, 10.0, -10.0, 15.0, -15.0))
+"""So far is a part that is no longer now and then seen turned; closing fingers turn it straight."""
+
 MARGIN_M = 0.0005
 """The least between the gripper and what stands beside an object, as it is seen: hardly more than
 the gripper model has to spare, as scenes are checked for more."""
@@ -65,14 +69,24 @@ class Crowding:
 
 
 def ways_to_grasp(
-    errand: Errand, gripper: GripperModel, table_z: float, boxes: Sequence[SeenBox]
+    errand: Errand,
+    gripper: GripperModel,
+    table_z: float,
+    boxes: Sequence[SeenBox],
+    *,
+    turned: bool = False,
 ) -> Iterator[Situation]:
     """The situations in which the steps may be laid out, the best first.
 
+    `turned`: those of a small part that is to be picked, turned by as much as it may be seen off.
     Raises `UngraspableError` where the gripper cannot take the object at all.
     """
     part, target = errand.part, errand.target
     ways_round = _ways_round(part, errand.found, target)
+    if turned:
+        ways_round = _turned(errand, ways_round)
+        if not ways_round:
+            return
     over_z = clear_z(ways_round[0], target, table_z, boxes)
     grasps = _grasps(errand, gripper)
     # Where the arm does not reach so high it may still find a way between what stands there.
@@ -158,6 +172,18 @@ def _ways_round(
         first = target.yaw + math.remainder(first - target.yaw, quarter)
     yaws = [first] if part.off_square_m > _HARDLY_M else [first, first + quarter]
     return [Location(x=found.x, y=found.y, z=found.z, yaw=half_turn(yaw)) for yaw in yaws]
+
+
+def _turned(errand: Errand, ways_round: Sequence[Location | None]) -> list[Location | None]:
+    part = errand.part
+    if part is None or errand.held_by is not None or max(part.size[:2]) > _SMALL_M:
+        return []
+    return [
+        found.model_copy(update={"yaw": half_turn(found.yaw + turn)})
+        for turn in _TURNS_RAD
+        for found in ways_round
+        if found is not None
+    ]
 
 
 def clear_z(

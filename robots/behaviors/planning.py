@@ -38,13 +38,21 @@ class Planner(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Spare:
-    """The least room for the fingers, where what they close beside may stand `stray_m` nearer."""
+    """The least room for the fingers, where what they close beside may stand `stray_m` nearer.
+
+    `turns`: where there is none a small part may be turned otherwise than it is said to be.
+    """
 
     least_m: float = MARGIN_M
     stray_m: float = 0.0
+    turns: bool = False
+
+    def is_left(self, tight: Crowding | None) -> bool:
+        """Whether what stands closest leaves so much."""
+        return tight is None or tight.room_m >= self.least_m
 
 
-AS_SEEN = Spare()
+AS_SEEN = Spare(turns=True)
 """For a plan amid what is seen."""
 
 
@@ -122,7 +130,7 @@ def plan_amid(
     ways = _lay_out(errand, planner.gripper, table, boxes, spare)
     ways.sort(key=lambda each: -roominess_m(each.tight))
     for way in ways:
-        if way.tight is not None and way.tight.room_m < spare.least_m:
+        if way.tight is not None and not spare.is_left(way.tight):
             refusals.append(way.tight)
             continue
         legs = legs_of(way.left, errand.part, way.grasp, planner.gripper, carrying=errand.carrying)
@@ -185,15 +193,18 @@ def _lay_out(
     ways: list[_Way] = []
     laid_out: set[tuple[Grasp | None, tuple[Step, ...]]] = set()
     known: dict[Sequence[Grip], Crowding | None] = {}
-    for situation in ways_to_grasp(errand, gripper, table.height, boxes):
-        steps, grasp = errand.lay_out(situation), situation.grasp
-        if (grasp, tuple(steps)) in laid_out:
-            continue
-        laid_out.add((grasp, tuple(steps)))
-        first = errand.first(steps)
-        # Ways that only pass higher grasp and let go alike.
-        closings = grips(steps[first - 1 :], grasp, gripper)
-        if closings not in known:
-            known[closings] = crowding(closings, gripper, boxes, spare.stray_m)
-        ways.append(_Way(steps, first, grasp, known[closings]))
+    for turned in (False, True):
+        if turned and (not spare.turns or any(spare.is_left(way.tight) for way in ways)):
+            break
+        for situation in ways_to_grasp(errand, gripper, table.height, boxes, turned=turned):
+            steps, grasp = errand.lay_out(situation), situation.grasp
+            if (grasp, tuple(steps)) in laid_out:
+                continue
+            laid_out.add((grasp, tuple(steps)))
+            first = errand.first(steps)
+            # Ways that only pass higher grasp and let go alike.
+            closings = grips(steps[first - 1 :], grasp, gripper)
+            if closings not in known:
+                known[closings] = crowding(closings, gripper, boxes, spare.stray_m)
+            ways.append(_Way(steps, first, grasp, known[closings]))
     return ways

@@ -1,14 +1,15 @@
 """One answer to whether an arm can do an errand amid what stands around."""
 
+import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import pytest
 from scripted_body import GRIPPER
 
 from robots.behaviors.errand import Errand
 from robots.behaviors.pick_and_place import PickAndPlace, PickAndPlaceParameters
-from robots.behaviors.planning import Barred, Plan, at_once, bar_of, plan_amid
+from robots.behaviors.planning import AS_SEEN, Barred, Plan, Spare, at_once, bar_of, plan_amid
 from robots.body import Leg, NoWay
 from robots.catalogue import Part
 from robots.gripper import GripperModel
@@ -85,6 +86,23 @@ def test_that_there_is_no_path_is_the_reason_where_there_was_room() -> None:
     assert isinstance(found, Barred)
     assert isinstance(found.reason, NoWay)
     assert any(not isinstance(each, NoWay) for each in found.refusals)
+
+
+def test_a_small_part_is_taken_a_little_turned_only_where_there_is_no_room_otherwise() -> None:
+    pin = Part("pin", (0.012, 0.012, 0.05))
+    seen = Location(x=0.5, y=-0.4, yaw=math.radians(-8.0))
+    errand = replace(ERRAND, part=pin, found=seen)
+    # Fingers that are straight pass these walls; turned by 8 degrees they do not.
+    walls = [
+        SeenBox(0.5, -0.4 + side * 0.0145, 0.0, (0.2, 0.005, 0.05), 0.7, "wall", complete=True)
+        for side in (1.0, -1.0)
+    ]
+    picked = []
+    for boxes, spare in ((walls, AS_SEEN), ([], AS_SEEN), (walls, Spare())):
+        found = at_once(plan_amid(errand, ArmThatTouches(), TABLE, boxes, spare))
+        at = found.picked_at if isinstance(found, Plan) else None
+        picked.append(None if at is None else math.degrees(math.remainder(at.yaw, math.pi / 2)))
+    assert picked == [pytest.approx(-8.0 + 10.0), pytest.approx(-8.0), None]
 
 
 @pytest.mark.parametrize(
