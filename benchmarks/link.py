@@ -26,6 +26,7 @@ from robots.link.messages import Held, Hello, ReachLimits, Report
 from server.journal.sqlite import SqliteJournal
 from server.robots.endpoint import add_robot_route
 from server.robots.registry import RobotRegistry
+from server.websocket_protocol import WebSocketProtocol
 
 PADDING = "x" * 900
 """Makes a report about 1 KB."""
@@ -59,7 +60,7 @@ class Loopback(AbstractAsyncContextManager["Loopback"]):
         add_robot_route(app, self._registry, None)
         app.add_api_websocket_route("/echo", echo)
         config = uvicorn.Config(
-            app, port=0, log_level="warning", ws="websockets-sansio", ws_ping_interval=None
+            app, port=0, log_level="warning", ws=WebSocketProtocol, ws_ping_interval=None
         )
         self._server = uvicorn.Server(config)
 

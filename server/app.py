@@ -40,6 +40,7 @@ from server.poses.feed import PoseSource
 from server.runtime.service import RunService
 from server.settings import Settings
 from server.speech.abilities import NO_SPEECH, SpeechAbilities
+from server.websocket_protocol import WebSocketProtocol
 
 MAX_SOCKET_MESSAGE_BYTES = 4 * 1024 * 1024
 """Robots send pictures; helpers get an `error` message for anything above 64 KiB."""
@@ -140,7 +141,7 @@ def serve_config(app: FastAPI, settings: Settings) -> uvicorn.Config:
         host=settings.host,
         port=settings.port,
         log_level=settings.log_level,
-        ws="websockets-sansio",
+        ws=WebSocketProtocol,
         ws_max_size=MAX_SOCKET_MESSAGE_BYTES,
         # Compressing the same event again for every client costs more than it saves.
         ws_per_message_deflate=False,

@@ -10,6 +10,7 @@ from fastapi import FastAPI
 
 from server.robots.endpoint import ROBOT_PATH, add_robot_route
 from server.robots.registry import RobotRegistry
+from server.websocket_protocol import WebSocketProtocol
 
 
 class _Server(uvicorn.Server):
@@ -32,7 +33,7 @@ async def served(
     app = FastAPI()
     add_robot_route(app, registry, token, allowed_origins=allowed_origins)
     listener = socket.create_server(("127.0.0.1", port))
-    config = uvicorn.Config(app, log_level="warning", ws="websockets-sansio", lifespan="off")
+    config = uvicorn.Config(app, log_level="warning", ws=WebSocketProtocol, lifespan="off")
     server = _Server(config)
     task = asyncio.create_task(server.serve(sockets=[listener]))
     try:

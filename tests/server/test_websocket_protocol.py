@@ -1,0 +1,64 @@
+"""A server can end whatever its clients are just doing."""
+
+import asyncio
+import socket
+
+import pytest
+import uvicorn
+from starlette.applications import Starlette
+from starlette.routing import WebSocketRoute
+from starlette.websockets import WebSocket
+from websockets.frames import Close, Frame, Opcode
+
+from server.websocket_protocol import WebSocketProtocol
+
+HELLO = (
+    b"GET / HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
+    b"Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Version: 13\r\n\r\n"
+)
+MORE_THAN_IS_BUFFERED = 32 << 20
+
+
+async def flood(websocket: WebSocket) -> None:
+    await websocket.accept()
+    await websocket.send_bytes(bytes(MORE_THAN_IS_BUFFERED))
+    await websocket.receive()
+
+
+async def connected(port: int) -> asyncio.StreamWriter:
+    """A client that reads nothing after the handshake."""
+    reader, writer = await asyncio.open_connection("127.0.0.1", port, limit=1024)
+    writer.write(HELLO)
+    await reader.readuntil(b"\r\n\r\n")
+    return writer
+
+
+@pytest.mark.parametrize("closing", [False, True])
+async def test_a_server_ends_while_a_client_closes_and_has_not_read_all(closing: bool) -> None:
+    listening = socket.create_server(("127.0.0.1", 0))
+    config = uvicorn.Config(
+        Starlette(routes=[WebSocketRoute("/", flood)]),
+        ws=WebSocketProtocol,
+        lifespan="off",
+        log_level="critical",
+        timeout_graceful_shutdown=30,
+    )
+    config.load()
+    server = uvicorn.Server(config)
+    server.lifespan = config.lifespan_class(config)
+    await server.startup(sockets=[listening])
+    clients = [await connected(listening.getsockname()[1]) for _ in range(2)]
+    connections = list(server.server_state.connections)
+    if closing:
+        frame = Frame(Opcode.CLOSE, Close(1000, "").serialize())
+        clients[0].write(frame.serialize(mask=True))
+        while not any(each.transport.is_closing() for each in connections):  # noqa: ASYNC110
+            await asyncio.sleep(0)
+    ending = asyncio.create_task(server.shutdown(sockets=[listening]))
+    while not all(each.transport.is_closing() for each in connections):
+        assert not ending.done()
+        await asyncio.sleep(0)
+    for client in clients:
+        client.transport.abort()
+    await ending
+    assert not server.server_state.connections
