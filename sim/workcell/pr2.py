@@ -41,8 +41,6 @@ _FINGER_DAMPING_NM_S_RAD = 0.2
 _LEAST_GRIP_TORQUE_NM = 0.3
 _TIP_TORQUE_NM = 100.0
 _FINGER_GAINS = (0.1, 0.1, 0.5, 0.5)
-_TURNED_RAD = 0.05
-"""Contacts are found anew each time that a joint of the arm has turned so far."""
 _FINGER_FRICTION = 1.2
 _FINGER_SPIN_FRICTION = 0.02
 
@@ -91,7 +89,6 @@ class Pr2:
         for link in self._fingers:
             self._client.resetJointState(self.body_id, link, FINGERS_OPEN_RAD)
         self.sense()
-        self._contacts_at = self._arm_angles
 
     def sense(self) -> None:
         """Read the joints' sensors: what they tell holds until the next physics step."""
@@ -136,22 +133,6 @@ class Pr2:
             ],
             positionGains=_FINGER_GAINS,
         )
-
-    def renew_contacts(self) -> None:
-        """Have the engine find anew how the fingers touch things, if the arm has turned.
-
-        As long as bodies touch it keeps the directions in which they press in the base frame:
-        fingers that turn with what they hold would press askew, and it would creep out of them.
-        """
-        if np.abs(self._arm_angles - self._contacts_at).max() < _TURNED_RAD:
-            return
-        self._contacts_at = self._arm_angles
-        for body_id in self.touched() - {self.body_id}:
-            for link in self._fingers:
-                for enabled in (0, 1):
-                    self._client.setCollisionFilterPair(
-                        self.body_id, body_id, link, -1, enableCollision=enabled
-                    )
 
     def arm_joints(self) -> Joints:
         """The measured joint angles of the arm."""

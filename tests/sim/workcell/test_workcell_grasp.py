@@ -8,7 +8,6 @@ from workcell_hands import TABLE_M, Hands, distance_m
 
 from robots.body import ToolPose
 from sim.workcell.parts import PartPose
-from sim.workcell.physics import to_matrix
 from sim.workcell.world import WorkcellWorld
 from tasks.scene import Pose, Scene, SceneObject
 
@@ -71,32 +70,6 @@ def test_an_opened_gripper_drops_the_part(hands: Hands) -> None:
     hands.wait(0.3)
     assert hands.world.held is None
     assert hands.world.parts["bar"].pose().position[2] < TABLE_M + 0.02
-
-
-def test_fingers_that_have_turned_press_straight_on_what_they_hold() -> None:
-    part = SceneObject(
-        color=(0.8, 0.1, 0.1), size=(0.085, 0.033, 0.167), mass_kg=0.47, pose=Pose(x=0.5, y=-0.2)
-    )
-    world = WorkcellWorld(Scene(name="one", objects={"part": part}, places={}), seed=7)
-    hands = Hands(world)
-    hands.pick("part")
-    held_at = np.linalg.inv(hands.body.tool_pose()) @ matrix_of(world.parts["part"].pose())
-    hands.follow(hands.plan(ToolPose(0.5, 0.0, TABLE_M + 0.3, 1.5)), 0, 0.75)
-    tool = hands.body.tool_pose()
-    contacts = [
-        each
-        for each in world._client.getContactPoints(world.parts["part"].body_id)
-        if each[9] > 1.0
-    ]
-    turned = np.linalg.inv(tool) @ matrix_of(world.parts["part"].pose())
-    world.close()
-    assert contacts
-    assert min(abs(np.dot(each[7], tool[:3, 1])) for each in contacts) > math.cos(math.radians(5))
-    assert np.linalg.norm(turned[:3, 3] - held_at[:3, 3]) < 0.0015
-
-
-def matrix_of(pose: PartPose) -> np.ndarray:
-    return to_matrix(pose.position, pose.quaternion)
 
 
 def test_grasping_and_carrying_feels_like_no_contact(hands: Hands) -> None:
