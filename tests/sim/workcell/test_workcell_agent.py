@@ -61,6 +61,14 @@ def do(
     agent.attach(lambda body, _time, _world: reports.append(body), lambda _picture: None)
     for number, each in enumerate(beforehand):
         agent.handle(f"before {number}", Intervene(intervention=each, by="ann"))
+    start(agent, name, Location(x=0.55, y=0.0))
+    while agent.advance(1.0):
+        pass
+    return reports
+
+
+def start(agent: SimulatedAgent, name: str, target: Location) -> None:
+    """Have a robot bring a part to where `left` is, or somewhere else."""
     agent.handle(
         "1",
         Start(
@@ -68,12 +76,9 @@ def do(
             node="/",
             behavior="pick_and_place",
             parameters={"object": name, "place": "left"},
-            target=Location(x=0.55, y=0.0),
+            target=target,
         ),
     )
-    while agent.advance(1.0):
-        pass
-    return reports
 
 
 def test_a_heavy_part_does_not_swing_between_the_fingers() -> None:
@@ -84,20 +89,10 @@ def test_a_heavy_part_does_not_swing_between_the_fingers() -> None:
         pose=Pose(x=0.6441, y=-0.3548),
     )
     target = Location(x=0.492, y=-0.1365, yaw=-2.05)
-    scene = Scene(name="one", objects={"part": part}, places={"there": Place(pose=Pose(x=0, y=0))})
+    scene = Scene(name="one", objects={"part": part}, places={"left": Place(pose=Pose(x=0, y=0))})
     agent = adapter.create_agent(WorldSetup(robot="r1", scene=scene, seed=1, speed=None))
-    parameters = {"object": "part", "place": "there"}
     agent.attach(lambda _body, _time, _world: None, lambda _picture: None)
-    agent.handle(
-        "1",
-        Start(
-            execution="e",
-            node="/",
-            behavior="pick_and_place",
-            parameters=parameters,
-            target=target,
-        ),
-    )
+    start(agent, "part", target)
     world, positions_m = world_of(agent), []
     while agent.advance(PERIOD_S):
         positions_m.append(world.parts["part"].pose().position)
