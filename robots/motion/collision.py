@@ -60,8 +60,9 @@ class CollisionModel:
             self._model, str(urdf), pin.GeometryType.COLLISION, package_dirs=[str(urdf.parent)]
         )
         for link in self._links.geometryObjects:
-            link.geometry.buildConvexHull(True, _QHULL_OPTIONS)
-            link.geometry = link.geometry.convex
+            if isinstance(link.geometry, coal.BVHModelBase):
+                link.geometry.buildConvexHull(True, _QHULL_OPTIONS)
+                link.geometry = link.geometry.convex
         self._joints = list(joints)
         places = [self._model.joints[self._model.getJointId(each)] for each in joints]
         self._unlimited = np.array([place.nq == 2 for place in places])

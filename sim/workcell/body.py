@@ -114,6 +114,8 @@ class WorkcellBody:
         self._gripper.advance()
         self._pr2.drive(self._target, velocities, self._gripper.target_rad, self._braking)
         self._braking = False
+        if self.gripper_in_use:
+            self._pr2.renew_contacts()
         self._step()
         self._pr2.sense()
         self._touch.feel(*self._pr2.arm_motion())

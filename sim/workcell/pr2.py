@@ -1,5 +1,6 @@
 """The PR2 in the physics engine: joints, motors, finger coupling and what its sensors feel."""
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -43,13 +44,15 @@ _TIP_TORQUE_NM = 100.0
 _FINGER_GAINS = (0.1, 0.1, 0.5, 0.5)
 _FINGER_FRICTION = 1.2
 _FINGER_SPIN_FRICTION = 0.02
+_TURNED_RAD = 0.1
+"""The fingers' contacts are found anew each time that the gripper has turned so far."""
 
 _WRIST_TO_TOOL_M = 0.18
 _FINGER_LENGTH_M = 0.0914
 """From a finger's joint to where it presses."""
 
 _MARGIN_M = 0.001
-"""The engine keeps what fingers close on so far away from each pad."""
+"""So far in front of each drawn pad is the one that touches what the fingers close on."""
 
 _ARM_COLOR = (0.80, 0.80, 0.82, 1.0)
 _GRIPPER_COLOR = (0.35, 0.36, 0.38, 1.0)
@@ -89,6 +92,7 @@ class Pr2:
         for link in self._fingers:
             self._client.resetJointState(self.body_id, link, FINGERS_OPEN_RAD)
         self.sense()
+        self._contacts_at = self._gripper_axes()
 
     def sense(self) -> None:
         """Read the joints' sensors: what they tell holds until the next physics step."""
@@ -133,6 +137,27 @@ class Pr2:
             ],
             positionGains=_FINGER_GAINS,
         )
+
+    def renew_contacts(self) -> None:
+        """Have the engine find anew how the fingers touch things, if the gripper has turned.
+
+        As long as bodies touch it keeps the directions in which they press in the base frame:
+        fingers that turn with what they hold would press askew, and it would creep in them.
+        """
+        axes = self._gripper_axes()
+        if np.sum(axes * self._contacts_at) > 1.0 + 2.0 * math.cos(_TURNED_RAD):
+            return
+        self._contacts_at = axes
+        for body_id in self.touched() - {self.body_id}:
+            for link in self._fingers:
+                for enabled in (0, 1):
+                    self._client.setCollisionFilterPair(
+                        self.body_id, body_id, link, -1, enableCollision=enabled
+                    )
+
+    def _gripper_axes(self) -> Matrix4:
+        """The gripper's axes in the base frame, as columns (3, 3)."""
+        return self.tool.pose(self._arm_angles)[:3, :3]
 
     def arm_joints(self) -> Joints:
         """The measured joint angles of the arm."""

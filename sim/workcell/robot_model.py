@@ -61,7 +61,8 @@ _MESH_PREFIX = "package://example-robot-data/robots/pr2_description/meshes/"
 MODEL = "pr2"
 URDF = "robot.urdf"
 
-_TIP_LINKS = ("r_gripper_l_finger_tip_link", "r_gripper_r_finger_tip_link")
+_TIP_LINKS = {"r_gripper_l_finger_tip_link": -1.0, "r_gripper_r_finger_tip_link": 1.0}
+"""Which way along its y axis a fingertip closes."""
 _TIP_MASS_KG = 0.2
 """Stands for the drive's inertia, which fingers feel through their gears. Much lighter than what
 they hold, the engine's solver would not converge, and what they hold would creep."""
@@ -69,7 +70,16 @@ they hold, the engine's solver would not converge, and what they hold would cree
 _MODULES = {"ruckig": "ruckig", "pinocchio": "Pinocchio", "coal": "coal"}
 """What the arm plans and moves by, as it is imported and as it is called."""
 
-_LAYOUT = 4
+_PAD_M = (0.031, 0.004, 0.019)
+_PAD_AT_M = (0.013, 0.01487, 0.0)
+"""The flat inner side of a fingertip: extents, and its middle in the tip's frame, y inward.
+
+It ends where the engine's margin around the mesh ends. The engine finds up to four points at once
+where boxes meet, but one where a mesh does, and a heavy part turns on that while it is carried."""
+_BEHIND_PAD_M = 0.001
+"""So far is the tip's mesh drawn back, to touch only what the pad does not."""
+
+_LAYOUT = 5
 """Raised whenever this module makes different files from the same package."""
 
 
@@ -192,6 +202,7 @@ def _trim_link(link: ElementTree.Element) -> None:
             link.remove(element)
     if name in _TIP_LINKS:
         _weigh(link, _TIP_MASS_KG)
+        _add_pad(link, inward=_TIP_LINKS[name])
     if link.find("inertial") is None:
         # PyBullet gives a link without inertia a mass of 1 kg.
         inertial = ElementTree.SubElement(link, "inertial")
@@ -201,6 +212,17 @@ def _trim_link(link: ElementTree.Element) -> None:
             "inertia",
             {"ixx": "1e-6", "iyy": "1e-6", "izz": "1e-6", "ixy": "0", "ixz": "0", "iyz": "0"},
         )
+
+
+def _add_pad(link: ElementTree.Element, inward: float) -> None:
+    """Touch by a flat pad, in front of the mesh."""
+    for origin in link.iterfind("collision/origin"):
+        origin.set("xyz", f"0 {-inward * _BEHIND_PAD_M} 0")
+    pad = ElementTree.SubElement(link, "collision")
+    x, y, z = _PAD_AT_M
+    ElementTree.SubElement(pad, "origin", xyz=f"{x} {inward * y} {z}", rpy="0 0 0")
+    geometry = ElementTree.SubElement(pad, "geometry")
+    ElementTree.SubElement(geometry, "box", size=" ".join(str(each) for each in _PAD_M))
 
 
 def _weigh(link: ElementTree.Element, mass_kg: float) -> None:

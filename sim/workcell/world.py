@@ -47,6 +47,9 @@ _NEIGHBORS_WITHIN_M = 0.005
 """The engine wakes what sleeps within a few times this of something that moves; by default a
 gripper that comes down wakes a whole dense table (16 instead of 33 s of physics for 32 parts)."""
 
+_CONTACT_SLOP_M = 0.0001
+"""What touches sinks in by so much: contacts that are found anew find something at once."""
+
 _SETTLE_CYCLES = 120
 _REMEMBER_RESTS_CYCLES = 24
 _FOREARM_HZ = {"bullet": 10, "fast": 30}
@@ -74,6 +77,7 @@ class WorkcellWorld:
             numSolverIterations=_REST_ITERATIONS,
             contactBreakingThreshold=_NEIGHBORS_WITHIN_M,
             enableFileCaching=0,
+            contactSlop=_CONTACT_SLOP_M,
         )
         client.setGravity(0.0, 0.0, _GRAVITY_M_S2)
         self._client = client

@@ -4,6 +4,9 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 
+import numpy as np
+import numpy.typing as npt
+
 from robots.body import ArmPath, ToolPose
 from robots.catalogue import Part
 from robots.grasp import RELEASE_CLEARANCE_M, grasp_of, half_turn
@@ -13,6 +16,8 @@ from tasks.intervention import Act, Intervention
 
 TABLE_M = 0.70
 APPROACH_M = 0.14
+
+Direction = npt.NDArray[np.float64]
 
 
 def do(world: WorkcellWorld, act: Act, name: str | None = None, **more: object) -> str:
@@ -78,6 +83,11 @@ class Hands:
 
     def go_hand_over(self) -> None:
         self.follow(self.body.plan_hand_over(), 0, 1.0)
+
+    def pressing(self, name: str) -> list[Direction]:
+        """The directions in which a part is pressed, in the base frame."""
+        contacts = self.world._client.getContactPoints(self.world.parts[name].body_id)
+        return [np.array(each[7]) for each in contacts if each[9] > 0.0]
 
     def _tool_pose(self, name: str, pose: PartPose, clearance_m: float) -> ToolPose:
         definition = self.world.parts[name].definition

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from workcell_hands import TABLE_M, Hands, distance_m
 
-from robots.body import ToolPose
+from robots.body import Matrix4, ToolPose
 from sim.workcell.parts import PartPose
+from sim.workcell.physics import to_matrix
 from sim.workcell.world import WorkcellWorld
 from tasks.scene import Pose, Scene, SceneObject
 
@@ -70,6 +71,48 @@ def test_an_opened_gripper_drops_the_part(hands: Hands) -> None:
     hands.wait(0.3)
     assert hands.world.held is None
     assert hands.world.parts["bar"].pose().position[2] < TABLE_M + 0.02
+
+
+@pytest.mark.parametrize(
+    ("size", "mass_kg"),
+    [
+        ((0.085, 0.033, 0.167), 0.47),
+        ((0.035, 0.026, 0.190), 0.50),
+        ((0.012, 0.012, 0.030), 0.003),
+    ],
+)
+def test_fingers_that_have_turned_press_straight_on_what_they_hold(
+    size: tuple[float, float, float], mass_kg: float
+) -> None:
+    part = SceneObject(color=(0.8, 0.1, 0.1), size=size, mass_kg=mass_kg, pose=Pose(x=0.5, y=-0.2))
+    world = WorkcellWorld(Scene(name="one", objects={"part": part}, places={}), seed=7)
+    hands = Hands(world)
+    hands.pick("part")
+    held_at = in_tool(hands)
+    askew_rad = []
+    for yaw in (1.5, -0.4, 1.0):
+        hands.follow(hands.plan(ToolPose(0.5, 0.0, TABLE_M + 0.3, yaw)), 0, 0.75)
+        askew_rad.append(pressing_askew_rad(hands))
+    moved = in_tool(hands)
+    world.close()
+    assert max(askew_rad) < math.radians(8)
+    assert np.linalg.norm(moved[:3, 3] - held_at[:3, 3]) < 0.001
+    assert math.acos(min(1.0, (np.trace(held_at[:3, :3].T @ moved[:3, :3]) - 1) / 2)) < 0.01
+
+
+def in_tool(hands: Hands) -> Matrix4:
+    """The pose of the part in the tool frame."""
+    part = hands.world.parts["part"].pose()
+    pose: Matrix4 = np.linalg.inv(hands.body.tool_pose()) @ to_matrix(
+        part.position, part.quaternion
+    )
+    return pose
+
+
+def pressing_askew_rad(hands: Hands) -> float:
+    """The widest angle between how the fingers close and how they press on the part."""
+    closing = hands.body.tool_pose()[:3, 1]
+    return max(math.acos(min(1.0, abs(each @ closing))) for each in hands.pressing("part"))
 
 
 def test_grasping_and_carrying_feels_like_no_contact(hands: Hands) -> None:

@@ -1,5 +1,6 @@
 """The PR2's gripper model against its meshes: how fingers swing, the room that they take."""
 
+import coal
 import numpy as np
 import pinocchio as pin
 import pytest
@@ -22,7 +23,7 @@ def corners(angle_rad: float, links: str) -> np.ndarray:
     urdf = robot_urdf()
     model = pin.buildModelFromUrdf(str(urdf))
     shapes = pin.buildGeomFromUrdf(
-        model, str(urdf), pin.GeometryType.COLLISION, package_dirs=[str(urdf.parent)]
+        model, str(urdf), pin.GeometryType.VISUAL, package_dirs=[str(urdf.parent)]
     )
     whole = pin.neutral(model)
     for name in FINGER_JOINTS:
@@ -34,7 +35,7 @@ def corners(angle_rad: float, links: str) -> np.ndarray:
     points = [
         (tool.actInv(placed.oMg[index])).act(np.asarray(vertex))
         for index, each in enumerate(shapes.geometryObjects)
-        if links in each.name
+        if links in each.name and isinstance(each.geometry, coal.BVHModelBase)
         for vertex in each.geometry.vertices()
     ]
     return np.array(points)
