@@ -379,3 +379,15 @@ def test_what_hides_a_part_from_the_head_camera_is_told_unless_it_is_taken_away_
     assert told(goal("then"), taken, low) == []
     # In an open order the robot takes what it sees first.
     assert told(goal("and"), low, taken) == []
+
+
+@pytest.mark.parametrize(("side_m", "told"), [(0.012, True), (0.03, False)])
+def test_of_a_small_top_the_head_camera_has_to_see_nearly_all(side_m: float, told: bool) -> None:
+    eye = np.array([0.2, 0.0, 1.5])
+    parts = {
+        "low": box(0.6, 0.0, (side_m, side_m, 0.03)),
+        "hider": box(0.5, 0.05 + side_m / 6, (0.05, 0.1, 0.24)),
+    }
+    made = scene(parts, target=ASIDE)
+    problems = check_scene(made, [leaf("low", "target")], MadeUpArm(), eye)
+    assert any("hides" in each.message for each in problems) is told
