@@ -3,17 +3,15 @@
 from collections.abc import Sequence
 from itertools import combinations
 
-import numpy as np
-from numpy.typing import NDArray
-
 from robots.behaviors.planning import Planner
 from robots.feasibility.doing import ArmCheck, Hindrance
 from robots.feasibility.handling import cannot_handle
 from robots.feasibility.merging import one_surface
 from robots.feasibility.moments import Job, Moment, Moments
-from robots.feasibility.sight import hidden
+from robots.feasibility.sight import hidden, out_of_picture
 from robots.feasibility.standing import Standing, at_place, starts
 from robots.feasibility.support import cannot_stand
+from robots.vision.viewpoint import Viewpoint
 from tasks.definition import BehaviorNode, GoalNode
 from tasks.leaf_order import LeafOrder
 from tasks.scene import Scene
@@ -28,15 +26,14 @@ def check_scene(
     scene: Scene,
     nodes: Sequence[GoalNode | BehaviorNode],
     planner: Planner,
-    eye: NDArray[np.float64],
+    head: Viewpoint,
 ) -> list[SceneProblem]:
     """What keeps a robot from doing the leaves among `nodes`; without any, each part by itself.
 
-    `eye` is where its head camera is (3, base frame). Of a whole tree (with its goal nodes) the
-    order and the alternatives are taken into account; of leaves alone all are done, in any order.
-    Each part is told of once.
+    `head` is its head camera. Of a whole tree (with its goal nodes) the order and the alternatives
+    are taken into account; of leaves alone all are done, in any order. Each part is told of once.
     """
-    return _SceneCheck(scene, nodes, planner, eye).problems()
+    return _SceneCheck(scene, nodes, planner, head).problems()
 
 
 class _SceneCheck:
@@ -45,10 +42,10 @@ class _SceneCheck:
         scene: Scene,
         nodes: Sequence[GoalNode | BehaviorNode],
         planner: Planner,
-        eye: NDArray[np.float64],
+        head: Viewpoint,
     ) -> None:
         self._scene = scene
-        self._eye = eye
+        self._head = head
         self._gripper = planner.gripper
         self._arm = ArmCheck(planner, scene.scatter, scene.table)
         self._order = LeafOrder(nodes)
@@ -131,9 +128,11 @@ class _SceneCheck:
                 continue
             moved = {each.name for each in self._jobs}
             sure, _ = self._moments.around(self._moments.of(job))
-            problem = hidden(job.start, sure, self._eye, moved)
+            problem = hidden(job.start, sure, self._head.eye, moved)
             if problem is None and (hindrance := self._hindrance(job)) is not None:
                 problem = self._arm.told(hindrance, moved)
+            if problem is None:
+                problem = out_of_picture(job, self._head, self._scene.scatter)
             if problem is not None:
                 found.append(problem)
         return list(dict.fromkeys(found))

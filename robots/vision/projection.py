@@ -1,14 +1,29 @@
 """Between pixels and points: the pinhole camera of a `CameraImage`."""
 
+from typing import Protocol
+
 import numpy as np
 from numpy.typing import NDArray
 
-from robots.body import CameraImage
+from robots.body import CameraImage, Matrix4
 
 Points = NDArray[np.float64]
 
 NEAR_M = 0.02
 """Points nearer to the lens than this are drawn as if they were this far away."""
+
+
+class Pinhole(Protocol):
+    """What decides at which pixels points appear: of a `CameraImage`, or before there is one."""
+
+    @property
+    def pose(self) -> Matrix4: ...
+
+    @property
+    def focal_px(self) -> float: ...
+
+    @property
+    def center_px(self) -> tuple[float, float]: ...
 
 
 def is_measured(depth_m: NDArray[np.float32] | NDArray[np.float64]) -> NDArray[np.bool_]:
@@ -52,11 +67,11 @@ def heights(image: CameraImage) -> NDArray[np.float64]:
     return found
 
 
-def project(image: CameraImage, points: Points) -> Points:
+def project(camera: Pinhole, points: Points) -> Points:
     """The pixels (n, 2) at which points (n, 3) of the base frame appear."""
-    optical = (points - image.pose[:3, 3]) @ image.pose[:3, :3]
+    optical = (points - camera.pose[:3, 3]) @ camera.pose[:3, :3]
     depth = np.maximum(optical[:, 2], NEAR_M)
-    pixels: Points = optical[:, :2] / depth[:, None] * image.focal_px + np.array(image.center_px)
+    pixels: Points = optical[:, :2] / depth[:, None] * camera.focal_px + np.array(camera.center_px)
     return pixels
 
 

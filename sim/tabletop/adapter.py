@@ -14,7 +14,7 @@ from sim.simulated_agent import SimulatedAgent
 from sim.tabletop.body import StraightPlanner
 from sim.tabletop.colors import learn_colors
 from sim.tabletop.layout import lay_out
-from sim.tabletop.scenery import look_at_table
+from sim.tabletop.scenery import head_viewpoint
 from sim.tabletop.world import TabletopOptions, TabletopWorld, reach_for
 from sim.world import WorldSetup
 from tasks.definition import BehaviorNode, GoalNode
@@ -45,7 +45,7 @@ class TabletopAdapter:
         """What keeps the robot from doing the leaves among `nodes` in a scene."""
         planner = StraightPlanner(reach_for(scene, None), scene.table)
         lookalikes = find_lookalikes(scene, nodes, learn_colors(scene, TabletopOptions()))
-        return [*check_scene(scene, nodes, planner, look_at_table(scene.table)[:3, 3]), *lookalikes]
+        return [*check_scene(scene, nodes, planner, head_viewpoint(scene.table)), *lookalikes]
 
     def train_colors(self, scene: Scene) -> ColorModel:
         """Learn the colours of a scene's objects from rendered pictures of them.

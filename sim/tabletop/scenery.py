@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robots.body import CameraImage, Matrix4, ToolPose
+from robots.vision.viewpoint import Viewpoint
 from sim.depth_noise import DepthNoise, Pinhole
 from sim.lighting import Lighting
 from sim.raster import Light, Mesh, Rasterizer, RenderedImage, box_triangles
@@ -162,7 +163,7 @@ class TabletopCamera:
         pose, time_s = self.pose(), self._state.time_s
         light = self._lighting.light_at(time_s)
         rendered = self._scenery.render(pose, self.size, self.focal_px, light)
-        center_px = ((self.size[0] - 1) / 2, (self.size[1] - 1) / 2)
+        center_px = _center_px(self.size)
         depth_m = None
         if self.has_depth:
             lens = Pinhole(self.focal_px, center_px)
@@ -231,6 +232,15 @@ def look_at_table(table: Table) -> Matrix4:
         seen = frame[:3, :3].T @ corner
         distance = max(distance, float((np.abs(seen[:2]) / limits - seen[2]).max()))
     return _optical_frame(target - forward * distance, forward, right)
+
+
+def head_viewpoint(table: Table) -> Viewpoint:
+    """What the head camera sees from where it is."""
+    return Viewpoint(look_at_table(table), HEAD_SIZE, HEAD_FOCAL_PX, _center_px(HEAD_SIZE))
+
+
+def _center_px(size: tuple[int, int]) -> tuple[float, float]:
+    return (size[0] - 1) / 2, (size[1] - 1) / 2
 
 
 def _corners(size: Sequence[float], height: float) -> list[NDArray[np.float64]]:

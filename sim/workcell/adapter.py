@@ -70,12 +70,11 @@ class WorkcellAdapter:
     ) -> list[SceneProblem]:
         """What keeps the robot from doing the leaves among `nodes` in a scene."""
         check_installed()
-        from sim.workcell.cameras import head_camera_pose
+        from sim.workcell.cameras import head_viewpoint
         from sim.workcell.colors import learn_colors
 
         lookalikes = find_lookalikes(scene, nodes, learn_colors(scene))
-        eye = head_camera_pose()[:3, 3]
-        return [*check_scene(scene, nodes, neutral_arm(), eye), *lookalikes]
+        return [*check_scene(scene, nodes, neutral_arm(), head_viewpoint()), *lookalikes]
 
     def train_colors(self, scene: Scene) -> ColorModel:
         """Learn the colours of a scene's objects from rendered pictures of them."""

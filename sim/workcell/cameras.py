@@ -9,6 +9,7 @@ import numpy as np
 
 from robots.body import CameraImage, Matrix4
 from robots.motion.kinematics import KinematicChain
+from robots.vision.viewpoint import Viewpoint
 from sim.depth_noise import DepthNoise, Pinhole
 from sim.lighting import Lighting
 from sim.workcell.rendering import Renderer, Rendering, View
@@ -44,6 +45,13 @@ def head_optics() -> Optics:
 def head_camera_pose() -> Matrix4:
     """Where the head camera is, which does not move: its optical frame in the base frame."""
     return KinematicChain(robot_urdf(), HEAD_CAMERA_FRAME, ()).pose(np.zeros(0))
+
+
+def head_viewpoint() -> Viewpoint:
+    """What the head camera sees from where it is."""
+    optics = head_optics()
+    view = View(head_camera_pose(), optics.size, optics.focal_px, optics.near_m)
+    return Viewpoint(view.pose, view.size, view.focal_px, view.center_px)
 
 
 def forearm_optics(period_s: float) -> Optics:

@@ -15,13 +15,14 @@ from robots.body import Leg, NoWay
 from robots.feasibility.check import check_scene
 from robots.gripper import GripperModel
 from robots.vision.seen_box import SeenBox
+from robots.vision.viewpoint import Viewpoint
 from sim.workcell.gripper import PR2_GRIPPER
 from tasks.definition import BehaviorNode, GoalNode
 from tasks.scene import Place, Pose, Scatter, Scene, SceneObject
 from tasks.scene_problem import SceneProblem
 
 REACH_M = 0.74
-EYE = np.array([0.5, 0.0, 2.5])
+EYE = (0.5, 0.0, 2.5)
 SHY_OF_M, SHY_WITHIN_M = 0.25, 0.15
 
 
@@ -74,8 +75,15 @@ def goal(kind: str) -> GoalNode:
     return GoalNode(kind=kind, parent=None, name="root")
 
 
+def looking_down(eye: tuple[float, float, float], focal_px: float = 200.0) -> Viewpoint:
+    """A camera that looks straight down; in its picture x goes to the right and y up."""
+    pose = np.diag([1.0, -1.0, -1.0, 1.0])
+    pose[:3, 3] = eye
+    return Viewpoint(pose, (640, 480), focal_px, (319.5, 239.5))
+
+
 def problems_of(made: Scene, *nodes: GoalNode | BehaviorNode) -> list[SceneProblem]:
-    return check_scene(made, nodes, MadeUpArm(), EYE)
+    return check_scene(made, nodes, MadeUpArm(), looking_down(EYE))
 
 
 FREE = Pose(x=0.5, y=0.05)
@@ -364,13 +372,13 @@ def test_what_would_be_one_surface_to_the_cameras_is_told(
 
 
 def test_what_hides_a_part_from_the_head_camera_is_told_unless_it_is_taken_away_before() -> None:
-    eye = np.array([0.2, 0.0, 1.5])
+    head = looking_down((0.2, 0.0, 1.5))
     parts = {"low": box(0.6, 0.0, (0.03, 0.03, 0.03)), "hider": box(0.5, 0.0, (0.05, 0.08, 0.24))}
     made = scene(parts, target=ASIDE, far=FAR)
     low, taken = leaf("low", "target"), leaf("hider", "far")
 
     def told(*nodes: GoalNode | BehaviorNode) -> list[str]:
-        return [each.message for each in check_scene(made, nodes, MadeUpArm(), eye)]
+        return [each.message for each in check_scene(made, nodes, MadeUpArm(), head)]
 
     assert told(goal("then"), low) == ["hider hides low from the head camera: move one of them"]
     assert told(goal("then"), low, taken) == [
@@ -383,11 +391,41 @@ def test_what_hides_a_part_from_the_head_camera_is_told_unless_it_is_taken_away_
 
 @pytest.mark.parametrize(("side_m", "told"), [(0.012, True), (0.03, False)])
 def test_of_a_small_top_the_head_camera_has_to_see_nearly_all(side_m: float, told: bool) -> None:
-    eye = np.array([0.2, 0.0, 1.5])
+    head = looking_down((0.2, 0.0, 1.5))
     parts = {
         "low": box(0.6, 0.0, (side_m, side_m, 0.03)),
         "hider": box(0.5, 0.05 + side_m / 6, (0.05, 0.1, 0.24)),
     }
     made = scene(parts, target=ASIDE)
-    problems = check_scene(made, [leaf("low", "target")], MadeUpArm(), eye)
+    problems = check_scene(made, [leaf("low", "target")], MadeUpArm(), head)
     assert any("hides" in each.message for each in problems) is told
+
+
+@pytest.mark.parametrize(
+    ("start_y", "place_y", "height_m", "scatter", "told"),
+    [
+        (0.0, 0.1, 0.05, Scatter(), None),
+        # Half of the picture is 0.3 m at 1 m below the camera, 0.24 m at 0.8 m.
+        (0.26, 0.1, 0.05, Scatter(), None),
+        (0.26, 0.1, 0.20, Scatter(), "where it starts"),
+        (0.0, 0.26, 0.20, Scatter(), "at its place"),
+        (0.29, 0.1, 0.05, Scatter(), "where it starts"),
+        (0.26, 0.1, 0.05, Scatter(xy=0.03), "where it starts"),
+        (0.255, 0.1, 0.05, Scatter(yaw=1.57), "where it starts"),
+        (0.0, 0.26, 0.05, Scatter(xy=0.03, yaw=1.57), None),
+    ],
+)
+def test_what_the_head_cameras_picture_does_not_hold_is_told(
+    start_y: float, place_y: float, height_m: float, scatter: Scatter, told: str | None
+) -> None:
+    head = looking_down((0.5, 0.0, 1.7), focal_px=800.0)
+    part = box(0.45, start_y, size=(0.06, 0.03, height_m))
+    made = scene({"part": part}, target=Pose(x=0.5, y=place_y)).model_copy(
+        update={"scatter": scatter}
+    )
+    problems = check_scene(made, [leaf("part", "target")], MadeUpArm(), head)
+    sentence = (
+        f"the head camera's picture does not hold all of part {told}: move it towards the middle "
+        "of the table"
+    )
+    assert [each.message for each in problems] == ([sentence] if told else [])
