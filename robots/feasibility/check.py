@@ -31,7 +31,8 @@ def check_scene(
     """What keeps a robot from doing the leaves among `nodes`; without any, each part by itself.
 
     `head` is its head camera. Of a whole tree (with its goal nodes) the order and the alternatives
-    are taken into account; of leaves alone all are done, in any order. Each part is told of once.
+    are taken into account; of leaves alone all are done, in any order. Without any, what could be
+    taken away before a part does not count. Each part is told of once.
     """
     return _SceneCheck(scene, nodes, planner, head).problems()
 
@@ -122,25 +123,47 @@ class _SceneCheck:
         return list(one_surface(self._scene, list(self._starts.values()), jobs, self._order))
 
     def _doing(self, told: "_Told") -> list[SceneProblem]:
-        found = []
-        for job in self._jobs:
-            if told.of(job.start) or (job.place is not None and told.of(job.place)):
-                continue
-            moved = {each.name for each in self._jobs}
-            sure, _ = self._moments.around(self._moments.of(job))
-            problem = hidden(job.start, sure, self._head.eye, moved)
-            if problem is None and (hindrance := self._hindrance(job)) is not None:
-                problem = self._arm.told(hindrance, moved)
-            if problem is None:
-                problem = out_of_picture(job, self._head, self._scene.scatter)
-            if problem is not None:
-                found.append(problem)
-        return list(dict.fromkeys(found))
+        jobs = [
+            job
+            for job in self._jobs
+            if not (told.of(job.start) or (job.place is not None and told.of(job.place)))
+        ]
+        if not self._together:
+            return self._in_no_order(jobs)
+        moved = {each.name for each in self._jobs}
+        found = [self._problem(job, self._moments, moved) for job in jobs]
+        return list(dict.fromkeys(each for each in found if each is not None))
 
-    def _hindrance(self, job: Job) -> Hindrance | None:
+    def _in_no_order(self, jobs: Sequence[Job]) -> list[SceneProblem]:
+        """What is wrong with the parts that cannot be taken, whatever was taken away before."""
+        left, waiting = list(self._jobs), list(jobs)
+        while True:
+            stuck = {}
+            for job in waiting:
+                starts = [each.start for each in left]
+                moments = Moments(left, starts, self._order, together=False)
+                problem = self._problem(job, moments, moved=set())
+                if problem is None:
+                    left.remove(job)
+                else:
+                    stuck[job] = problem
+            if len(stuck) == len(waiting):
+                return list(dict.fromkeys(stuck.values()))
+            waiting = list(stuck)
+
+    def _problem(self, job: Job, moments: Moments, moved: set[str]) -> SceneProblem | None:
+        """What keeps the robot from a job; `moved` are the parts that leaves take away."""
+        sure, _ = moments.around(moments.of(job))
+        if (problem := hidden(job.start, sure, self._head.eye, moved)) is not None:
+            return problem
+        if (hindrance := self._hindrance(job, moments)) is not None:
+            return self._arm.told(hindrance, moved)
+        return out_of_picture(job, self._head, self._scene.scatter)
+
+    def _hindrance(self, job: Job, moments: Moments) -> Hindrance | None:
         """What keeps the arm from a job at a moment that the order allows; None if nothing does."""
-        moment = self._moments.of(job)
-        sure, maybe = self._moments.around(moment)
+        moment = moments.of(job)
+        sure, maybe = moments.around(moment)
         # What is possible amid all that may ever stand around is possible at any moment.
         found = self._arm.hindrance(job.start, job.place, [*sure, *maybe])
         if found is None or not maybe:

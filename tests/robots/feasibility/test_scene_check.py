@@ -429,3 +429,17 @@ def test_what_the_head_cameras_picture_does_not_hold_is_told(
         "of the table"
     )
     assert [each.message for each in problems] == ([sentence] if told else [])
+
+
+def test_of_a_scene_by_itself_is_told_what_no_order_could_mend() -> None:
+    head = looking_down((0.2, 0.0, 1.5))
+    low, hider = box(0.6, 0.0, (0.03, 0.03, 0.03)), box(0.5, 0.0, (0.05, 0.08, 0.24))
+    too_heavy = hider.model_copy(update={"mass_kg": 3.0})
+
+    def told(objects: dict[str, SceneObject]) -> list[str]:
+        return [each.message for each in check_scene(scene(objects), [], MadeUpArm(), head)]
+
+    assert told({"low": low, "hider": hider}) == []
+    of_hider, of_low = told({"low": low, "hider": too_heavy})
+    assert of_hider.startswith("hider weighs")
+    assert of_low == "hider hides low from the head camera: move one of them"
