@@ -277,6 +277,9 @@ def _work(world: str, seed: int) -> Outcome:
     faulthandler.dump_traceback_later(20 * QUIET_S[world], exit=True)
     try:
         return asyncio.run(run_once(world, seed))
+    except Exception as error:
+        # Not every error can be sent to the process that waits; one that cannot breaks the pool.
+        raise RuntimeError(f"seed {seed}: {type(error).__name__}: {error}") from None
     finally:
         faulthandler.cancel_dump_traceback_later()
 
