@@ -114,15 +114,18 @@ class Execution:
     def _attempt(self, resumed: bool) -> Routine[None]:
         self._progress.felt, self._progress.inexact = None, False
         self._progress.regrasps = 0
+        self._progress.as_found &= not resumed
         try:
             there = False
             while not there:
                 plan = yield from prepare(self._work, self._watch)
                 if plan is None:
-                    own = self._progress.inexact or self._progress.unconfirmed
+                    own = not self._progress.as_found and (
+                        self._progress.inexact or self._progress.unconfirmed
+                    )
                     self._finish(found_in_place=not own)
                     return
-                self._progress.unconfirmed = False
+                self._progress.unconfirmed = self._progress.as_found = False
                 self._progress.move_to(ExecutionState.RUNNING)
                 if resumed:
                     self._work.report(Resumed(execution=self.id, step=plan.first))
@@ -150,9 +153,11 @@ class Execution:
         self._progress.unconfirmed = outcome.blind is not None
         self._watch.check(None)
         if outcome.presence is not Presence.GONE:
-            if self._progress.inexact or not outcome.is_inexact(target):
+            if self._progress.inexact or not outcome.is_inexact(part, target):
                 return True
             self._progress.inexact = True
+        else:
+            self._progress.inexact = False
         self._watch.start_again()
         self._progress.move_to(ExecutionState.PREPARING)
         return False

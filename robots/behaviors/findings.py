@@ -1,14 +1,14 @@
 """What the head camera shows of an assignment: before the first step, and after the last."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 from robots.body import CameraImage, ToolPose
+from robots.catalogue import Part
 from robots.link.messages import Location
 from robots.vision.head import HeadSighting
 from robots.vision.obstruction import Obstruction
-from robots.vision.presence import AT_PLACE_M, Presence
+from robots.vision.presence import AT_PLACE_M, Presence, off_place_m
 
 _EXACT_M = 0.006
 """The arm places a part less than 3 mm off, and the camera sees it less than 2 mm off."""
@@ -42,10 +42,14 @@ class Outcome:
     blind: str | None = None
     """Why the picture shows nothing of the table."""
 
-    def is_inexact(self, target: Location) -> bool:
-        """Whether it is wholly seen at its place, but farther off than arm and camera err."""
+    def is_inexact(self, part: Part, target: Location) -> bool:
+        """Whether it is at its place, but could be placed better."""
         seen = self.sighting
-        if self.presence is not Presence.THERE or seen is None or not seen.complete:
+        if self.presence is not Presence.THERE or seen is None:
             return False
-        off_m = math.hypot(seen.x - target.x, seen.y - target.y)
-        return _EXACT_M < off_m <= AT_PLACE_M
+        return is_inexact(seen, part, target)
+
+
+def is_inexact(seen: HeadSighting, part: Part, target: Location) -> bool:
+    """Whether what is at its place is wholly seen there, farther off than arm and camera err."""
+    return seen.complete and _EXACT_M < off_place_m(seen, part, target) <= AT_PLACE_M

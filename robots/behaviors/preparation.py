@@ -4,7 +4,7 @@ from robots.arm import Routine
 from robots.behaviors.backing_off import get_out_of_view
 from robots.behaviors.errand import errand_of
 from robots.behaviors.execution_state import ExecutionTransitionError
-from robots.behaviors.findings import Findings
+from robots.behaviors.findings import Findings, is_inexact
 from robots.behaviors.grasp_choice import ways_to_grasp
 from robots.behaviors.phase import Phase
 from robots.behaviors.plan import make_plan
@@ -30,13 +30,14 @@ def prepare(work: Work, watch: Watch) -> Routine[Plan | None]:
         yield from _plan_with_it_held(work, watch)
     if not progress.seen.carrying:
         yield from _look_with_empty_hands(work, watch)
-        if _is_in_place(work) and not progress.inexact:
+        if _is_in_place(work) and not _is_to_be_placed_better(work):
             return None
         if progress.felt is not None and _is_hidden(work, before):
             progress.plan = earlier
             watch.judge(progress.felt)
         yield from _plan_to_fetch_it(work, watch)
-    if progress.plan is None and progress.inexact and _is_in_place(work):
+    hindered = progress.plan is None or progress.seen.obstruction is not None
+    if hindered and progress.inexact and _is_in_place(work):
         # There is no way to place it better.
         return None
     return _judged(work, watch)
@@ -116,12 +117,22 @@ def _is_in_place(work: Work) -> bool:
     if part is None or target is None or seen.image is None:
         return False
     if seen.sighting is not None and is_at(
-        seen.sighting, target, senses.catalogue.height_of(target)
+        seen.sighting, part, target, senses.catalogue.height_of(target)
     ):
         return True
     # What is out of sight at its place since it was seen there needs nobody to fetch it.
     hidden = senses.head.presence(seen.image, part, target) is Presence.HIDDEN
     return work.progress.was_done == "there" and hidden
+
+
+def _is_to_be_placed_better(work: Work) -> bool:
+    """Whether what is at its place is too far off; what people put there on request is not."""
+    progress, assignment = work.progress, work.assignment
+    seen, part, target = progress.seen.sighting, assignment.part, assignment.target
+    untouched = progress.as_found and progress.was_done is None
+    if untouched and seen is not None and part is not None and target is not None:
+        progress.inexact = is_inexact(seen, part, target)
+    return progress.inexact
 
 
 def _is_hidden(work: Work, before: HeadSighting | None) -> bool:

@@ -17,9 +17,10 @@ class Progress:
     """What walks an execution's steps and what watches them both go by.
 
     `step` counts from 1 and is 0 before the first; `contact` is what the monitors are to judge,
-    `felt` what the empty hand felt last on its way to the object. `inexact`: the object is at its
-    place, but so far off that it is placed once more; `unconfirmed`: it was let go of there, and
-    nothing could be seen. `regrasps`: so often it was let go of, as
+    `felt` what the empty hand felt last on its way to the object. `as_found`: neither the robot nor
+    anybody whom it asked has done anything to it; `inexact`: the object is at its place, but so far
+    off that it is to be placed better; `unconfirmed`: it was let go of there, and nothing could be
+    seen. `regrasps`: so often it was let go of, as
     something had pushed it askew, to be grasped anew. `picked_at` is the tool pose at which what is
     held was picked up, None if a person handed it over.
     """
@@ -32,6 +33,7 @@ class Progress:
     outcome: Outcome | None = None
     contact: Contact | None = None
     felt: Contact | None = None
+    as_found: bool = True
     inexact: bool = False
     unconfirmed: bool = False
     regrasps: int = 0

@@ -10,7 +10,7 @@ from robots.link.messages import Detection
 from robots.monitors.monitor import ANY_BEHAVIOR, Meanwhile, Monitor, MonitorView
 from robots.monitors.unreachable import why_beyond_reach, why_lying
 from robots.vision.head import HeadSighting
-from robots.vision.presence import AT_PLACE_HEIGHT_M, AT_PLACE_M, Presence, is_at
+from robots.vision.presence import AT_PLACE_HEIGHT_M, AT_PLACE_M, Presence, is_at, turned_rad
 from tasks.scene import StrictModel
 
 _MM = 1e3
@@ -89,7 +89,10 @@ def _target_z(view: MonitorView) -> float:
 
 
 def _is_at_place(sighting: HeadSighting, view: MonitorView) -> bool:
-    return view.target is not None and is_at(sighting, view.target, _target_z(view))
+    part, target = view.part, view.target
+    if part is None or target is None:
+        return False
+    return is_at(sighting, part, target, _target_z(view))
 
 
 def _detection(what: str, sighting: HeadSighting | None, view: MonitorView) -> Detection:
@@ -117,4 +120,7 @@ def _what_differs(sighting: HeadSighting, view: MonitorView) -> str:
     if abs(above_m) > AT_PLACE_HEIGHT_M:
         side = "high" if above_m > 0 else "low"
         return f": it stands {abs(above_m) * _MM:.0f} mm too {side} there"
-    return ""
+    if view.part is None or _is_at_place(sighting, view):
+        return ""
+    turned = math.degrees(turned_rad(sighting, view.part, view.target))
+    return f": it is turned by {turned:.0f} degrees there"

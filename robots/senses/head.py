@@ -142,8 +142,9 @@ class HeadSense:
             return False
         view = self._table.view(image)
         sighting = None if view is None else view.sightings.get(part.name)
-        if sighting is None or not is_at(sighting, target, self._catalogue.height_of(target)):
-            at = target.x, target.y, self._catalogue.height_of(target)
+        bottom_z = self._catalogue.height_of(target)
+        if sighting is None or not is_at(sighting, part, target, bottom_z):
+            at = target.x, target.y, bottom_z
             self._table.note_recognized(part.name, at)
         return True
 

@@ -3,21 +3,30 @@
 import math
 from collections.abc import Set as AbstractSet
 from enum import StrEnum
+from itertools import permutations
 
 import numpy as np
 import shapely
+from scipy.spatial.distance import directed_hausdorff
 
 from robots.catalogue import Part
 from robots.link.messages import Location
 from robots.vision.head import HeadSighting
 from robots.vision.height_map import HeightMap
+from robots.vision.level_rectangle import Rectangle
 from robots.vision.projection import project
 from robots.vision.seen_box import SeenBox
 from robots.vision.table_view import TableView
 
 AT_PLACE_M = 0.02
-"""A part is at its place if it is this near to it."""
+"""A part is at its place if no corner of it is farther off,"""
 AT_PLACE_HEIGHT_M = 0.015
+AT_PLACE_RAD = math.radians(30)
+"""and if it is not turned by more: corners of small parts are near each other's places."""
+_TURN_SHOWS_M = 0.01
+"""A tiny square part may seem turned that is not: no corner of it seems farther off."""
+_SQUARE_M = 0.005
+"""Of sides that differ by less the camera may take one for the other."""
 _SAMPLES = 9
 _SEEN_THROUGH = 0.6
 """A part is gone if more than this share of where its top would be lets the camera see behind."""
@@ -36,10 +45,30 @@ class Presence(StrEnum):
     """Something in front of its place keeps the camera from telling."""
 
 
-def is_at(sighting: HeadSighting, target: Location, target_z: float) -> bool:
-    """Whether an object rests where it is to be."""
-    near = math.hypot(sighting.x - target.x, sighting.y - target.y) <= AT_PLACE_M
+def is_at(sighting: HeadSighting, part: Part, target: Location, target_z: float) -> bool:
+    """Whether a part rests where it is to be, with its bottom at `target_z`."""
+    near = _is_near(sighting, part, target)
     return near and abs(sighting.z - target_z) <= AT_PLACE_HEIGHT_M
+
+
+def off_place_m(seen: HeadSighting | SeenBox, part: Part, target: Location) -> float:
+    """How far a part is from its place from above: the Hausdorff distance of its corners.
+
+    That of its middle where so little of it is seen that its direction may be wrong.
+    """
+    if not seen.complete:
+        return math.hypot(seen.x - target.x, seen.y - target.y)
+    corners = [Rectangle(at.x, at.y, at.yaw, part.size[:2]).corners() for at in (seen, target)]
+    return float(max(directed_hausdorff(*each)[0] for each in permutations(corners)))
+
+
+def turned_rad(seen: HeadSighting | SeenBox, part: Part, target: Location) -> float:
+    """By how much a part is turned from how it is to stand, 0 to pi/2, as far as that shows.
+
+    After half a turn it looks the same, a square one after a quarter of a turn, too.
+    """
+    alike = math.pi / 2 if part.off_square_m < _SQUARE_M else math.pi
+    return abs(math.remainder(seen.yaw - target.yaw, alike))
 
 
 def judge_presence(
@@ -48,7 +77,7 @@ def judge_presence(
     """Whether `part`, or one of its `equals` by name, stands with its bottom at `bottom_z`."""
     room = room_of(part, target, bottom_z)
     for box in view.boxes:
-        if box.name in equals and _stands_at(box, room):
+        if box.name in equals and _stands_at(box, part, target, bottom_z):
             return Presence.THERE
     if equals <= {box.name for box in view.boxes if box.complete}:
         # Whatever may be hidden here, it is none of them: all are seen elsewhere.
@@ -69,9 +98,16 @@ def is_seen_through(heights: HeightMap, room: SeenBox) -> bool:
     return _share_seen_through(heights, room) >= _SEEN_THROUGH
 
 
-def _stands_at(box: SeenBox, room: SeenBox) -> bool:
-    near = math.hypot(box.x - room.x, box.y - room.y) <= AT_PLACE_M
-    return near and abs(box.bottom_z - room.bottom_z) <= AT_PLACE_HEIGHT_M
+def _stands_at(box: SeenBox, part: Part, target: Location, bottom_z: float) -> bool:
+    near = _is_near(box, part, target)
+    return near and abs(box.bottom_z - bottom_z) <= AT_PLACE_HEIGHT_M
+
+
+def _is_near(seen: HeadSighting | SeenBox, part: Part, target: Location) -> bool:
+    off_m = off_place_m(seen, part, target)
+    turn_shows = seen.complete and (part.off_square_m >= _SQUARE_M or off_m > _TURN_SHOWS_M)
+    turned = turn_shows and turned_rad(seen, part, target) > AT_PLACE_RAD
+    return off_m <= AT_PLACE_M and not turned
 
 
 def _keeps_out(box: SeenBox, room: SeenBox) -> bool:

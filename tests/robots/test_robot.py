@@ -6,6 +6,7 @@ import math
 import cv2
 import numpy as np
 import pytest
+from drawn_scene import Resting
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from robot_bench import RobotBench
@@ -69,6 +70,32 @@ def test_what_is_in_its_place_already_is_left_there() -> None:
     bench.run()
     assert bench.kinds() == ["finished"]
     assert bench.of(Finished)[0].found_in_place
+
+
+@pytest.mark.parametrize(
+    ("x", "y", "yaw"), [(0.46, -0.31, 0.2), (0.45, -0.30, 0.45), (0.45, -0.30, 1.4)]
+)
+def test_what_is_only_about_in_its_place_is_placed_better(x: float, y: float, yaw: float) -> None:
+    bench = RobotBench(body=ScriptedBody({"pink_bar": Resting(x, y, yaw=yaw)}, 1 / 30))
+    bench.start("pink_bar", "where_pink_is")
+    bench.run()
+    assert bench.of(Finished) == [Finished(execution="e1")]
+    assert math.dist(placed(bench, "pink_bar"), (0.45, -0.30)) < 0.003
+    assert bench.body.parts["pink_bar"].yaw == pytest.approx(0.2, abs=0.03)
+
+
+def test_what_somebody_put_there_may_be_off_by_a_centimetre_but_not_turned_round() -> None:
+    for yaw, steps_left in ((0.35, []), (1.4, list(range(1, 9)))):
+        bench = RobotBench()
+        del bench.body.parts["pink_bar"]
+        bench.start("pink_bar", "where_pink_is")
+        bench.run()
+        assert only_issue(bench).issue == "missing"
+        bench.body.parts["pink_bar"] = Resting(0.46, -0.30, yaw=yaw)
+        bench.send(Resume(execution="e1"))
+        bench.run()
+        assert steps(bench) == steps_left
+        assert bench.of(Finished)[0].found_in_place is (not steps_left)
 
 
 def test_no_time_passes_while_nothing_is_to_be_done() -> None:

@@ -157,11 +157,3 @@ def test_a_part_that_ends_off_its_place_twice_is_left_there() -> None:
     assert len(nudged) == 2
     assert bench.of(Finished) == [Finished(execution="e1")]
     assert bench.body.parts["pink_bar"].y == pytest.approx(0.06, abs=0.004)
-
-
-def test_a_part_that_a_person_put_a_little_off_its_place_stays_there() -> None:
-    bench = RobotBench()
-    bench.body.parts["pink_bar"].x, bench.body.parts["pink_bar"].y = 0.55, 0.062
-    bench.start("pink_bar")
-    bench.run()
-    assert bench.of(Finished) == [Finished(execution="e1", found_in_place=True)]

@@ -57,6 +57,7 @@ def test_what_was_done_and_stands_elsewhere_in_reach_is_told_while_it_goes_on() 
         (Location(x=0.50, y=-0.143), "it is 57 mm away from it, at (0.50, -0.20)"),
         (Location(x=0.50, y=-0.20, z=TABLE_Z + 0.057), "it stands 57 mm too low there"),
         (Location(x=0.49, y=-0.20, z=TABLE_Z - 0.02), "it stands 20 mm too high there"),
+        (Location(x=0.49, y=-0.20, yaw=1.92), "it is turned by 70 degrees there"),
     ],
 )
 def test_it_says_in_what_the_object_differs_from_what_was_placed(

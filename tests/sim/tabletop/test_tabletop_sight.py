@@ -47,9 +47,11 @@ class Watcher:
     def do(self, act: Act, name: str, **more) -> None:
         assert self.world.intervene(Intervention(act=act, object=name, **more)) == ""
 
-    def presence(self, name: str, x: float, y: float, z: float | None = None) -> Presence:
-        part = self.catalogue.parts[name]
-        return self.senses.head.presence(self.senses.head.look(), part, Location(x=x, y=y, z=z))
+    def presence(
+        self, name: str, x: float, y: float, z: float | None = None, yaw: float = 0.0
+    ) -> Presence:
+        part, at = self.catalogue.parts[name], Location(x=x, y=y, z=z, yaw=yaw)
+        return self.senses.head.presence(self.senses.head.look(), part, at)
 
 
 def near(one: tuple[float, float], other: tuple[float, float], within_m: float = 0.004) -> bool:
@@ -289,7 +291,10 @@ def test_a_part_alone_is_there_where_it_is_and_gone_where_it_is_not(
 ) -> None:
     size = tuple(float(np.round(side, 3)) for side in size)
     watcher = Watcher(scene_of({"part": at(x, y, yaw, size=size)}), seed)
-    assert watcher.presence("part", x, y) is Presence.THERE
+    assert watcher.presence("part", x, y, yaw=yaw) is Presence.THERE
+    oblong_m = abs(size[0] - size[1])
+    if oblong_m > 0.008:
+        assert watcher.presence("part", x, y, yaw=yaw + math.pi / 2) is Presence.GONE
     elsewhere = -0.55 if y > -0.2 else 0.15
     assert watcher.presence("part", x, elsewhere) is Presence.GONE
     watcher.do(Act.STEAL, "part")
