@@ -148,6 +148,7 @@ class Execution:
             return True
         self._progress.move_to(ExecutionState.CONFIRMING)
         self._arm.be_careful(1.0)
+        self._expect_change()
         outcome = yield from look_at_outcome(part, target, self._arm, self._senses)
         self._progress.outcome = outcome
         self._progress.unconfirmed = outcome.blind is not None
@@ -161,6 +162,12 @@ class Execution:
         self._watch.start_again()
         self._progress.move_to(ExecutionState.PREPARING)
         return False
+
+    def _expect_change(self) -> None:
+        """What was seen where it started, and was carried away, cannot be seen there any more."""
+        before = self._progress.seen
+        if before.image is not None and before.sighting is not None and self._progress.picked_at:
+            self._senses.head.expect_change(before.image)
 
     def _react(self, meanwhile: Meanwhile) -> Routine[None]:
         if meanwhile is Meanwhile.GO_TO_NEUTRAL:

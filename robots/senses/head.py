@@ -12,7 +12,7 @@ from robots.link.messages import Location, Sighting
 from robots.result import Result
 from robots.senses.own_arm import OwnArm
 from robots.senses.understanding import TableUnderstanding
-from robots.vision.blindness import why_outdated
+from robots.vision.blindness import why_frozen, why_outdated
 from robots.vision.blob import Blob
 from robots.vision.carriers import unseen_carriers
 from robots.vision.head import HeadSighting
@@ -37,6 +37,7 @@ class HeadSense:
         self._clearance = Clearance()
         self._fit = Fit()
         self._boxes: Sequence[SeenBox] = ()
+        self._overtaken: CameraImage | None = None
 
     def look(self) -> CameraImage:
         """A head picture."""
@@ -50,9 +51,16 @@ class HeadSense:
         """Understand the next head picture anew, even if nothing in it but noise has changed."""
         self._table.doubt()
 
+    def expect_change(self, since: CameraImage) -> None:
+        """What a picture showed has changed since: a camera that still gives it is frozen."""
+        self._overtaken = since
+
     def why_blind(self, image: CameraImage) -> str | None:
         """Why a head picture just taken tells nothing of the table, as a clause; or None."""
-        return why_outdated(image, self._body.time_s()) or self._table.why_blind(image)
+        frozen = why_frozen(image, self._overtaken)
+        if frozen is None:
+            self._overtaken = None
+        return why_outdated(image, self._body.time_s()) or frozen or self._table.why_blind(image)
 
     def sight(self, part: Part, image: CameraImage) -> HeadSighting | None:
         """Where a part is in a head picture; nowhere while it is held."""

@@ -33,6 +33,13 @@ def why_outdated(image: CameraImage, now_s: float) -> str | None:
     return f"the newest picture of my head camera is {age_s:.0f} s old"
 
 
+def why_frozen(image: CameraImage, overtaken: CameraImage | None) -> str | None:
+    """Why a picture tells nothing of now that shows a scene which has changed since; or None."""
+    if overtaken is None or not np.array_equal(image.bgr, overtaken.bgr):
+        return None
+    return "my head camera still gives the picture that it gave before I moved something"
+
+
 def why_blind(
     image: CameraImage,
     table: Table,

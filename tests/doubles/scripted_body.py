@@ -39,6 +39,7 @@ class ScriptedCamera:
     def __init__(self, body: "ScriptedBody", name: str, period_s: float) -> None:
         self._body, self._name, self._period_s = body, name, period_s
         self.pictures_taken = 0
+        self._last: CameraImage | None = None
 
     @property
     def period_s(self) -> float:
@@ -52,6 +53,9 @@ class ScriptedCamera:
         scene = DrawnScene(self._body.placed(), self._body.grey_boxes)
         if self._name == "head":
             picture = scene.picture(time=self._body.time_s())
+            if self._last is not None and self._body.head_frozen:
+                picture = replace(self._last, time=picture.time)
+            self._last = picture
             return covered(picture) if self._body.head_covered else picture
         return scene.picture(
             pose=self.pose(),
@@ -99,6 +103,7 @@ class ScriptedBody:
         self.parts: dict[str, Resting] = {name: replace(each) for name, each in parts.items()}
         self.grey_boxes: list = []
         self.head_covered = False
+        self.head_frozen = False
         self.bars: frozenset[str | None] = frozenset()
         """Around which things no path leads, by their names; None is something unknown."""
         self.in_hand: tuple[str, np.ndarray] | None = None

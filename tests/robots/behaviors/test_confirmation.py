@@ -157,3 +157,32 @@ def test_a_part_that_ends_off_its_place_twice_is_left_there() -> None:
     assert len(nudged) == 2
     assert bench.of(Finished) == [Finished(execution="e1")]
     assert bench.body.parts["pink_bar"].y == pytest.approx(0.06, abs=0.004)
+
+
+def test_a_camera_that_shows_what_was_before_the_part_was_moved_says_nothing_of_it() -> None:
+    bench = RobotBench()
+    bench.start("pink_bar")
+    bench.body.head_frozen = True
+    bench.run()
+    (issue,) = bench.of(IssueDetected)
+    assert (issue.issue, issue.step) == ("blind", 8)
+    assert "still gives the picture" in issue.detection.explanation
+    bench.send(Resume(execution="e1"))
+    bench.run()
+    assert [each.issue for each in bench.of(IssueDetected)] == ["blind", "blind"]
+    bench.body.head_frozen = False
+    bench.send(Resume(execution="e1"))
+    bench.run()
+    assert bench.of(Finished) == [Finished(execution="e1")]
+    assert len(bench.of(StepStarted)) == 8
+
+
+def test_a_camera_that_is_frozen_while_the_next_part_is_placed_is_found_out_then() -> None:
+    bench = RobotBench()
+    bench.start("pink_bar")
+    bench.run()
+    bench.body.head_frozen = True
+    bench.start("green_leg", "right")
+    bench.run()
+    (issue,) = bench.of(IssueDetected)
+    assert (issue.issue, issue.step) == ("blind", 8)

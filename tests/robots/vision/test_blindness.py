@@ -7,7 +7,7 @@ import pytest
 from drawn_scene import DrawnScene, Resting
 
 from robots.body import CameraImage
-from robots.vision.blindness import why_blind, why_outdated
+from robots.vision.blindness import why_blind, why_frozen, why_outdated
 from tasks.scene import Table
 
 TABLE = Table()
@@ -60,3 +60,11 @@ def test_a_picture_of_long_ago_tells_nothing_of_now() -> None:
     image = FULL.picture(time=10.0)
     assert why_outdated(image, 10.4) is None
     assert why_outdated(image, 22.0) == "the newest picture of my head camera is 12 s old"
+
+
+def test_a_picture_of_what_has_changed_since_tells_nothing_however_fresh_it_claims_to_be() -> None:
+    before = FULL.picture(time=10.0)
+    again = replace(before, time=20.0)
+    assert why_frozen(again, None) is None
+    assert why_frozen(again, before) is not None
+    assert why_frozen(replace(FULL, light=0.9).picture(), before) is None
