@@ -1,6 +1,6 @@
 """The plan for an errand amid what stands around: the one answer to whether an arm can do it."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -98,6 +98,13 @@ class Barred:
         """No path, or no room; where there was room, that there is none otherwise is no reason."""
         return next((each for each in self.refusals if isinstance(each, NoWay)), self.refusals[0])
 
+    @property
+    def touched(self) -> Iterator[SeenBox]:
+        """What the arm would touch, by one way to grasp or another."""
+        for each in self.refusals:
+            if isinstance(each, NoWay) and each.touched is not None:
+                yield each.touched
+
 
 @dataclass(frozen=True, slots=True)
 class _Way:
@@ -154,8 +161,8 @@ def bar_of(
     """
     first: SeenBox | None = None
     for _ in range(_MOST_BARS):
-        touched = barred.reason.touched if isinstance(barred.reason, NoWay) else None
-        if touched is None or touched not in boxes or stays(touched):
+        touched = next((each for each in barred.touched if each in boxes and not stays(each)), None)
+        if touched is None:
             return None
         first = first or touched
         # A plate and its knob have one name; pieces of something unknown have none, and go at once.

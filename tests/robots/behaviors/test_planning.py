@@ -35,10 +35,14 @@ class Path:
 
 @dataclass
 class ArmThatTouches:
-    """It touches anything called one of `names`, on its first `ways` of all ways."""
+    """It touches anything called one of `names`, on its first `ways` of all ways.
+
+    It does not reach with the gripper turned by `too_far_rad`.
+    """
 
     names: Sequence[str | None] = ()
     ways: int = 1000
+    too_far_rad: float = math.inf
     asked: list[Sequence[Leg]] = field(default_factory=list)
 
     @property
@@ -47,6 +51,8 @@ class ArmThatTouches:
 
     def plan_among(self, legs: Sequence[Leg], boxes: Sequence[SeenBox]) -> Path | NoWay:
         self.asked.append(legs)
+        if math.isclose(legs[0].to.yaw, self.too_far_rad):
+            return NoWay("does not reach")
         for box in boxes:
             if box.name in self.names and len(self.asked) <= self.ways:
                 return NoWay(f"would touch {box.name}", box)
@@ -130,3 +136,17 @@ def test_what_could_be_taken_away_is_told_where_that_would_help(
         )
     )
     assert (bar and bar.name) == told
+
+
+def test_what_is_in_the_way_is_told_though_the_arm_does_not_reach_in_another_way() -> None:
+    first = ArmThatTouches()
+    at_once(plan_amid(ERRAND, first, TABLE, []))
+    boxes = [box("post")]
+    arm = ArmThatTouches(["post"], too_far_rad=first.asked[0][0].to.yaw)
+    barred = at_once(plan_amid(ERRAND, arm, TABLE, boxes))
+    assert isinstance(barred, Barred)
+    assert barred.refusals[0] == NoWay("does not reach")
+    bar = at_once(
+        bar_of(barred, boxes, lambda fewer: plan_amid(ERRAND, arm, TABLE, fewer), lambda _: False)
+    )
+    assert bar is boxes[0]
