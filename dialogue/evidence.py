@@ -11,7 +11,8 @@ part within reach, a seen obstruction gone) is new even if it is so at the first
 robot may well have been wrong before, so that nobody is thanked for it. What was felt is never put
 right by a camera: it takes a person's word and a look.
 
-A camera may come to see again by itself, so that nobody is thanked for it who has not promised it.
+A camera may come to see again by itself, and what it took for something in the way may be gone by
+itself, so that nobody is thanked for either who has not promised it.
 
 A person has helped if a change was seen that only a person can have made: the object appeared,
 moved, or came between the fingers, or what was in the way is gone. A promise alone is not help, nor
@@ -30,6 +31,8 @@ MOVED_M = 0.02
 
 RAISED_M = 0.012
 """One that is seen so much higher or lower has toppled or was set upright; heights err by less."""
+
+_BY_ITSELF = (Expectation.VIEW_CLEAR, Expectation.WAY_CLEAR)
 
 Point = tuple[float, float, float]
 
@@ -109,7 +112,7 @@ def put_right(watched: Sequence[Expectation], first: Look, now: Look) -> PutRigh
     for each in watched:
         if each not in now.fulfilled:
             continue
-        if each is Expectation.VIEW_CLEAR and each not in first.fulfilled:
+        if each in _BY_ITSELF and each not in first.fulfilled:
             return PutRight(each, Change.NONE)
         if each is not Expectation.VIEW_CLEAR and (moved or each not in first.fulfilled):
             return PutRight(each, change)

@@ -17,6 +17,8 @@ class Next(StrEnum):
     """Another alternative is taken; the leaf may never be tried again."""
     EITHER = "either"
     """The leaf or another alternative, whichever is nearer."""
+    ANY_OF = "any_of"
+    """The leaf or others that have failed as often, whichever is nearer."""
     RUN_FAILS = "run_fails"
     """Nothing is left to try: the run ends unfinished."""
 
@@ -93,5 +95,7 @@ class Outlook:
                 return f"I take {names} instead"
             case Next.EITHER:
                 return f"{who} again ({which}), or I take {names} instead"
+            case Next.ANY_OF:
+                return f"{who} again ({which}), or I go on with {names} before that"
             case Next.RUN_FAILS:
                 return "the task ends here, unfinished"

@@ -74,6 +74,8 @@ class Settings(BaseSettings):
     help_window_s: Seconds = 30.0
     max_helped_retries: Annotated[int, Field(ge=0, le=1000)] = 20
     """How often a robot tries one leaf again because somebody has helped, before it gives up."""
+    max_times_gone: Annotated[int, Field(ge=0, le=1000)] = 10
+    """How often a leaf is done again whose result was taken away, before it is given up."""
     claim_lease_s: Seconds = 30.0
     heartbeat_s: Seconds = 1.0
     robot_hang_timeout_s: Seconds = 10.0

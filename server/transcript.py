@@ -240,6 +240,10 @@ class Transcript:
         return []
 
     @lines.register
+    def _(self, _event: ev.LookedAnew) -> list[Line]:
+        return []
+
+    @lines.register
     def _(self, _event: ev.ClipRecorded) -> list[Line]:
         return []
 

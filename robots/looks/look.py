@@ -38,6 +38,7 @@ def look_as_told(
 
 def look_once(looker: Looker, command: str) -> Routine[Looked]:
     """One look at everything."""
+    yield from looker.feel_whether_it_is_held()
     yield from looker.free_view()
     return (yield from looker.answer_and_judge(command, None))
 
@@ -53,6 +54,7 @@ def look_until(
         if left_s <= _PERIOD_S:
             # That nothing changes is not enough to say that it is not so.
             looker.senses.head.doubt()
+        yield from looker.feel_whether_it_is_held()
         fulfilled = expectation.is_fulfilled()
         if fulfilled or left_s <= 1e-9:
             return (yield from looker.answer_and_judge(command, fulfilled))

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from robots.arm import Arm, Routine
 from robots.behaviors.execution import Execution
-from robots.behaviors.search import LOOK_AGAIN_S
+from robots.behaviors.search import LOOK_AGAIN_S, LOOKS
 from robots.body import CameraImage
 from robots.link.messages import FinishedResult, Looked, ReportBody
 from robots.result import Result
@@ -27,6 +27,15 @@ class Looker:
     held: Execution | None
     may_move: bool
     finished: Sequence[Result] = ()
+
+    def feel_whether_it_is_held(self) -> Routine[None]:
+        """Find out by fresh pictures of the hand whether what it held was taken away meanwhile."""
+        hand = self.senses.hand
+        for _ in range(LOOKS):
+            if not hand.holds():
+                return
+            self.senses.read_grip()
+            yield from self.arm.wait(hand.period_s)
 
     def free_view(self) -> Routine[None]:
         """Move the arm out of the head camera's view if that is allowed."""

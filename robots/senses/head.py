@@ -52,8 +52,11 @@ class HeadSense:
         self._table.doubt()
 
     def expect_change(self, since: CameraImage) -> None:
-        """What a picture showed has changed since: a camera that still gives it is frozen."""
-        self._overtaken = since
+        """What a picture showed has changed since: a camera that still gives it is frozen.
+
+        Of a camera without any noise that does not tell: all may be back where it was.
+        """
+        self._overtaken = since if self._table.camera_is_noisy else None
 
     def why_blind(self, image: CameraImage) -> str | None:
         """Why a head picture just taken tells nothing of the table, as a clause; or None."""

@@ -51,6 +51,8 @@ class TableUnderstanding:
         self._seen: _Seen | None = None
         self._doubted = False
         self._wanted: str | None = None
+        self.camera_is_noisy = False
+        """Whether two pictures of the same were ever different."""
         self._last_seen = LastSeen(catalogue.starts)
         self.catalogue = catalogue
 
@@ -137,14 +139,16 @@ class TableUnderstanding:
         blind = why_blind(image, self.catalogue.table, self._own_arm.includes)
         if (
             seen is None
-            or doubted
             or seen.held != held
             or seen.blind is not None
             or blind is not None
             or shows_change(seen.image, image)
-            or not _still_measures_all(seen, image)
         ):
             self._seen = seen = _Seen(image, image, held, blind)
+        else:
+            self.camera_is_noisy = True
+            if doubted or not _still_measures_all(seen, image):
+                self._seen = seen = _Seen(image, image, held, blind)
         seen.latest = image
         return seen
 

@@ -114,14 +114,15 @@ def _keeps_out(box: SeenBox, room: SeenBox) -> bool:
     """Whether what is not at its place fills so much of the room that the part cannot be in it.
 
     That may be the part itself, or an equal one. Something unknown of the part's own height may be
-    the part, badly seen.
+    the part, badly seen; what is higher may stand on it, as nobody sees what is under something
+    unknown.
     """
     if not box.complete:
         return False
     overlap_m = min(box.top_z, room.top_z) - max(box.bottom_z, room.bottom_z)
     if overlap_m < AT_PLACE_HEIGHT_M / 2 or not _fills(box, room):
         return False
-    return box.name is not None or abs(box.top_z - room.top_z) > AT_PLACE_HEIGHT_M
+    return box.name is not None or box.top_z < room.top_z - AT_PLACE_HEIGHT_M
 
 
 def _fills(box: SeenBox, room: SeenBox) -> bool:

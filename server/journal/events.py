@@ -193,6 +193,17 @@ class FirstLook(DialogueEvent):
     blind: bool = False
 
 
+class LookedAnew(DialogueEvent):
+    """What was right is so no more, or the camera sees again: later looks are compared with this.
+
+    Its fields are those of the `FirstLook`.
+    """
+
+    type: Literal["looked_anew"] = "looked_anew"
+    fulfilled: list[Expectation]
+    position: tuple[float, float, float] | None
+
+
 class Claimed(DialogueEvent):
     """A helper is on it; others see so until the lease ends (wall time)."""
 
@@ -481,6 +492,7 @@ AnyEvent = Annotated[
     | DialogueOpened
     | Prompt
     | FirstLook
+    | LookedAnew
     | Claimed
     | Released
     | Answered

@@ -109,26 +109,34 @@ class DialogueDriver:
         self, dialogue: DialogueState, side: RobotSide, purpose: Purpose, fulfilled: bool
     ) -> None:
         """Take the answer of a look that was made for a dialogue."""
-        if purpose is Purpose.BASELINE and dialogue.first_look is None:
+        nothing_seen = dialogue.first_look is None or self._looks.awaits_view(dialogue)
+        if purpose is Purpose.BASELINE and nothing_seen:
             await self._looked_first(dialogue, side, fulfilled)
         elif purpose is Purpose.WATCH and dialogue.open_ask is not None:
-            seen = self._looks.put_right(dialogue, side, fulfilled)
-            if seen is not None:
-                await self._converse(dialogue, f"put_right:{seen.seen}:{seen.change}", [], side)
+            await self._watched(dialogue, side, fulfilled)
         elif purpose is Purpose.HELP and dialogue.awaiting is not None:
             await self._help_looked_for(dialogue, dialogue.awaiting, side, fulfilled)
 
     async def _looked_first(
         self, dialogue: DialogueState, side: RobotSide, fulfilled: bool
     ) -> None:
-        first = self._looks.first_look(dialogue, side, fulfilled)
-        noted = self._make(dialogue).first_look(first)
+        first, make = self._looks.first_look(dialogue, side, fulfilled), self._make(dialogue)
+        if dialogue.first_look is not None and first.blind:
+            return
+        noted = make.first_look(first) if dialogue.first_look is None else make.looked_anew(first)
         denied = self._looks.contradicted(dialogue, first) if dialogue.open_ask else None
         if denied is None:
             await self._context.commit([noted])
         else:
             call = f"put_right:{denied.seen}:{denied.change}"
             await self._converse(dialogue, call, [noted], side)
+
+    async def _watched(self, dialogue: DialogueState, side: RobotSide, fulfilled: bool) -> None:
+        seen = self._looks.put_right(dialogue, side, fulfilled)
+        if seen is not None:
+            await self._converse(dialogue, f"put_right:{seen.seen}:{seen.change}", [], side)
+        elif (undone := self._looks.undone(dialogue, side, fulfilled)) is not None:
+            await self._context.commit([self._make(dialogue).looked_anew(undone)])
 
     async def _tell_of_suspicion(self, dialogue: DialogueState) -> bool:
         """Once per leaf, tell the operators that the robot may be wrong; True if that was now."""

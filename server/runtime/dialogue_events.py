@@ -97,6 +97,11 @@ class DialogueEvents:
             blind=look.blind,
         )
 
+    def looked_anew(self, look: Look) -> ev.LookedAnew:
+        return ev.LookedAnew(
+            **self._fields(), fulfilled=sorted(look.fulfilled), position=look.position
+        )
+
     def suspected_false_alarm(
         self, times: int, explanation: str, told: list[str]
     ) -> ev.SuspectedFalseAlarm:

@@ -37,7 +37,6 @@ class DialogueLooks:
     def __init__(self, context: RunContext, rate: float | None) -> None:
         self._context = context
         self._rate = rate
-        self._compared_with: dict[UUID, Look] = {}
         self._next_watch: dict[UUID, float] = {}
 
     # --- Which look is next -------------------------------------------------------------------
@@ -45,8 +44,7 @@ class DialogueLooks:
     def let_time_pass(self, dialogue: DialogueState, side: RobotSide, due: float) -> None:
         """Until somebody answers, see whether it is put right; let a simulated clock run."""
         if dialogue.raised.interrupts:
-            if dialogue.first_look is None:
-                self._look_first(dialogue, side)
+            if self._looks_first(dialogue, side, due):
                 return
             watched = self._expected(dialogue)
             if watched is not None:
@@ -58,12 +56,12 @@ class DialogueLooks:
         self, dialogue: DialogueState, awaiting: ev.HelpAwaited, side: RobotSide
     ) -> None:
         """Look for promised help, once what was so before has been seen."""
-        if dialogue.first_look is None:
-            looking = side.doing is Doing.LOOKING and side.purpose is Purpose.BASELINE
-            if not looking and (side.free or side.interruptible):
-                self._look_first(dialogue, side)
+        first = dialogue.first_look is None
+        by_eye = awaiting.help is not Help.HAND_OVER and self._is_in_time(awaiting.until)
+        looking = side.doing is Doing.LOOKING and side.purpose in (Purpose.BASELINE, Purpose.VIEW)
+        if (looking and (first or by_eye)) or not (side.free or side.interruptible):
             return
-        if not (side.free or side.interruptible):
+        if (first or by_eye) and self._looks_first(dialogue, side, awaiting.until):
             return
         begin = self.help_looked_for_from(dialogue, awaiting)
         if not has_come(self._context.clock, begin):
@@ -99,6 +97,30 @@ class DialogueLooks:
         if dialogue.awaiting is not None:
             return self.help_looked_for_from(dialogue, dialogue.awaiting)
         return self._next_watch.get(dialogue.id)
+
+    def awaits_view(self, dialogue: DialogueState) -> bool:
+        """Whether every look so far was dark, so that nothing can be compared with them yet."""
+        first = dialogue.first_look
+        dark = first is not None and first.blind and dialogue.looked_anew is None
+        return dark and Expectation.VIEW_CLEAR not in dialogue.conversation.watched_for
+
+    def _looks_first(self, dialogue: DialogueState, side: RobotSide, until: float) -> bool:
+        """Make the look that later ones are compared with, unless there was one that saw anything.
+
+        Where the camera shows nothing of the table, that waits until it does, or `until` has come.
+        """
+        dark = self.awaits_view(dialogue)
+        if dialogue.first_look is None or (dark and side.blind is None):
+            self._look_first(dialogue, side)
+        elif dark and self._is_in_time(until):
+            within_s = until - self._context.clock.now()
+            self._look(dialogue, side, Purpose.VIEW, Expectation.VIEW_CLEAR, within_s)
+        else:
+            return False
+        return True
+
+    def _is_in_time(self, until: float) -> bool:
+        return not has_come(self._context.clock, until)
 
     def _look_first(self, dialogue: DialogueState, side: RobotSide) -> None:
         expect = self._expected_first(dialogue)
@@ -183,14 +205,18 @@ class DialogueLooks:
     ) -> PutRight | None:
         """Whether a look saw the issue put right since the question was put."""
         base = self._base(dialogue)
-        if base is None:
+        if base is None or self.awaits_view(dialogue):
             return None
         now = self._seen(dialogue, side, self._expected(dialogue) if fulfilled else None)
-        found = put_right(dialogue.conversation.watched_for, base, now)
-        if found is None and not now.fulfilled and _is_elsewhere(base.position, now.position):
-            # What was right is so no more: from here on it can be put right again.
-            self._compared_with[dialogue.id] = now
-        return found
+        return put_right(dialogue.conversation.watched_for, base, now)
+
+    def undone(self, dialogue: DialogueState, side: RobotSide, fulfilled: bool) -> Look | None:
+        """A look that saw what was right to be so no more: now it can be put right again."""
+        base = self._base(dialogue)
+        now = self._seen(dialogue, side, self._expected(dialogue) if fulfilled else None)
+        if base is None or now.blind or now.fulfilled:
+            return None
+        return now if _is_elsewhere(base.position, now.position) else None
 
     def change_seen(self, dialogue: DialogueState, side: RobotSide, helped_with: Help) -> Change:
         """What a look that saw the promised help saw to change."""
@@ -206,12 +232,14 @@ class DialogueLooks:
         return next(reversed(self._earlier(dialogue)), None)
 
     def _earlier(self, dialogue: DialogueState) -> list[Look]:
-        """The first look, and a later one that saw what was right to be so no more."""
-        first, later = dialogue.first_look, self._compared_with.get(dialogue.id)
+        """The first look, unless it was dark and another saw more, and the latest one anew."""
+        first, later = dialogue.first_look, dialogue.looked_anew
         looks = []
-        if first is not None:
+        if first is not None and not (first.blind and later is not None):
             looks.append(Look(frozenset(first.fulfilled), first.position, blind=first.blind))
-        return looks if later is None else [*looks, later]
+        if later is not None:
+            looks.append(Look(frozenset(later.fulfilled), later.position))
+        return looks
 
     def _seen(self, dialogue: DialogueState, side: RobotSide, expected: Expectation | None) -> Look:
         fulfilled = set() if expected is None else {expected}

@@ -108,7 +108,7 @@ def _sequel(state: RunState, side: RobotSide, leaf: int, *, failed: bool) -> Seq
     tree.put_back(leaf, failed=failed)
     if failed and tree.attempts(leaf) >= state.request.max_attempts:
         return _after_giving_up(tree, leaf)
-    return _before_the_next_try(state, side, tree, leaf)
+    return _before_the_next_try(state, side, tree, leaf, failed=failed)
 
 
 def _after_giving_up(tree: TaskTree, leaf: int) -> Sequel:
@@ -127,8 +127,13 @@ def _after_giving_up(tree: TaskTree, leaf: int) -> Sequel:
     )
 
 
-def _before_the_next_try(state: RunState, side: RobotSide, tree: TaskTree, leaf: int) -> Sequel:
-    """Leaves with fewer failed attempts go first; alternatives may keep it from being tried."""
+def _before_the_next_try(
+    state: RunState, side: RobotSide, tree: TaskTree, leaf: int, *, failed: bool
+) -> Sequel:
+    """Leaves with fewer failed attempts go first; alternatives may keep it from being tried.
+
+    Where as many have failed elsewhere, too, that may come first, and be the end of it.
+    """
     leaves = tree.eligible_leaves()
     able = leaves[able_mask(state, side, leaves)] if len(leaves) else np.empty(0, dtype=np.int64)
     others = [int(each) for each in able if int(each) != leaf]
@@ -141,7 +146,10 @@ def _before_the_next_try(state: RunState, side: RobotSide, tree: TaskTree, leaf:
         return Sequel(Next.EITHER if open_still else Next.INSTEAD, _names(tree, sooner))
     if as_soon := [each for each in rivals if tree.attempts(each) == mine]:
         return Sequel(Next.EITHER, _names(tree, as_soon))
-    return Sequel(Next.OTHERS_FIRST, _names(tree, first)) if first else Sequel()
+    if first:
+        return Sequel(Next.OTHERS_FIRST, _names(tree, first))
+    as_near = [each for each in others if failed and tree.attempts(each) == mine]
+    return Sequel(Next.ANY_OF, _names(tree, as_near)) if as_near else Sequel()
 
 
 def _excludes(tree: TaskTree, one: int, other: int) -> bool:

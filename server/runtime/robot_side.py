@@ -43,6 +43,7 @@ class Purpose(StrEnum):
     CHOOSE = "choose"
     BASELINE = "baseline"
     WATCH = "watch"
+    VIEW = "view"
     HELP = "help"
     RESUME = "resume"
     LAST = "last"
@@ -96,7 +97,8 @@ class RobotSide:
     def interruptible(self) -> bool:
         """Whether it only lets time pass, so that a new command may replace what it does."""
         return self.doing is Doing.WAITING or (
-            self.doing is Doing.LOOKING and self.purpose in (Purpose.BASELINE, Purpose.WATCH)
+            self.doing is Doing.LOOKING
+            and self.purpose in (Purpose.BASELINE, Purpose.WATCH, Purpose.VIEW)
         )
 
     def suitability(self, behavior: str) -> float:

@@ -70,6 +70,8 @@ class DialogueState:
     asked_for_s: float | None = None
     """How long the open question waited for an answer when it was put."""
     first_look: ev.FirstLook | None = None
+    looked_anew: ev.LookedAnew | None = None
+    """The latest look that later ones are compared with besides the first."""
     extensions: dict[UUID, int] = field(default_factory=dict)
     """How often each question's deadline may still be moved, where it was before."""
     clip: list[ev.ClipPicture] = field(default_factory=list)
@@ -325,6 +327,10 @@ class RunState:
     @_apply.register
     def _(self, event: ev.FirstLook) -> None:
         self.dialogues[event.dialogue].first_look = event
+
+    @_apply.register
+    def _(self, event: ev.LookedAnew) -> None:
+        self.dialogues[event.dialogue].looked_anew = event
 
     @_apply.register
     def _(self, event: ev.SuspectedFalseAlarm) -> None:

@@ -284,6 +284,7 @@ def test_the_first_time_nobody_is_asked_to_leave_it_out() -> None:
         (Sequel(Next.OTHERS_FIRST, ("cup",)), "I go on with the cup first, then I try again"),
         (Sequel(Next.INSTEAD, ("orange_top",)), "I take the orange top instead"),
         (Sequel(Next.EITHER, ("a", "b")), "or I take the a or the b instead"),
+        (Sequel(Next.ANY_OF, ("a", "b")), "or I go on with the a or the b before that"),
         (Sequel(Next.RUN_FAILS), "the task ends here, unfinished"),
     ],
 )

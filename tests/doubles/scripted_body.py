@@ -53,6 +53,9 @@ class ScriptedCamera:
         scene = DrawnScene(self._body.placed(), self._body.grey_boxes)
         if self._name == "head":
             picture = scene.picture(time=self._body.time_s())
+            if self._body.head_noisy:
+                # Enough to tell two pictures of the same apart.
+                picture.bgr[0, 0] = self.pictures_taken % 251
             if self._last is not None and self._body.head_frozen:
                 picture = replace(self._last, time=picture.time)
             self._last = picture
@@ -104,6 +107,7 @@ class ScriptedBody:
         self.grey_boxes: list = []
         self.head_covered = False
         self.head_frozen = False
+        self.head_noisy = False
         self.bars: frozenset[str | None] = frozenset()
         """Around which things no path leads, by their names; None is something unknown."""
         self.in_hand: tuple[str, np.ndarray] | None = None

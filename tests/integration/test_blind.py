@@ -107,3 +107,33 @@ async def test_what_is_stolen_from_under_what_is_on_its_way_is_missed_before_it_
         "yellow_bar",
         "blue_leg",
     }
+
+
+def at(time_s: float, act: str, **fields: Any) -> dict[str, Any]:
+    return {"at_s": time_s, "do": {"act": act, **fields}}
+
+
+@pytest.mark.slow
+async def test_what_is_put_back_after_the_camera_sees_again_is_help(tmp_path: Path) -> None:
+    dark = [during("pink_bar", 4, "cover"), during("pink_bar", 5, "steal", object="pink_bar")]
+    dark += [at(40.0, "uncover"), at(46.0, "put_back", object="pink_bar")]
+    view, events = await build(
+        tmp_path, dark, tree="beginning", world="tabletop", answers=["silence"] * 9, max_attempts=1
+    )
+    [dropped] = [each for each in events if isinstance(each, ev.Resolved)]
+    assert raised(events) == [("dropped", "pink_bar")]
+    assert dropped.helped
+    assert view.status is RunStatus.FINISHED
+    assert [each.blind for each in events if isinstance(each, ev.FirstLook)] == [True]
+    assert len([each for each in events if isinstance(each, ev.LookedAnew)]) == 1
+
+
+@pytest.mark.slow
+async def test_a_camera_that_only_sees_again_puts_no_lost_part_right(tmp_path: Path) -> None:
+    dark = [during("pink_bar", 4, "cover"), during("pink_bar", 5, "steal", object="pink_bar")]
+    dark += [at(15.5, "put_back", object="pink_bar"), at(40.0, "uncover")]
+    view, events = await build(
+        tmp_path, dark, tree="beginning", world="tabletop", answers=["silence"] * 9, max_attempts=1
+    )
+    assert [each for each in events if isinstance(each, ev.Resolved)] == []
+    assert view.status is RunStatus.FAILED

@@ -1,6 +1,7 @@
 """Looks: what is seen, and waiting until what was promised has come to be."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -336,3 +337,17 @@ def test_what_is_taken_away_in_the_dark_is_seen_gone_afterwards() -> None:
     bench.body.head_covered = False
     bench.look(finished=[result])
     assert looked(bench).gone == [result]
+
+
+def test_a_part_that_was_taken_out_of_the_held_arm_is_seen_at_its_place() -> None:
+    bench = RobotBench()
+    bench.start("pink_bar")
+    bench.run_to(5, 0.5)
+    bench.send(Interrupt(retreat=False))
+    bench.look(expect="at_place", object="pink_bar", place="left", within_s=1.0)
+    assert looked(bench).held == "pink_bar"
+    bench.body.in_hand = None
+    bench.body.parts["pink_bar"] = replace(STARTS["pink_bar"], x=0.55, y=0.05)
+    bench.look(expect="at_place", object="pink_bar", place="left", within_s=10.0)
+    seen = looked(bench)
+    assert (seen.held, seen.fulfilled) == (None, True)

@@ -12,6 +12,7 @@ from robots.catalogue import Part
 from robots.grasp import half_turn
 from robots.link.messages import Location
 from robots.vision.presence import Presence, is_at, judge_presence
+from robots.vision.seen_box import SeenBox
 from tasks.part_boxes import Size
 
 STOOD = Location(x=0.55, y=-0.2, z=TABLE_Z, yaw=0.0)
@@ -40,6 +41,17 @@ def test_a_part_beside_its_place_is_not_there_wherever_its_equals_are() -> None:
     view = view_of(DrawnScene({"green_leg": Resting(0.55, -0.172)}).picture())
     leg, equals = PARTS["green_leg"], {"green_leg", "leg_that_is_hidden"}
     assert judge_presence(view, leg, equals, STOOD, TABLE_Z) is Presence.GONE
+
+
+@pytest.mark.parametrize(
+    ("top_m", "told"), [(0.02, Presence.GONE), (0.30, Presence.HIDDEN), (0.40, Presence.HIDDEN)]
+)
+def test_what_is_under_something_unknown_is_not_seen(top_m: float, told: Presence) -> None:
+    size = PARTS["green_leg"].size
+    view = view_of(DrawnScene({}, [((0.55, -0.2, TABLE_Z), (*size[:2], 0.40))]).picture())
+    cover = SeenBox(0.55, -0.2, 0.0, (0.12, 0.12, top_m), TABLE_Z, None, complete=True)
+    view = replace(view, boxes=[cover])
+    assert judge_presence(view, PARTS["green_leg"], {"green_leg"}, STOOD, TABLE_Z) is told
 
 
 def is_at_with(size: Size, turned: float, *, x: float = 0.0, complete: bool = True) -> bool:

@@ -6,7 +6,7 @@ from uuid import UUID
 
 import pytest
 
-from dialogue.evidence import Change
+from dialogue.evidence import Change, PutRight
 from dialogue.script import Expectation, Help
 from robots.link.messages import Sighting
 from server.runtime.dialogue_looks import DialogueLooks
@@ -21,7 +21,16 @@ def about_cup(*, blind: bool = False) -> Any:
     if blind:
         first = SimpleNamespace(fulfilled=[], position=None, blind=True)
     watched = SimpleNamespace(watched_for=(Expectation.IN_REACH,))
-    return SimpleNamespace(id=UUID(int=1), raised=raised, first_look=first, conversation=watched)
+    return SimpleNamespace(
+        id=UUID(int=1), raised=raised, first_look=first, looked_anew=None, conversation=watched
+    )
+
+
+def watch(looks: DialogueLooks, dialogue: Any, side: Any) -> None:
+    """A look meanwhile that puts nothing right."""
+    assert looks.put_right(dialogue, side, fulfilled=False) is None
+    if (undone := looks.undone(dialogue, side, fulfilled=False)) is not None:
+        dialogue.looked_anew = SimpleNamespace(fulfilled=[], position=undone.position)
 
 
 def seeing(at: tuple[float, float], *, blind: str | None = None) -> Any:
@@ -45,7 +54,7 @@ def test_what_moved_since_the_question_has_moved_whenever_that_was(
     context: Any = None
     looks, dialogue = DialogueLooks(context, None), about_cup()
     for at in by_and_by[:-1]:
-        assert looks.put_right(dialogue, seeing(at), fulfilled=False) is None
+        watch(looks, dialogue, seeing(at))
     assert looks.change_seen(dialogue, seeing(by_and_by[-1]), Help.PUT_BACK) is change
 
 
@@ -60,5 +69,24 @@ def test_a_first_look_in_the_dark_tells_of_no_place() -> None:
 
 def test_what_was_not_seen_when_it_was_dark_is_not_taken_for_moved_since() -> None:
     context: Any = None
+    looks, dialogue = DialogueLooks(context, None), about_cup(blind=True)
+    assert looks.change_seen(dialogue, seeing(THERE), Help.PUT_BACK) is Change.UNKNOWN
+    assert looks.put_right(dialogue, seeing(THERE), fulfilled=True) is None
+
+
+def test_once_the_camera_saw_again_what_it_saw_then_is_compared_with() -> None:
+    context: Any = None
+    looks, dialogue = DialogueLooks(context, None), about_cup(blind=True)
+    assert looks.awaits_view(dialogue)
+    dialogue.looked_anew = SimpleNamespace(fulfilled=[], position=None)
+    assert not looks.awaits_view(dialogue)
+    found = looks.put_right(dialogue, seeing(THERE), fulfilled=True)
+    assert found == PutRight(Expectation.IN_REACH, Change.APPEARED)
+    assert looks.change_seen(dialogue, seeing(THERE), Help.PUT_BACK) is Change.APPEARED
+
+
+def test_darkness_meanwhile_is_nothing_to_compare_with() -> None:
+    context: Any = None
     looks = DialogueLooks(context, None)
-    assert looks.change_seen(about_cup(blind=True), seeing(THERE), Help.PUT_BACK) is Change.UNKNOWN
+    dark = seeing(HERE, blind="the picture is black")
+    assert looks.undone(about_cup(), dark, fulfilled=False) is None

@@ -129,6 +129,16 @@ async def test_other_leaves_go_first_after_a_failure_of_the_robots_own() -> None
     )
 
 
+async def test_a_leaf_that_has_failed_as_often_may_go_first() -> None:
+    faults = {part: [("missed", 4)] * 9 for part, _ in NAMES}
+    tree = definition_of({"and": LEAVES})
+    async with pretend_service(tree, faults, scene=SCENE, policy=OPERATED, wrong=True) as service:
+        _, events = await service.run_to_end(answers="none", max_attempts=2)
+    effects = [each.timeout_effect for each in of_type(events, ev.Prompt) if each.version == 1]
+    assert "I go on with the part 2 first, then I try again (attempt 2 of 2)" in effects[0]
+    assert "or I go on with the part 1 before that" in effects[2]
+
+
 async def test_what_was_felt_is_withdrawn_by_no_look() -> None:
     _, events = await run_with("blocked", 6, "none", times=1, felt=True)
     assert [each.reason for each in of_type(events, ev.DialogueClosed)] == ["gave_up"]
