@@ -10,10 +10,8 @@ from robots.localization.scan import InvalidScanError
 from robots.vision.color_model import ColorModelError
 from server.errors import InvalidError, ServiceError
 from server.journal.file_lock import JournalLockedError
-from server.journal.journal import JournalOpenError
+from server.journal.journal import JournalOpenError, JournalReadError
 from server.journal.migrations import JournalSchemaError
-from server.journal.reader import UnreadableEventError
-from server.journal.upgrades import UnknownEventVersionError
 from server.settings import WrongSettingsError
 from sim.world import WorldUnavailableError
 from tasks.library import NotInLibraryError
@@ -33,14 +31,13 @@ KNOWN_ERRORS = (
     InvalidScanError,
     JournalLockedError,
     JournalOpenError,
+    JournalReadError,
     JournalSchemaError,
     LogError,
     NotInLibraryError,
     PictureError,
     PluginError,
     ServiceError,
-    UnknownEventVersionError,
-    UnreadableEventError,
     VectorMapError,
     WorldUnavailableError,
     WrongSettingsError,
