@@ -9,6 +9,7 @@ from robots.localization.pictures.failure import PictureError
 from robots.localization.scan import InvalidScanError
 from robots.vision.color_model import ColorModelError
 from server.errors import InvalidError, ServiceError
+from server.journal.backup import BackupError
 from server.journal.file_lock import JournalLockedError
 from server.journal.journal import JournalOpenError, JournalReadError
 from server.journal.migrations import JournalSchemaError
@@ -29,6 +30,7 @@ KNOWN_ERRORS = (
     ColorModelError,
     InvalidFileError,
     InvalidScanError,
+    BackupError,
     JournalLockedError,
     JournalOpenError,
     JournalReadError,

@@ -105,13 +105,14 @@ def migrate(connection: sqlite3.Connection) -> None:
     """Bring a journal's tables to the newest version, one transaction per version.
 
     Raises `JournalSchemaError` for a journal from a newer Mend or a file that is none, and
-    `sqlite3.OperationalError` where the file cannot be read or written.
+    `sqlite3.OperationalError` where the file cannot be read or written, another
+    `sqlite3.DatabaseError` where it is damaged.
     """
     try:
         version = _schema_version(connection)
-    except sqlite3.OperationalError:
-        raise
     except sqlite3.DatabaseError as error:
+        if error.sqlite_errorcode != sqlite3.SQLITE_NOTADB:
+            raise
         raise JournalSchemaError(f"the file is not a journal ({error})") from error
     if version > len(MIGRATIONS):
         raise JournalSchemaError(

@@ -15,6 +15,7 @@ UNREADABLE = "unreadable"
 
 ENDINGS = {"run_finished": "finished", "run_failed": "failed", "run_aborted": "aborted"}
 CHANGES = {"run_paused": "paused", "run_resumed": "running"}
+STATUSES = {"running", "paused", *ENDINGS.values(), UNREADABLE}
 INDEXED_TYPES = ("run_started", *CHANGES, *ENDINGS, "dialogue_opened", "dialogue_closed")
 """The types of events that change the index."""
 
@@ -107,7 +108,7 @@ class RunIndex:
     async def run_of(self, dialogue: UUID) -> UUID | None:
         """The run of a dialogue."""
         rows = await self._select("SELECT run FROM dialogues WHERE dialogue = ?", (str(dialogue),))
-        return UUID(rows[0][0]) if rows else None
+        return _id(rows[0][0]) if rows else None
 
     async def dialogues(
         self, status: Literal["closed"] | None, limit: int, offset: int
@@ -118,7 +119,8 @@ class RunIndex:
             f"SELECT dialogue, run FROM dialogues{where} ORDER BY opened LIMIT ? OFFSET ?",
             (limit, offset),
         )
-        return [(UUID(dialogue), UUID(run)) for dialogue, run in rows]
+        found = [(_id(dialogue), _id(run)) for dialogue, run in rows]
+        return [(dialogue, run) for dialogue, run in found if dialogue and run]
 
     async def _runs(self, rest: str, values: Sequence[Any]) -> list[IndexedRun]:
         rows = await self._select(f"SELECT {COLUMNS} FROM runs{rest}", values)
@@ -131,6 +133,8 @@ def _indexed(row: Sequence[Any]) -> IndexedRun | None:
     if run is None:
         return None
     try:
+        if row[3] not in STATUSES:
+            raise ValueError(f"it has the status '{row[3]}'")
         robots = json.loads(row[12])
         return IndexedRun(
             run, int(row[1]), row[2], row[3], float(row[4]), _moment(row[5]),
