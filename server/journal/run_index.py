@@ -21,6 +21,9 @@ INDEXED_TYPES = ("run_started", *CHANGES, *ENDINGS, "dialogue_opened", "dialogue
 
 COLUMNS = "run, begun, ended, status, time, started, ended_at, tree, world, scenario, seed, speed, robots, ending, why"  # noqa: E501
 
+BY_END = " INDEXED BY runs_by_end"
+"""Few runs have not ended, or only since; SQLite might rather go through all in their order."""
+
 
 @dataclass(frozen=True, slots=True)
 class IndexedRun:
@@ -89,17 +92,20 @@ class RunIndex:
 
     async def going_on(self) -> list[IndexedRun]:
         """The runs that have not ended, in the order in which they began."""
-        return await self._runs(" WHERE ended IS NULL ORDER BY begun", ())
+        return await self._runs(f"{BY_END} WHERE ended IS NULL ORDER BY begun", ())
 
     async def open_at(self, seq: int) -> list[UUID]:
-        """The runs that had begun and not ended after an event, in the order they began."""
+        """The runs that had begun and not ended after an event, in the order they began.
+
+        Without those that cannot be read.
+        """
         rows = await self._select(
-            "SELECT run, begun FROM runs WHERE ended IS NULL AND begun <= :seq"
-            " UNION SELECT run, begun FROM runs WHERE ended > :seq AND begun <= :seq"
-            " ORDER BY begun",
+            f"SELECT run, begun, status FROM runs{BY_END} WHERE ended IS NULL AND begun <= :seq"
+            f" UNION SELECT run, begun, status FROM runs{BY_END}"
+            " WHERE ended > :seq AND begun <= :seq ORDER BY begun",
             {"seq": seq},
         )
-        return [run for (text, _) in rows if (run := _id(text)) is not None]
+        return [run for text, _, status in rows if status != UNREADABLE and (run := _id(text))]
 
     async def counts(self) -> Mapping[str, int]:
         """How many runs there are of each status."""
