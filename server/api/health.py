@@ -8,7 +8,6 @@ from pydantic import BaseModel
 from server.api.parts import WithParts
 from server.api.problems import documented
 from server.journal.journal import JournalWriteError
-from server.runtime.views import RunStatus
 
 router = APIRouter(tags=["health"])
 
@@ -43,7 +42,7 @@ async def readyz(parts: WithParts) -> Readiness:
     if parts.journal.trouble.reason is not None:
         raise JournalWriteError(parts.journal.trouble.reason)
     await parts.journal.read_records(parts.journal.head, 1)
-    unreadable = (await parts.runs.count_runs()).get(RunStatus.UNREADABLE, 0)
+    unreadable = await parts.journal.index.count_unreadable()
     damage = [each.sentence for each in parts.journal.damage]
     return Readiness(
         status="degraded" if unreadable or damage else "ok",

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-from server.journal.chain import Break
+from server.journal.chain import Break, Chain
 from server.journal.file_lock import FileLock
 from server.journal.file_mode import OWNERS_FOLDER, keep_to_owner
 from server.journal.journal import JournalDamagedError, JournalOpenError
@@ -27,6 +27,7 @@ class OpenJournal:
     write: sqlite3.Connection
     read: sqlite3.Connection
     head: int
+    chain: Chain
     damage: Sequence[Break]
     file: SameFile | None
     lock: FileLock | None
@@ -98,13 +99,14 @@ def _connected(
         migrate(write)
         write.execute("PRAGMA journal_mode=WAL")
         write.execute("PRAGMA synchronous=FULL")
-        damage = quick_check(write, check_s)
+        damage, chain = quick_check(write, check_s), Chain(write)
         (head,) = write.execute(
             "SELECT max((SELECT coalesce(max(seq), 0) FROM events),"
-            " (SELECT coalesce(max(last), 0) FROM batches), (SELECT max(through) FROM pruned))"
+            " (SELECT coalesce(max(last), 0) FROM batches),"
+            " (SELECT coalesce(max(through), 0) FROM pruned))"
         ).fetchone()
         read = write if path == IN_MEMORY else connect()
     except BaseException:
         write.close()
         raise
-    return OpenJournal(write, read, int(head or 0), damage, file, lock)
+    return OpenJournal(write, read, int(head), chain, damage, file, lock)

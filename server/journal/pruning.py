@@ -6,6 +6,7 @@ from collections.abc import Awaitable, Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from datetime import datetime, timedelta
+from functools import partial
 from typing import Any, Protocol
 from uuid import UUID
 
@@ -74,15 +75,27 @@ async def prune(execute: Execute, keep: Keep, now: datetime) -> Pruned:
         pruned.events += gone.events
         pruned.pictures += gone.pictures
     if keep.picture_bytes is not None:
-        most = keep.picture_bytes
-        while count := await execute(lambda connection: _delete_pictures(connection, most)):
-            pruned.pictures += count
+        pruned.pictures += await _prune_pictures(execute, keep.picture_bytes)
     return pruned
+
+
+async def _prune_pictures(execute: Execute, most_bytes: int) -> int:
+    """Delete the oldest pictures while there are more bytes; returns how many."""
+    size = await execute(_size_of_pictures)
+    count = 0
+    while size > most_bytes:
+        beyond = size - most_bytes
+        gone: _Gone = await execute(partial(_delete_pictures, beyond=beyond))
+        if not gone.pictures:
+            break
+        count += gone.pictures
+        size -= gone.picture_bytes
+    return count
 
 
 def pruned_through(connection: sqlite3.Connection) -> int:
     """The highest `seq` that was pruned; 0 if none was."""
-    return int(connection.execute("SELECT through FROM pruned").fetchone()[0])
+    return int(connection.execute("SELECT coalesce(max(through), 0) FROM pruned").fetchone()[0])
 
 
 # --- Runs ---------------------------------------------------------------------------------------
@@ -171,6 +184,7 @@ def _read(bodies: Iterable[str]) -> Iterator[dict[str, Any]]:
 class _Gone:
     events: int
     pictures: int
+    picture_bytes: int = 0
 
 
 def _delete_some(connection: sqlite3.Connection) -> _Gone | None:
@@ -249,23 +263,25 @@ def _join(connection: sqlite3.Connection, batch: Batch) -> None:
 # --- Pictures -----------------------------------------------------------------------------------
 
 
-def _delete_pictures(connection: sqlite3.Connection, most_bytes: int) -> int:
-    """Delete a few of the oldest pictures while there are more bytes; those of ended runs only."""
-    (size,) = connection.execute("SELECT total(length(jpeg)) FROM pictures").fetchone()
-    if size <= most_bytes:
-        return 0
+def _size_of_pictures(connection: sqlite3.Connection) -> int:
+    return int(connection.execute("SELECT total(length(jpeg)) FROM pictures").fetchone()[0])
+
+
+def _delete_pictures(connection: sqlite3.Connection, beyond: int) -> _Gone:
+    """Delete a few of the oldest pictures of ended runs, of at least so many bytes if it can."""
     needed = _pictures_of_runs_that_go_on(connection)
     going: list[tuple[str]] = []
+    freed = 0
     for picture, length in connection.execute(
         "SELECT id, length(jpeg) FROM pictures ORDER BY rowid"
     ):
-        if size <= most_bytes or len(going) >= PICTURES_AT_ONCE:
+        if freed >= beyond or len(going) >= PICTURES_AT_ONCE:
             break
         if picture not in needed:
             going.append((picture,))
-            size -= length
+            freed += length
     connection.executemany("DELETE FROM pictures WHERE id = ?", going)
-    return len(going)
+    return _Gone(0, len(going), freed)
 
 
 def _pictures_of_runs_that_go_on(connection: sqlite3.Connection) -> set[str]:

@@ -111,6 +111,10 @@ class RunIndex:
         """How many runs there are of each status."""
         return dict(await self._select("SELECT status, count(*) FROM runs GROUP BY status", ()))
 
+    async def count_unreadable(self) -> int:
+        rows = await self._select("SELECT count(*) FROM runs WHERE status = ?", (UNREADABLE,))
+        return int(rows[0][0])
+
     async def run_of(self, dialogue: UUID) -> UUID | None:
         """The run of a dialogue."""
         rows = await self._select("SELECT run FROM dialogues WHERE dialogue = ?", (str(dialogue),))

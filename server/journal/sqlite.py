@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any, NoReturn, TypeVar
 from uuid import UUID
 
-from server.journal.chain import Break, Chain, Row, is_whole
+from server.journal.chain import Break, Row, is_whole
 from server.journal.events import Event
 from server.journal.journal import (
     DuplicateReceiptError,
@@ -84,7 +84,7 @@ class SqliteJournal:
         self._damage = opened.damage
         self._head = opened.head
         self._next = self._batch_start = opened.head + 1
-        self._chain = Chain(opened.write)
+        self._chain = opened.chain
         self._index = RunIndex(self._select)
         self._subscribers = Subscribers()
         self._version = current_version()

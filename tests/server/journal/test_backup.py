@@ -8,10 +8,10 @@ from contextlib import closing
 from pathlib import Path
 
 import pytest
+from checked_journal import checked, truncated
 from made_up_history import write_history
 from sample_events import paused
 from service_process import service_process
-from test_damaged_journals import checked, truncated
 from typer.testing import CliRunner
 
 from server.cli import app

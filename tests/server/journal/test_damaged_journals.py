@@ -3,12 +3,12 @@
 import asyncio
 import shutil
 import sqlite3
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from contextlib import closing, suppress
 from pathlib import Path
-from uuid import UUID
 
 import pytest
+from checked_journal import checked, truncated
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from made_up_history import made_up_run, run_id, write_history
@@ -16,21 +16,16 @@ from pretend_service import pretend_service
 from task_documents import definition_of
 from typer.testing import CliRunner
 
-from dialogue.registry import load_scripts
 from server.cli import app
 from server.errors import NotFoundError, UnreadableError
-from server.journal.events import Event
 from server.journal.file_lock import JournalLockedError
-from server.journal.full_check import JournalCheck, check_journal
 from server.journal.journal import JournalDamagedError, JournalOpenError, JournalReadError
 from server.journal.migrations import JournalSchemaError
 from server.journal.run_index import RunPage
 from server.journal.sqlite import SqliteJournal
-from server.runtime.history import fold_event
 
 RUNS = 6
 EVENTS = len(made_up_run())
-SCRIPTS = load_scripts()
 
 ONE_PART = definition_of(
     {"then": [{"behavior": "pick_and_place", "object": "part_1", "place": "spot_1"}]}
@@ -52,16 +47,6 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture
 def journal(whole: Path, tmp_path: Path) -> Path:
     return Path(shutil.copy(whole, tmp_path / "journal.db"))
-
-
-def fold(run: UUID, events: Iterable[Event]) -> None:
-    state = None
-    for event in events:
-        state = fold_event(run, state, event, SCRIPTS)
-
-
-def checked(path: Path) -> JournalCheck:
-    return check_journal(path, fold)
 
 
 def alter(path: Path, statement: str, *parameters: object) -> None:
@@ -154,10 +139,6 @@ async def test_damage_at_the_end_of_the_chain_is_noticed_on_opening(journal: Pat
 
 def emptied(path: Path) -> None:
     path.write_bytes(b"")
-
-
-def truncated(path: Path) -> None:
-    path.write_bytes(path.read_bytes()[: path.stat().st_size // 2 + 100])
 
 
 def a_folder(path: Path) -> None:

@@ -10,6 +10,7 @@ from typing import Any
 from uuid import UUID, uuid4
 
 import pytest
+from checked_journal import checked
 from made_up_history import (
     BEGUN,
     BETWEEN_RUNS,
@@ -20,7 +21,6 @@ from made_up_history import (
     write_history,
 )  # fmt: skip
 from sample_events import paused, started
-from test_damaged_journals import checked
 
 from server.journal import events as ev
 from server.journal.file_lock import JournalLockedError
