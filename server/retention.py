@@ -16,8 +16,8 @@ log = logging.getLogger(__name__)
 
 EVERY_S = 600.0
 
-PruneJournal = Callable[[Keep, datetime], Awaitable[Pruned]]
 ForgetPoses = Callable[[UUID], None]
+PruneJournal = Callable[[Keep, datetime, ForgetPoses], Awaitable[Pruned]]
 
 
 class KeepSettings(BaseModel):
@@ -50,14 +50,12 @@ async def prune_regularly(
     """Prune at once and every ten minutes, until the journal is closed."""
     while not keep.all:
         try:
-            pruned = await prune(keep, utc_now())
+            pruned = await prune(keep, utc_now(), forget_poses)
         except JournalWriteError as error:
             log.warning("what is not kept was not pruned: %s", error)
         except JournalClosedError:
             return
         else:
-            for run in pruned.runs:
-                forget_poses(run)
             if pruned.runs or pruned.pictures:
                 log.info("pruned %d runs, %d events and %d pictures", len(pruned.runs),
                          pruned.events, pruned.pictures)  # fmt: skip

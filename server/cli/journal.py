@@ -95,11 +95,14 @@ def prune(
     with told_plainly():
         path = _journal(journal)
         settings = _keep(days=days, runs=runs, pictures_mb=pictures_mb)
-        pruned = asyncio.run(prune_file(path, settings.keep(), datetime.now(UTC), compact=compact))
         poses = path.with_suffix(".poses")
-        for run in pruned.runs:
+
+        def forget(run: UUID) -> None:
             for each in (f"{run}.poses", f"{run}.layout.json"):
                 (poses / each).unlink(missing_ok=True)
+
+        now = datetime.now(UTC)
+        pruned = asyncio.run(prune_file(path, settings.keep(), now, forget, compact=compact))
     typer.echo(
         f"{path}: {len(pruned.runs)} runs, {pruned.events} events and {pruned.pictures} pictures "
         "were pruned"

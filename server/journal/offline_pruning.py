@@ -8,6 +8,7 @@ from contextlib import closing
 from datetime import datetime
 from pathlib import Path
 from typing import Any
+from uuid import UUID
 
 from server.journal.file_lock import FileLock, JournalLockedError
 from server.journal.journal import JournalDamagedError, JournalOpenError
@@ -19,8 +20,15 @@ BUSY_TIMEOUT_S = 30.0
 SHORTEST_PAUSE_S = 0.005
 
 
-async def prune_file(path: Path, keep: Keep, now: datetime, *, compact: bool = False) -> Pruned:
-    """Take out of a journal's file what is not kept.
+async def prune_file(
+    path: Path,
+    keep: Keep,
+    now: datetime,
+    forget: Callable[[UUID], None] = lambda _: None,
+    *,
+    compact: bool = False,
+) -> Pruned:
+    """Take out of a journal's file what is not kept; `forget` is told of each run that goes.
 
     `compact` gives the room back to the disk, for which no service may have the journal. Raises
     `FileNotFoundError`, `JournalSchemaError`, `JournalOpenError`, and with `compact`
@@ -33,7 +41,7 @@ async def prune_file(path: Path, keep: Keep, now: datetime, *, compact: bool = F
             if lock is not None:
                 migrate(connection)
             _refuse_older(path, connection)
-            pruned = await prune(_Transactions(connection), keep, now)
+            pruned = await prune(_Transactions(connection), keep, now, forget)
             if compact:
                 connection.execute("VACUUM")
     except sqlite3.OperationalError as error:

@@ -59,21 +59,27 @@ class Execute(Protocol):
     def __call__(self, work: Callable[[sqlite3.Connection], Any], /) -> Awaitable[Any]: ...
 
 
-async def prune(execute: Execute, keep: Keep, now: datetime) -> Pruned:
+async def prune(
+    execute: Execute, keep: Keep, now: datetime, forget: Callable[[UUID], None]
+) -> Pruned:
     """Take out of a journal what is not kept.
 
-    A run is first taken from the index, and so from every list; then its events go, a few at a
-    time. What a kill left half done is done by the next pruning.
+    A run is first taken from the index, and so from every list; then `forget` has the chance to
+    delete what is kept of it elsewhere, and its events go, a few at a time. What a kill left half
+    done is done by the next pruning.
     """
     pruned = Pruned()
-    while runs := await execute(lambda connection: _let_go(connection, keep, now)):
-        pruned.runs += [UUID(run) for run in runs]
+    runs: list[str] = await execute(_left_by_a_kill)
+    while True:
+        for run in runs:
+            forget(UUID(run))
         while gone := await execute(_delete_some):
             pruned.events += gone.events
             pruned.pictures += gone.pictures
-    while gone := await execute(_delete_some):
-        pruned.events += gone.events
-        pruned.pictures += gone.pictures
+        runs = await execute(lambda connection: _let_go(connection, keep, now))
+        if not runs:
+            break
+        pruned.runs += [UUID(run) for run in runs]
     if keep.picture_bytes is not None:
         pruned.pictures += await _prune_pictures(execute, keep.picture_bytes)
     return pruned
@@ -113,6 +119,10 @@ def _let_go(connection: sqlite3.Connection, keep: Keep, now: datetime) -> list[s
     if runs:
         connection.execute("UPDATE pruned SET runs = runs + ?", (len(runs),))
     return [run for run, _, _ in runs]
+
+
+def _left_by_a_kill(connection: sqlite3.Connection) -> list[str]:
+    return [run for (run,) in connection.execute("SELECT run FROM pruning")]
 
 
 def _not_kept(

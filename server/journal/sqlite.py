@@ -175,9 +175,14 @@ class SqliteJournal:
     async def mark_readable(self, run: UUID, status: str) -> None:
         await self._writer.submit(lambda connection: note_readable(connection, run, status))
 
-    async def prune(self, keep: Keep, now: datetime) -> Pruned:
-        """Take out what is not kept, while others go on writing. Raises `JournalWriteError`."""
-        return await prune(self._writer.submit, keep, now)
+    async def prune(
+        self, keep: Keep, now: datetime, forget: Callable[[UUID], None] = lambda _: None
+    ) -> Pruned:
+        """Take out what is not kept, while others go on writing.
+
+        `forget` is told of each run that goes. Raises `JournalWriteError`.
+        """
+        return await prune(self._writer.submit, keep, now, forget)
 
     async def _probe(self) -> None:
         """Try to write something that needs room, and take it away again."""

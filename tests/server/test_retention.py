@@ -1,5 +1,6 @@
 """A service prunes again and again, and lets nothing that fails keep it from that."""
 
+from collections.abc import Callable
 from datetime import UTC, datetime
 from uuid import UUID, uuid4
 
@@ -17,12 +18,13 @@ class PretendJournal:
         self.asked: list[tuple[Keep, datetime]] = []
         self._run = run
 
-    async def prune(self, keep: Keep, now: datetime) -> Pruned:
+    async def prune(self, keep: Keep, now: datetime, forget: Callable[[UUID], None]) -> Pruned:
         self.asked.append((keep, now))
         if len(self.asked) == 2:
             raise JournalWriteError("the disk is full")
         if len(self.asked) == 4:
             raise JournalClosedError("the journal is closed")
+        forget(self._run)
         return Pruned(runs=[self._run])
 
 

@@ -196,7 +196,7 @@ async def test_what_a_kill_left_half_pruned_is_done_by_the_next_pruning(tmp_path
     def dying(work: Callable[[sqlite3.Connection], Any]) -> Any:
         nonlocal pieces
         pieces += 1
-        if pieces == 3:
+        if pieces == 5:
             raise StoppedError
         return submit(work)
 
@@ -208,7 +208,9 @@ async def test_what_a_kill_left_half_pruned_is_done_by_the_next_pruning(tmp_path
     assert await journal.index.find(run) is None
     assert 0 < len(await journal.read(0, 10_000)) < len(many)
     assert checked(path).findings == []
-    await journal.prune(keep, now)
+    forgotten: list[UUID] = []
+    await journal.prune(keep, now, forgotten.append)
+    assert forgotten == [run]
     assert await journal.read(0, 10_000) == []
     assert await journal.pruned_through() == len(many) + 2
     journal.close()
