@@ -142,9 +142,14 @@ class MendClient:
     async def start_run(self, request: RunRequest) -> RunView:
         return await self._post("/api/runs", RunView, request.model_dump(mode="json"))
 
-    async def runs(self, *, limit: int = 100, offset: int = 0) -> list[RunSummary]:
-        """Runs, newest first."""
-        return await self._get("/api/runs", list[RunSummary], limit=limit, offset=offset)
+    async def runs(
+        self, *, limit: int = 100, offset: int = 0, before: UUID | None = None
+    ) -> list[RunSummary]:
+        """Runs, newest first; only those that began before another, for the next page."""
+        last = None if before is None else str(before)
+        return await self._get(
+            "/api/runs", list[RunSummary], limit=limit, offset=offset, before=last
+        )
 
     async def run(self, run: UUID) -> RunView:
         return await self._get(f"/api/runs/{run}", RunView)

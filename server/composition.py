@@ -21,6 +21,7 @@ from server.listening import listen, reachable_host
 from server.models import RobotModels
 from server.poses.feed import PoseFeed
 from server.poses.record import PoseRecords
+from server.retention import prune_regularly
 from server.robots.endpoint import ROBOT_PATH, add_robot_route
 from server.robots.process import launch
 from server.robots.registry import RobotRegistry
@@ -137,17 +138,27 @@ async def _open(
     add_robot_route(app, registry, token)
     server = _Server(serve_config(app, settings))
     serving: asyncio.Task[None] | None = None
+    pruning: asyncio.Task[None] | None = None
     rendering = asyncio.create_task(_render_prompts(speech, journal), name="rendering")
     try:
         if recover:
             # Before it listens: a run that is not read yet would be unknown to whoever asks.
             await runtime.recover()
+        pruning = asyncio.create_task(
+            prune_regularly(
+                journal.prune, poses.forget, settings.keep.keep(), lambda: datetime.now(UTC)
+            ),
+            name="pruning",
+        )
         serving = asyncio.create_task(server.serve(sockets=[config_socket]), name="server")
         await server.wait_until_started(serving)
         yield Service(runtime, journal, registry, library, url, settings)
     finally:
         # First: a report that no run takes any more must not be acknowledged.
         registry.close()
+        if pruning is not None:
+            pruning.cancel()
+            await asyncio.gather(pruning, return_exceptions=True)
         await runtime.close()
         await mail.close()
         poses.shut()

@@ -14,6 +14,10 @@ class NotFoundError(ServiceError):
     """There is no such run, dialogue, prompt, tree, robot, camera or picture."""
 
 
+class UnreadableError(ServiceError):
+    """What the journal has of a run cannot be read, or is not what was written."""
+
+
 class ConflictError(ServiceError):
     """The state of the thing does not allow what was asked."""
 

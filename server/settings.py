@@ -17,6 +17,7 @@ from pydantic_settings import (
 
 from server.dialogues.mail import MailSettings
 from server.limits import Limits
+from server.retention import KeepSettings
 from server.speech.voice import VoiceChoice
 
 Seconds = Annotated[float, Field(gt=0, le=86_400, allow_inf_nan=False)]
@@ -82,6 +83,8 @@ class Settings(BaseSettings):
     """How many events may wait for one slow client before it is cut off."""
     record_poses: bool = True
     """Whether to record beside the journal where everything was, for replay."""
+    keep: KeepSettings = KeepSettings()
+    """How long ended runs are kept."""
     limits: Limits = Limits()
     """How much of everything there may be."""
     speech_voice: VoiceChoice = "auto"

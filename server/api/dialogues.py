@@ -59,13 +59,15 @@ async def list_dialogues(
     offset: Offset = 0,
 ) -> list[DialogueView]:
     """Dialogues, all or those of one status."""
-    return parts.runs.dialogues(status)[offset : offset + limit]
+    return await parts.runs.dialogues(status, limit, offset)
 
 
-@router.get("/{dialogue}", operation_id="get_dialogue", responses=documented(401, 404, 421, 422))
+@router.get(
+    "/{dialogue}", operation_id="get_dialogue", responses=documented(401, 404, 421, 422, 500)
+)
 async def get_dialogue(dialogue: DialogueId, parts: WithParts) -> DialogueView:
     """One dialogue with its latest prompt."""
-    return parts.runs.dialogue(dialogue)
+    return await parts.runs.dialogue(dialogue)
 
 
 @router.post(

@@ -30,7 +30,7 @@ from server.api.helper_messages import (
 from server.api.parts import MAX_SEQ
 from server.api.problems import problem, problem_of
 from server.journal.journal import JournalClosedError
-from server.journal.subscriptions import SubscriptionOverflowError
+from server.journal.subscriptions import PrunedEventsError, SubscriptionOverflowError
 
 router = APIRouter()
 
@@ -72,7 +72,7 @@ class HelperSocket(HelperConnection[EventsQuery]):
             try:
                 async for record in subscription:
                     await self._websocket.send_text(record.text)
-            except SubscriptionOverflowError as error:
+            except (SubscriptionOverflowError, PrunedEventsError) as error:
                 await self._websocket.close(TRY_AGAIN_LATER, str(error))
             except JournalClosedError:
                 await self._websocket.close(GOING_AWAY, "the service stops")
@@ -95,13 +95,23 @@ class HelperSocket(HelperConnection[EventsQuery]):
     async def _send_snapshot(self, after: int | None) -> int:
         head = self._parts.journal.head
         ahead = after is not None and after > head
-        snapshot = await self._parts.runs.snapshot(None if ahead else after)
+        pruned_through = await self._parts.journal.pruned_through()
+        pruned = after is not None and after < pruned_through
+        snapshot = await self._parts.runs.snapshot(None if ahead or pruned else after)
         await self._send(
             SnapshotMessage(seq=snapshot.seq, runs=snapshot.runs, dialogues=snapshot.dialogues)
         )
         if ahead:
             await self._refuse(
                 problem(422, f"there is no event {after} yet: the last one is {head}")
+            )
+        if pruned:
+            await self._refuse(
+                problem(
+                    410,
+                    f"not every event after {after} is there any more: some up to "
+                    f"{pruned_through} were pruned, so the snapshot is that of now",
+                )
             )
         return snapshot.seq
 

@@ -19,8 +19,9 @@ from server.errors import (
     LostRaceError,
     NotFoundError,
     ServiceError,
+    UnreadableError,
 )
-from server.journal.journal import JournalClosedError, JournalWriteError
+from server.journal.journal import JournalClosedError, JournalReadError, JournalWriteError
 from tasks.unit import unit_of_name
 from tasks.validation import what_is_right
 
@@ -32,6 +33,8 @@ STATUSES: tuple[tuple[type[Exception], int], ...] = (
     (NotFoundError, 404),
     (ConflictError, 409),
     (InvalidError, 422),
+    (UnreadableError, 500),
+    (JournalReadError, 500),
     (JournalWriteError, 503),
     (JournalClosedError, 503),
 )
@@ -101,7 +104,7 @@ def answer_errors_with_problems(app: FastAPI) -> None:
     app.add_exception_handler(HTTPException, _http_error)
     app.add_exception_handler(RequestValidationError, _validation_error)
     app.add_exception_handler(ProblemError, _problem_error)
-    for kind in (ServiceError, JournalWriteError, JournalClosedError):
+    for kind in (ServiceError, JournalReadError, JournalWriteError, JournalClosedError):
         app.add_exception_handler(kind, _service_error)
     app.add_exception_handler(Exception, _defect)
 

@@ -112,7 +112,7 @@ class SpeechSocket(HelperConnection[HelperQuery]):
             why_not = f"nothing can be recognized: {ears.why_not}"
             await self._refuse(problem(503, why_not), message.id)
             return
-        question = open_question(self._parts.runs, message.dialogue, message.prompt)
+        question = await open_question(self._parts.runs, message.dialogue, message.prompt)
         await self._end(EndReason.REPLACED)
         ears.check_room()
         over = wait_until_over(

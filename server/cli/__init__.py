@@ -10,6 +10,7 @@ import typer
 
 from server.cli.check import check
 from server.cli.failures import CommandLineError
+from server.cli.journal import journal_app
 from server.cli.localize import localize
 from server.cli.map import maps_app
 from server.cli.replay import replay
@@ -71,6 +72,7 @@ COMMANDS: dict[str, tuple[Callable[..., None], str]] = {
 for name, (command, summary) in COMMANDS.items():
     app.command(name, short_help=summary)(command)
 app.add_typer(maps_app)
+app.add_typer(journal_app)
 app.add_typer(scene_app)
 
 

@@ -1,11 +1,20 @@
 """The runtime as the API, the sockets and the command line see it."""
 
+from collections.abc import Mapping
 from typing import Literal, Protocol
 from uuid import UUID
 
 from server.journal.events import Answered, DeadlineExtended
+from server.journal.run_index import RunPage
 from server.runtime.requests import RunRequest
-from server.runtime.views import DialogueView, RobotView, RunSummary, RunView, Snapshot
+from server.runtime.views import (
+    DialogueView,
+    RobotView,
+    RunStatus,
+    RunSummary,
+    RunView,
+    Snapshot,
+)
 from tasks.intervention import Intervention
 
 
@@ -16,11 +25,17 @@ class RunService(Protocol):
         """Begin a run. Raises `NotFoundError` (tree, scenario, robot), `InvalidError`."""
         ...
 
-    def runs(self) -> list[RunSummary]:
-        """All runs, newest first."""
+    async def runs(self, page: RunPage) -> list[RunSummary]:
+        """A page of runs, newest first."""
         ...
 
-    def run(self, run: UUID) -> RunView: ...
+    async def count_runs(self) -> Mapping[RunStatus, int]:
+        """How many runs there are of each status."""
+        ...
+
+    async def run(self, run: UUID) -> RunView:
+        """One run. Raises `NotFoundError` or `UnreadableError`."""
+        ...
 
     async def pause(self, run: UUID) -> RunView: ...
 
@@ -36,9 +51,15 @@ class RunService(Protocol):
         """A camera's picture now, as JPEG."""
         ...
 
-    def dialogues(self, status: Literal["open", "closed"] | None) -> list[DialogueView]: ...
+    async def dialogues(
+        self, status: Literal["open", "closed"] | None, limit: int, offset: int
+    ) -> list[DialogueView]:
+        """A page of dialogues, oldest first."""
+        ...
 
-    def dialogue(self, dialogue: UUID) -> DialogueView: ...
+    async def dialogue(self, dialogue: UUID) -> DialogueView:
+        """One dialogue. Raises `NotFoundError` or `UnreadableError`."""
+        ...
 
     async def answer(
         self, dialogue: UUID, prompt: UUID, answer: Literal["yes", "no"], helper: str

@@ -328,7 +328,8 @@ async def test_body_above_the_limit_is_refused(client: httpx.AsyncClient) -> Non
 async def test_health_scenarios_robots_and_metrics(client: httpx.AsyncClient) -> None:
     await start(client)
     assert (await client.get("/healthz")).json() == {"status": "ok"}
-    assert (await client.get("/readyz")).json() == {"status": "ok"}
+    ready = (await client.get("/readyz")).json()
+    assert ready == {"status": "ok", "unreadable_runs": 0, "damage": []}
     scenarios = (await client.get("/api/scenarios")).json()
     assert [each["name"] for each in scenarios] == SCENARIOS.names()
     assert all(each["built_in"] and each["tree"] == "eket" for each in scenarios)
@@ -367,7 +368,7 @@ async def test_an_abort_that_is_not_kept_yet_is_accepted(
     run = await start(client)
 
     async def stop(run: UUID) -> RunView:
-        return service.runs.run(run)
+        return service.runs.run_now(run)
 
     monkeypatch.setattr(service.runs, "abort", stop)
     response = await client.post(f"/api/runs/{run}/abort")

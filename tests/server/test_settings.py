@@ -1,7 +1,9 @@
+from datetime import timedelta
 from pathlib import Path
 
 import pytest
 
+from server.journal.pruning import Keep
 from server.limits import Limits
 from server.settings import Settings, WrongSettingsError, default_data_dir, load_settings
 
@@ -157,3 +159,15 @@ def test_limits_are_set_by_variables(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("MEND_LIMITS__ANSWERS", "0")
     with pytest.raises(WrongSettingsError, match=r"limits\.answers"):
         load_settings()
+
+
+def test_what_is_kept_is_set_by_days_number_and_size(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert load_settings().keep.keep().all
+    monkeypatch.setenv("MEND_KEEP__DAYS", "30")
+    monkeypatch.setenv("MEND_KEEP__RUNS", "1000")
+    monkeypatch.setenv("MEND_KEEP__PICTURES_MB", "1.5")
+    assert load_settings().keep.keep() == Keep(timedelta(days=30), 1000, 1_500_000)
+    for wrong in ("0", "-1", "many"):
+        monkeypatch.setenv("MEND_KEEP__RUNS", wrong)
+        with pytest.raises(WrongSettingsError, match=r"The setting 'keep\.runs' is wrong"):
+            load_settings()

@@ -13,6 +13,7 @@ const STATUS_WORDS = {
   finished: "finished",
   failed: "failed",
   aborted: "aborted",
+  unreadable: "unreadable",
 } as const;
 
 export function RunHeader({ newest, moment }: { newest: RunState; moment: Moment }) {

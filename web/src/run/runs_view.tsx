@@ -21,6 +21,7 @@ const FILTERS: readonly Filter[] = [
   { name: "Finished", statuses: ["finished"] },
   { name: "Failed", statuses: ["failed"] },
   { name: "Aborted", statuses: ["aborted"] },
+  { name: "Unreadable", statuses: ["unreadable"] },
 ];
 
 /** Chosen once, kept while one looks at a run and comes back. */
