@@ -1,7 +1,7 @@
 """Reading a journal that somebody else may be writing: its runs, events and pictures."""
 
 import sqlite3
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import Self
@@ -63,6 +63,15 @@ class JournalReader:
             "SELECT seq, body, version FROM events WHERE run = ? ORDER BY seq", (str(run),)
         )
         return [self._event(seq, upgrade_text(body, version)) for seq, body, version in rows]
+
+    def of_types(self, types: Sequence[str]) -> Iterator[Event]:
+        """Every event of some types, in order, also those of no run. Raises as `events` does."""
+        marks = ", ".join("?" * len(types))
+        rows = self._connection.execute(
+            f"SELECT seq, body, version FROM events WHERE type IN ({marks}) ORDER BY seq",
+            tuple(types),
+        )
+        return (self._event(seq, upgrade_text(body, version)) for seq, body, version in rows)
 
     def _event(self, seq: int, text: str) -> Event:
         try:
