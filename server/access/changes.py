@@ -72,11 +72,19 @@ class PrincipalsEditor:
         return token
 
     def revoke(self, name: str, now: datetime) -> Role:
-        """End a principal and return its role. Raises `NotFoundError`."""
+        """End a principal, or the code that a robot was given, and return its role.
+
+        Raises `NotFoundError`.
+        """
         with edited(self.path) as edit:
-            old = _found(edit.principals, name)
-            edit.principals = self._changed(edit.principals, [old], [], now, "revoked", old)
-        return old.role
+            codes = [each for each in edit.principals.enrolments if each.robot == name]
+            old = edit.principals.named(name)
+            role = Role.ROBOT if old is None and codes else _found(edit.principals, name).role
+            kept = [each for each in edit.principals.principals if each is not old]
+            left = [each for each in edit.principals.enrolments if each not in codes]
+            changed = edit.principals.model_copy(update={"principals": kept, "enrolments": left})
+            edit.principals = self._noted(changed, now, "revoked", name, role)
+        return role
 
     def open_enrolment(self, robot: str, now: datetime, minutes: float) -> str:
         """Let a robot fetch its credential once, and return the code for that.

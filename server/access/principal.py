@@ -31,11 +31,15 @@ RESERVED = (ANYBODY.name, TOKEN_NAME)
 
 @dataclass(frozen=True, slots=True)
 class Caller:
-    """A principal on one connection; `session` is the cookie's, if it came by one."""
+    """A principal on one connection; `session` is the cookie's, if it came by one.
+
+    `until`: when that session expires, in seconds of 1970.
+    """
 
     principal: Principal
     address: str | None = None
     session: str | None = None
+    until: float | None = None
 
     @property
     def author(self) -> Author:

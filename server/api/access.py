@@ -4,6 +4,7 @@ import asyncio
 import ipaddress
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from urllib.parse import urlsplit
 
 from starlette.requests import HTTPConnection
@@ -45,6 +46,7 @@ class Access:
             else Principal(TOKEN_NAME, Role.ADMIN, fingerprint(token), named=False)
         )
         self._own_robots = own_robots or OwnRobots()
+        self._wall_time_s = wall_time_s
         self._failed = failed
         self._hosts = {"localhost", *(host.lower() for host in allowed_hosts)}
         self._origins = {origin.lower().rstrip("/") for origin in allowed_origins}
@@ -83,7 +85,7 @@ class Access:
         principal = None if session is None else self.of_session(session)
         if session is None or principal is None:
             return None
-        return Caller(principal, address, session.id)
+        return Caller(principal, address, session.id, session.expires)
 
     def session(self, connection: HTTPConnection) -> Session | None:
         """The session of a connection's cookie, if it is a good one."""
@@ -97,7 +99,9 @@ class Access:
             return None
         if caller.session is not None and not self.sessions.lasts(caller.session):
             return None
-        return Caller(principal, caller.address, caller.session)
+        if caller.until is not None and caller.until <= self._wall_time_s():
+            return None
+        return replace(caller, principal=principal)
 
     def refused(self, connection: HTTPConnection, *, shown: bool = False) -> None:
         """Count a connection that was refused, if it has shown a bearer (or else something)."""

@@ -16,7 +16,10 @@ from websockets.asyncio.client import ClientConnection, connect
 
 from server.access.deeds import deeds_in
 from server.access.roles import Role
+from server.access.sessions import SESSION_LIFETIME_S
+from server.composition import open_service
 from server.journal import events as ev
+from server.settings import Settings
 
 Served = tuple[ServiceUnderTest, People]
 RUN = {"tree": "eket", "world": "tabletop"}
@@ -255,6 +258,36 @@ async def test_helpers_hear_nothing_of_what_belongs_to_no_run(served: Served) ->
         assert (await message(socket))["type"] == "run_started"
 
 
+async def test_the_events_of_no_run_are_not_those_of_a_run(served: Served) -> None:
+    async with as_a(served, Role.OPERATOR) as client:
+        tree = {"name": "mine", "text": "then: []"}
+        assert (await client.post("/api/trees", json=tree)).status_code == 201
+        assert (await client.get(f"/api/runs/{ev.NO_RUN}/events")).status_code == 404
+
+
+async def test_nobody_need_ask_anything_for_somebody_revoked_to_be_let_go(tmp_path: Path) -> None:
+    people = People(tmp_path)
+    settings = Settings(port=0, data_dir=tmp_path, speech_voice="none")
+    async with open_service(settings) as service:
+        address = service.url.replace("http", "ws", 1) + "/ws/helper"
+        async with connect(address, additional_headers=people.headers(Role.HELPER)) as socket:
+            assert (await message(socket))["type"] == "snapshot"
+            people.revoke(Role.HELPER)
+            assert await close_code(socket) == 1008
+
+
+async def test_an_open_socket_ends_with_its_session() -> None:
+    clock = [1_000_000.0]
+    async with serving(token=TOKEN, wall_time_s=lambda: clock[0]) as service:
+        async with httpx.AsyncClient(base_url=service.url) as client:
+            headers = {"Cookie": f"mend_session={await sign_in(client, TOKEN)}"}
+        async with connect(f"{service.ws}?helper=anna", additional_headers=headers) as socket:
+            await message(socket)
+            clock[0] += SESSION_LIFETIME_S
+            service.access.let_go()
+            assert await close_code(socket) == 1008
+
+
 # --- Admins ---------------------------------------------------------------------------------------
 
 
@@ -286,9 +319,6 @@ async def test_an_admin_adds_rotates_and_revokes_over_rest(served: Served) -> No
 
 
 async def test_the_audit_of_a_journal_that_is_in_use_is_read_from_its_file(tmp_path: Path) -> None:
-    from server.composition import open_service
-    from server.settings import Settings
-
     People(tmp_path)
     settings = Settings(port=0, data_dir=tmp_path, speech_voice="none")
     async with open_service(settings) as service, asyncio.timeout(60):

@@ -92,6 +92,17 @@ def test_a_new_code_makes_the_one_before_worthless(editor: PrincipalsEditor) -> 
     assert editor.enrol("arm-1", second, NOW)
 
 
+@pytest.mark.parametrize("enrolled", [False, True])
+def test_whoever_revokes_a_robot_revokes_its_code(editor: PrincipalsEditor, enrolled: bool) -> None:
+    if enrolled:
+        first = editor.open_enrolment("arm-1", NOW, minutes=15)
+        editor.enrol("arm-1", first, NOW)
+    code = editor.open_enrolment("arm-1", NOW, minutes=15)
+    assert editor.revoke("arm-1", NOW) is Role.ROBOT
+    with pytest.raises(EnrolmentRefusedError):
+        editor.enrol("arm-1", code, NOW)
+
+
 def test_a_robot_cannot_have_the_name_of_a_person(editor: PrincipalsEditor) -> None:
     editor.add("anna", Role.HELPER, NOW)
     with pytest.raises(ConflictError, match="name of a helper"):
