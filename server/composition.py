@@ -111,6 +111,7 @@ async def _open(
             own_robots=own_robots,
             hang_s=settings.robot_hang_timeout_s,
         ),
+        own_robots.reserve,
     )
     mail = OperatorMail(
         Mailer(settings.mail) if settings.mail else None, lambda: datetime.now(UTC), url

@@ -1,6 +1,6 @@
 """As which robot a connection may say hello: names are bound to credentials."""
 
-from collections import Counter
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Protocol
 
@@ -39,24 +39,28 @@ class OneRobot:
 
 @dataclass
 class OwnRobots:
-    """The robots that this service runs itself; each process has a credential for its time."""
+    """The robots that this service runs itself; each process has a credential for its time.
 
+    A name that was once one of them is nobody else's, also while its process is started again.
+    """
+
+    _names: set[str] = field(default_factory=set)
     _tokens: dict[str, tuple[str, NewToken]] = field(default_factory=dict)
-    _running: Counter[str] = field(default_factory=Counter)
+
+    def reserve(self, robots: Iterable[str]) -> None:
+        """These are robots of this service, whose processes are still to come."""
+        self._names.update(robots)
 
     def issue(self, robot: str) -> str:
         """A credential for a process that is about to be started as this robot."""
         token = new_token()
         self._tokens[token.id] = robot, token
-        self._running[robot] += 1
+        self._names.add(robot)
         return token.text
 
     def withdraw(self, token: str) -> None:
         """The process is gone, and what it had is good no longer."""
-        robot, _ = self._tokens.pop(id_in(token) or "", ("", None))
-        self._running[robot] -= 1
-        if self._running[robot] <= 0:
-            del self._running[robot]
+        self._tokens.pop(id_in(token) or "", None)
 
     def of_token(self, token: str) -> str | None:
         """Which robot's process has this credential."""
@@ -64,4 +68,4 @@ class OwnRobots:
         return robot if kept is not None and fits(token, kept.sha256) else None
 
     def __contains__(self, robot: str) -> bool:
-        return robot in self._running
+        return robot in self._names

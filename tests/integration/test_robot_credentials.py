@@ -21,10 +21,13 @@ from robots.link.enrolment import robot_credential
 from robots.link.messages import Hello, LinkError, Welcome, service_message
 from server.access.roles import Role
 from server.api.access import Access
+from server.composition import open_service
 from server.journal import events as ev
 from server.robots.endpoint import ROBOT_PATH, add_robot_route
 from server.robots.passes import OwnRobots
 from server.robots.registry import RobotRegistry
+from server.runtime.requests import RunRequest
+from server.settings import Settings
 
 
 @dataclass
@@ -172,7 +175,26 @@ async def test_the_name_of_a_robot_that_the_service_runs_is_nobody_elses(token: 
         assert isinstance(await said_to(url, "pr2-1", credential), Welcome)
         answer = await said_to(url, "pr2-2", credential)
         assert isinstance(answer, LinkError)
+        # Also between the end of its process and the start of the next one.
         own.withdraw(credential)
         assert own.of_token(credential) is None
-        assert isinstance(await said_to(url, "pr2-1", token), Welcome)
+        assert isinstance(await said_to(url, "pr2-1", token), LinkError)
+        assert isinstance(await said_to(url, "pr2-1", own.issue("pr2-1")), Welcome)
         registry.close()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("token", [None, TOKEN], ids=str)
+async def test_a_stranger_is_not_the_simulated_robot_of_a_run(
+    tmp_path: Path, token: str | None
+) -> None:
+    settings = Settings(port=0, data_dir=tmp_path, speech_voice="none", token=token)
+    async with open_service(settings) as service:
+        request = RunRequest(tree="eket", world="tabletop", speed=0.01)
+        run = await service.runtime.start_run(request)
+        url = service.url.replace("http", "ws", 1) + ROBOT_PATH
+        answer = await said_to(url, run.robots[0], token)
+        assert isinstance(answer, LinkError)
+        assert "has a credential of its own" in answer.detail
+        assert not service.runtime.run(run.id).status.ended
+        await service.runtime.abort(run.id)
