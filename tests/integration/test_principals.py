@@ -17,6 +17,7 @@ from websockets.asyncio.client import ClientConnection, connect
 from server.access.deeds import deeds_in
 from server.access.roles import Role
 from server.access.sessions import SESSION_LIFETIME_S
+from server.client import MendClient
 from server.composition import open_service
 from server.journal import events as ev
 from server.settings import Settings
@@ -315,6 +316,27 @@ async def test_an_admin_adds_rotates_and_revokes_over_rest(served: Served) -> No
     changes = await of_type(service, ev.AccessChanged)
     assert [(each.what, each.principal, each.author.principal) for each in changes] == [
         (what, "nina", "ada") for what in ("added", "rotated", "revoked")
+    ]
+
+
+async def test_the_client_manages_access_and_reads_deeds(served: Served) -> None:
+    service, people = served
+    async with MendClient(service.url, token=people.tokens[Role.ADMIN]) as admin:
+        given = await admin.add_principal("nina & co", "viewer", expires_days=2)
+        assert await status(service, given.token) == 200
+        rotated = await admin.rotate_principal("nina & co")
+        assert await status(service, given.token) == 401
+        assert [each.name for each in await admin.principals()][-1] == "nina & co"
+        await admin.revoke_principal("nina & co")
+        assert await status(service, rotated.token) == 401
+        assert (await admin.open_enrolment("arm-7", minutes=1)).robot == "arm-7"
+        await service.deeds.written()
+        deeds = (await admin.deeds(who="ada")).deeds
+    assert [each.what for each in deeds] == [
+        "added 'nina & co' as a viewer",
+        "gave 'nina & co' a new token",
+        "revoked 'nina & co'",
+        "made a code for the robot 'arm-7'",
     ]
 
 

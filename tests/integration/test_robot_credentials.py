@@ -19,7 +19,7 @@ from websockets.exceptions import InvalidStatus
 from robots.link.channel import LinkRefusedError
 from robots.link.enrolment import robot_credential
 from robots.link.messages import Hello, LinkError, Welcome, service_message
-from server.access.roles import Role
+from server.access.roles import PEOPLE, Role
 from server.api.access import Access
 from server.composition import open_service
 from server.journal import events as ev
@@ -88,7 +88,7 @@ async def test_nobody_takes_the_name_of_an_enrolled_robot(robots: Robots) -> Non
     assert isinstance(await said_to(robots.url, "free", TOKEN), Welcome)
 
 
-@pytest.mark.parametrize("role", [Role.VIEWER, Role.ADMIN], ids=str)
+@pytest.mark.parametrize("role", PEOPLE, ids=str)
 async def test_the_token_of_a_person_is_none_of_a_robot(robots: Robots, role: Role) -> None:
     with pytest.raises(InvalidStatus) as refused:
         await said_to(robots.url, "arm-3", robots.people.tokens[role])
