@@ -168,6 +168,7 @@ def edited(path: Path) -> Iterator[Edit]:
     path.parent.mkdir(mode=OWNERS_FOLDER, parents=True, exist_ok=True)
     lock = path.with_name(path.name + ".lock")
     keep_to_owner(lock)
+    _give_to_owner_of_folder(lock)
     with lock.open("w") as held:
         fcntl.flock(held, fcntl.LOCK_EX)
         edit = Edit(read_principals(path))
@@ -187,7 +188,15 @@ def _replace(path: Path, principals: Principals) -> None:
             written.write(HEADING + text)
             written.flush()
             os.fsync(written.fileno())
+            _give_to_owner_of_folder(Path(written.name))
             Path(written.name).replace(path)
         except BaseException:
             Path(written.name).unlink(missing_ok=True)
             raise
+
+
+def _give_to_owner_of_folder(file: Path) -> None:
+    """What root writes is for the service, which runs as whoever has the folder."""
+    if os.geteuid() == 0:
+        folder = file.parent.stat()
+        os.chown(file, folder.st_uid, folder.st_gid)

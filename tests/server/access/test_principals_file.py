@@ -1,5 +1,6 @@
 """The file of principals: kept safely, checked with sentences, and without any token in it."""
 
+import os
 import stat
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
@@ -38,6 +39,17 @@ def test_only_a_hash_of_the_token_is_kept_and_only_the_owner_can_read_it(
     (kept,) = read_principals(path).principals
     assert (kept.name, kept.role, kept.expires) == ("anna", Role.HELPER, NOW + timedelta(days=30))
     assert not kept.valid(NOW + timedelta(days=31))
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root can write for somebody else")
+def test_what_root_writes_belongs_to_whoever_has_the_folder(
+    path: Path, editor: PrincipalsEditor
+) -> None:
+    path.parent.mkdir()
+    os.chown(path.parent, 12_345, 12_346)
+    editor.add("anna", Role.HELPER, NOW)
+    for file in path.parent.iterdir():
+        assert (file.stat().st_uid, file.stat().st_gid) == (12_345, 12_346)
 
 
 def test_a_name_is_given_once(editor: PrincipalsEditor) -> None:
