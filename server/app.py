@@ -10,6 +10,9 @@ from typing import Any
 import uvicorn
 from fastapi import FastAPI
 
+from server.access.changes import PrincipalsEditor
+from server.access.deed_log import DeedLog
+from server.access.known_principals import KnownPrincipals
 from server.api import (
     console,
     dialogues,
@@ -28,6 +31,7 @@ from server.api import (
 )
 from server.api import models as models_api
 from server.api import poses as poses_api
+from server.api import principals as principals_api
 from server.api import worlds as worlds_api
 from server.api.access import Access
 from server.api.gate import Gate
@@ -37,6 +41,7 @@ from server.documents import DocumentLibrary
 from server.log_secrets import hide_secrets
 from server.models import RobotModels
 from server.poses.feed import PoseSource
+from server.robots.passes import OwnRobots
 from server.runtime.service import RunService
 from server.settings import Settings
 from server.speech.abilities import NO_SPEECH, SpeechAbilities
@@ -47,6 +52,7 @@ MAX_SOCKET_MESSAGE_BYTES = 4 * 1024 * 1024
 
 ROUTES = (
     session,
+    principals_api,
     documents,
     worlds_api,
     runs,
@@ -84,21 +90,15 @@ def create_app(
     worlds: WorldList,
     models: RobotModels,
     poses: PoseSource,
+    access: Access,
+    deeds: DeedLog,
     speech_abilities: SpeechAbilities = NO_SPEECH,
     lifespan: Lifespan | None = None,
-    wall_time_s: Callable[[], float] = time.time,
 ) -> FastAPI:
     """Build the application around a runtime and a journal.
 
     `lifespan` is entered before the first request and left after the last.
     """
-    token = settings.token.get_secret_value() if settings.token else None
-    access = Access(
-        token,
-        allowed_hosts=[settings.host, *settings.allowed_hosts],
-        allowed_origins=settings.allowed_origins,
-        wall_time_s=wall_time_s,
-    )
     app = described_app(lifespan)
     app.state.parts = Parts(
         service,
@@ -111,10 +111,38 @@ def create_app(
         poses,
         settings,
         access,
+        deeds,
+        PrincipalsEditor(settings.principals_path, by="", keep_changes=False),
         speech_abilities,
     )
     app.add_middleware(Gate, access=access)
     return app
+
+
+def build_access(
+    settings: Settings,
+    deeds: DeedLog,
+    *,
+    session_key: bytes | None = None,
+    own_robots: OwnRobots | None = None,
+    wall_time_s: Callable[[], float] = time.time,
+) -> Access:
+    """Who may come in, as the settings and the file of principals say.
+
+    Without a `session_key` sessions end with the service. Raises `PrincipalsFileError`.
+    """
+    return Access(
+        settings.token.get_secret_value() if settings.token else None,
+        principals=KnownPrincipals(
+            settings.principals_path, wall_time_s, expected=settings.principals is not None
+        ),
+        session_key=session_key,
+        own_robots=own_robots,
+        failed=deeds.failed,
+        allowed_hosts=[settings.host, *settings.allowed_hosts],
+        allowed_origins=settings.allowed_origins,
+        wall_time_s=wall_time_s,
+    )
 
 
 def described_app(lifespan: Lifespan | None = None) -> FastAPI:

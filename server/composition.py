@@ -11,7 +11,10 @@ from functools import partial
 import uvicorn
 
 from dialogue.registry import load_scripts
-from server.app import create_app, serve_config
+from server.access.deed_log import DeedLog
+from server.access.sessions import kept_session_key
+from server.api.access import Access
+from server.app import build_access, create_app, serve_config
 from server.dialogues.escalation import EscalationPolicy
 from server.dialogues.mail import Mailer
 from server.fixed_documents import GivenFiles, fixed_documents
@@ -23,6 +26,7 @@ from server.poses.feed import PoseFeed
 from server.poses.record import PoseRecords
 from server.retention import prune_regularly
 from server.robots.endpoint import ROBOT_PATH, add_robot_route
+from server.robots.passes import OwnRobots
 from server.robots.process import launch
 from server.robots.registry import RobotRegistry
 from server.robots.times import LinkTimes
@@ -37,6 +41,8 @@ from server.speech.ear import choose_ears
 from server.speech.rendering import SpokenTexts, render_prompts
 from server.speech.voice import NoVoice, choose_voice
 from tasks.plugins import load_plugins
+
+LOOK_EVERY_S = 1.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,7 +79,15 @@ async def open_service(
 async def _open(
     settings: Settings, journal: SqliteJournal, recover: bool, given: GivenFiles
 ) -> AsyncIterator[Service]:
-    token = settings.token.get_secret_value() if settings.token else None
+    deeds = DeedLog(journal, lambda: datetime.now(UTC))
+    own_robots = OwnRobots()
+    key_path = settings.session_key_path if recover else None
+    access = build_access(
+        settings,
+        deeds,
+        session_key=None if key_path is None else kept_session_key(key_path),
+        own_robots=own_robots,
+    )
     registry = RobotRegistry(
         journal,
         time.monotonic,
@@ -95,9 +109,10 @@ async def _open(
             launch,
             registry=registry,
             url=f"ws{url.removeprefix('http')}{ROBOT_PATH}",
-            token=token,
+            own_robots=own_robots,
             hang_s=settings.robot_hang_timeout_s,
         ),
+        own_robots.reserve,
     )
     mail = OperatorMail(
         Mailer(settings.mail) if settings.mail else None, lambda: datetime.now(UTC), url
@@ -133,23 +148,29 @@ async def _open(
         worlds=worlds,
         models=models,
         poses=poses,
+        access=access,
+        deeds=deeds,
         speech_abilities=speech,
     )
-    add_robot_route(app, registry, token)
+    add_robot_route(app, registry, access)
     server = _Server(serve_config(app, settings))
     serving: asyncio.Task[None] | None = None
     pruning: asyncio.Task[None] | None = None
+    watching: asyncio.Task[None] | None = None
     rendering = asyncio.create_task(_render_prompts(speech, journal), name="rendering")
     try:
         if recover:
             # Before it listens: a run that is not read yet would be unknown to whoever asks.
             await runtime.recover()
+            await deeds.recover(access.sessions)
         pruning = asyncio.create_task(
             prune_regularly(
                 journal.prune, poses.forget, settings.keep.keep(), lambda: datetime.now(UTC)
             ),
             name="pruning",
         )
+        # A service for one run alone does not journal what was done to the principals before.
+        watching = asyncio.create_task(_watch_access(access, deeds, journal_changes=recover))
         serving = asyncio.create_task(server.serve(sockets=[config_socket]), name="server")
         await server.wait_until_started(serving)
         yield Service(runtime, journal, registry, library, url, settings)
@@ -160,6 +181,9 @@ async def _open(
             pruning.cancel()
             await asyncio.gather(pruning, return_exceptions=True)
         await runtime.close()
+        if watching is not None:
+            watching.cancel()
+            await asyncio.gather(watching, return_exceptions=True)
         await mail.close()
         poses.shut()
         await _stop_speech(speech, rendering)
@@ -167,7 +191,19 @@ async def _open(
             server.should_exit = True
             with suppress(asyncio.CancelledError):
                 await serving
+        await deeds.close()
         config_socket.close()
+
+
+async def _watch_access(access: Access, deeds: DeedLog, *, journal_changes: bool) -> None:
+    """Let go of those who may come in no longer, also where nobody asks for anything."""
+    while True:
+        access.look()
+        access.let_go()
+        deeds.tell_due()
+        if journal_changes:
+            deeds.take_changes(access.principals.changes)
+        await asyncio.sleep(LOOK_EVERY_S)
 
 
 class _Server(uvicorn.Server):

@@ -16,6 +16,7 @@ from pydantic_settings import (
 )
 
 from server.dialogues.mail import MailSettings
+from server.journal.sqlite import IN_MEMORY
 from server.limits import Limits
 from server.retention import KeepSettings
 from server.speech.voice import VoiceChoice
@@ -54,7 +55,9 @@ class Settings(BaseSettings):
     port: Annotated[int, Field(ge=0, le=65_535)] = 8080
     """The port to listen on; 0 takes a free one."""
     token: SecretStr | None = None
-    """What clients and robots have to show; make it long and random."""
+    """What an admin has to show, or a robot without a credential of its own; long and random."""
+    principals: Path | None = None
+    """The file of principals; `principals.yaml` in `data_dir` unless set."""
     allowed_hosts: list[HostName] = []
     """Names under which clients may reach the service, besides localhost and IP addresses."""
     allowed_origins: list[str] = []
@@ -102,13 +105,30 @@ class Settings(BaseSettings):
     def journal_path(self) -> Path:
         return self.journal or self.data_dir / "journal.db"
 
+    @property
+    def principals_path(self) -> Path:
+        return self.principals or self.data_dir / "principals.yaml"
+
+    @property
+    def session_key_path(self) -> Path | None:
+        """The key of the sessions, beside the journal; None for one in memory."""
+        in_memory = str(self.journal_path) == IN_MEMORY
+        return None if in_memory else self.journal_path.with_suffix(".key")
+
+    @property
+    def asks_for_tokens(self) -> bool:
+        """Whether a service with these settings lets nobody in without a token."""
+        named = self.token is not None or self.principals is not None
+        return named or self.principals_path.is_file()
+
     @model_validator(mode="after")
     def _require_a_token(self) -> Self:
         if self.token is not None and not self.token.get_secret_value().strip():
             raise ValueError("'token' must not be empty")
-        if self.token is None and not is_loopback(self.host):
+        if not self.asks_for_tokens and not is_loopback(self.host):
             raise ValueError(
-                f"listening on {self.host} needs a token: set MEND_TOKEN, or listen on 127.0.0.1"
+                f"listening on {self.host} needs a token: set MEND_TOKEN, add principals "
+                "('mend access add'), or listen on 127.0.0.1"
             )
         return self
 

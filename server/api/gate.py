@@ -1,4 +1,4 @@
-"""The gate before every HTTP request: Host, Origin, token and the size of the body."""
+"""The gate before every HTTP request: Host, Origin, token, role and the size of the body."""
 
 import asyncio
 
@@ -7,12 +7,13 @@ from starlette.exceptions import HTTPException
 from starlette.requests import HTTPConnection
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from server.access.permissions import needed_for_request
+from server.access.principal import Caller
 from server.api.access import Access
-from server.api.problems import Problem, problem, problem_response
+from server.api.problems import Problem, forbidden, problem, problem_response
 
 MAX_BODY_BYTES = 8 * 1024 * 1024
 PROTECTED = ("/api/", "/metrics")
-OPEN = ("/api/session",)
 SAFE_METHODS = ("GET", "HEAD", "OPTIONS")
 
 
@@ -44,12 +45,28 @@ class Gate:
             )
         if scope["method"] not in SAFE_METHODS and not self._access.origin_allowed(connection):
             return problem(403, "pages of this Origin may not do that: see 'allowed_origins'")
-        protected = path.startswith(PROTECTED) and path not in OPEN
-        if protected and not self._access.admits(connection):
-            return problem(401, "show the token: 'Authorization: Bearer ...', or sign in")
+        caller = self._access.caller(connection)
+        scope.setdefault("state", {})["caller"] = caller
+        if path.startswith(PROTECTED):
+            refusal = self._stranger(scope, connection, caller)
+            if refusal is not None:
+                return refusal
         if _declared_length(connection) > MAX_BODY_BYTES:
             return problem(413, _too_large())
         return None
+
+    def _stranger(
+        self, scope: Scope, connection: HTTPConnection, caller: Caller | None
+    ) -> Problem | None:
+        """Why who it is may not do that."""
+        needed = needed_for_request(scope["method"], scope["path"])
+        if needed is None:
+            return None
+        if caller is None:
+            self._access.refused(connection)
+            return problem(401, "show the token: 'Authorization: Bearer ...', or sign in")
+        role = caller.principal.role
+        return None if role.may(needed) else forbidden(needed, role)
 
 
 def _guarded(send: Send, *, private: bool) -> Send:

@@ -19,6 +19,7 @@ from server.poses.layout import Layout
 
 router = APIRouter()
 
+LIVE_PATH = "/ws/live"
 MAX_MESSAGE_CHARS = 4096
 
 
@@ -28,7 +29,7 @@ class LiveQuery(HelperQuery):
     run: UUID
 
 
-@router.websocket("/ws/live")
+@router.websocket(LIVE_PATH)
 async def live_socket(websocket: WebSocket) -> None:
     """Show one helper where everything is, until the run ends or they have seen enough."""
     await LiveSocket(websocket).run()
@@ -38,9 +39,9 @@ class LiveSocket(HelperConnection[LiveQuery]):
     """One watcher's connection."""
 
     def __init__(self, websocket: WebSocket) -> None:
-        super().__init__(websocket, LiveQuery, MAX_MESSAGE_CHARS)
+        super().__init__(LIVE_PATH, websocket, LiveQuery, MAX_MESSAGE_CHARS)
 
-    async def _serve(self, query: LiveQuery) -> None:
+    async def _serve(self, query: LiveQuery, helper: str) -> None:  # noqa: ARG002
         """Send what there is to see, until one of the two ends."""
         try:
             await self._parts.runs.run(query.run)

@@ -8,6 +8,9 @@ from fastapi import Depends, Path, Query
 from pydantic import Field
 from starlette.requests import HTTPConnection
 
+from server.access.changes import PrincipalsEditor
+from server.access.deed_log import DeedLog
+from server.access.principal import Caller
 from server.api.access import Access
 from server.documents import DocumentLibrary
 from server.journal.journal import Journal
@@ -54,6 +57,8 @@ class Parts:
     poses: PoseSource
     settings: Settings
     access: Access
+    deeds: DeedLog
+    editor: PrincipalsEditor
     speech: SpeechAbilities = NO_SPEECH
 
 
@@ -62,6 +67,20 @@ def parts_of(connection: HTTPConnection) -> Parts:
     return parts
 
 
+def caller_of(connection: HTTPConnection) -> Caller | None:
+    """Who the gate has let in; None at a door that is open to strangers."""
+    caller: Caller | None = connection.state.caller
+    return caller
+
+
+def known_caller(connection: HTTPConnection) -> Caller:
+    """Who the gate has let in, at a door that lets in nobody else."""
+    caller = caller_of(connection)
+    assert caller is not None, "the gate lets no stranger in here"
+    return caller
+
+
+WithCaller = Annotated[Caller, Depends(known_caller)]
 WithParts = Annotated[Parts, Depends(parts_of)]
 
 RunId = Annotated[UUID, Path(description="The run's id.")]

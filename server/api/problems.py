@@ -13,6 +13,9 @@ from pydantic import BaseModel, ConfigDict
 from starlette.exceptions import HTTPException
 from starlette.responses import Response
 
+from server.access.changes import EnrolmentRefusedError
+from server.access.principals_file import PrincipalsFileError
+from server.access.roles import Role, with_article
 from server.errors import (
     ConflictError,
     InvalidError,
@@ -30,11 +33,13 @@ log = logging.getLogger(__name__)
 MEDIA_TYPE = "application/problem+json"
 
 STATUSES: tuple[tuple[type[Exception], int], ...] = (
+    (EnrolmentRefusedError, 403),
     (NotFoundError, 404),
     (ConflictError, 409),
     (InvalidError, 422),
     (UnreadableError, 500),
     (JournalReadError, 500),
+    (PrincipalsFileError, 503),
     (JournalWriteError, 503),
     (JournalClosedError, 503),
 )
@@ -65,6 +70,11 @@ class ProblemError(Exception):
 
 def problem(status: int, detail: str, **more: Any) -> Problem:
     return Problem(title=HTTPStatus(status).phrase, status=status, detail=detail, **more)
+
+
+def forbidden(needed: Role, role: Role) -> Problem:
+    """What somebody reads who may not do something."""
+    return problem(403, f"this needs the role '{needed}'; you are {with_article(role)}")
 
 
 def problem_of(error: Exception) -> Problem | None:
@@ -104,7 +114,13 @@ def answer_errors_with_problems(app: FastAPI) -> None:
     app.add_exception_handler(HTTPException, _http_error)
     app.add_exception_handler(RequestValidationError, _validation_error)
     app.add_exception_handler(ProblemError, _problem_error)
-    for kind in (ServiceError, JournalReadError, JournalWriteError, JournalClosedError):
+    for kind in (
+        ServiceError,
+        JournalReadError,
+        JournalWriteError,
+        JournalClosedError,
+        PrincipalsFileError,
+    ):
         app.add_exception_handler(kind, _service_error)
     app.add_exception_handler(Exception, _defect)
 

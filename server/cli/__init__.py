@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from server.cli.access import access_app
 from server.cli.check import check
 from server.cli.failures import CommandLineError
 from server.cli.journal import journal_app
@@ -71,6 +72,7 @@ COMMANDS: dict[str, tuple[Callable[..., None], str]] = {
 
 for name, (command, summary) in COMMANDS.items():
     app.command(name, short_help=summary)(command)
+app.add_typer(access_app)
 app.add_typer(maps_app)
 app.add_typer(journal_app)
 app.add_typer(scene_app)

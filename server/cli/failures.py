@@ -8,6 +8,7 @@ from robots.localization.logs.log import LogError
 from robots.localization.pictures.failure import PictureError
 from robots.localization.scan import InvalidScanError
 from robots.vision.color_model import ColorModelError
+from server.access.principals_file import PrincipalsFileError
 from server.errors import InvalidError, ServiceError
 from server.journal.backup import BackupError
 from server.journal.file_lock import JournalLockedError
@@ -39,6 +40,7 @@ KNOWN_ERRORS = (
     NotInLibraryError,
     PictureError,
     PluginError,
+    PrincipalsFileError,
     ServiceError,
     VectorMapError,
     WorldUnavailableError,

@@ -10,6 +10,8 @@ import sqlite3
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
+from server.journal.events import NO_RUN
+
 DIGEST_BYTES = 16
 FIRST_LINK = bytes(DIGEST_BYTES)
 DAMAGED = b""
@@ -172,7 +174,7 @@ def breaks(connection: sqlite3.Connection, last_batches: int | None = None) -> I
             )  # fmt: skip
         rows = rows_of(connection, batch.first, batch.last)
         if digest_of(rows) != batch.expected:
-            runs = frozenset(str(row[1]) for row in rows)
+            runs = _runs_of(rows)
             yield Break(batch.first, batch.last, _changed(batch), runs)
         before = batch
     yield from _after_the_end(connection, 0 if before is None else before.last)
@@ -201,13 +203,17 @@ def _breaks_between(connection: sqlite3.Connection, last: int, first: int) -> It
         yield Break(
             last + 1, first - 1,
             f"the events {last + 1} to {first - 1} belong to no batch: one was removed",
-            frozenset(str(row[1]) for row in rows),
+            _runs_of(rows),
         )  # fmt: skip
 
 
 def _after_the_end(connection: sqlite3.Connection, last: int) -> Iterator[Break]:
     rows = connection.execute(f"{SELECT_ROWS} WHERE seq > ? ORDER BY seq", (last,)).fetchall()
     if rows:
-        runs = frozenset(str(row[1]) for row in rows)
+        runs = _runs_of(rows)
         sentence = f"the events from {rows[0][0]} on were never committed by Mend"
         yield Break(rows[0][0], rows[-1][0], sentence, runs)
+
+
+def _runs_of(rows: Iterable[Row]) -> frozenset[str]:
+    return frozenset(str(row[1]) for row in rows) - {str(NO_RUN)}

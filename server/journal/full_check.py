@@ -148,7 +148,8 @@ class _Check:
         kinds = ", ".join(f"'{each}'" for each in ENDINGS)
         rows = self._connection.execute(
             "SELECT run, min(seq) FILTER (WHERE type = 'run_started'),"
-            f" max(seq) FILTER (WHERE type IN ({kinds})) FROM events GROUP BY run"
+            f" max(seq) FILTER (WHERE type IN ({kinds})) FROM events WHERE run != ? GROUP BY run",
+            (str(ev.NO_RUN),),
         )
         for run, begun, ended in rows.fetchall():
             row = self._connection.execute(
@@ -158,7 +159,8 @@ class _Check:
 
     def _runs(self, fold: FoldRun) -> None:
         runs = self._connection.execute(
-            "SELECT run, min(seq) AS begun FROM events GROUP BY run ORDER BY begun"
+            "SELECT run, min(seq) AS begun FROM events WHERE run != ? GROUP BY run ORDER BY begun",
+            (str(ev.NO_RUN),),
         ).fetchall()
         going = self._being_pruned()
         for run, _ in runs:

@@ -1,7 +1,7 @@
 """Reading a journal that somebody else may be writing: its runs, events and pictures."""
 
 import sqlite3
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
@@ -63,6 +63,19 @@ class JournalReader:
         )
         where = f" of '{self._path}'"
         return [read_event(seq, body, version, where) for seq, body, version in rows]
+
+    def of_types(self, types: Sequence[str]) -> Iterator[Event]:
+        """Every event of some types, in order, also those of no run.
+
+        Raises `JournalReadError`.
+        """
+        marks = ", ".join("?" * len(types))
+        rows = self._select(
+            f"SELECT seq, body, version FROM events WHERE type IN ({marks}) ORDER BY seq",
+            tuple(types),
+        )
+        where = f" of '{self._path}'"
+        return (read_event(seq, body, version, where) for seq, body, version in rows)
 
     def pictures(self, pictures: Iterable[UUID]) -> dict[UUID, bytes]:
         """Those of the pictures (JPEG) that the journal has."""

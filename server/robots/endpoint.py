@@ -1,18 +1,31 @@
 """The WebSocket route on which robots connect: `/ws/robot`."""
 
-import secrets
+import asyncio
 from collections.abc import Collection
+from contextlib import AbstractContextManager, suppress
+from typing import Protocol
 
 from fastapi import FastAPI
+from starlette.requests import HTTPConnection
 from starlette.responses import PlainTextResponse
 from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketState
 
 from robots.link.channel import ChannelClosedError
+from robots.link.messages import LinkError
+from server.robots.passes import Pass
 from server.robots.registry import RobotRegistry
 
 ROBOT_PATH = "/ws/robot"
 
 MAX_MESSAGE_BYTES = 1 << 20
+
+REVOKED = "this credential is good no longer: enrol the robot again"
+NO_BROWSERS = PlainTextResponse("robots connect without an Origin header", status_code=403)
+NO_CREDENTIAL = PlainTextResponse(
+    "a robot has to present its credential, or the service's token: 'Authorization: Bearer ...'",
+    status_code=401,
+    headers={"WWW-Authenticate": "Bearer"},
+)
 
 CLOSED_NORMALLY = 1000
 MESSAGE_TOO_BIG = 1009
@@ -58,46 +71,60 @@ class StarletteChannel:
                 raise ChannelClosedError(str(error)) from error
 
 
+class RobotAdmission(Protocol):
+    """Who may connect as a robot."""
+
+    def robot_pass(self, connection: HTTPConnection) -> Pass | None:
+        """What a connection has shown; None if nothing that a robot may come in with."""
+        ...
+
+    def watched_robot(self, connection: HTTPConnection) -> AbstractContextManager[asyncio.Event]:
+        """An event that is set once the connection may come in no longer."""
+        ...
+
+    def refused(self, connection: HTTPConnection) -> None:
+        """Told of a connection that was refused for what it has shown."""
+        ...
+
+
 def add_robot_route(
     app: FastAPI,
     registry: RobotRegistry,
-    token: str | None,
+    admission: RobotAdmission,
     *,
     allowed_origins: Collection[str] = (),
 ) -> None:
     """Serve `/ws/robot`.
 
-    With a `token`, a robot has to present it as a bearer token (else HTTP status 401). A request
-    with an `Origin` comes from a browser and is refused (403) unless that origin is allowed.
+    A robot has to present its credential as a bearer token, or the service's own token where there
+    is one (else HTTP status 401). A request with an `Origin` comes from a browser and is refused
+    (403) unless that origin is allowed.
     """
 
     async def connect(websocket: WebSocket) -> None:
-        refusal = _refusal(websocket, token, allowed_origins)
-        if refusal is not None:
-            await websocket.send_denial_response(refusal)
+        origin = websocket.headers.get("origin")
+        if origin is not None and origin not in allowed_origins:
+            await websocket.send_denial_response(NO_BROWSERS)
+            return
+        shown = admission.robot_pass(websocket)
+        if shown is None:
+            admission.refused(websocket)
+            await websocket.send_denial_response(NO_CREDENTIAL)
             return
         await websocket.accept()
-        await registry.serve(StarletteChannel(websocket))
+        channel = StarletteChannel(websocket)
+        with admission.watched_robot(websocket) as gone:
+            revoking = asyncio.create_task(_end_when(gone, channel))
+            try:
+                await registry.serve(channel, shown)
+            finally:
+                revoking.cancel()
 
     app.add_api_websocket_route(ROBOT_PATH, connect)
 
 
-def _refusal(
-    websocket: WebSocket, token: str | None, allowed_origins: Collection[str]
-) -> PlainTextResponse | None:
-    origin = websocket.headers.get("origin")
-    if origin is not None and origin not in allowed_origins:
-        return PlainTextResponse("robots connect without an Origin header", status_code=403)
-    if token is not None and not _presents(websocket, token):
-        return PlainTextResponse(
-            "a robot has to present the service's token: 'Authorization: Bearer <token>'",
-            status_code=401,
-            headers={"WWW-Authenticate": "Bearer"},
-        )
-    return None
-
-
-def _presents(websocket: WebSocket, token: str) -> bool:
-    scheme, _, presented = websocket.headers.get("authorization", "").partition(" ")
-    right = secrets.compare_digest(presented.strip().encode(), token.encode())
-    return right and scheme.lower() == "bearer"
+async def _end_when(gone: asyncio.Event, channel: StarletteChannel) -> None:
+    await gone.wait()
+    with suppress(ChannelClosedError):
+        await channel.send(LinkError(detail=REVOKED).model_dump_json())
+        await channel.close()

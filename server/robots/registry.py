@@ -14,6 +14,7 @@ from server.errors import ConflictError
 from server.journal.journal import Journal, JournalClosedError
 from server.limits import Limits
 from server.robots.known_robot import KnownRobot
+from server.robots.passes import Anyone, Pass
 from server.robots.session import NoSenseError, RobotSession, read_message, sentence
 from server.robots.sink import RobotSink
 from server.robots.times import LinkTimes
@@ -129,17 +130,25 @@ class RobotRegistry:
 
     # --- Connections --------------------------------------------------------------------------
 
-    async def serve(self, channel: Channel) -> None:
-        """Serve one connection of a robot until it ends."""
+    async def serve(self, channel: Channel, shown: Pass | None = None) -> None:
+        """Serve one connection of a robot until it ends.
+
+        `shown` says as which robot it may say hello; None for a channel within this process.
+        """
         try:
             hello = await self._greeted(channel)
             if hello is not None and not self._closed:
-                await self._serve_robot(channel, hello)
+                await self._serve_robot(channel, hello, shown or Anyone())
         finally:
             with suppress(ChannelClosedError):
                 await channel.close()
 
-    async def _serve_robot(self, channel: Channel, hello: Hello) -> None:
+    async def _serve_robot(self, channel: Channel, hello: Hello, shown: Pass) -> None:
+        # First: who may not be this robot is to leave no trace of it either.
+        refusal = shown.why_not(hello.robot)
+        if refusal is not None:
+            await _complain(channel, refusal)
+            return
         robot = self._known(hello.robot)
         refusal = robot.why_refused(hello)
         if refusal is not None:

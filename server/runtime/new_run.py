@@ -34,7 +34,7 @@ class NewRuns:
         self._utc_now = utc_now
         self._limits = limits
 
-    async def make(self, request: RunRequest) -> ev.RunStarted:
+    async def make(self, request: RunRequest, author: ev.Author | None = None) -> ev.RunStarted:
         """Raises `NotFoundError` or `InvalidError`."""
         _refuse_too_much(request, self._limits)
         scenario = None
@@ -75,6 +75,7 @@ class NewRuns:
             scenario=request.scenario,
             script=None if scenario is None else scenario.model_dump(mode="json"),
             options=request.model_dump(mode="json"),
+            author=author,
         )
 
 

@@ -168,9 +168,9 @@ class Runtime:
             await asyncio.wait([self._tasks[run]])
         return await self.run(run)
 
-    async def start_run(self, request: RunRequest) -> RunView:
+    async def start_run(self, request: RunRequest, author: ev.Author | None = None) -> RunView:
         """Begin a run. Raises `NotFoundError`, `InvalidError` or `ConflictError`."""
-        started = await self._new_runs.make(request)
+        started = await self._new_runs.make(request, author)
         if self._closing:
             raise ConflictError("the service is shutting down")
         if request.world == LIVE:
@@ -355,35 +355,37 @@ class Runtime:
             raise ConflictError(f"nobody works on this run just now, though it is {state.status}")
         return self._runs[state.id]
 
-    async def pause(self, run: UUID) -> RunView:
+    async def pause(self, run: UUID, author: ev.Author | None = None) -> RunView:
         """Stop a run where it is. Raises `ConflictError` unless it is running."""
         running = await self._running(run)
-        await running.request(running.pause)
+        await running.request(partial(running.pause, author))
         return await self.run(run)
 
-    async def resume(self, run: UUID) -> RunView:
+    async def resume(self, run: UUID, author: ev.Author | None = None) -> RunView:
         """Let a paused run go on. Raises `ConflictError` unless it is paused."""
         running = await self._running(run)
-        await running.request(running.resume)
+        await running.request(partial(running.resume, author))
         return await self.run(run)
 
-    async def abort(self, run: UUID) -> RunView:
+    async def abort(self, run: UUID, author: ev.Author | None = None) -> RunView:
         """End a run. Raises `ConflictError` if it has ended.
 
         While the journal cannot be written its robots stop at once, and it has ended only later.
         """
         running = await self._running(run)
-        await running.abort_at_once()
+        await running.abort_at_once(author)
         return await self.run(run)
 
-    async def intervene(self, run: UUID, intervention: Intervention) -> None:
+    async def intervene(
+        self, run: UUID, intervention: Intervention, author: ev.Author | None = None
+    ) -> None:
         """Have a person do something in a simulated world. Raises `ConflictError`."""
         running = await self._running(run)
         state = running.context.state
         if state.started.world == LIVE:
             raise ConflictError("a run in the world 'live' has no simulated person")
         _check_intervention(state.scene, intervention)
-        await running.request(lambda: running.intervene(intervention))
+        await running.request(lambda: running.intervene(intervention, author))
 
     async def picture(self, run: UUID, camera: str) -> bytes:
         """A camera's picture now, as JPEG. Raises `NotFoundError` or `ConflictError`."""
@@ -432,7 +434,12 @@ class Runtime:
         return dialogue_view((await self._dialogue(dialogue))[1])
 
     async def answer(
-        self, dialogue: UUID, prompt: UUID, answer: Literal["yes", "no"], helper: str
+        self,
+        dialogue: UUID,
+        prompt: UUID,
+        answer: Literal["yes", "no"],
+        helper: str,
+        author: ev.Author | None = None,
     ) -> ev.Answered:
         """Answer a prompt: the first answer wins.
 
@@ -443,7 +450,7 @@ class Runtime:
             run = self._running_of(state)
             side = run.sides[found.opened.robot]
             answered = await run.request(
-                lambda: run.dialogues.answer(found, prompt, answer, helper, side)
+                lambda: run.dialogues.answer(found, prompt, answer, helper, side, author)
             )
         except ConflictError:
             # Who was first is told also where that answer has ended the run.
@@ -452,28 +459,41 @@ class Runtime:
             raise
         return cast(ev.Answered, answered)
 
-    async def extend(self, dialogue: UUID, prompt: UUID, helper: str) -> ev.DeadlineExtended:
+    async def extend(
+        self, dialogue: UUID, prompt: UUID, helper: str, author: ev.Author | None = None
+    ) -> ev.DeadlineExtended:
         """Give the open question more time. Raises `NotFoundError` or `ConflictError`."""
         state, found = await self._dialogue(dialogue)
         run = self._running_of(state)
-        extended = await run.request(lambda: run.dialogues.extend(found, prompt, helper))
+        extended = await run.request(lambda: run.dialogues.extend(found, prompt, helper, author))
         return cast(ev.DeadlineExtended, extended)
 
-    async def claim(self, dialogue: UUID, helper: str, *, take_over: bool = False) -> DialogueView:
+    async def claim(
+        self,
+        dialogue: UUID,
+        helper: str,
+        *,
+        take_over: bool = False,
+        author: ev.Author | None = None,
+    ) -> DialogueView:
         """Show the others that a helper is on it.
 
         Raises `ConflictError` while another is, unless it is taken over from them.
         """
         state, found = await self._dialogue(dialogue)
         run = self._running_of(state)
-        await run.request(lambda: run.claims.claim(found, helper, take_over=take_over))
+        await run.request(
+            lambda: run.claims.claim(found, helper, take_over=take_over, author=author)
+        )
         return dialogue_view(found)
 
-    async def release(self, dialogue: UUID, helper: str) -> DialogueView:
+    async def release(
+        self, dialogue: UUID, helper: str, author: ev.Author | None = None
+    ) -> DialogueView:
         """Give up a claim. Raises `ConflictError` without one."""
         state, found = await self._dialogue(dialogue)
         run = self._running_of(state)
-        await run.request(lambda: run.claims.release(found, helper))
+        await run.request(lambda: run.claims.release(found, helper, author))
         return dialogue_view(found)
 
     # --- Robots -------------------------------------------------------------------------------

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Literal, Protocol
 from uuid import UUID
 
-from server.journal.events import Answered, DeadlineExtended
+from server.journal.events import Answered, Author, DeadlineExtended
 from server.journal.run_index import RunPage
 from server.runtime.requests import RunRequest
 from server.runtime.views import (
@@ -19,9 +19,12 @@ from tasks.intervention import Intervention
 
 
 class RunService(Protocol):
-    """Runs, dialogues and robots. Every method raises the errors of `server.errors`."""
+    """Runs, dialogues and robots. Every method raises the errors of `server.errors`.
 
-    async def start_run(self, request: RunRequest) -> RunView:
+    `author` is who asks for it; None for what this process does by itself.
+    """
+
+    async def start_run(self, request: RunRequest, author: Author | None = None) -> RunView:
         """Begin a run. Raises `NotFoundError` (tree, scenario, robot), `InvalidError`."""
         ...
 
@@ -37,13 +40,15 @@ class RunService(Protocol):
         """One run. Raises `NotFoundError` or `UnreadableError`."""
         ...
 
-    async def pause(self, run: UUID) -> RunView: ...
+    async def pause(self, run: UUID, author: Author | None = None) -> RunView: ...
 
-    async def resume(self, run: UUID) -> RunView: ...
+    async def resume(self, run: UUID, author: Author | None = None) -> RunView: ...
 
-    async def abort(self, run: UUID) -> RunView: ...
+    async def abort(self, run: UUID, author: Author | None = None) -> RunView: ...
 
-    async def intervene(self, run: UUID, intervention: Intervention) -> None:
+    async def intervene(
+        self, run: UUID, intervention: Intervention, author: Author | None = None
+    ) -> None:
         """Have a person do something in a simulated world. Raises `ConflictError` if it cannot."""
         ...
 
@@ -62,20 +67,34 @@ class RunService(Protocol):
         ...
 
     async def answer(
-        self, dialogue: UUID, prompt: UUID, answer: Literal["yes", "no"], helper: str
+        self,
+        dialogue: UUID,
+        prompt: UUID,
+        answer: Literal["yes", "no"],
+        helper: str,
+        author: Author | None = None,
     ) -> Answered:
         """Answer a prompt: the first answer wins. Raises `LostRaceError`, `ConflictError`."""
         ...
 
-    async def extend(self, dialogue: UUID, prompt: UUID, helper: str) -> DeadlineExtended:
+    async def extend(
+        self, dialogue: UUID, prompt: UUID, helper: str, author: Author | None = None
+    ) -> DeadlineExtended:
         """Move the open question's deadline by its original length. Raises `ConflictError`."""
         ...
 
     async def claim(
-        self, dialogue: UUID, helper: str, *, take_over: bool = False
+        self,
+        dialogue: UUID,
+        helper: str,
+        *,
+        take_over: bool = False,
+        author: Author | None = None,
     ) -> DialogueView: ...
 
-    async def release(self, dialogue: UUID, helper: str) -> DialogueView: ...
+    async def release(
+        self, dialogue: UUID, helper: str, author: Author | None = None
+    ) -> DialogueView: ...
 
     def robots(self) -> list[RobotView]: ...
 

@@ -63,7 +63,7 @@ class FakeRuns:
         self._dialogues: dict[UUID, DialogueView] = {}
         self._answers: dict[UUID, str] = {}
 
-    async def start_run(self, request: RunRequest) -> RunView:
+    async def start_run(self, request: RunRequest, author: ev.Author | None = None) -> RunView:
         if request.tree not in TREES:
             raise NotFoundError(f"there is no tree '{request.tree}'")
         if request.world not in ("workcell", "tabletop"):
@@ -100,6 +100,7 @@ class FakeRuns:
                 speed=request.speed,
                 scenario=request.scenario,
                 options=request.model_dump(mode="json"),
+                author=author,
             )
         )
         return self.run_now(run)
@@ -135,17 +136,21 @@ class FakeRuns:
             }
         )
 
-    async def pause(self, run: UUID) -> RunView:
+    async def pause(self, run: UUID, author: ev.Author | None = None) -> RunView:
         self._expect(run, RunStatus.RUNNING)
-        return await self._become(run, RunStatus.PAUSED, ev.RunPaused(**_stamp(run)))
+        return await self._become(run, RunStatus.PAUSED, ev.RunPaused(**_stamp(run), author=author))
 
-    async def resume(self, run: UUID) -> RunView:
+    async def resume(self, run: UUID, author: ev.Author | None = None) -> RunView:
         self._expect(run, RunStatus.PAUSED)
-        return await self._become(run, RunStatus.RUNNING, ev.RunResumed(**_stamp(run)))
+        return await self._become(
+            run, RunStatus.RUNNING, ev.RunResumed(**_stamp(run), author=author)
+        )
 
-    async def abort(self, run: UUID) -> RunView:
+    async def abort(self, run: UUID, author: ev.Author | None = None) -> RunView:
         self._expect(run, RunStatus.RUNNING, RunStatus.PAUSED)
-        return await self._become(run, RunStatus.ABORTED, ev.RunAborted(**_stamp(run)))
+        return await self._become(
+            run, RunStatus.ABORTED, ev.RunAborted(**_stamp(run), author=author)
+        )
 
     def _expect(self, run: UUID, *allowed: RunStatus) -> None:
         status = self.run_now(run).status
@@ -158,16 +163,27 @@ class FakeRuns:
         self._runs[run] = self._runs[run].model_copy(update={"status": status, "result": result})
         return self.run_now(run)
 
-    async def intervene(self, run: UUID, intervention: Intervention) -> None:
+    async def intervene(
+        self, run: UUID, intervention: Intervention, author: ev.Author | None = None
+    ) -> None:
         self._expect(run, RunStatus.RUNNING, RunStatus.PAUSED)
         await self.commit(
+            ev.InterventionAccepted(
+                **_stamp(run),
+                act=intervention.act,
+                object=intervention.object,
+                intervention=intervention,
+                by="api",
+                command=str(uuid4()),
+                author=author,
+            ),
             ev.InterventionDone(
                 **_stamp(run),
                 act=intervention.act,
                 object=intervention.object,
                 intervention=intervention,
                 by="api",
-            )
+            ),
         )
 
     async def picture(self, run: UUID, camera: str) -> bytes:
@@ -249,7 +265,12 @@ class FakeRuns:
         return self._dialogues[dialogue]
 
     async def answer(
-        self, dialogue: UUID, prompt: UUID, answer: Literal["yes", "no"], helper: str
+        self,
+        dialogue: UUID,
+        prompt: UUID,
+        answer: Literal["yes", "no"],
+        helper: str,
+        author: ev.Author | None = None,
     ) -> ev.Answered:
         view = self.dialogue_now(dialogue)
         if view.prompt is None or view.prompt.prompt != prompt:
@@ -260,14 +281,21 @@ class FakeRuns:
         self._change(dialogue, status="closed", reason="resolved", answered_by=helper)
         answered, _ = await self.commit(
             ev.Answered(
-                **_of_dialogue(view), prompt=prompt, version=1, answer=answer, helper=helper
+                **_of_dialogue(view),
+                prompt=prompt,
+                version=1,
+                answer=answer,
+                helper=helper,
+                author=author,
             ),
             ev.DialogueClosed(**_of_dialogue(view), reason=CloseReason.RESOLVED),
         )
         assert isinstance(answered, ev.Answered)
         return answered
 
-    async def extend(self, dialogue: UUID, prompt: UUID, helper: str) -> ev.DeadlineExtended:
+    async def extend(
+        self, dialogue: UUID, prompt: UUID, helper: str, author: ev.Author | None = None
+    ) -> ev.DeadlineExtended:
         view = self.dialogue_now(dialogue)
         if view.prompt is None or view.prompt.prompt != prompt:
             raise NotFoundError(f"there is no prompt {prompt}")
@@ -284,26 +312,38 @@ class FakeRuns:
                 deadline=deadline,
                 extensions_left=left,
                 helper=helper,
+                author=author,
             )
         )
         assert isinstance(extended, ev.DeadlineExtended)
         return extended
 
-    async def claim(self, dialogue: UUID, helper: str, *, take_over: bool = False) -> DialogueView:
+    async def claim(
+        self,
+        dialogue: UUID,
+        helper: str,
+        *,
+        take_over: bool = False,
+        author: ev.Author | None = None,
+    ) -> DialogueView:
         view = self.dialogue_now(dialogue)
         if view.status == "closed":
             raise ConflictError("the dialogue is closed")
         if view.claimed_by not in (None, helper) and not take_over:
             raise ConflictError(f"{view.claimed_by} is on it")
         until = datetime.now(UTC) + timedelta(seconds=30)
-        await self.commit(ev.Claimed(**_of_dialogue(view), helper=helper, lease_until=until))
+        await self.commit(
+            ev.Claimed(**_of_dialogue(view), helper=helper, lease_until=until, author=author)
+        )
         return self._change(dialogue, claimed_by=helper, claimed_until=until)
 
-    async def release(self, dialogue: UUID, helper: str) -> DialogueView:
+    async def release(
+        self, dialogue: UUID, helper: str, author: ev.Author | None = None
+    ) -> DialogueView:
         view = self.dialogue_now(dialogue)
         if view.claimed_by != helper:
             raise ConflictError(f"{helper} has no claim on it")
-        await self.commit(ev.Released(**_of_dialogue(view), helper=helper))
+        await self.commit(ev.Released(**_of_dialogue(view), helper=helper, author=author))
         return self._change(dialogue, claimed_by=None, claimed_until=None)
 
     def _change(self, dialogue: UUID, **fields: Any) -> DialogueView:

@@ -1,8 +1,14 @@
 """The whole service around a fake runtime, in this process or behind real sockets."""
 
 import contextlib
+import shutil
+import tempfile
+import time
+import weakref
 from collections.abc import AsyncIterator, Callable, Sequence
 from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
 from typing import Any
 
 import httpx
@@ -10,7 +16,9 @@ import uvicorn
 from fake_runs import TREES, FakeRuns, FakeTreeChecker, FakeWorlds
 from fastapi import FastAPI
 
-from server.app import create_app, serve_config
+from server.access.deed_log import DeedLog
+from server.api.access import Access
+from server.app import build_access, create_app, serve_config
 from server.documents import DocumentKind
 from server.fixed_documents import GivenFiles, NamedTexts, fixed_documents
 from server.journal.sqlite import SqliteJournal
@@ -35,6 +43,8 @@ class ServiceUnderTest:
     journal: SqliteJournal
     settings: Settings
     poses: PoseFeed
+    access: Access
+    deeds: DeedLog
     url: str = "http://localhost"
 
     @property
@@ -53,12 +63,16 @@ def build(
     runs_in: Callable[[SqliteJournal], FakeRuns] = FakeRuns,
     records: PoseRecords | None = None,
     models: Sequence[Any] = (),
+    wall_time_s: Callable[[], float] = time.time,
     **settings: Any,
 ) -> ServiceUnderTest:
     """A service on an empty journal in memory; `models` are adapters that provide some."""
     journal = SqliteJournal(":memory:")
     runs = runs_in(journal)
-    chosen = Settings(port=0, **settings)
+    folder = Path(tempfile.mkdtemp())
+    chosen = Settings(port=0, **{"data_dir": folder, **settings})
+    deeds = DeedLog(journal, lambda: datetime.now(UTC))
+    access = build_access(chosen, deeds, wall_time_s=wall_time_s)
     library = build_library(journal, fixed_documents(GivenFiles(), None), WorldChecks({}))
     trees = JournaledDocuments(DocumentKind.TREE, journal, NamedTexts(TREES), FakeTreeChecker())
     poses = PoseFeed(lambda *_: None, lambda _: None, records)
@@ -72,9 +86,13 @@ def build(
         worlds=FakeWorlds(),
         models=RobotModels(models),
         poses=poses,
+        access=access,
+        deeds=deeds,
         speech_abilities=speech,
     )
-    return ServiceUnderTest(app, runs, journal, chosen, poses)
+    service = ServiceUnderTest(app, runs, journal, chosen, poses, access, deeds)
+    weakref.finalize(service, shutil.rmtree, folder)
+    return service
 
 
 @contextlib.asynccontextmanager

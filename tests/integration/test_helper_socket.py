@@ -306,4 +306,6 @@ def big(run: UUID) -> Any:
     """An event that fills the buffers of a socket soon."""
     from server.journal.events import RunFailed
 
-    return RunFailed(**paused(run=run).model_dump(exclude={"type", "seq"}), reason="x" * 20_000)
+    return RunFailed(
+        **paused(run=run).model_dump(exclude={"type", "seq", "author"}), reason="x" * 20_000
+    )

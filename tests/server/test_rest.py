@@ -8,6 +8,7 @@ import httpx
 import pytest
 from service_under_test import ServiceUnderTest, build
 
+from server.journal import events as ev
 from server.runtime.requests import RunRequest
 from server.runtime.views import RunView
 from tasks.library import SCENARIOS
@@ -299,7 +300,7 @@ async def test_intervention_is_checked_and_done(
     assert done.status_code == 201
     for wrong in ({"act": "steal"}, {"act": "eat", "object": "x"}, {"act": "move", "object": "x"}):
         assert (await client.post(path, json=wrong)).status_code == 422
-    assert service.journal.head == 2
+    assert service.journal.head == 3
 
 
 async def test_camera_picture_is_a_jpeg(client: httpx.AsyncClient) -> None:
@@ -367,7 +368,7 @@ async def test_an_abort_that_is_not_kept_yet_is_accepted(
 ) -> None:
     run = await start(client)
 
-    async def stop(run: UUID) -> RunView:
+    async def stop(run: UUID, author: ev.Author) -> RunView:  # noqa: ARG001
         return service.runs.run_now(run)
 
     monkeypatch.setattr(service.runs, "abort", stop)

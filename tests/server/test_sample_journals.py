@@ -18,8 +18,17 @@ from server.journal.upgrades import (
 
 SAMPLES = sorted((Path(__file__).parent / "journals").glob("v*.sql"))
 
+OF_NO_RUN = {
+    "access_changed",
+    "document_deleted",
+    "document_kept",
+    "sign_in_failed",
+    "signed_in",
+    "signed_out",
+}
 ADDED_SINCE: dict[str, set[str]] = {
     "v1": {
+        *OF_NO_RUN,
         "clip_recorded",
         "deadline_extended",
         "first_look",
@@ -28,8 +37,8 @@ ADDED_SINCE: dict[str, set[str]] = {
         "node_undone",
         "suspected_false_alarm",
     },
-    "v2": {"first_look", "suspected_false_alarm"},
-    "v3": set(),
+    "v2": {*OF_NO_RUN, "first_look", "suspected_false_alarm"},
+    "v3": OF_NO_RUN,
 }
 """The types of events that came after a sample was written."""
 

@@ -5,6 +5,7 @@ import shutil
 import sqlite3
 from collections.abc import Callable
 from contextlib import closing, suppress
+from datetime import UTC, datetime
 from pathlib import Path
 
 import pytest
@@ -18,8 +19,9 @@ from typer.testing import CliRunner
 
 from server.cli import app
 from server.errors import NotFoundError, UnreadableError
+from server.journal import events as ev
 from server.journal.file_lock import JournalLockedError
-from server.journal.journal import JournalDamagedError, JournalOpenError, JournalReadError
+from server.journal.journal import Entry, JournalDamagedError, JournalOpenError, JournalReadError
 from server.journal.migrations import JournalSchemaError
 from server.journal.run_index import RunPage
 from server.journal.sqlite import SqliteJournal
@@ -58,6 +60,22 @@ def test_a_whole_journal_has_nothing_to_find(journal: Path) -> None:
     check = checked(journal)
     assert check.findings == []
     assert (check.runs, check.events) == (RUNS, RUNS * EVENTS)
+
+
+async def test_what_belongs_to_no_run_is_no_run_that_has_something_wrong(journal: Path) -> None:
+    opened = SqliteJournal(journal)
+    deed = ev.DocumentDeleted(
+        wall_time=datetime(2026, 1, 1, tzinfo=UTC), kind="tree", name="base", author=None
+    )
+    await opened.append(Entry(events=[deed]))
+    opened.close()
+    check = checked(journal)
+    assert check.findings == []
+    assert (check.runs, check.events) == (RUNS, RUNS * EVENTS + 1)
+    alter(journal, "UPDATE events SET body = body || ' ' WHERE run = ?", str(ev.NO_RUN))
+    (finding,) = checked(journal).findings
+    assert "not what was committed" in finding.sentence
+    assert finding.runs == frozenset()
 
 
 CHANGES: dict[str, str] = {
