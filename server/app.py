@@ -37,6 +37,7 @@ from server.documents import DocumentLibrary
 from server.log_secrets import hide_secrets
 from server.models import RobotModels
 from server.poses.feed import PoseSource
+from server.refusals import Refusals
 from server.runtime.service import RunService
 from server.settings import Settings
 from server.speech.abilities import NO_SPEECH, SpeechAbilities
@@ -85,6 +86,7 @@ def create_app(
     models: RobotModels,
     poses: PoseSource,
     speech_abilities: SpeechAbilities = NO_SPEECH,
+    refusals: Refusals | None = None,
     lifespan: Lifespan | None = None,
     wall_time_s: Callable[[], float] = time.time,
 ) -> FastAPI:
@@ -112,6 +114,7 @@ def create_app(
         settings,
         access,
         speech_abilities,
+        refusals or Refusals(),
     )
     app.add_middleware(Gate, access=access)
     return app

@@ -21,6 +21,7 @@ from server.listening import listen, reachable_host
 from server.models import RobotModels
 from server.poses.feed import PoseFeed
 from server.poses.record import PoseRecords
+from server.refusals import Refusals
 from server.robots.endpoint import ROBOT_PATH, add_robot_route
 from server.robots.process import launch
 from server.robots.registry import RobotRegistry
@@ -73,11 +74,13 @@ async def _open(
     settings: Settings, journal: SqliteJournal, recover: bool, given: GivenFiles
 ) -> AsyncIterator[Service]:
     token = settings.token.get_secret_value() if settings.token else None
+    refusals = Refusals()
     registry = RobotRegistry(
         journal,
         time.monotonic,
         LinkTimes(heartbeat_s=settings.heartbeat_s, silence_s=settings.robot_hang_timeout_s),
         settings.limits,
+        refusals,
     )
     config_socket = listen(settings)
     url = f"http://{reachable_host(settings.host)}:{config_socket.getsockname()[1]}"
@@ -133,6 +136,7 @@ async def _open(
         models=models,
         poses=poses,
         speech_abilities=speech,
+        refusals=refusals,
     )
     add_robot_route(app, registry, token)
     server = _Server(serve_config(app, settings))

@@ -1,10 +1,21 @@
 """How much of everything there may be; `docs/limits.md` has a row for each."""
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
 AtLeastOne = Annotated[int, Field(ge=1, le=2**31 - 1)]
+
+LimitName = Literal[
+    "answers",
+    "world_options",
+    "option_chars",
+    "hello_chars",
+    "departed_robots",
+    "uploaded_chars",
+    "running_runs",
+]
+"""The limits by name: whoever refuses something says for which of them."""
 
 
 class Limits(BaseModel):
@@ -24,3 +35,5 @@ class Limits(BaseModel):
     """Robots without connection and run that are still listed; those gone longest are forgotten."""
     uploaded_chars: AtLeastOne = 32 * 1024**2
     """Characters of all uploaded files of one kind together."""
+    running_runs: AtLeastOne = 16
+    """Runs that have not ended, at a time; each in a simulated world may take a process."""

@@ -1,6 +1,6 @@
 """What the routes work with: the parts of the service, and parameters that many of them take."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Annotated, Protocol
 from uuid import UUID
 
@@ -15,6 +15,7 @@ from server.journal.subscriptions import Subscribers
 from server.journal.writer import CommitStatistics
 from server.models import RobotModels
 from server.poses.feed import PoseSource
+from server.refusals import Refusals
 from server.runtime.service import RunService
 from server.runtime.views import WorldView
 from server.settings import Settings
@@ -53,6 +54,7 @@ class Parts:
     settings: Settings
     access: Access
     speech: SpeechAbilities = NO_SPEECH
+    refusals: Refusals = field(default_factory=Refusals)
 
 
 def parts_of(connection: HTTPConnection) -> Parts:

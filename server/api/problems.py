@@ -13,6 +13,7 @@ from pydantic import BaseModel, ConfigDict
 from starlette.exceptions import HTTPException
 from starlette.responses import Response
 
+from server.api.parts import parts_of
 from server.errors import (
     ConflictError,
     InvalidError,
@@ -128,9 +129,11 @@ async def _problem_error(_request: Request, error: Exception) -> Response:
     return problem_response(problem(error.status, str(error)), error.headers)
 
 
-async def _service_error(_request: Request, error: Exception) -> Response:
+async def _service_error(request: Request, error: Exception) -> Response:
     refusal = problem_of(error)
     assert refusal is not None, "every service error has a status"
+    if isinstance(error, ServiceError) and error.limit is not None:
+        parts_of(request).refusals.note(error.limit)
     return problem_response(refusal)
 
 
