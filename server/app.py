@@ -1,13 +1,11 @@
-"""The application: every route, the gate before them, and how it is served."""
+"""The application: every route, and the gate before them."""
 
-import socket
 import time
 from collections.abc import AsyncIterator, Callable
 from contextlib import AbstractAsyncContextManager, asynccontextmanager
 from importlib.metadata import version
 from typing import Any
 
-import uvicorn
 from fastapi import FastAPI
 
 from server.api import (
@@ -34,17 +32,12 @@ from server.api.gate import Gate
 from server.api.parts import ObservedJournal, Parts, WorldList
 from server.api.problems import Problem, answer_errors_with_problems
 from server.documents import DocumentLibrary
-from server.log_secrets import hide_secrets
 from server.models import RobotModels
 from server.poses.feed import PoseSource
 from server.refusals import Refusals
 from server.runtime.service import RunService
 from server.settings import Settings
 from server.speech.abilities import NO_SPEECH, SpeechAbilities
-from server.websocket_protocol import WebSocketProtocol
-
-MAX_SOCKET_MESSAGE_BYTES = 4 * 1024 * 1024
-"""Robots send pictures; helpers get an `error` message for anything above 64 KiB."""
 
 ROUTES = (
     session,
@@ -65,9 +58,6 @@ ROUTES = (
     speech_socket,
     console,
 )
-
-STUCK_CLIENT_S = 30
-"""How long a connection may take nothing of what was sent to it before the kernel drops it."""
 
 Lifespan = Callable[[], AbstractAsyncContextManager[None]]
 
@@ -135,36 +125,6 @@ def described_app(lifespan: Lifespan | None = None) -> FastAPI:
     answer_errors_with_problems(app)
     _describe(app)
     return app
-
-
-def serve_config(app: FastAPI, settings: Settings) -> uvicorn.Config:
-    """How uvicorn serves the application."""
-    config = uvicorn.Config(
-        app,
-        host=settings.host,
-        port=settings.port,
-        log_level=settings.log_level,
-        ws=WebSocketProtocol,
-        ws_max_size=MAX_SOCKET_MESSAGE_BYTES,
-        # Compressing the same event again for every client costs more than it saves.
-        ws_per_message_deflate=False,
-        timeout_graceful_shutdown=5,
-        server_header=False,
-    )
-    # After the configuration, which sets up uvicorn's loggers.
-    hide_secrets()
-    return config
-
-
-def drop_stuck_clients(listening: socket.socket) -> None:
-    """Let the kernel end connections whose client reads nothing for `STUCK_CLIENT_S`.
-
-    A client that is stopped, or hostile, keeps its connection open. Closing such a connection
-    waits until everything was read, which is never.
-    """
-    if hasattr(socket, "TCP_USER_TIMEOUT"):
-        timeout_ms = STUCK_CLIENT_S * 1000
-        listening.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, timeout_ms)
 
 
 def _entered(

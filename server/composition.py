@@ -2,16 +2,14 @@
 
 import asyncio
 import time
-from collections.abc import AsyncIterator, Iterator
-from contextlib import asynccontextmanager, contextmanager, suppress
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager, suppress
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from functools import partial
 
-import uvicorn
-
 from dialogue.registry import load_scripts
-from server.app import create_app, serve_config
+from server.app import create_app
 from server.dialogues.escalation import EscalationPolicy
 from server.dialogues.mail import Mailer
 from server.fixed_documents import GivenFiles, fixed_documents
@@ -31,6 +29,7 @@ from server.runtime.operator_mail import OperatorMail
 from server.runtime.runtime import Runtime
 from server.runtime.worlds import SimulatedWorlds
 from server.scene_checks import WorldChecks
+from server.serving import Server, serve_config
 from server.settings import Settings
 from server.speech.abilities import SpeechAbilities
 from server.speech.ear import choose_ears
@@ -139,7 +138,7 @@ async def _open(
         refusals=refusals,
     )
     add_robot_route(app, registry, token)
-    server = _Server(serve_config(app, settings))
+    server = Server(serve_config(app, settings), settings.limits, refusals)
     serving: asyncio.Task[None] | None = None
     rendering = asyncio.create_task(_render_prompts(speech, journal), name="rendering")
     try:
@@ -161,23 +160,6 @@ async def _open(
             with suppress(asyncio.CancelledError):
                 await serving
         config_socket.close()
-
-
-class _Server(uvicorn.Server):
-    """A uvicorn within somebody else's event loop."""
-
-    @contextmanager
-    def capture_signals(self) -> Iterator[None]:
-        """Leave signals to whoever opened the service."""
-        yield
-
-    async def wait_until_started(self, serving: "asyncio.Task[None]") -> None:
-        """Return once it listens; raises what kept it from doing so."""
-        while not self.started:
-            if serving.done():
-                serving.result()
-                raise OSError("the server ended before it listened")
-            await asyncio.sleep(0.005)
 
 
 def _pose_records(settings: Settings) -> PoseRecords | None:

@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 AtLeastOne = Annotated[int, Field(ge=1, le=2**31 - 1)]
+Seconds = Annotated[float, Field(gt=0.0, le=86_400.0, allow_inf_nan=False)]
 
 LimitName = Literal[
     "answers",
@@ -14,6 +15,12 @@ LimitName = Literal[
     "departed_robots",
     "uploaded_chars",
     "running_runs",
+    "connections",
+    "strangers",
+    "strangers_per_address",
+    "head_s",
+    "body_s",
+    "stuck_client_s",
 ]
 """The limits by name: whoever refuses something says for which of them."""
 
@@ -37,3 +44,15 @@ class Limits(BaseModel):
     """Characters of all uploaded files of one kind together."""
     running_runs: AtLeastOne = 16
     """Runs that have not ended, at a time; each in a simulated world may take a process."""
+    connections: AtLeastOne = 500
+    """Connections to the service at a time."""
+    strangers: AtLeastOne = 200
+    """Those of them that have not been admitted; for one more the oldest is ended."""
+    strangers_per_address: AtLeastOne = 50
+    """Such connections from one address."""
+    head_s: Seconds = 10.0
+    """How long a request's head may take to come, from the connection or its first byte on."""
+    body_s: Seconds = 60.0
+    """How long the body may take after that."""
+    stuck_client_s: Seconds = 30.0
+    """How long a client may take nothing of what is sent to it."""

@@ -9,6 +9,8 @@ from urllib.parse import urlsplit
 
 from starlette.requests import HTTPConnection
 
+from server.visitors import visitor_of
+
 SESSION_COOKIE = "mend_session"
 SESSION_LIFETIME_S = 12 * 3600
 
@@ -55,6 +57,12 @@ class Access:
 
     def admits(self, connection: HTTPConnection) -> bool:
         """Whether a connection shows the token, as a bearer or by its session cookie."""
+        shown = self._shown(connection)
+        if shown:
+            welcome(connection)
+        return shown
+
+    def _shown(self, connection: HTTPConnection) -> bool:
         if self._token is None:
             return True
         scheme, _, credentials = connection.headers.get("authorization", "").partition(" ")
@@ -86,6 +94,13 @@ class Access:
     def _sign(self, expires: int) -> str:
         key = _bytes(self._token or "")
         return hmac.new(key, f"session:{expires}".encode(), hashlib.sha256).hexdigest()
+
+
+def welcome(connection: HTTPConnection) -> None:
+    """Whoever made this connection is no stranger any more."""
+    visitor = visitor_of(connection.scope)
+    if visitor is not None:
+        visitor.admit()
 
 
 def _bytes(text: str) -> bytes:

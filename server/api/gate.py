@@ -9,6 +9,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from server.api.access import Access
 from server.api.problems import Problem, problem, problem_response
+from server.api.safe_headers import SAFE_HEADERS
 
 MAX_BODY_BYTES = 8 * 1024 * 1024
 PROTECTED = ("/api/", "/metrics")
@@ -53,12 +54,13 @@ class Gate:
 
 
 def _guarded(send: Send, *, private: bool) -> Send:
-    """Nothing is taken for another type than it says, and what is `private` is kept by nobody."""
+    """Nothing can be misused by a page, and what is `private` is kept by nobody."""
 
     async def guarded(message: Message) -> None:
         if message["type"] == "http.response.start":
             headers = MutableHeaders(scope=message)
-            headers.setdefault("X-Content-Type-Options", "nosniff")
+            for name, value in SAFE_HEADERS.items():
+                headers.setdefault(name, value)
             if private:
                 headers.setdefault("Cache-Control", "no-store")
         await send(message)
@@ -74,7 +76,8 @@ def _declared_length(connection: HTTPConnection) -> int:
 def _limited(receive: Receive) -> Receive:
     """A body without a declared length is counted as it comes.
 
-    One that is still coming when the service stops is refused like anything else.
+    One that is still coming when the service stops, or the client hangs up, is refused like
+    anything else.
     """
     received, complete = 0, False
 
@@ -86,6 +89,9 @@ def _limited(receive: Receive) -> Receive:
             if complete:
                 raise
             raise HTTPException(503, "the service is shutting down") from None
+        if message["type"] == "http.disconnect" and not complete:
+            # Nobody reads this, but it ends the request without a defect in the log.
+            raise HTTPException(400, "the connection ended before the body had come")
         complete = not message.get("more_body", False)
         received += len(message.get("body", b""))
         if received > MAX_BODY_BYTES:

@@ -9,6 +9,7 @@ from typing import Any, Generic, TypeVar
 from pydantic import BaseModel, ConfigDict, TypeAdapter, ValidationError
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
+from server.api.access import welcome
 from server.api.helper_messages import Auth, Error
 from server.api.parts import HelperName, Parts, parts_of
 from server.api.problems import Problem, problem, validation_sentences
@@ -86,7 +87,9 @@ class HelperConnection(ABC, Generic[Query]):
         if not admitted:
             token = await self._first_token()
             admitted = token is not None and access.token_fits(token)
-        if not admitted:
+        if admitted:
+            welcome(websocket)
+        else:
             await websocket.close(POLICY_VIOLATION, "the first message must show the token")
         return admitted
 

@@ -8,6 +8,7 @@ from starlette.responses import PlainTextResponse
 from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketState
 
 from robots.link.channel import ChannelClosedError
+from server.api.access import welcome
 from server.robots.registry import RobotRegistry
 
 ROBOT_PATH = "/ws/robot"
@@ -76,6 +77,7 @@ def add_robot_route(
         if refusal is not None:
             await websocket.send_denial_response(refusal)
             return
+        welcome(websocket)
         await websocket.accept()
         await registry.serve(StarletteChannel(websocket))
 
