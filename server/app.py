@@ -77,19 +77,24 @@ def create_app(
     poses: PoseSource,
     speech_abilities: SpeechAbilities = NO_SPEECH,
     refusals: Refusals | None = None,
+    session_key: bytes | None = None,
     lifespan: Lifespan | None = None,
     wall_time_s: Callable[[], float] = time.time,
 ) -> FastAPI:
     """Build the application around a runtime and a journal.
 
-    `lifespan` is entered before the first request and left after the last.
+    `lifespan` is entered before the first request and left after the last. Browser sessions last
+    as long as `session_key` is the same, and without one as long as the application.
     """
-    token = settings.token.get_secret_value() if settings.token else None
+    refusals = refusals or Refusals()
     access = Access(
-        token,
+        settings.token.get_secret_value() if settings.token else None,
+        wall_time_s=wall_time_s,
         allowed_hosts=[settings.host, *settings.allowed_hosts],
         allowed_origins=settings.allowed_origins,
-        wall_time_s=wall_time_s,
+        session_key=session_key,
+        limits=settings.limits,
+        refusals=refusals,
     )
     app = described_app(lifespan)
     app.state.parts = Parts(
@@ -104,7 +109,7 @@ def create_app(
         settings,
         access,
         speech_abilities,
-        refusals or Refusals(),
+        refusals,
     )
     app.add_middleware(Gate, access=access)
     return app

@@ -30,6 +30,7 @@ from server.runtime.runtime import Runtime
 from server.runtime.worlds import SimulatedWorlds
 from server.scene_checks import WorldChecks
 from server.serving import Server, serve_config
+from server.session_key import session_key
 from server.settings import Settings
 from server.speech.abilities import SpeechAbilities
 from server.speech.ear import choose_ears
@@ -136,8 +137,9 @@ async def _open(
         poses=poses,
         speech_abilities=speech,
         refusals=refusals,
+        session_key=_session_key(settings),
     )
-    add_robot_route(app, registry, token)
+    add_robot_route(app, registry, app.state.parts.access)
     server = Server(serve_config(app, settings), settings.limits, refusals)
     serving: asyncio.Task[None] | None = None
     rendering = asyncio.create_task(_render_prompts(speech, journal), name="rendering")
@@ -167,6 +169,13 @@ def _pose_records(settings: Settings) -> PoseRecords | None:
     if not settings.record_poses or str(settings.journal_path) == IN_MEMORY:
         return None
     return PoseRecords(settings.journal_path.with_suffix(".poses"))
+
+
+def _session_key(settings: Settings) -> bytes | None:
+    """Beside the journal; where that is in memory, sessions are not kept either."""
+    if str(settings.journal_path) == IN_MEMORY:
+        return None
+    return session_key(settings.journal_path.with_name("session.key"))
 
 
 def _speech(settings: Settings) -> SpeechAbilities:

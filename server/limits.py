@@ -21,6 +21,7 @@ LimitName = Literal[
     "head_s",
     "body_s",
     "stuck_client_s",
+    "wrong_tokens",
 ]
 """The limits by name: whoever refuses something says for which of them."""
 
@@ -56,3 +57,5 @@ class Limits(BaseModel):
     """How long the body may take after that."""
     stuck_client_s: Seconds = 30.0
     """How long a client may take nothing of what is sent to it."""
+    wrong_tokens: AtLeastOne = 5
+    """Different wrong tokens from one address before it has to wait for the next."""

@@ -54,6 +54,7 @@ class Visitor:
     def __init__(self, visitors: "Visitors", household: str | None, end: End) -> None:
         self.household = household
         self.end = end
+        self.is_admitted = False
         self.phase = Phase.HEAD
         self.since = visitors.now()
         self._visitors = visitors
@@ -73,7 +74,8 @@ class Visitor:
 
     def admit(self) -> None:
         """It is no stranger any more."""
-        self._visitors.admit(self)
+        self.is_admitted = True
+        self._visitors.no_stranger(self)
 
     def leave(self) -> None:
         """The connection is gone. Saying so twice does nothing."""
@@ -155,8 +157,8 @@ class Visitors:
             f"more than {most} connections had not shown the token: the oldest was ended",
         )
 
-    def admit(self, visitor: Visitor) -> None:
-        """It is no stranger any more."""
+    def no_stranger(self, visitor: Visitor) -> None:
+        """It is not counted as one any more."""
         if visitor not in self._strangers:
             return
         del self._strangers[visitor]
@@ -168,7 +170,7 @@ class Visitors:
     def leave(self, visitor: Visitor) -> None:
         """Its connection is gone."""
         self._here.pop(visitor, None)
-        self.admit(visitor)
+        self.no_stranger(visitor)
 
     def end_overdue(self) -> None:
         """End every connection whose client has taken too long for what it owes."""
@@ -194,7 +196,7 @@ class Visitors:
         self._note(beyond)
         # So that it is ended once.
         visitor.enter(Phase.SERVICE)
-        self.admit(visitor)
+        self.no_stranger(visitor)
         visitor.end(beyond)
 
     def _note(self, beyond: Beyond) -> None:

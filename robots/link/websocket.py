@@ -1,11 +1,14 @@
 """A channel to the service over a WebSocket."""
 
+import json
+
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidStatus
 
 from robots.link.channel import ChannelClosedError, LinkRefusedError
 
 MAX_MESSAGE_BYTES = 1 << 20
+TOO_MANY_REQUESTS = 429
 
 
 class WebSocketChannel:
@@ -48,10 +51,24 @@ async def websocket_channel(url: str, token: str | None) -> WebSocketChannel:
         )
     except InvalidStatus as error:
         status, body = error.response.status_code, bytes(error.response.body or b"")
+        if status == TOO_MANY_REQUESTS:
+            raise ChannelClosedError(f"{url} asks to wait: {_detail(body, status)}") from error
         if 400 <= status < 500:
-            detail = body.decode(errors="replace").strip() or f"HTTP status {status}"
-            raise LinkRefusedError(f"{url} turned the robot away: {detail}") from error
+            raise LinkRefusedError(
+                f"{url} turned the robot away: {_detail(body, status)}"
+            ) from error
         raise ChannelClosedError(f"{url} answered with status {status}") from error
     except (OSError, InvalidHandshake) as error:
         raise ChannelClosedError(f"no service at {url}: {error}") from error
     return WebSocketChannel(connection)
+
+
+def _detail(body: bytes, status: int) -> str:
+    """What a refusal says: a problem document (RFC 9457), or plain text."""
+    text = body.decode(errors="replace").strip()
+    try:
+        problem = json.loads(text)
+    except (ValueError, RecursionError):
+        return text or f"HTTP status {status}"
+    detail = problem.get("detail") if isinstance(problem, dict) else None
+    return detail if isinstance(detail, str) else text

@@ -1,14 +1,16 @@
 """The gate before every HTTP request: Host, Origin, token and the size of the body."""
 
 import asyncio
+from collections.abc import Mapping
 
 from starlette.datastructures import MutableHeaders
 from starlette.exceptions import HTTPException
 from starlette.requests import HTTPConnection
+from starlette.responses import Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from server.api.access import Access
-from server.api.problems import Problem, problem, problem_response
+from server.api.problems import problem, problem_response
 from server.api.safe_headers import SAFE_HEADERS
 
 MAX_BODY_BYTES = 8 * 1024 * 1024
@@ -33,24 +35,31 @@ class Gate:
         guarded = _guarded(send, private=scope["path"].startswith(PROTECTED))
         if refusal is None:
             await self._app(scope, _limited(receive), guarded)
-            return
-        headers = {"WWW-Authenticate": "Bearer"} if refusal.status == 401 else {}
-        await problem_response(refusal, headers)(scope, receive, guarded)
+        else:
+            await refusal(scope, receive, guarded)
 
-    def _refusal(self, scope: Scope, connection: HTTPConnection) -> Problem | None:
+    def _refusal(self, scope: Scope, connection: HTTPConnection) -> Response | None:
         path: str = scope["path"]
         if not self._access.host_allowed(connection):
-            return problem(
+            return _refused(
                 421, "this Host is not one of the service's names: add it to 'allowed_hosts'"
             )
         if scope["method"] not in SAFE_METHODS and not self._access.origin_allowed(connection):
-            return problem(403, "pages of this Origin may not do that: see 'allowed_origins'")
-        protected = path.startswith(PROTECTED) and path not in OPEN
-        if protected and not self._access.admits(connection):
-            return problem(401, "show the token: 'Authorization: Bearer ...', or sign in")
+            return _refused(403, "pages of this Origin may not do that: see 'allowed_origins'")
+        if path.startswith(PROTECTED) and path not in OPEN:
+            admission = self._access.by_request(connection)
+            if admission.wait_s:
+                return _refused(429, admission.too_many, admission.retry_after)
+            if not admission.admitted:
+                detail = "show the token: 'Authorization: Bearer ...', or sign in"
+                return _refused(401, detail, {"WWW-Authenticate": "Bearer"})
         if _declared_length(connection) > MAX_BODY_BYTES:
-            return problem(413, _too_large())
+            return _refused(413, _too_large())
         return None
+
+
+def _refused(status: int, detail: str, headers: Mapping[str, str] | None = None) -> Response:
+    return problem_response(problem(status, detail), headers)
 
 
 def _guarded(send: Send, *, private: bool) -> Send:

@@ -9,10 +9,10 @@ from typing import Any, Generic, TypeVar
 from pydantic import BaseModel, ConfigDict, TypeAdapter, ValidationError
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
-from server.api.access import welcome
+from server.api.access import REFUSED
 from server.api.helper_messages import Auth, Error
 from server.api.parts import HelperName, Parts, parts_of
-from server.api.problems import Problem, problem, validation_sentences
+from server.api.problems import Problem, problem, problem_response, validation_sentences
 
 THE_END = 1000
 GOING_AWAY = 1001
@@ -79,19 +79,23 @@ class HelperConnection(ABC, Generic[Query]):
         if not (access.host_allowed(websocket) and access.origin_allowed(websocket)):
             await websocket.close(POLICY_VIOLATION, "this Host or Origin may not connect")
             return False
-        admitted = access.admits(websocket)
-        if "authorization" in websocket.headers and not admitted:
+        admission = access.by_request(websocket)
+        if admission.wait_s:
+            refusal = problem(429, admission.too_many)
+            await websocket.send_denial_response(problem_response(refusal, admission.retry_after))
+            return False
+        if "authorization" in websocket.headers and not admission.admitted:
             await websocket.close(POLICY_VIOLATION, "this is not the token")
             return False
         await websocket.accept()
-        if not admitted:
+        if not admission.admitted:
             token = await self._first_token()
-            admitted = token is not None and access.token_fits(token)
-        if admitted:
-            welcome(websocket)
-        else:
+            admission = REFUSED if token is None else access.by_token(token, websocket)
+        if admission.wait_s:
+            await self._turn_away(problem(429, admission.too_many), TRY_AGAIN_LATER)
+        elif not admission.admitted:
             await websocket.close(POLICY_VIOLATION, "the first message must show the token")
-        return admitted
+        return admission.admitted
 
     async def _first_token(self) -> str | None:
         """The token in the first message; None for any other message, and for none in time."""
@@ -139,10 +143,10 @@ class HelperConnection(ABC, Generic[Query]):
         fields = refusal.model_dump(include={"status", "title", "detail", "answered_by", "errors"})
         await self._send(Error(id=to, **fields))
 
-    async def _turn_away(self, refusal: Problem) -> None:
+    async def _turn_away(self, refusal: Problem, code: int = POLICY_VIOLATION) -> None:
         """Say why this connection cannot be served, and close it."""
         await self._refuse(refusal)
-        await self._websocket.close(POLICY_VIOLATION, refusal.detail[:MAX_REASON_CHARS])
+        await self._websocket.close(code, refusal.detail[:MAX_REASON_CHARS])
 
 
 async def until_one_ends(*works: Coroutine[Any, Any, None]) -> None:

@@ -30,7 +30,8 @@ class SessionView(BaseModel):
 @router.get("/session", operation_id="get_session", responses=documented(421))
 async def get_session(request: Request, parts: WithParts) -> SessionView:
     """Whether a token is needed, and whether this client has shown it."""
-    return SessionView(required=parts.access.required, signed_in=parts.access.admits(request))
+    admitted = parts.access.by_request(request).admitted
+    return SessionView(required=parts.access.required, signed_in=admitted)
 
 
 @router.post(
@@ -39,7 +40,10 @@ async def get_session(request: Request, parts: WithParts) -> SessionView:
 )  # fmt: skip
 async def sign_in(body: SignIn, request: Request, response: Response, parts: WithParts) -> None:
     """Show the token and get a session cookie for it."""
-    if not parts.access.token_fits(body.token):
+    admission = parts.access.by_token(body.token, request)
+    if admission.wait_s:
+        raise ProblemError(429, admission.too_many, admission.retry_after)
+    if not admission.admitted:
         raise ProblemError(401, "this is not the token", {"WWW-Authenticate": "Bearer"})
     response.set_cookie(
         SESSION_COOKIE,

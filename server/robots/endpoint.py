@@ -1,14 +1,14 @@
 """The WebSocket route on which robots connect: `/ws/robot`."""
 
-import secrets
 from collections.abc import Collection
 
 from fastapi import FastAPI
-from starlette.responses import PlainTextResponse
+from starlette.responses import Response
 from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketState
 
 from robots.link.channel import ChannelClosedError
-from server.api.access import welcome
+from server.api.access import Access
+from server.api.problems import problem, problem_response
 from server.robots.registry import RobotRegistry
 
 ROBOT_PATH = "/ws/robot"
@@ -62,22 +62,22 @@ class StarletteChannel:
 def add_robot_route(
     app: FastAPI,
     registry: RobotRegistry,
-    token: str | None,
+    access: Access,
     *,
     allowed_origins: Collection[str] = (),
 ) -> None:
     """Serve `/ws/robot`.
 
-    With a `token`, a robot has to present it as a bearer token (else HTTP status 401). A request
-    with an `Origin` comes from a browser and is refused (403) unless that origin is allowed.
+    Where `access` requires a token, a robot has to present it as a bearer token (else HTTP status
+    401, or 429 while its address has to wait). A request with an `Origin` comes from a browser and
+    is refused (403) unless that origin is allowed.
     """
 
     async def connect(websocket: WebSocket) -> None:
-        refusal = _refusal(websocket, token, allowed_origins)
+        refusal = _refusal(websocket, access, allowed_origins)
         if refusal is not None:
             await websocket.send_denial_response(refusal)
             return
-        welcome(websocket)
         await websocket.accept()
         await registry.serve(StarletteChannel(websocket))
 
@@ -85,21 +85,15 @@ def add_robot_route(
 
 
 def _refusal(
-    websocket: WebSocket, token: str | None, allowed_origins: Collection[str]
-) -> PlainTextResponse | None:
+    websocket: WebSocket, access: Access, allowed_origins: Collection[str]
+) -> Response | None:
     origin = websocket.headers.get("origin")
     if origin is not None and origin not in allowed_origins:
-        return PlainTextResponse("robots connect without an Origin header", status_code=403)
-    if token is not None and not _presents(websocket, token):
-        return PlainTextResponse(
-            "a robot has to present the service's token: 'Authorization: Bearer <token>'",
-            status_code=401,
-            headers={"WWW-Authenticate": "Bearer"},
-        )
+        return problem_response(problem(403, "robots connect without an Origin header"))
+    admission = access.by_bearer(websocket)
+    if admission.wait_s:
+        return problem_response(problem(429, admission.too_many), admission.retry_after)
+    if not admission.admitted:
+        detail = "a robot has to present the service's token: 'Authorization: Bearer <token>'"
+        return problem_response(problem(401, detail), {"WWW-Authenticate": "Bearer"})
     return None
-
-
-def _presents(websocket: WebSocket, token: str) -> bool:
-    scheme, _, presented = websocket.headers.get("authorization", "").partition(" ")
-    right = secrets.compare_digest(presented.strip().encode(), token.encode())
-    return right and scheme.lower() == "bearer"

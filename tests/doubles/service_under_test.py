@@ -2,6 +2,7 @@
 
 import asyncio
 import contextlib
+import time
 from collections.abc import AsyncIterator, Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -82,6 +83,7 @@ def build(
     runs_in: Callable[[SqliteJournal], FakeRuns] = FakeRuns,
     records: PoseRecords | None = None,
     models: Sequence[Any] = (),
+    wall_time_s: Callable[[], float] = time.time,
     **settings: Any,
 ) -> ServiceUnderTest:
     """A service on an empty journal in memory; `models` are adapters that provide some."""
@@ -102,6 +104,7 @@ def build(
         models=RobotModels(models),
         poses=poses,
         speech_abilities=speech,
+        wall_time_s=wall_time_s,
     )
     return ServiceUnderTest(app, runs, journal, chosen, poses)
 

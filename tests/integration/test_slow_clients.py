@@ -100,7 +100,7 @@ async def test_a_client_that_pings_and_reads_nothing_fills_no_memory() -> None:
 async def test_a_robot_that_reads_nothing_is_ended() -> None:
     async with serving(limits=SOON) as service, client_of(service) as client:
         registry = RobotRegistry(service.journal, time.monotonic, LinkTimes(silence_s=60.0))
-        add_robot_route(service.app, registry, None)
+        add_robot_route(service.app, registry, service.app.state.parts.access)
         await client.upgraded("/ws/robot")
         client.send(text_frame(hello(shows=None).model_dump_json()))
         # Each is answered with what is wrong with it.
