@@ -34,6 +34,7 @@ from server.api.problems import Problem, answer_errors_with_problems
 from server.documents import DocumentLibrary
 from server.models import RobotModels
 from server.poses.feed import PoseSource
+from server.public_url import host_of
 from server.refusals import Refusals
 from server.runtime.service import RunService
 from server.settings import Settings
@@ -90,7 +91,7 @@ def create_app(
     access = Access(
         settings.token.get_secret_value() if settings.token else None,
         wall_time_s=wall_time_s,
-        allowed_hosts=[settings.host, *settings.allowed_hosts],
+        allowed_hosts=_names(settings),
         allowed_origins=settings.allowed_origins,
         session_key=session_key,
         limits=settings.limits,
@@ -130,6 +131,12 @@ def described_app(lifespan: Lifespan | None = None) -> FastAPI:
     answer_errors_with_problems(app)
     _describe(app)
     return app
+
+
+def _names(settings: Settings) -> list[str]:
+    """Every name under which clients may reach the service."""
+    public = [host_of(settings.public_url)] if settings.public_url else []
+    return [settings.host, *public, *settings.allowed_hosts]
 
 
 def _entered(

@@ -1,6 +1,7 @@
 """The whole service put together: journal, robots, worlds, runtime and API, in one process."""
 
 import asyncio
+import logging
 import time
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager, suppress
@@ -31,23 +32,29 @@ from server.runtime.worlds import SimulatedWorlds
 from server.scene_checks import WorldChecks
 from server.serving import Server, serve_config
 from server.session_key import session_key
-from server.settings import Settings
+from server.settings import Settings, is_everywhere
 from server.speech.abilities import SpeechAbilities
 from server.speech.ear import choose_ears
 from server.speech.rendering import SpokenTexts, render_prompts
 from server.speech.voice import NoVoice, choose_voice
 from tasks.plugins import load_plugins
 
+log = logging.getLogger(__name__)
+
 
 @dataclass(frozen=True, slots=True)
 class Service:
-    """A service that runs; `url` is where it listens."""
+    """A service that runs; `url` is where this machine reaches it.
+
+    `public_url` is where others do, if that is known.
+    """
 
     runtime: Runtime
     journal: SqliteJournal
     registry: RobotRegistry
     library: Library
     url: str
+    public_url: str | None
     settings: Settings
 
 
@@ -101,9 +108,8 @@ async def _open(
             hang_s=settings.robot_hang_timeout_s,
         ),
     )
-    mail = OperatorMail(
-        Mailer(settings.mail) if settings.mail else None, lambda: datetime.now(UTC), url
-    )
+    public_url = settings.public_url or (None if is_everywhere(settings.host) else url)
+    mail = _operator_mail(settings, public_url)
     runtime = Runtime(
         journal=journal,
         robots=registry,
@@ -149,7 +155,7 @@ async def _open(
             await runtime.recover()
         serving = asyncio.create_task(server.serve(sockets=[config_socket]), name="server")
         await server.wait_until_started(serving)
-        yield Service(runtime, journal, registry, library, url, settings)
+        yield Service(runtime, journal, registry, library, url, public_url, settings)
     finally:
         # First: a report that no run takes any more must not be acknowledged.
         registry.close()
@@ -169,6 +175,13 @@ def _pose_records(settings: Settings) -> PoseRecords | None:
     if not settings.record_poses or str(settings.journal_path) == IN_MEMORY:
         return None
     return PoseRecords(settings.journal_path.with_suffix(".poses"))
+
+
+def _operator_mail(settings: Settings, public_url: str | None) -> OperatorMail:
+    mailer = Mailer(settings.mail) if settings.mail else None
+    if mailer is not None and public_url is None:
+        log.warning("mails will not say where the console is: set 'public_url'")
+    return OperatorMail(mailer, lambda: datetime.now(UTC), public_url)
 
 
 def _session_key(settings: Settings) -> bytes | None:

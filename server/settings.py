@@ -17,6 +17,7 @@ from pydantic_settings import (
 
 from server.dialogues.mail import MailSettings
 from server.limits import Limits
+from server.public_url import PublicUrl
 from server.speech.voice import VoiceChoice
 
 Seconds = Annotated[float, Field(gt=0, le=86_400, allow_inf_nan=False)]
@@ -52,6 +53,8 @@ class Settings(BaseSettings):
     """The address to listen on; anything but loopback needs a token."""
     port: Annotated[int, Field(ge=0, le=65_535)] = 8080
     """The port to listen on; 0 takes a free one."""
+    public_url: PublicUrl | None = None
+    """The address at which others reach the service (`https://mend.example.com`)."""
     token: SecretStr | None = None
     """What clients and robots have to show; make it long and random."""
     allowed_hosts: list[HostName] = []
@@ -187,6 +190,14 @@ def _sentence(error: Any) -> str:
     if error["type"] == "extra_forbidden":
         return f"There is no setting '{where}'."
     return f"The setting '{where}' is wrong: {message[0].lower()}{message[1:]}."
+
+
+def is_everywhere(host: str) -> bool:
+    """Whether an address to listen on stands for all of this machine's."""
+    try:
+        return ipaddress.ip_address(host).is_unspecified
+    except ValueError:
+        return host == ""
 
 
 def is_loopback(host: str) -> bool:

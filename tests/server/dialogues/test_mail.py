@@ -13,7 +13,7 @@ from aiosmtpd.smtp import SMTP, AuthResult, Envelope, LoginPassword, Session
 from pydantic import ValidationError
 from smtp_inbox import Inbox, Watched, WatchedSMTP, listening, smtp_server
 
-from server.dialogues.mail import Mailer, MailError, MailRequest, MailSettings
+from server.dialogues.mail import Mailer, MailError, MailRequest, MailSettings, RefusedAddress
 
 WRITTEN = datetime(2026, 1, 1, 12, 0, tzinfo=UTC)
 OPERATORS = ("ops@example.org", "night@example.org")
@@ -81,21 +81,30 @@ async def test_addresses_that_the_server_refuses_are_returned() -> None:
     inbox = Inbox(refuses=("night@example.org",))
     async with smtp_server(inbox) as port:
         refused = await mailer(port).send(REQUEST, OPERATORS, WRITTEN)
-    assert refused == ("night@example.org",)
+    assert refused == (RefusedAddress("night@example.org", "550 no such mailbox", for_now=False),)
     assert inbox.recipients == ["ops@example.org"]
 
 
-async def test_a_mail_that_reaches_nobody_is_an_error() -> None:
+async def test_a_mail_that_reaches_nobody_returns_all_addresses() -> None:
     async with smtp_server(Inbox(refuses=OPERATORS)) as port:
-        with pytest.raises(MailError, match=r"ops@example\.org is refused .*no such mailbox"):
-            await mailer(port).send(REQUEST, OPERATORS, WRITTEN)
+        refused = await mailer(port).send(REQUEST, OPERATORS, WRITTEN)
+    assert [each.address for each in refused] == list(OPERATORS)
+
+
+@pytest.mark.parametrize(("answer", "for_now"), [("451 come back", True), ("550 no", False)])
+async def test_the_server_says_whether_it_is_worth_trying_again(answer: str, for_now: bool) -> None:
+    inbox = Inbox(refuses=OPERATORS[:1], refusal=answer)
+    async with smtp_server(inbox) as port:
+        (refused,) = await mailer(port).send(REQUEST, OPERATORS, WRITTEN)
+    assert refused.for_now is for_now
 
 
 async def test_a_server_that_is_not_there_is_named() -> None:
     async with smtp_server(Inbox()) as port:
         pass
-    with pytest.raises(MailError, match=rf"could not be sent through 127\.0\.0\.1:{port}: "):
+    with pytest.raises(MailError, match=rf"through 127\.0\.0\.1:{port}: ") as error:
         await mailer(port).send(REQUEST, OPERATORS, WRITTEN)
+    assert error.value.for_now
 
 
 async def test_a_server_that_never_speaks_is_not_waited_for() -> None:
@@ -198,6 +207,7 @@ async def test_the_server_may_want_a_password(
             with pytest.raises(MailError, match="could not be sent through") as caught:
                 await sending.send(REQUEST, OPERATORS, WRITTEN)
             assert password not in str(caught.value)
+            assert not caught.value.for_now
     assert bool(inbox.mails) is taken
 
 
