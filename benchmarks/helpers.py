@@ -105,7 +105,7 @@ async def serving(app: FastAPI) -> AsyncIterator[int]:
     """Serve an application on a free port."""
     settings = Settings(port=0, log_level="error", limits=Limits(connections=2**31 - 1))
     config = serve_config(app, settings)
-    server = Server(config, settings.limits, Refusals())
+    server = Server(config, settings, Refusals())
     socket = listen(settings)
     socket.setsockopt(sockets.SOL_SOCKET, sockets.SO_SNDBUF, SEND_BUFFER_BYTES)
     config.load()

@@ -2,6 +2,7 @@
 
 import asyncio
 import logging
+import ssl
 import time
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager, suppress
@@ -30,6 +31,7 @@ from server.runtime.operator_mail import OperatorMail
 from server.runtime.runtime import Runtime
 from server.runtime.worlds import SimulatedWorlds
 from server.scene_checks import WorldChecks
+from server.server_tls import server_tls
 from server.serving import Server, serve_config
 from server.session_key import session_key
 from server.settings import Settings, is_everywhere
@@ -65,8 +67,8 @@ async def open_service(
     """Start a service, take up the runs that had not ended, and stop it at the end.
 
     What is in `given` is known as if it came with Mend. Raises `JournalLockedError` when another
-    process has the journal, `OSError` when it cannot listen. `recover` False leaves unfinished runs
-    alone.
+    process has the journal, `OSError` when it cannot listen, `WrongSettingsError` when it cannot
+    use its certificate. `recover` False leaves unfinished runs alone.
     """
     journal = SqliteJournal(settings.journal_path)
     try:
@@ -89,8 +91,9 @@ async def _open(
         settings.limits,
         refusals,
     )
+    tls = _tls(settings)
     config_socket = listen(settings)
-    url = f"http://{reachable_host(settings.host)}:{config_socket.getsockname()[1]}"
+    url = f"{'https' if tls else 'http'}://{reachable_host(settings.host)}:{config_socket.getsockname()[1]}"
     adapters = load_plugins("mend.worlds")
     library = build_library(
         journal, fixed_documents(given, settings.scenes), WorldChecks(adapters), settings.limits
@@ -105,6 +108,7 @@ async def _open(
             registry=registry,
             url=f"ws{url.removeprefix('http')}{ROBOT_PATH}",
             token=token,
+            certificate=settings.tls_certificate,
             hang_s=settings.robot_hang_timeout_s,
         ),
     )
@@ -146,7 +150,7 @@ async def _open(
         session_key=_session_key(settings),
     )
     add_robot_route(app, registry, app.state.parts.access)
-    server = Server(serve_config(app, settings), settings.limits, refusals)
+    server = Server(serve_config(app, settings), settings, refusals, tls)
     serving: asyncio.Task[None] | None = None
     rendering = asyncio.create_task(_render_prompts(speech, journal), name="rendering")
     try:
@@ -175,6 +179,12 @@ def _pose_records(settings: Settings) -> PoseRecords | None:
     if not settings.record_poses or str(settings.journal_path) == IN_MEMORY:
         return None
     return PoseRecords(settings.journal_path.with_suffix(".poses"))
+
+
+def _tls(settings: Settings) -> ssl.SSLContext | None:
+    if settings.tls_certificate is None or settings.tls_key is None:
+        return None
+    return server_tls(settings.tls_certificate, settings.tls_key)
 
 
 def _operator_mail(settings: Settings, public_url: str | None) -> OperatorMail:

@@ -2,6 +2,7 @@
 
 import asyncio
 import socket
+import ssl
 import sys
 import time
 from collections.abc import Iterator
@@ -13,8 +14,8 @@ from uvicorn.config import STARTUP_FAILURE
 
 from server.accepting import Acceptor
 from server.http_protocol import HttpProtocol
-from server.limits import Limits
 from server.log_secrets import hide_secrets
+from server.proxies import TrustedProxies
 from server.refusals import Refusals
 from server.settings import Settings
 from server.visitors import STATE_KEY, Visitor, Visitors
@@ -26,6 +27,7 @@ MAX_SOCKET_MESSAGE_BYTES = 4 * 1024 * 1024
 
 def serve_config(app: FastAPI, settings: Settings) -> uvicorn.Config:
     """How uvicorn serves the application."""
+    proxies = TrustedProxies(settings.trusted_proxies)
     config = uvicorn.Config(
         app,
         host=settings.host,
@@ -38,6 +40,9 @@ def serve_config(app: FastAPI, settings: Settings) -> uvicorn.Config:
         ws_per_message_deflate=False,
         timeout_graceful_shutdown=5,
         server_header=False,
+        # Anybody can send such headers: they are believed of configured proxies only.
+        proxy_headers=bool(proxies),
+        forwarded_allow_ips=proxies.as_written,
     )
     # After the configuration, which sets up uvicorn's loggers.
     hide_secrets()
@@ -47,9 +52,17 @@ def serve_config(app: FastAPI, settings: Settings) -> uvicorn.Config:
 class Server(uvicorn.Server):
     """A uvicorn within somebody else's event loop, on sockets that are bound already."""
 
-    def __init__(self, config: uvicorn.Config, limits: Limits, refusals: Refusals) -> None:
+    def __init__(
+        self,
+        config: uvicorn.Config,
+        settings: Settings,
+        refusals: Refusals,
+        tls: ssl.SSLContext | None = None,
+    ) -> None:
         super().__init__(config)
-        self.visitors = Visitors(limits, refusals, time.monotonic)
+        proxies = TrustedProxies(settings.trusted_proxies)
+        self.visitors = Visitors(settings.limits, refusals, time.monotonic, proxies)
+        self._tls = tls
 
     @contextmanager
     def capture_signals(self) -> Iterator[None]:
@@ -61,7 +74,9 @@ class Server(uvicorn.Server):
         await self.lifespan.startup()
         if self.lifespan.should_exit:
             sys.exit(STARTUP_FAILURE)
-        acceptors = [Acceptor(each, self._protocol, self.visitors) for each in sockets or []]
+        acceptors = [
+            Acceptor(each, self._protocol, self.visitors, self._tls) for each in sockets or []
+        ]
         for acceptor in acceptors:
             acceptor.start(self.config.backlog)
         self.servers = acceptors  # type: ignore[assignment]

@@ -17,6 +17,7 @@ from pydantic_settings import (
 
 from server.dialogues.mail import MailSettings
 from server.limits import Limits
+from server.proxies import ProxyNetwork
 from server.public_url import PublicUrl
 from server.speech.voice import VoiceChoice
 
@@ -57,6 +58,12 @@ class Settings(BaseSettings):
     """The address at which others reach the service (`https://mend.example.com`)."""
     token: SecretStr | None = None
     """What clients and robots have to show; make it long and random."""
+    tls_certificate: Path | None = None
+    """The service's certificate in PEM, with its issuers'; it then speaks TLS alone."""
+    tls_key: Path | None = None
+    """The certificate's private key in PEM, without a password."""
+    trusted_proxies: list[ProxyNetwork] = []
+    """Addresses and networks of the reverse proxies whose forwarded headers are believed."""
     allowed_hosts: list[HostName] = []
     """Names under which clients may reach the service, besides localhost and IP addresses."""
     allowed_origins: list[str] = []
@@ -110,6 +117,12 @@ class Settings(BaseSettings):
             raise ValueError(
                 f"listening on {self.host} needs a token: set MEND_TOKEN, or listen on 127.0.0.1"
             )
+        return self
+
+    @model_validator(mode="after")
+    def _require_certificate_and_key(self) -> Self:
+        if (self.tls_certificate is None) != (self.tls_key is None):
+            raise ValueError("'tls_certificate' and 'tls_key' go together: set both or neither")
         return self
 
     @classmethod

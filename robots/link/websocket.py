@@ -1,6 +1,7 @@
 """A channel to the service over a WebSocket."""
 
 import json
+import ssl
 
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidStatus
@@ -33,11 +34,13 @@ class WebSocketChannel:
         await self._connection.close()
 
 
-async def websocket_channel(url: str, token: str | None) -> WebSocketChannel:
+async def websocket_channel(
+    url: str, token: str | None, tls: ssl.SSLContext | None = None
+) -> WebSocketChannel:
     """Connect to the service at `url` (`ws://` or `wss://`, path `/ws/robot`).
 
-    Raises `LinkRefusedError` if the service turns the robot away (a wrong token) and
-    `ChannelClosedError` if there is no service.
+    `tls` says whom to trust instead of those whom this machine trusts. Raises `LinkRefusedError` if
+    the service turns the robot away (a wrong token) and `ChannelClosedError` if there is none.
     """
     headers = {} if token is None else {"Authorization": f"Bearer {token}"}
     try:
@@ -48,6 +51,7 @@ async def websocket_channel(url: str, token: str | None) -> WebSocketChannel:
             max_size=MAX_MESSAGE_BYTES,
             user_agent_header=None,
             proxy=None,
+            ssl=tls or (True if url.startswith("wss:") else None),
         )
     except InvalidStatus as error:
         status, body = error.response.status_code, bytes(error.response.body or b"")

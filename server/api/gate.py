@@ -11,7 +11,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from server.api.access import Access
 from server.api.problems import problem, problem_response
-from server.api.safe_headers import SAFE_HEADERS
+from server.api.safe_headers import OVER_TLS, SAFE_HEADERS
 
 MAX_BODY_BYTES = 8 * 1024 * 1024
 PROTECTED = ("/api/", "/metrics")
@@ -32,7 +32,11 @@ class Gate:
             return
         connection = HTTPConnection(scope)
         refusal = self._refusal(scope, connection)
-        guarded = _guarded(send, private=scope["path"].startswith(PROTECTED))
+        guarded = _guarded(
+            send,
+            private=scope["path"].startswith(PROTECTED),
+            encrypted=scope["scheme"] == "https",
+        )
         if refusal is None:
             await self._app(scope, _limited(receive), guarded)
         else:
@@ -62,14 +66,20 @@ def _refused(status: int, detail: str, headers: Mapping[str, str] | None = None)
     return problem_response(problem(status, detail), headers)
 
 
-def _guarded(send: Send, *, private: bool) -> Send:
-    """Nothing can be misused by a page, and what is `private` is kept by nobody."""
+def _guarded(send: Send, *, private: bool, encrypted: bool) -> Send:
+    """Nothing can be misused by a page, and what is `private` is kept by nobody.
+
+    A browser that has come `encrypted` is told to come in no other way.
+    """
 
     async def guarded(message: Message) -> None:
         if message["type"] == "http.response.start":
             headers = MutableHeaders(scope=message)
             for name, value in SAFE_HEADERS.items():
                 headers.setdefault(name, value)
+            if encrypted:
+                for name, value in OVER_TLS.items():
+                    headers.setdefault(name, value)
             if private:
                 headers.setdefault("Cache-Control", "no-store")
         await send(message)

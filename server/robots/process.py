@@ -9,6 +9,7 @@ import sys
 from asyncio.subprocess import DEVNULL, PIPE, Process
 from collections.abc import Callable
 from contextlib import suppress
+from pathlib import Path
 from typing import Protocol
 from uuid import uuid4
 
@@ -60,12 +61,14 @@ async def launch(
     registry: RobotRegistry,
     url: str,
     token: str | None,
+    certificate: Path | None = None,
     hang_s: float = 6.0,
 ) -> SimulatedRobot:
     """Start a simulated robot in a world of the entry points.
 
     A robot in a process of its own that is silent for `hang_s` is killed. `url` is this service's
-    `/ws/robot`, as seen from this machine. Raises `InvalidError` if there is no such world or it
+    `/ws/robot`, as seen from this machine, and `certificate` the service's own, if it speaks TLS.
+    Raises `InvalidError` if there is no such world or it
     cannot run here.
     """
     try:
@@ -74,7 +77,9 @@ async def launch(
         raise InvalidError(str(error)) from error
     robot: SimulatedRobot
     if adapter.own_process:
-        robot = RobotProcess(world_name, ended, registry, url, token, hang_s=hang_s)
+        robot = RobotProcess(
+            world_name, ended, registry, url, token, certificate=certificate, hang_s=hang_s
+        )
     else:
         robot = InProcessRobot(adapter, ended, registry)
     await robot.start(setup)
@@ -95,6 +100,7 @@ class RobotProcess:
         url: str,
         token: str | None,
         *,
+        certificate: Path | None = None,
         hang_s: float = 6.0,
         start_s: float = 120.0,
         stop_s: float = 2.0,
@@ -104,6 +110,7 @@ class RobotProcess:
         self._registry = registry
         self._url = url
         self._token = token
+        self._certificate = None if certificate is None else str(certificate.resolve())
         self._hang_s = hang_s
         self._start_s = start_s
         self._stop_s = stop_s
@@ -131,7 +138,11 @@ class RobotProcess:
         self._process = process
         self._watcher = asyncio.create_task(self._watch(process, setup.robot))
         told = RobotProcessSetup(
-            world=self._world_name, setup=setup, url=self._url, token=self._token
+            world=self._world_name,
+            setup=setup,
+            url=self._url,
+            token=self._token,
+            certificate=self._certificate,
         )
         assert process.stdin is not None, "stdin is a pipe"
         process.stdin.write(told.model_dump_json().encode() + b"\n")

@@ -116,7 +116,7 @@ async def serving(
     """A service behind a real socket on a free port."""
     service = build(speech, **arguments)
     config = serve_config(service.app, service.settings)
-    server = Server(config, service.settings.limits, service.refusals)
+    server = Server(config, service.settings, service.refusals)
     service.served_by = server
     server.config.log_level = None
     socket = listen(service.settings)

@@ -92,6 +92,8 @@ def test_loopback_needs_no_token(host: str) -> None:
         ("MEND_PUBLIC_URL", "https://mend.example.com/mend", "the console is at the root"),
         ("MEND_PUBLIC_URL", "https://mend.example.com/?a=b", "the console is at the root"),
         ("MEND_PUBLIC_URL", "https://anna:secret@mend.example.com", "no user or password"),
+        ("MEND_TLS_KEY", "key.pem", "'tls_certificate' and 'tls_key' go together"),
+        ("MEND_TRUSTED_PROXIES", '["proxy"]', "'proxy' is neither an IP address nor a network"),
         ("MEND_TOKEN", " ", "'token' must not be empty"),
         ("MEND_PROT", "1", "There is no setting MEND_PROT"),
         ("MEND_HELPERS", "anna", "cannot be read"),
