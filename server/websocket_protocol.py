@@ -5,16 +5,30 @@ from websockets.protocol import State
 
 from server.visitors import STATE_KEY, Visitor
 
+STRANGER_MESSAGE_BYTES = 64 * 1024
+"""Long enough for a token."""
+
 
 class WebSocketProtocol(WebSocketsSansIOProtocol):
     """Uvicorn's own, but for clients that are just closing, or ping and read nothing."""
 
-    def connection_lost(self, exc: Exception | None) -> None:
-        """The visitor of `app_state`, where there is one, leaves."""
+    @property
+    def _visitor(self) -> Visitor | None:
+        """The visitor of `app_state`, where there is one."""
         visitor: Visitor | None = self.app_state.get(STATE_KEY)
-        if visitor is not None:
-            visitor.leave()
+        return visitor
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        if self._visitor is not None:
+            self._visitor.leave()
         super().connection_lost(exc)
+
+    def data_received(self, data: bytes) -> None:
+        """Read on; a stranger's messages are short, so that many strangers fill no memory."""
+        stranger = self._visitor is not None and not self._visitor.is_admitted
+        most = self.config.ws_max_size
+        self.conn.max_message_size = min(most, STRANGER_MESSAGE_BYTES) if stranger else most
+        super().data_received(data)
 
     def handle_ping(self) -> None:
         """Answer a ping, unless so much waits for the client already."""

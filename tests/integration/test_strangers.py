@@ -176,3 +176,24 @@ async def test_websockets_that_never_show_the_token_are_strangers_until_they_are
             socket = await stack.enter_async_context(connect(f"{service.ws}?helper=anna"))
             await socket.send(json.dumps({"type": "auth", "token": TOKEN}))
             assert (await first_message(socket))["type"] == "snapshot"
+
+
+async def test_what_a_stranger_says_is_short(service_with_token: ServiceUnderTest) -> None:
+    long = json.dumps({"type": "ping", "id": "x" * 100_000})
+    async with connect(f"{service_with_token.ws}?helper=anna") as socket, asyncio.timeout(60):
+        await socket.send(long)
+        await socket.wait_closed()
+        assert socket.close_code == 1009
+    headers = {"Authorization": f"Bearer {TOKEN}"}
+    async with connect(
+        f"{service_with_token.ws}?helper=anna", additional_headers=headers
+    ) as socket:
+        assert (await first_message(socket))["type"] == "snapshot"
+        await socket.send(long)
+        assert (await first_message(socket))["status"] == 413
+
+
+@pytest.fixture
+async def service_with_token() -> AsyncIterator[ServiceUnderTest]:
+    async with serving(token=TOKEN) as service:
+        yield service
