@@ -220,8 +220,9 @@ async def _render_prompts(speech: SpeechAbilities, journal: SqliteJournal) -> No
 
 async def _stop_speech(speech: SpeechAbilities, rendering: "asyncio.Task[None]") -> None:
     rendering.cancel()
-    with suppress(asyncio.CancelledError):
-        await rendering
+    (ended,) = await asyncio.gather(rendering, return_exceptions=True)
+    if isinstance(ended, Exception):
+        log.error("prompts were not rendered ahead any more", exc_info=ended)
     await speech.close()
 
 

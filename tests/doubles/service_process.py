@@ -79,11 +79,13 @@ class ServiceProcess:
         orphans = await asyncio.to_thread(psutil.wait_procs, robots, timeout=10.0)
         assert orphans[1] == [], "a simulated robot outlived its service"
 
-    async def stop(self) -> None:
-        """Let it end by itself, if it still runs."""
-        if self._process is not None and self._process.returncode is None:
+    async def stop(self) -> int | None:
+        """Let it end by itself, if it still runs; its exit code."""
+        if self._process is None:
+            return None
+        if self._process.returncode is None:
             self._process.terminate()
-            await self._process.wait()
+        return await self._process.wait()
 
     def robots(self) -> list[psutil.Process]:
         """The processes of its simulated robots."""
