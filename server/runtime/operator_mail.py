@@ -17,7 +17,7 @@ log = logging.getLogger(__name__)
 WAITS_S = (5.0, 30.0, 120.0, 300.0)
 """Between two tries; a mail that cannot be sent after the last is given up."""
 
-LAST_MOMENT_S = 1.0
+LAST_MOMENT_S = 0.75
 """So long a mail that is just under way may take when the service stops."""
 
 HANG_UP_S = 0.2
