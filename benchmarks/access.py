@@ -39,8 +39,8 @@ def main() -> None:
         assert principal is not None
         cookie = _connection(b"cookie", f"mend_session={access.sessions.new(principal)[1]}")
         told = {
-            "a bearer, with a look at the file": lambda: access.caller(bearer),
-            "a session cookie, with a look at the file": lambda: access.caller(cookie),
+            "a bearer, with a look at the file": lambda: access.by_request(bearer).caller,
+            "a session cookie, with a look at the file": lambda: access.by_request(cookie).caller,
             "the role that a request needs": lambda: needed_for_request("GET", "/metrics"),
         }
         for what, work in told.items():

@@ -141,7 +141,8 @@ class JournaledDocuments:
         if others + len(text) > self._most_chars:
             raise ConflictError(
                 f"there is no room for the {SPOKEN[self.kind]} '{name}': all that are uploaded may "
-                f"have {self._most_chars} characters, and the others have {others}; delete some"
+                f"have {self._most_chars} characters, and the others have {others}; delete some",
+                limit="uploaded_chars",
             )
 
     async def delete(self, name: str, author: Author | None = None) -> None:

@@ -18,6 +18,8 @@ from pydantic_settings import (
 from server.dialogues.mail import MailSettings
 from server.journal.sqlite import IN_MEMORY
 from server.limits import Limits
+from server.proxies import ProxyNetwork
+from server.public_url import PublicUrl
 from server.retention import KeepSettings
 from server.speech.voice import VoiceChoice
 
@@ -54,10 +56,18 @@ class Settings(BaseSettings):
     """The address to listen on; anything but loopback needs a token."""
     port: Annotated[int, Field(ge=0, le=65_535)] = 8080
     """The port to listen on; 0 takes a free one."""
+    public_url: PublicUrl | None = None
+    """The address at which others reach the service (`https://mend.example.com`)."""
     token: SecretStr | None = None
     """What an admin has to show, or a robot without a credential of its own; long and random."""
     principals: Path | None = None
     """The file of principals; `principals.yaml` in `data_dir` unless set."""
+    tls_certificate: Path | None = None
+    """The service's certificate in PEM, with its issuers'; it then speaks TLS alone."""
+    tls_key: Path | None = None
+    """The certificate's private key in PEM, without a password."""
+    trusted_proxies: list[ProxyNetwork] = []
+    """Addresses and networks of the reverse proxies whose forwarded headers are believed."""
     allowed_hosts: list[HostName] = []
     """Names under which clients may reach the service, besides localhost and IP addresses."""
     allowed_origins: list[str] = []
@@ -130,6 +140,12 @@ class Settings(BaseSettings):
                 f"listening on {self.host} needs a token: set MEND_TOKEN, add principals "
                 "('mend access add'), or listen on 127.0.0.1"
             )
+        return self
+
+    @model_validator(mode="after")
+    def _require_certificate_and_key(self) -> Self:
+        if (self.tls_certificate is None) != (self.tls_key is None):
+            raise ValueError("'tls_certificate' and 'tls_key' go together: set both or neither")
         return self
 
     @classmethod
@@ -210,6 +226,14 @@ def _sentence(error: Any) -> str:
     if error["type"] == "extra_forbidden":
         return f"There is no setting '{where}'."
     return f"The setting '{where}' is wrong: {message[0].lower()}{message[1:]}."
+
+
+def is_everywhere(host: str) -> bool:
+    """Whether an address to listen on stands for all of this machine's."""
+    try:
+        return ipaddress.ip_address(host).is_unspecified
+    except ValueError:
+        return host == ""
 
 
 def is_loopback(host: str) -> bool:

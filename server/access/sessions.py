@@ -7,10 +7,8 @@ import secrets
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 
 from server.access.principal import Principal
-from server.journal.file_mode import keep_to_owner
 
 SESSION_LIFETIME_S = 12 * 3600
 KEY_BYTES = 32
@@ -108,19 +106,6 @@ class Sessions:
 def new_session_key() -> bytes:
     """A key for a service whose sessions need not survive it."""
     return secrets.token_bytes(KEY_BYTES)
-
-
-def kept_session_key(path: Path) -> bytes:
-    """The key in a file that only its owner can read; made if there is none.
-
-    Raises `OSError`.
-    """
-    keep_to_owner(path)
-    key = path.read_bytes()
-    if len(key) != KEY_BYTES:
-        key = new_session_key()
-        path.write_bytes(key)
-    return key
 
 
 def _bytes(text: str) -> bytes:

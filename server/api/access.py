@@ -2,6 +2,7 @@
 
 import asyncio
 import ipaddress
+import math
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
@@ -14,7 +15,13 @@ from server.access.principal import ANYBODY, TOKEN_NAME, Caller, Principal
 from server.access.roles import Role
 from server.access.sessions import Session, Sessions, new_session_key
 from server.access.tokens import fingerprint, fits
-from server.robots.passes import OneRobot, OwnRobots
+from server.api.admission import REFUSED, Admission
+from server.api.wrong_tokens import WrongTokens
+from server.household import household_of
+from server.limits import Limits
+from server.refusals import Refusals
+from server.robots.passes import OneRobot, OwnRobots, Pass
+from server.visitors import visitor_of
 
 SESSION_COOKIE = "mend_session"
 
@@ -36,6 +43,8 @@ class Access:
         failed: Callable[[str | None], None] = lambda _address: None,
         allowed_hosts: Sequence[str] = (),
         allowed_origins: Sequence[str] = (),
+        limits: Limits | None = None,
+        refusals: Refusals | None = None,
         wall_time_s: Callable[[], float],
     ) -> None:
         self.principals = principals or KnownPrincipals(None, wall_time_s)
@@ -48,6 +57,8 @@ class Access:
         self._own_robots = own_robots or OwnRobots()
         self._wall_time_s = wall_time_s
         self._failed = failed
+        self._wrong = WrongTokens((limits or Limits()).wrong_tokens, wall_time_s)
+        self._refusals = refusals or Refusals()
         self._hosts = {"localhost", *(host.lower() for host in allowed_hosts)}
         self._origins = {origin.lower().rstrip("/") for origin in allowed_origins}
         self._watched: dict[int, tuple[Caller, asyncio.Event]] = {}
@@ -68,24 +79,71 @@ class Access:
             return self._holder
         return self.principals.of_token(token)
 
-    def caller(self, connection: HTTPConnection) -> Caller | None:
-        """Who a connection comes from, by a bearer or its session cookie; None for a stranger.
+    def by_request(self, connection: HTTPConnection) -> Admission:
+        """By what a request shows: a token as a bearer, or else a session cookie.
 
-        A robot is one too: its credential opens nothing but the robots' socket.
+        A robot is let in too: its credential opens nothing but the robots' socket.
         """
-        self.look()
-        address = address_of(connection)
-        if not self.required:
-            return Caller(ANYBODY, address)
         bearer = bearer_of(connection)
-        if bearer is not None:
-            principal = self.of_token(bearer)
-            return None if principal is None else Caller(principal, address)
+        if bearer:
+            return self.by_token(bearer, connection)
+        self.look()
+        if not self.required:
+            return _welcomed(Caller(ANYBODY, address_of(connection)), connection)
+        # Signed with a key that nobody can guess, so guessing it needs no throttle.
         session = self.sessions.read(connection.cookies.get(SESSION_COOKIE, ""))
         principal = None if session is None else self.of_session(session)
-        if session is None or principal is None:
-            return None
-        return Caller(principal, address, session.id, session.expires)
+        if session is not None and principal is not None:
+            address = address_of(connection)
+            return _welcomed(Caller(principal, address, session.id, session.expires), connection)
+        if bearer is not None:
+            self._failed(address_of(connection))
+        return REFUSED
+
+    def by_bearer(self, connection: HTTPConnection) -> Admission:
+        """By a token as a bearer, and by nothing else."""
+        bearer = bearer_of(connection)
+        if bearer or not self.required:
+            return self.by_token(bearer or "", connection)
+        if bearer is not None:
+            self._failed(address_of(connection))
+        return REFUSED
+
+    def by_token(self, shown: str, connection: HTTPConnection) -> Admission:
+        """By the token that somebody shows on a connection, wherever in it.
+
+        While an address has to wait, what it shows is not even read; else guessing would be as
+        quick as before. Whoever is in already stays in: on a connection that was admitted it is.
+        """
+        self.look()
+        if self.required:
+            wait_s = self.wait_s(shown, connection)
+            if wait_s > 0:
+                return Admission(None, wait_s)
+        principal = self.of_token(shown)
+        if principal is None:
+            self.wrong(shown, connection)
+            return REFUSED
+        return _welcomed(Caller(principal, address_of(connection)), connection)
+
+    def wait_s(self, shown: str, connection: HTTPConnection) -> int:
+        """How many seconds nothing new that this address shows is read; 0 if it is read now.
+
+        What was wrong before is no other guess, and may be read again: the file of principals can
+        have changed since.
+        """
+        household = _household(connection)
+        if _is_in(connection) or self._wrong.is_known(household, _bytes(shown)):
+            return 0
+        wait_s = math.ceil(self._wrong.wait_s(household))
+        if wait_s > 0:
+            self._refusals.note("wrong_tokens")
+        return wait_s
+
+    def wrong(self, shown: str, connection: HTTPConnection) -> None:
+        """Somebody has shown a wrong token or code."""
+        self._wrong.add(_household(connection), _bytes(shown))
+        self._failed(address_of(connection))
 
     def session(self, connection: HTTPConnection) -> Session | None:
         """The session of a connection's cookie, if it is a good one."""
@@ -102,11 +160,6 @@ class Access:
         if caller.until is not None and caller.until <= self._wall_time_s():
             return None
         return replace(caller, principal=principal)
-
-    def refused(self, connection: HTTPConnection, *, shown: bool = False) -> None:
-        """Count a connection that was refused, if it has shown a bearer (or else something)."""
-        if shown or bearer_of(connection) is not None:
-            self._failed(address_of(connection))
 
     def of_session(self, session: Session) -> Principal | None:
         """Whose session it is, if the credential that began it is still good."""
@@ -142,33 +195,23 @@ class Access:
 
     # --- Robots -------------------------------------------------------------------------------
 
-    def robot_pass(self, connection: HTTPConnection) -> "OneRobot | UnboundRobot | None":
-        """As which robot a connection may say hello; None if as none."""
+    def own_robot(self, connection: HTTPConnection) -> OneRobot | None:
+        """As which robot a process of this service's own may say hello; None for anybody else.
+
+        Its credential is made for its time, and nobody can guess it: it never has to wait.
+        """
         bearer = bearer_of(connection)
-        own = None if bearer is None else self._own_robots.of_token(bearer)
-        if own is not None:
-            return OneRobot(own)
-        caller = self.caller(connection)
-        if caller is None:
+        robot = None if bearer is None else self._own_robots.of_token(bearer)
+        if robot is None:
             return None
+        _admit(connection)
+        return OneRobot(robot)
+
+    def robot_pass(self, caller: Caller) -> Pass | None:
+        """As which robot somebody may say hello; None if as none."""
         if caller.principal.role is Role.ROBOT:
             return OneRobot(caller.principal.name)
         return None if caller.principal.named else UnboundRobot(self)
-
-    @contextmanager
-    def watched_robot(self, connection: HTTPConnection) -> Iterator[asyncio.Event]:
-        """An event that is set once a robot's connection may come in no longer.
-
-        Never for a robot of this service's own, which it ends itself.
-        """
-        bearer = bearer_of(connection)
-        own = bearer is not None and self._own_robots.of_token(bearer) is not None
-        caller = None if own else self.caller(connection)
-        if caller is None:
-            yield asyncio.Event()
-            return
-        with self.watched(caller) as gone:
-            yield gone
 
     def bound(self, robot: str) -> bool:
         """Whether a robot's name belongs to a credential."""
@@ -225,6 +268,32 @@ def bearer_of(connection: HTTPConnection) -> str | None:
 def address_of(connection: HTTPConnection) -> str | None:
     """Where a connection comes from."""
     return None if connection.client is None else connection.client.host
+
+
+def _welcomed(caller: Caller, connection: HTTPConnection) -> Admission:
+    _admit(connection)
+    return Admission(caller)
+
+
+def _admit(connection: HTTPConnection) -> None:
+    """Whoever made this connection is no stranger any more."""
+    visitor = visitor_of(connection.scope)
+    if visitor is not None:
+        visitor.admit()
+
+
+def _is_in(connection: HTTPConnection) -> bool:
+    """Whether the connection was admitted before, and is one client's alone."""
+    visitor = visitor_of(connection.scope)
+    return visitor is not None and visitor.is_admitted and visitor.household is not None
+
+
+def _household(connection: HTTPConnection) -> str:
+    return household_of(connection.client.host) if connection.client else ""
+
+
+def _bytes(text: str) -> bytes:
+    return text.encode("utf-8", "surrogatepass")
 
 
 def _is_ip(name: str) -> bool:

@@ -12,10 +12,16 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from server.access.permissions import SOCKETS, needed_for_message
 from server.access.principal import Caller
-from server.api.access import address_of, bearer_of
+from server.api.admission import REFUSED
 from server.api.helper_messages import Auth, Error, HelperMessage
 from server.api.parts import HelperName, Parts, parts_of
-from server.api.problems import Problem, forbidden, problem, validation_sentences
+from server.api.problems import (
+    Problem,
+    forbidden,
+    problem,
+    problem_response,
+    validation_sentences,
+)
 from server.journal.events import Author
 
 THE_END = 1000
@@ -103,27 +109,23 @@ class HelperConnection(ABC, Generic[Query]):
         if not (access.host_allowed(websocket) and access.origin_allowed(websocket)):
             await websocket.close(POLICY_VIOLATION, "this Host or Origin may not connect")
             return None
-        caller = access.caller(websocket)
-        if caller is None and bearer_of(websocket) is not None:
-            access.refused(websocket)
+        admission = access.by_request(websocket)
+        if admission.wait_s:
+            refusal = problem(429, admission.too_many)
+            await websocket.send_denial_response(problem_response(refusal, admission.retry_after))
+            return None
+        if "authorization" in websocket.headers and admission.caller is None:
             await websocket.close(POLICY_VIOLATION, "this is not the token")
             return None
         await websocket.accept()
-        if caller is None:
-            caller = await self._by_first_message()
-        if caller is None:
+        if admission.caller is None:
+            token = await self._first_token()
+            admission = REFUSED if token is None else access.by_token(token, websocket)
+        if admission.wait_s:
+            await self._turn_away(problem(429, admission.too_many), TRY_AGAIN_LATER)
+        elif admission.caller is None:
             await websocket.close(POLICY_VIOLATION, "the first message must show the token")
-        return caller
-
-    async def _by_first_message(self) -> Caller | None:
-        token = await self._first_token()
-        if token is None:
-            return None
-        principal = self._parts.access.of_token(token)
-        if principal is None:
-            self._parts.access.refused(self._websocket, shown=True)
-            return None
-        return Caller(principal, address_of(self._websocket))
+        return admission.caller
 
     async def _first_token(self) -> str | None:
         """The token in the first message; None for any other message, and for none in time."""
@@ -190,10 +192,10 @@ class HelperConnection(ABC, Generic[Query]):
         fields = refusal.model_dump(include={"status", "title", "detail", "answered_by", "errors"})
         await self._send(Error(id=to, **fields))
 
-    async def _turn_away(self, refusal: Problem) -> None:
+    async def _turn_away(self, refusal: Problem, code: int = POLICY_VIOLATION) -> None:
         """Say why this connection cannot be served, and close it."""
         await self._refuse(refusal)
-        await self._websocket.close(POLICY_VIOLATION, refusal.detail[:MAX_REASON_CHARS])
+        await self._websocket.close(code, refusal.detail[:MAX_REASON_CHARS])
 
 
 async def until_one_ends(*works: Coroutine[Any, Any, None]) -> None:

@@ -1,4 +1,4 @@
-"""What Prometheus may know: runs, dialogues, events, subscribers and the journal's commits."""
+"""What Prometheus may know: runs, dialogues, events, subscribers, limits, the journal's commits."""
 
 from collections.abc import Iterator, Mapping
 
@@ -38,7 +38,18 @@ class ServiceCollector(Collector):
         )
         connected = sum(robot.connected for robot in self._parts.runs.robots())
         yield GaugeMetricFamily("mend_robots_connected", "Robots connected.", value=connected)
+        yield self._refused()
         yield from self._journal()
+
+    def _refused(self) -> Metric:
+        refused = CounterMetricFamily(
+            "mend_refused",
+            "What was beyond a limit, and so refused, ended or forgotten.",
+            labels=["limit"],
+        )
+        for limit, count in self._parts.refusals.counts.items():
+            refused.add_metric([limit], count)
+        return refused
 
     def _journal(self) -> Iterator[Metric]:
         journal = self._parts.journal

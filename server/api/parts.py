@@ -1,6 +1,6 @@
 """What the routes work with: the parts of the service, and parameters that many of them take."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Annotated, Protocol
 from uuid import UUID
 
@@ -18,6 +18,7 @@ from server.journal.subscriptions import Subscribers
 from server.journal.writer import CommitStatistics
 from server.models import RobotModels
 from server.poses.feed import PoseSource
+from server.refusals import Refusals
 from server.runtime.service import RunService
 from server.runtime.views import WorldView
 from server.settings import Settings
@@ -60,6 +61,7 @@ class Parts:
     deeds: DeedLog
     editor: PrincipalsEditor
     speech: SpeechAbilities = NO_SPEECH
+    refusals: Refusals = field(default_factory=Refusals)
 
 
 def parts_of(connection: HTTPConnection) -> Parts:
@@ -67,16 +69,9 @@ def parts_of(connection: HTTPConnection) -> Parts:
     return parts
 
 
-def caller_of(connection: HTTPConnection) -> Caller | None:
-    """Who the gate has let in; None at a door that is open to strangers."""
-    caller: Caller | None = connection.state.caller
-    return caller
-
-
 def known_caller(connection: HTTPConnection) -> Caller:
     """Who the gate has let in, at a door that lets in nobody else."""
-    caller = caller_of(connection)
-    assert caller is not None, "the gate lets no stranger in here"
+    caller: Caller = connection.state.caller
     return caller
 
 

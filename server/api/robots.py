@@ -9,9 +9,10 @@ from server.access.changes import EnrolmentRefusedError
 from server.access.principals_file import RobotName
 from server.access.roles import Role
 from server.api.access import address_of
+from server.api.admission import Admission
 from server.api.parts import Limit, Offset, WithParts
 from server.api.principals import edited
-from server.api.problems import documented
+from server.api.problems import ProblemError, documented
 from server.api.strict_json import StrictJsonRoute
 from server.journal.events import Author
 from server.runtime.views import RobotView
@@ -45,17 +46,20 @@ async def list_robots(parts: WithParts, limit: Limit = 1000, offset: Offset = 0)
 
 @router.post(
     "/enrol", operation_id="enrol_robot", status_code=201,
-    responses=documented(400, 403, 409, 413, 421, 422, 503),
+    responses=documented(400, 403, 409, 413, 421, 422, 429, 503),
 )  # fmt: skip
 async def enrol_robot(body: EnrolmentRequest, request: Request, parts: WithParts) -> Credential:
     """Exchange a one-time code for the robot's own credential, which is shown only now."""
     address = address_of(request)
+    wait = Admission(None, parts.access.wait_s(body.code, request))
+    if wait.wait_s:
+        raise ProblemError(429, wait.too_many, wait.retry_after)
     try:
         token = await edited(
             parts, lambda: parts.editor.enrol(body.robot, body.code, datetime.now(UTC))
         )
     except EnrolmentRefusedError:
-        parts.access.refused(request, shown=True)
+        parts.access.wrong(body.code, request)
         raise
     author = Author(principal=body.robot, role=Role.ROBOT, address=address)
     parts.deeds.access_changed("enrolled", body.robot, Role.ROBOT, author)

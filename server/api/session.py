@@ -1,15 +1,13 @@
 """How a browser signs in: the token once, a cookie from then on."""
 
-from typing import Annotated
-
-from fastapi import APIRouter, Depends, Request, Response
+from fastapi import APIRouter, Request, Response
 from pydantic import BaseModel, ConfigDict, Field
 
 from server.access.principal import Caller
 from server.access.roles import Role
 from server.access.sessions import SESSION_LIFETIME_S, TooManySessionsError
 from server.api.access import SESSION_COOKIE, address_of
-from server.api.parts import WithParts, caller_of
+from server.api.parts import WithParts
 from server.api.problems import ProblemError, documented
 
 router = APIRouter(prefix="/api", tags=["session"])
@@ -38,10 +36,9 @@ class SessionView(BaseModel):
 
 
 @router.get("/session", operation_id="get_session", responses=documented(421))
-async def get_session(
-    parts: WithParts, caller: Annotated[Caller | None, Depends(caller_of)]
-) -> SessionView:
+async def get_session(request: Request, parts: WithParts) -> SessionView:
     """Whether a token is needed, whether this client has shown one, and whose it is."""
+    caller = parts.access.by_request(request).caller
     principal = None if caller is None else caller.principal
     return SessionView(
         required=parts.access.required,
@@ -57,12 +54,14 @@ async def get_session(
 )  # fmt: skip
 async def sign_in(body: SignIn, request: Request, response: Response, parts: WithParts) -> None:
     """Show a token and get a session cookie for it; a session that was there before ends."""
-    principal = parts.access.of_token(body.token)
-    if principal is None:
-        parts.access.refused(request, shown=True)
+    admission = parts.access.by_token(body.token, request)
+    if admission.wait_s:
+        raise ProblemError(429, admission.too_many, admission.retry_after)
+    if admission.caller is None:
         raise ProblemError(
             401, "this is not the token of anybody here", {"WWW-Authenticate": "Bearer"}
         )
+    principal = admission.caller.principal
     if principal.role is Role.ROBOT:
         raise ProblemError(403, "this is the credential of a robot, and no person's token")
     try:

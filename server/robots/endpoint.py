@@ -2,16 +2,18 @@
 
 import asyncio
 from collections.abc import Collection
-from contextlib import AbstractContextManager, suppress
-from typing import Protocol
+from contextlib import suppress
+from dataclasses import dataclass
 
 from fastapi import FastAPI
-from starlette.requests import HTTPConnection
-from starlette.responses import PlainTextResponse
+from starlette.responses import Response
 from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketState
 
 from robots.link.channel import ChannelClosedError
 from robots.link.messages import LinkError
+from server.access.principal import Caller
+from server.api.access import Access
+from server.api.problems import problem, problem_response
 from server.robots.passes import Pass
 from server.robots.registry import RobotRegistry
 
@@ -20,11 +22,8 @@ ROBOT_PATH = "/ws/robot"
 MAX_MESSAGE_BYTES = 1 << 20
 
 REVOKED = "this credential is good no longer: enrol the robot again"
-NO_BROWSERS = PlainTextResponse("robots connect without an Origin header", status_code=403)
-NO_CREDENTIAL = PlainTextResponse(
-    "a robot has to present its credential, or the service's token: 'Authorization: Bearer ...'",
-    status_code=401,
-    headers={"WWW-Authenticate": "Bearer"},
+NO_CREDENTIAL = (
+    "a robot has to present its credential, or the service's token: 'Authorization: Bearer ...'"
 )
 
 CLOSED_NORMALLY = 1000
@@ -71,52 +70,34 @@ class StarletteChannel:
                 raise ChannelClosedError(str(error)) from error
 
 
-class RobotAdmission(Protocol):
-    """Who may connect as a robot."""
-
-    def robot_pass(self, connection: HTTPConnection) -> Pass | None:
-        """What a connection has shown; None if nothing that a robot may come in with."""
-        ...
-
-    def watched_robot(self, connection: HTTPConnection) -> AbstractContextManager[asyncio.Event]:
-        """An event that is set once the connection may come in no longer."""
-        ...
-
-    def refused(self, connection: HTTPConnection) -> None:
-        """Told of a connection that was refused for what it has shown."""
-        ...
-
-
 def add_robot_route(
     app: FastAPI,
     registry: RobotRegistry,
-    admission: RobotAdmission,
+    access: Access,
     *,
     allowed_origins: Collection[str] = (),
 ) -> None:
     """Serve `/ws/robot`.
 
     A robot has to present its credential as a bearer token, or the service's own token where there
-    is one (else HTTP status 401). A request with an `Origin` comes from a browser and is refused
-    (403) unless that origin is allowed.
+    is one (else HTTP status 401, or 429 while its address has to wait). A request with an `Origin`
+    comes from a browser and is refused (403) unless that origin is allowed.
     """
 
     async def connect(websocket: WebSocket) -> None:
-        origin = websocket.headers.get("origin")
-        if origin is not None and origin not in allowed_origins:
-            await websocket.send_denial_response(NO_BROWSERS)
-            return
-        shown = admission.robot_pass(websocket)
-        if shown is None:
-            admission.refused(websocket)
-            await websocket.send_denial_response(NO_CREDENTIAL)
+        shown = _shown(websocket, access, allowed_origins)
+        if isinstance(shown, Response):
+            await websocket.send_denial_response(shown)
             return
         await websocket.accept()
         channel = StarletteChannel(websocket)
-        with admission.watched_robot(websocket) as gone:
+        if shown.caller is None:
+            await registry.serve(channel, shown.robot)
+            return
+        with access.watched(shown.caller) as gone:
             revoking = asyncio.create_task(_end_when(gone, channel))
             try:
-                await registry.serve(channel, shown)
+                await registry.serve(channel, shown.robot)
             finally:
                 revoking.cancel()
 
@@ -128,3 +109,29 @@ async def _end_when(gone: asyncio.Event, channel: StarletteChannel) -> None:
     with suppress(ChannelClosedError):
         await channel.send(LinkError(detail=REVOKED).model_dump_json())
         await channel.close()
+
+
+@dataclass(frozen=True, slots=True)
+class _Shown:
+    """As which robot a connection may say hello; `caller` None: a process of this service's."""
+
+    robot: Pass
+    caller: Caller | None
+
+
+def _shown(
+    websocket: WebSocket, access: Access, allowed_origins: Collection[str]
+) -> _Shown | Response:
+    origin = websocket.headers.get("origin")
+    if origin is not None and origin not in allowed_origins:
+        return problem_response(problem(403, "robots connect without an Origin header"))
+    own = access.own_robot(websocket)
+    if own is not None:
+        return _Shown(own, None)
+    admission = access.by_bearer(websocket)
+    if admission.wait_s:
+        return problem_response(problem(429, admission.too_many), admission.retry_after)
+    robot = None if admission.caller is None else access.robot_pass(admission.caller)
+    if robot is None:
+        return problem_response(problem(401, NO_CREDENTIAL), {"WWW-Authenticate": "Bearer"})
+    return _Shown(robot, admission.caller)

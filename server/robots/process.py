@@ -9,6 +9,7 @@ import sys
 from asyncio.subprocess import DEVNULL, PIPE, Process
 from collections.abc import Callable
 from contextlib import suppress
+from pathlib import Path
 from typing import Protocol
 from uuid import uuid4
 
@@ -61,13 +62,15 @@ async def launch(
     registry: RobotRegistry,
     own_robots: OwnRobots,
     url: str,
+    certificate: Path | None = None,
     hang_s: float = 6.0,
 ) -> SimulatedRobot:
     """Start a simulated robot in a world of the entry points.
 
     A robot in a process of its own that is silent for `hang_s` is killed. `url` is this service's
-    `/ws/robot`, as seen from this machine; the process gets a credential for its time. Raises
-    `InvalidError` if there is no such world or it cannot run here.
+    `/ws/robot`, as seen from this machine, and `certificate` the service's own, if it speaks TLS;
+    the process gets a credential for its time. Raises `InvalidError` if there is no such world or
+    it cannot run here.
     """
     try:
         adapter = find_world(world_name)
@@ -75,7 +78,9 @@ async def launch(
         raise InvalidError(str(error)) from error
     robot: SimulatedRobot
     if adapter.own_process:
-        robot = RobotProcess(world_name, ended, registry, own_robots, url, hang_s=hang_s)
+        robot = RobotProcess(
+            world_name, ended, registry, own_robots, url, certificate=certificate, hang_s=hang_s
+        )
     else:
         robot = InProcessRobot(adapter, ended, registry, own_robots)
     await robot.start(setup)
@@ -96,6 +101,7 @@ class RobotProcess:
         own_robots: OwnRobots,
         url: str,
         *,
+        certificate: Path | None = None,
         hang_s: float = 6.0,
         start_s: float = 120.0,
         stop_s: float = 2.0,
@@ -106,6 +112,7 @@ class RobotProcess:
         self._url = url
         self._own_robots = own_robots
         self._token: str | None = None
+        self._certificate = None if certificate is None else str(certificate.resolve())
         self._hang_s = hang_s
         self._start_s = start_s
         self._stop_s = stop_s
@@ -134,7 +141,11 @@ class RobotProcess:
         self._process = process
         self._watcher = asyncio.create_task(self._watch(process, setup.robot))
         told = RobotProcessSetup(
-            world=self._world_name, setup=setup, url=self._url, token=self._token
+            world=self._world_name,
+            setup=setup,
+            url=self._url,
+            token=self._token,
+            certificate=self._certificate,
         )
         assert process.stdin is not None, "stdin is a pipe"
         process.stdin.write(told.model_dump_json().encode() + b"\n")

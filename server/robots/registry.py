@@ -13,6 +13,7 @@ from robots.link.messages import PROTOCOL_VERSION, CommandBody, Hello, LinkError
 from server.errors import ConflictError
 from server.journal.journal import Journal, JournalClosedError
 from server.limits import Limits
+from server.refusals import Refusals
 from server.robots.known_robot import KnownRobot
 from server.robots.passes import Anyone, Pass
 from server.robots.session import NoSenseError, RobotSession, read_message, sentence
@@ -36,11 +37,13 @@ class RobotRegistry:
         clock: Callable[[], float],
         times: LinkTimes | None = None,
         limits: Limits | None = None,
+        refusals: Refusals | None = None,
     ) -> None:
         self._journal = journal
         self._clock = clock
         self._times = times or LinkTimes()
         self._limits = limits or Limits()
+        self._refusals = refusals or Refusals()
         self._robots: dict[str, KnownRobot] = {}
         self._closed = False
 
@@ -127,6 +130,7 @@ class RobotRegistry:
         departed = [name for name, robot in self._robots.items() if robot.departed]
         for name in departed[: -self._limits.departed_robots]:
             del self._robots[name]
+            self._refusals.note("departed_robots")
 
     # --- Connections --------------------------------------------------------------------------
 
@@ -195,6 +199,7 @@ class RobotRegistry:
         most = self._limits.hello_chars
         if len(text) <= most:
             return None
+        self._refusals.note("hello_chars")
         return f"a hello may have {most} characters; this one has {len(text)}"
 
 

@@ -84,18 +84,21 @@ def _refuse_too_much(request: RunRequest, limits: Limits) -> None:
     answers = request.answers if isinstance(request.answers, list) else []
     if len(answers) > limits.answers:
         raise InvalidError(
-            f"'answers' has {len(answers)} entries; at most {limits.answers} are taken"
+            f"'answers' has {len(answers)} entries; at most {limits.answers} are taken",
+            limit="answers",
         )
     if len(request.world_options) > limits.world_options:
         raise InvalidError(
             f"'world_options' has {len(request.world_options)} entries; "
-            f"at most {limits.world_options} are taken"
+            f"at most {limits.world_options} are taken",
+            limit="world_options",
         )
     for name, value in request.world_options.items():
         if max(len(name), len(str(value))) > limits.option_chars:
             raise InvalidError(
                 f"the world option '{name[:40]}' is too long: its name and its text may have "
-                f"{limits.option_chars} characters each"
+                f"{limits.option_chars} characters each",
+                limit="option_chars",
             )
 
 

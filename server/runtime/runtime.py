@@ -170,13 +170,26 @@ class Runtime:
 
     async def start_run(self, request: RunRequest, author: ev.Author | None = None) -> RunView:
         """Begin a run. Raises `NotFoundError`, `InvalidError` or `ConflictError`."""
+        self._refuse_one_too_many()
         started = await self._new_runs.make(request, author)
         if self._closing:
             raise ConflictError("the service is shutting down")
+        # Others may have begun meanwhile.
+        self._refuse_one_too_many()
         if request.world == LIVE:
             self._check_robots(request.robots)
         with self._promise(started):
             return await self._begin(started)
+
+    def _refuse_one_too_many(self) -> None:
+        most = self._settings.limits.running_runs
+        running = len({*self._runs, *self._promised.values()})
+        if running >= most:
+            raise ConflictError(
+                f"{running} runs have not ended yet, and at most {most} may go on at a time: abort "
+                "one, or wait for its end",
+                limit="running_runs",
+            )
 
     @contextmanager
     def _promise(self, started: ev.RunStarted) -> Iterator[None]:

@@ -1,5 +1,6 @@
 """The whole service around a fake runtime, in this process or behind real sockets."""
 
+import asyncio
 import contextlib
 import shutil
 import tempfile
@@ -12,22 +13,25 @@ from pathlib import Path
 from typing import Any
 
 import httpx
-import uvicorn
 from fake_runs import TREES, FakeRuns, FakeTreeChecker, FakeWorlds
 from fastapi import FastAPI
 
 from server.access.deed_log import DeedLog
 from server.api.access import Access
-from server.app import build_access, create_app, serve_config
+from server.app import build_access, create_app
 from server.documents import DocumentKind
 from server.fixed_documents import GivenFiles, NamedTexts, fixed_documents
 from server.journal.sqlite import SqliteJournal
 from server.journaled_documents import JournaledDocuments
 from server.library import build_library
+from server.limits import LimitName
+from server.listening import listen
 from server.models import RobotModels
 from server.poses.feed import PoseFeed
 from server.poses.record import PoseRecords
+from server.refusals import Refusals
 from server.scene_checks import WorldChecks
+from server.serving import Server, serve_config
 from server.settings import Settings
 from server.speech.abilities import NO_SPEECH, SpeechAbilities
 
@@ -46,6 +50,25 @@ class ServiceUnderTest:
     access: Access
     deeds: DeedLog
     url: str = "http://localhost"
+    served_by: Server | None = None
+
+    @property
+    def server(self) -> Server:
+        assert self.served_by is not None, "it is behind a socket"
+        return self.served_by
+
+    @property
+    def refusals(self) -> Refusals:
+        refusals: Refusals = self.app.state.parts.refusals
+        return refusals
+
+    async def refused(self, limit: LimitName) -> None:
+        """Wait until something was refused for this limit."""
+        await _until(lambda: self.refusals.counts[limit] > 0)
+
+    async def left_alone(self) -> None:
+        """Wait until no connection is left."""
+        await _until(lambda: len(self.server.visitors) == 0)
 
     @property
     def ws(self) -> str:
@@ -55,6 +78,12 @@ class ServiceUnderTest:
         """A client that talks to the application without a socket."""
         transport = httpx.ASGITransport(self.app, raise_app_exceptions=False)
         return httpx.AsyncClient(transport=transport, base_url=self.url, **arguments)
+
+
+async def _until(true: Callable[[], bool]) -> None:
+    async with asyncio.timeout(60):
+        while not true():  # noqa: ASYNC110 - the service has no events for its tests
+            await asyncio.sleep(0.01)
 
 
 def build(
@@ -72,7 +101,8 @@ def build(
     folder = Path(tempfile.mkdtemp())
     chosen = Settings(port=0, **{"data_dir": folder, **settings})
     deeds = DeedLog(journal, lambda: datetime.now(UTC))
-    access = build_access(chosen, deeds, wall_time_s=wall_time_s)
+    refusals = Refusals()
+    access = build_access(chosen, deeds, refusals=refusals, wall_time_s=wall_time_s)
     library = build_library(journal, fixed_documents(GivenFiles(), None), WorldChecks({}))
     trees = JournaledDocuments(DocumentKind.TREE, journal, NamedTexts(TREES), FakeTreeChecker())
     poses = PoseFeed(lambda *_: None, lambda _: None, records)
@@ -89,6 +119,7 @@ def build(
         access=access,
         deeds=deeds,
         speech_abilities=speech,
+        refusals=refusals,
     )
     service = ServiceUnderTest(app, runs, journal, chosen, poses, access, deeds)
     weakref.finalize(service, shutil.rmtree, folder)
@@ -101,9 +132,11 @@ async def serving(
 ) -> AsyncIterator[ServiceUnderTest]:
     """A service behind a real socket on a free port."""
     service = build(speech, **arguments)
-    server = uvicorn.Server(serve_config(service.app, service.settings))
+    config = serve_config(service.app, service.settings)
+    server = Server(config, service.settings, service.refusals)
+    service.served_by = server
     server.config.log_level = None
-    socket = server.config.bind_socket()
+    socket = listen(service.settings)
     service.url = f"http://127.0.0.1:{socket.getsockname()[1]}"
     server.config.load()
     server.lifespan = server.config.lifespan_class(server.config)

@@ -1,5 +1,7 @@
 """Runs, dialogues and what goes with them over REST; documents: `test_documents_over_rest.py`."""
 
+import errno
+import os
 from collections.abc import AsyncIterator
 from typing import Any
 from uuid import UUID
@@ -438,3 +440,20 @@ async def test_poses_of_a_run_that_showed_nothing_are_empty_and_of_no_run_not_fo
     assert (await client.get(f"/api/runs/{run}/layout")).status_code == 404
     assert (await client.get(f"/api/runs/{NOBODY}/poses")).status_code == 404
     assert (await client.get(f"/api/runs/{run}/poses?from_s=nan")).status_code == 422
+
+
+@pytest.mark.parametrize(
+    ("number", "status"), [(errno.EMFILE, 503), (errno.ENFILE, 503), (errno.EIO, 500)]
+)
+async def test_without_a_file_descriptor_the_client_is_asked_to_try_again(
+    service: ServiceUnderTest, monkeypatch: pytest.MonkeyPatch, number: int, status: int
+) -> None:
+    def fail() -> None:
+        raise OSError(number, os.strerror(number))
+
+    monkeypatch.setattr(service.runs, "runs", fail)
+    async with service.client() as client:
+        response = await client.get("/api/runs")
+    assert response.status_code == status
+    problem_in(response)
+    assert ("retry-after" in response.headers) is (status == 503)

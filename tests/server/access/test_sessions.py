@@ -1,6 +1,5 @@
 """Session cookies end when they are signed out, in time, and with the credential behind them."""
 
-from pathlib import Path
 
 import pytest
 
@@ -11,7 +10,6 @@ from server.access.sessions import (
     SESSIONS_AN_HOUR,
     Sessions,
     TooManySessionsError,
-    kept_session_key,
 )
 
 ANNA = Principal("anna ü.", Role.HELPER, "key-1")
@@ -57,14 +55,6 @@ def test_a_session_that_was_ended_is_read_no_more() -> None:
     sessions.end(session.id, session.expires)
     assert sessions.read(cookie) is None
     assert sessions.read(other) is not None
-
-
-def test_the_key_survives_and_only_its_owner_can_read_it(tmp_path: Path) -> None:
-    path = tmp_path / "journal.key"
-    key = kept_session_key(path)
-    assert len(key) == 32
-    assert kept_session_key(path) == key
-    assert path.stat().st_mode & 0o777 == 0o600
 
 
 def test_nobody_signs_in_without_end() -> None:
