@@ -113,6 +113,24 @@ async def test_an_outdated_token_keeps_nobody_out(
     assert (await door(service, TOKEN))[0] == welcome
 
 
+async def enrolled(service: ServiceUnderTest, code: str) -> tuple[int, str | None]:
+    body = {"robot": "arm-1", "code": code}
+    response = await once(service, "/api/robots/enrol", method="POST", json=body)
+    return response.status_code, response.headers.get("retry-after")
+
+
+async def test_a_wrong_code_to_enrol_a_robot_is_a_guess_like_any_other(
+    service: ServiceUnderTest, clock: Clock
+) -> None:
+    assert [await enrolled(service, f"ABCD-{number}") for number in range(3)] == [(403, None)] * 3
+    assert await enrolled(service, "ABCD-3") == (429, "1")
+    assert await by_rest(service, TOKEN) == (429, "1")
+    assert await enrolled(service, "ABCD-2") == (403, None)
+    clock.now += 1.0
+    assert (await enrolled(service, "ABCD-4"))[0] == 403
+    assert await enrolled(service, "ABCD-5") == (429, "2")
+
+
 async def make_wait(service: ServiceUnderTest) -> None:
     for number in range(3):
         await by_rest(service, f"guess {number}")
