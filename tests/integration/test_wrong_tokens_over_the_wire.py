@@ -15,6 +15,7 @@ from websockets.asyncio.client import connect
 from websockets.exceptions import InvalidStatus
 
 from robots.link.channel import ChannelClosedError, LinkRefusedError
+from robots.link.enrolment import enrol
 from robots.link.websocket import websocket_channel
 from server.client import MendClient
 from server.client_errors import UnreachableError
@@ -203,11 +204,13 @@ async def test_a_robot_and_a_client_try_again_when_they_have_to_wait(
     service: ServiceUnderTest,
 ) -> None:
     url = service.url.replace("http", "ws", 1) + ROBOT_PATH
-    with pytest.raises(LinkRefusedError, match="present the service's token"):
+    with pytest.raises(LinkRefusedError, match="present its credential"):
         await websocket_channel(url, "wrong")
     await make_wait(service)
     with pytest.raises(ChannelClosedError, match="try again in 1 s"):
         await websocket_channel(url, TOKEN)
+    with pytest.raises(ChannelClosedError, match="try again in 1 s"):
+        await asyncio.to_thread(enrol, url, "arm-1", "ABCD-EFGH")
     async with MendClient(service.url, token=TOKEN) as client:
         with pytest.raises(UnreachableError, match="429"):
             async with client.talk("anna"):
