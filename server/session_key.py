@@ -2,14 +2,12 @@
 
 import logging
 import os
-import secrets
 from pathlib import Path
 
+from server.access.sessions import KEY_BYTES, new_session_key
 from server.journal.file_mode import OWNERS_FILE
 
 log = logging.getLogger(__name__)
-
-KEY_BYTES = 32
 
 
 def session_key(file: Path) -> bytes:
@@ -25,7 +23,7 @@ def session_key(file: Path) -> bytes:
         pass
     except OSError as error:
         return _for_now(file, "read", error)
-    key = secrets.token_bytes(KEY_BYTES)
+    key = new_session_key()
     try:
         _keep(key, file)
     except OSError as error:
@@ -48,4 +46,4 @@ def _for_now(file: Path, done: str, error: OSError) -> bytes:
         "%s cannot be %s (%s): browsers have to sign in again after the next start",
         file, done, error.strerror,
     )  # fmt: skip
-    return secrets.token_bytes(KEY_BYTES)
+    return new_session_key()

@@ -53,7 +53,7 @@ def enrol(url: str, robot: str, code: str) -> str:
     """Exchange a one-time code for the robot's own credential.
 
     Raises `LinkRefusedError` if the service does not take the code, and `ChannelClosedError` if
-    there is no service.
+    there is no service, or it asks to wait as too many wrong codes or tokens came from here.
     """
     parts = urlsplit(url)
     scheme = {"ws": "http", "wss": "https"}.get(parts.scheme, parts.scheme)
@@ -63,6 +63,8 @@ def enrol(url: str, robot: str, code: str) -> str:
             response = client.post(address, json={"robot": robot, "code": code})
     except httpx.TransportError as error:
         raise ChannelClosedError(f"no service at {address}: {error}") from error
+    if response.status_code == httpx.codes.TOO_MANY_REQUESTS:
+        raise ChannelClosedError(f"{address} asks to wait: {_detail(response)}")
     if response.is_client_error:
         raise LinkRefusedError(f"{address} turned the robot away: {_detail(response)}")
     try:

@@ -15,6 +15,7 @@ from websockets.asyncio.client import connect
 from websockets.exceptions import InvalidStatus
 
 from robots.link.channel import ChannelClosedError, LinkRefusedError
+from robots.link.enrolment import enrol
 from robots.link.websocket import websocket_channel
 from server.client import MendClient
 from server.client_errors import UnreachableError
@@ -113,6 +114,24 @@ async def test_an_outdated_token_keeps_nobody_out(
     assert (await door(service, TOKEN))[0] == welcome
 
 
+async def enrolled(service: ServiceUnderTest, code: str) -> tuple[int, str | None]:
+    body = {"robot": "arm-1", "code": code}
+    response = await once(service, "/api/robots/enrol", method="POST", json=body)
+    return response.status_code, response.headers.get("retry-after")
+
+
+async def test_a_wrong_code_to_enrol_a_robot_is_a_guess_like_any_other(
+    service: ServiceUnderTest, clock: Clock
+) -> None:
+    assert [await enrolled(service, f"ABCD-{number}") for number in range(3)] == [(403, None)] * 3
+    assert await enrolled(service, "ABCD-3") == (429, "1")
+    assert await by_rest(service, TOKEN) == (429, "1")
+    assert await enrolled(service, "ABCD-2") == (403, None)
+    clock.now += 1.0
+    assert (await enrolled(service, "ABCD-4"))[0] == 403
+    assert await enrolled(service, "ABCD-5") == (429, "2")
+
+
 async def make_wait(service: ServiceUnderTest) -> None:
     for number in range(3):
         await by_rest(service, f"guess {number}")
@@ -185,11 +204,13 @@ async def test_a_robot_and_a_client_try_again_when_they_have_to_wait(
     service: ServiceUnderTest,
 ) -> None:
     url = service.url.replace("http", "ws", 1) + ROBOT_PATH
-    with pytest.raises(LinkRefusedError, match="present the service's token"):
+    with pytest.raises(LinkRefusedError, match="present its credential"):
         await websocket_channel(url, "wrong")
     await make_wait(service)
     with pytest.raises(ChannelClosedError, match="try again in 1 s"):
         await websocket_channel(url, TOKEN)
+    with pytest.raises(ChannelClosedError, match="try again in 1 s"):
+        await asyncio.to_thread(enrol, url, "arm-1", "ABCD-EFGH")
     async with MendClient(service.url, token=TOKEN) as client:
         with pytest.raises(UnreachableError, match="429"):
             async with client.talk("anna"):

@@ -5,8 +5,9 @@ from pathlib import Path
 import pytest
 from starlette.requests import HTTPConnection
 
+from server.access.sessions import KEY_BYTES
 from server.api.access import Access
-from server.session_key import KEY_BYTES, session_key
+from server.session_key import session_key
 
 
 def test_the_key_is_kept_for_its_owner_alone(tmp_path: Path) -> None:

@@ -1,6 +1,5 @@
 """Session cookies end when they are signed out, in time, and with the credential behind them."""
 
-
 import pytest
 
 from server.access.principal import Principal
