@@ -11,8 +11,9 @@ import pytest
 from service_under_test import ServiceUnderTest, build
 
 from server.journal import events as ev
+from server.journal.run_index import RunPage
 from server.runtime.requests import RunRequest
-from server.runtime.views import RunView
+from server.runtime.views import RunSummary, RunView
 from tasks.library import SCENARIOS
 
 # Fixed, so that every worker collects the same tests.
@@ -448,7 +449,7 @@ async def test_poses_of_a_run_that_showed_nothing_are_empty_and_of_no_run_not_fo
 async def test_without_a_file_descriptor_the_client_is_asked_to_try_again(
     service: ServiceUnderTest, monkeypatch: pytest.MonkeyPatch, number: int, status: int
 ) -> None:
-    def fail() -> None:
+    async def fail(_page: RunPage) -> list[RunSummary]:
         raise OSError(number, os.strerror(number))
 
     monkeypatch.setattr(service.runs, "runs", fail)

@@ -8,6 +8,7 @@ from pretend_service import pretend_service
 from task_documents import definition_of
 
 from server.errors import ConflictError, InvalidError
+from server.journal.run_index import RunPage
 from server.limits import Limits
 from server.runtime.context import RunSettings
 from server.runtime.requests import RunRequest
@@ -57,8 +58,9 @@ async def test_a_run_too_many_is_refused_and_nothing_of_it_is_kept() -> None:
         ) as error:
             await service.runtime.start_run(ONE)
         assert error.value.limit == "running_runs"
-        assert {each.id for each in service.runtime.runs()} == {each.id for each in started}
-        assert set(await service.journal.runs()) == {each.id for each in started}
+        ids = {each.id for each in started}
+        assert {each.id for each in await service.runtime.runs(RunPage())} == ids
+        assert {each.run for each in await service.journal.index.page(RunPage())} == ids
 
 
 async def test_runs_that_are_begun_at_the_same_moment_are_counted_too() -> None:
@@ -68,7 +70,7 @@ async def test_runs_that_are_begun_at_the_same_moment_are_counted_too() -> None:
             *(service.runtime.start_run(ONE) for _ in range(5)), return_exceptions=True
         )
         assert sum(isinstance(each, ConflictError) for each in begun) == 3
-        assert len(service.runtime.runs()) == 2
+        assert len(await service.runtime.runs(RunPage())) == 2
 
 
 async def test_a_run_that_has_ended_makes_room() -> None:
