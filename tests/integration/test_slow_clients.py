@@ -9,6 +9,7 @@ from urllib.parse import urlsplit
 from uuid import uuid4
 
 from raw_client import RawClient, raw_client
+from sample_events import started
 from service_under_test import ServiceUnderTest, serving
 from shown_run import hello
 from websockets.frames import Frame, Opcode
@@ -70,10 +71,8 @@ async def test_a_helper_who_reads_slowly_gets_everything() -> None:
 
 async def test_a_client_that_does_not_read_a_big_answer_is_ended() -> None:
     async with serving(limits=SOON) as service, client_of(service) as client:
-        await service.journal.append(
-            Entry(events=[failed(1) for _ in range(MORE_THAN_IS_BUFFERED)])
-        )
         run = uuid4()
+        await service.journal.append(Entry(events=[started(run)]))
         events = [failed(1).model_copy(update={"run": run}) for _ in range(MORE_THAN_IS_BUFFERED)]
         await service.journal.append(Entry(events=events))
         path = f"/api/runs/{run}/events?limit=1000"

@@ -11,7 +11,7 @@ let runs: FoldedRun[] = [];
 
 beforeAll(() => {
   runs = foldedRuns(SEEDS);
-}, 120_000);
+}, 600_000);
 
 function said(state: RunState): Said {
   return {

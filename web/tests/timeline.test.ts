@@ -9,7 +9,7 @@ let events: Event[] = [];
 
 beforeAll(() => {
   events = foldedRuns([])[0]?.events ?? [];
-}, 120_000);
+}, 600_000);
 
 const of = (type: Event["type"]) => events.filter((event) => event.type === type);
 
