@@ -22,12 +22,13 @@ ADDED_SINCE: dict[str, set[str]] = {
         "clip_recorded",
         "deadline_extended",
         "first_look",
+        "looked_anew",
         "node_left_out",
         "node_returned",
         "node_undone",
         "suspected_false_alarm",
     },
-    "v2": {"first_look", "suspected_false_alarm"},
+    "v2": {"first_look", "looked_anew", "suspected_false_alarm"},
 }
 """The types of events that came after a sample was written."""
 
