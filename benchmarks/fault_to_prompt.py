@@ -32,6 +32,7 @@ from websockets.asyncio.client import connect
 
 from server.composition import Service, open_service
 from server.journal.events import IssueRaised, Prompt
+from server.limits import Limits
 from server.runtime.requests import RunRequest
 from server.settings import Settings
 
@@ -161,7 +162,8 @@ async def measure(
     """What the helpers heard, what a console has drawn, and when the faults were detected."""
     async with contextlib.AsyncExitStack() as stack:
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
-        settings = Settings(port=0, data_dir=folder, log_level="warning")
+        limits = Limits(running_runs=runs)
+        settings = Settings(port=0, data_dir=folder, log_level="warning", limits=limits)
         service = await stack.enter_async_context(open_service(settings))
         page = await stack.enter_async_context(_console(service.url)) if browser else None
         here, there = multiprocessing.Pipe()

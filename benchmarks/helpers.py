@@ -21,7 +21,6 @@ from pathlib import Path
 from typing import Any
 from uuid import UUID, uuid4
 
-import uvicorn
 from fastapi import FastAPI
 from starlette.websockets import WebSocket, WebSocketDisconnect
 from websockets.asyncio.client import connect
@@ -29,11 +28,14 @@ from websockets.asyncio.client import connect
 from server.api import helper_socket
 from server.api.access import Access
 from server.api.parts import Parts
-from server.app import drop_stuck_clients, serve_config
 from server.journal.events import RunFailed
 from server.journal.journal import Entry
 from server.journal.sqlite import SqliteJournal
+from server.limits import Limits
+from server.listening import listen
+from server.refusals import Refusals
 from server.runtime.views import Snapshot
+from server.serving import Server, serve_config
 from server.settings import Settings
 
 RUNS = 20
@@ -101,10 +103,10 @@ def event(run: UUID) -> RunFailed:
 @contextlib.asynccontextmanager
 async def serving(app: FastAPI) -> AsyncIterator[int]:
     """Serve an application on a free port."""
-    config = serve_config(app, Settings(port=0, log_level="error"))
-    server = uvicorn.Server(config)
-    socket = config.bind_socket()
-    drop_stuck_clients(socket)
+    settings = Settings(port=0, log_level="error", limits=Limits(connections=2**31 - 1))
+    config = serve_config(app, settings)
+    server = Server(config, settings, Refusals())
+    socket = listen(settings)
     socket.setsockopt(sockets.SOL_SOCKET, sockets.SO_SNDBUF, SEND_BUFFER_BYTES)
     config.load()
     server.lifespan = config.lifespan_class(config)

@@ -11,19 +11,20 @@ from datetime import UTC, datetime
 from pathlib import Path
 from uuid import UUID, uuid4
 
-from server.journal.events import RunFailed
+from server.journal.events import RobotLost
 from server.journal.journal import Entry
 from server.journal.sqlite import SqliteJournal
 
 EVENT_BYTES = 1024
 
 
-def event(run: UUID) -> RunFailed:
-    """An event of about 1 KB."""
-    return RunFailed(
+def event(run: UUID) -> RobotLost:
+    """An event of about 1 KB, of a kind that neither begins nor ends a run, as nearly all are."""
+    return RobotLost(
         time=1.5,
         wall_time=datetime(2026, 1, 1, tzinfo=UTC),
         run=run,
+        robot="arm",
         reason="r" * (EVENT_BYTES - 144),
     )
 

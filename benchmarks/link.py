@@ -23,6 +23,7 @@ from fastapi import FastAPI, WebSocket
 from websockets.asyncio.client import ClientConnection, connect
 
 from robots.link.messages import Held, Hello, ReachLimits, Report
+from server.api.access import Access
 from server.journal.sqlite import SqliteJournal
 from server.robots.endpoint import add_robot_route
 from server.robots.registry import RobotRegistry
@@ -57,7 +58,7 @@ class Loopback(AbstractAsyncContextManager["Loopback"]):
     def __init__(self, journal: SqliteJournal) -> None:
         self._registry = RobotRegistry(journal, time.monotonic)
         app = FastAPI()
-        add_robot_route(app, self._registry, None)
+        add_robot_route(app, self._registry, Access(None, wall_time_s=time.time))
         app.add_api_websocket_route("/echo", echo)
         config = uvicorn.Config(
             app, port=0, log_level="warning", ws=WebSocketProtocol, ws_ping_interval=None

@@ -268,7 +268,7 @@ async def _ended_or_hung(service: "Service", run: UUID, quiet_s: float) -> RunVi
     if ended.done():
         return ended.result()
     ended.cancel()
-    return service.runtime.run(run)
+    return await service.runtime.run(run)
 
 
 def _work(world: str, seed: int) -> Outcome:

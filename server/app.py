@@ -1,15 +1,16 @@
-"""The application: every route, the gate before them, and how it is served."""
+"""The application: every route, and the gate before them."""
 
-import socket
 import time
 from collections.abc import AsyncIterator, Callable
 from contextlib import AbstractAsyncContextManager, asynccontextmanager
 from importlib.metadata import version
 from typing import Any
 
-import uvicorn
 from fastapi import FastAPI
 
+from server.access.changes import PrincipalsEditor
+from server.access.deed_log import DeedLog
+from server.access.known_principals import KnownPrincipals
 from server.api import (
     console,
     dialogues,
@@ -28,25 +29,25 @@ from server.api import (
 )
 from server.api import models as models_api
 from server.api import poses as poses_api
+from server.api import principals as principals_api
 from server.api import worlds as worlds_api
 from server.api.access import Access
 from server.api.gate import Gate
 from server.api.parts import ObservedJournal, Parts, WorldList
 from server.api.problems import Problem, answer_errors_with_problems
 from server.documents import DocumentLibrary
-from server.log_secrets import hide_secrets
 from server.models import RobotModels
 from server.poses.feed import PoseSource
+from server.public_url import host_of
+from server.refusals import Refusals
+from server.robots.passes import OwnRobots
 from server.runtime.service import RunService
 from server.settings import Settings
 from server.speech.abilities import NO_SPEECH, SpeechAbilities
-from server.websocket_protocol import WebSocketProtocol
-
-MAX_SOCKET_MESSAGE_BYTES = 4 * 1024 * 1024
-"""Robots send pictures; helpers get an `error` message for anything above 64 KiB."""
 
 ROUTES = (
     session,
+    principals_api,
     documents,
     worlds_api,
     runs,
@@ -65,9 +66,6 @@ ROUTES = (
     console,
 )
 
-STUCK_CLIENT_S = 30
-"""How long a connection may take nothing of what was sent to it before the kernel drops it."""
-
 Lifespan = Callable[[], AbstractAsyncContextManager[None]]
 
 DESCRIPTION = "Runs robots through task trees, and asks a person for help when they fail."
@@ -84,21 +82,17 @@ def create_app(
     worlds: WorldList,
     models: RobotModels,
     poses: PoseSource,
+    access: Access,
+    deeds: DeedLog,
     speech_abilities: SpeechAbilities = NO_SPEECH,
+    refusals: Refusals | None = None,
     lifespan: Lifespan | None = None,
-    wall_time_s: Callable[[], float] = time.time,
 ) -> FastAPI:
     """Build the application around a runtime and a journal.
 
     `lifespan` is entered before the first request and left after the last.
+    `refusals` are those that `access` counts too.
     """
-    token = settings.token.get_secret_value() if settings.token else None
-    access = Access(
-        token,
-        allowed_hosts=[settings.host, *settings.allowed_hosts],
-        allowed_origins=settings.allowed_origins,
-        wall_time_s=wall_time_s,
-    )
     app = described_app(lifespan)
     app.state.parts = Parts(
         service,
@@ -111,10 +105,42 @@ def create_app(
         poses,
         settings,
         access,
+        deeds,
+        PrincipalsEditor(settings.principals_path, by="", keep_changes=False),
         speech_abilities,
+        refusals or Refusals(),
     )
     app.add_middleware(Gate, access=access)
     return app
+
+
+def build_access(
+    settings: Settings,
+    deeds: DeedLog,
+    *,
+    session_key: bytes | None = None,
+    own_robots: OwnRobots | None = None,
+    refusals: Refusals | None = None,
+    wall_time_s: Callable[[], float] = time.time,
+) -> Access:
+    """Who may come in, as the settings and the file of principals say.
+
+    Without a `session_key` sessions end with the service. Raises `PrincipalsFileError`.
+    """
+    return Access(
+        settings.token.get_secret_value() if settings.token else None,
+        principals=KnownPrincipals(
+            settings.principals_path, wall_time_s, expected=settings.principals is not None
+        ),
+        session_key=session_key,
+        own_robots=own_robots,
+        failed=deeds.failed,
+        allowed_hosts=_names(settings),
+        allowed_origins=settings.allowed_origins,
+        limits=settings.limits,
+        refusals=refusals,
+        wall_time_s=wall_time_s,
+    )
 
 
 def described_app(lifespan: Lifespan | None = None) -> FastAPI:
@@ -134,34 +160,10 @@ def described_app(lifespan: Lifespan | None = None) -> FastAPI:
     return app
 
 
-def serve_config(app: FastAPI, settings: Settings) -> uvicorn.Config:
-    """How uvicorn serves the application."""
-    config = uvicorn.Config(
-        app,
-        host=settings.host,
-        port=settings.port,
-        log_level=settings.log_level,
-        ws=WebSocketProtocol,
-        ws_max_size=MAX_SOCKET_MESSAGE_BYTES,
-        # Compressing the same event again for every client costs more than it saves.
-        ws_per_message_deflate=False,
-        timeout_graceful_shutdown=5,
-        server_header=False,
-    )
-    # After the configuration, which sets up uvicorn's loggers.
-    hide_secrets()
-    return config
-
-
-def drop_stuck_clients(listening: socket.socket) -> None:
-    """Let the kernel end connections whose client reads nothing for `STUCK_CLIENT_S`.
-
-    A client that is stopped, or hostile, keeps its connection open. Closing such a connection
-    waits until everything was read, which is never.
-    """
-    if hasattr(socket, "TCP_USER_TIMEOUT"):
-        timeout_ms = STUCK_CLIENT_S * 1000
-        listening.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, timeout_ms)
+def _names(settings: Settings) -> list[str]:
+    """Every name under which clients may reach the service."""
+    public = [host_of(settings.public_url)] if settings.public_url else []
+    return [settings.host, *public, *settings.allowed_hosts]
 
 
 def _entered(

@@ -5,11 +5,13 @@ import contextlib
 from collections.abc import AsyncIterator
 from types import TracebackType
 from typing import Any, Literal, Self, TypeVar
+from urllib.parse import quote
 from uuid import UUID
 
 import httpx
 from pydantic import TypeAdapter, ValidationError
 
+from server.api.principals import CodeView, DeedsPage, PrincipalView, TokenView
 from server.api.problems import Problem, problem
 from server.api.speech import SpeechView
 from server.client_connection import HelperDoor
@@ -142,9 +144,14 @@ class MendClient:
     async def start_run(self, request: RunRequest) -> RunView:
         return await self._post("/api/runs", RunView, request.model_dump(mode="json"))
 
-    async def runs(self, *, limit: int = 100, offset: int = 0) -> list[RunSummary]:
-        """Runs, newest first."""
-        return await self._get("/api/runs", list[RunSummary], limit=limit, offset=offset)
+    async def runs(
+        self, *, limit: int = 100, offset: int = 0, before: UUID | None = None
+    ) -> list[RunSummary]:
+        """Runs, newest first; only those that began before another, for the next page."""
+        last = None if before is None else str(before)
+        return await self._get(
+            "/api/runs", list[RunSummary], limit=limit, offset=offset, before=last
+        )
 
     async def run(self, run: UUID) -> RunView:
         return await self._get(f"/api/runs/{run}", RunView)
@@ -224,6 +231,41 @@ class MendClient:
 
     async def robots(self) -> list[RobotView]:
         return await self._get("/api/robots", list[RobotView])
+
+    # --- access: for admins -------------------------------------------------------------------
+
+    async def principals(self) -> list[PrincipalView]:
+        return await self._get("/api/access/principals", list[PrincipalView])
+
+    async def add_principal(
+        self,
+        name: str,
+        role: Literal["viewer", "helper", "operator", "admin"],
+        *,
+        expires_days: float | None = None,
+    ) -> TokenView:
+        """Add a principal and get its token, which is shown only now."""
+        body = {"name": name, "role": role, "expires_days": expires_days}
+        return await self._post("/api/access/principals", TokenView, body)
+
+    async def rotate_principal(self, name: str, *, expires_days: float | None = None) -> TokenView:
+        """Give a principal a new token; the old one and its sessions end."""
+        path = f"/api/access/principals/{quote(name, safe='')}/rotate"
+        return await self._post(path, TokenView, {"expires_days": expires_days})
+
+    async def revoke_principal(self, name: str) -> None:
+        """End a principal: its token, its sessions and its connections."""
+        await self._request("DELETE", f"/api/access/principals/{quote(name, safe='')}")
+
+    async def open_enrolment(self, robot: str, *, minutes: float = 15) -> CodeView:
+        """Make a code with which a robot fetches its own credential, once."""
+        body = {"robot": robot, "minutes": minutes}
+        return await self._post("/api/access/enrolments", CodeView, body)
+
+    async def deeds(self, after: int = 0, limit: int = 100, who: str | None = None) -> DeedsPage:
+        """Who did what, when, and from where."""
+        path = "/api/access/deeds"
+        return await self._get(path, DeedsPage, after=after, limit=limit, who=who)
 
     # --- speech -------------------------------------------------------------------------------
 

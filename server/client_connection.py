@@ -11,6 +11,7 @@ from websockets.exceptions import InvalidHandshake, InvalidStatus
 from server.client_errors import StreamRefusedError, UnreachableError
 
 POLICY_VIOLATION = 1008
+TOO_MANY_REQUESTS = 429
 
 
 class HelperDoor:
@@ -40,7 +41,7 @@ class HelperDoor:
             socket = await connecting
         except InvalidStatus as error:
             status = error.response.status_code
-            if status >= 500:
+            if status >= 500 or status == TOO_MANY_REQUESTS:
                 raise UnreachableError(f"the service is not ready ({status})") from error
             raise StreamRefusedError(
                 f"the service refused the connection ({status}): check the token and the address"

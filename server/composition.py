@@ -1,17 +1,19 @@
 """The whole service put together: journal, robots, worlds, runtime and API, in one process."""
 
 import asyncio
+import logging
+import ssl
 import time
-from collections.abc import AsyncIterator, Iterator
-from contextlib import asynccontextmanager, contextmanager, suppress
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager, suppress
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from functools import partial
 
-import uvicorn
-
 from dialogue.registry import load_scripts
-from server.app import create_app, serve_config
+from server.access.deed_log import DeedLog
+from server.api.access import Access
+from server.app import build_access, create_app
 from server.dialogues.escalation import EscalationPolicy
 from server.dialogues.mail import Mailer
 from server.fixed_documents import GivenFiles, fixed_documents
@@ -21,7 +23,10 @@ from server.listening import listen, reachable_host
 from server.models import RobotModels
 from server.poses.feed import PoseFeed
 from server.poses.record import PoseRecords
+from server.refusals import Refusals
+from server.retention import prune_regularly
 from server.robots.endpoint import ROBOT_PATH, add_robot_route
+from server.robots.passes import OwnRobots
 from server.robots.process import launch
 from server.robots.registry import RobotRegistry
 from server.robots.times import LinkTimes
@@ -30,23 +35,34 @@ from server.runtime.operator_mail import OperatorMail
 from server.runtime.runtime import Runtime
 from server.runtime.worlds import SimulatedWorlds
 from server.scene_checks import WorldChecks
-from server.settings import Settings
+from server.server_tls import server_tls
+from server.serving import Server, serve_config
+from server.session_key import session_key
+from server.settings import Settings, is_everywhere
 from server.speech.abilities import SpeechAbilities
 from server.speech.ear import choose_ears
 from server.speech.rendering import SpokenTexts, render_prompts
 from server.speech.voice import NoVoice, choose_voice
 from tasks.plugins import load_plugins
 
+log = logging.getLogger(__name__)
+
+LOOK_EVERY_S = 1.0
+
 
 @dataclass(frozen=True, slots=True)
 class Service:
-    """A service that runs; `url` is where it listens."""
+    """A service that runs; `url` is where this machine reaches it.
+
+    `public_url` is where others do, if that is known.
+    """
 
     runtime: Runtime
     journal: SqliteJournal
     registry: RobotRegistry
     library: Library
     url: str
+    public_url: str | None
     settings: Settings
 
 
@@ -57,8 +73,8 @@ async def open_service(
     """Start a service, take up the runs that had not ended, and stop it at the end.
 
     What is in `given` is known as if it came with Mend. Raises `JournalLockedError` when another
-    process has the journal, `OSError` when it cannot listen. `recover` False leaves unfinished runs
-    alone.
+    process has the journal, `OSError` when it cannot listen, `WrongSettingsError` when it cannot
+    use its certificate. `recover` False leaves unfinished runs alone.
     """
     journal = SqliteJournal(settings.journal_path)
     try:
@@ -72,15 +88,27 @@ async def open_service(
 async def _open(
     settings: Settings, journal: SqliteJournal, recover: bool, given: GivenFiles
 ) -> AsyncIterator[Service]:
-    token = settings.token.get_secret_value() if settings.token else None
+    refusals = Refusals()
+    deeds = DeedLog(journal, lambda: datetime.now(UTC))
+    own_robots = OwnRobots()
+    key_path = settings.session_key_path if recover else None
+    access = build_access(
+        settings,
+        deeds,
+        session_key=None if key_path is None else session_key(key_path),
+        own_robots=own_robots,
+        refusals=refusals,
+    )
     registry = RobotRegistry(
         journal,
         time.monotonic,
         LinkTimes(heartbeat_s=settings.heartbeat_s, silence_s=settings.robot_hang_timeout_s),
         settings.limits,
+        refusals,
     )
+    tls = _tls(settings)
     config_socket = listen(settings)
-    url = f"http://{reachable_host(settings.host)}:{config_socket.getsockname()[1]}"
+    url = f"{'https' if tls else 'http'}://{reachable_host(settings.host)}:{config_socket.getsockname()[1]}"
     adapters = load_plugins("mend.worlds")
     library = build_library(
         journal, fixed_documents(given, settings.scenes), WorldChecks(adapters), settings.limits
@@ -94,13 +122,14 @@ async def _open(
             launch,
             registry=registry,
             url=f"ws{url.removeprefix('http')}{ROBOT_PATH}",
-            token=token,
+            own_robots=own_robots,
+            certificate=settings.tls_certificate,
             hang_s=settings.robot_hang_timeout_s,
         ),
+        own_robots.reserve,
     )
-    mail = OperatorMail(
-        Mailer(settings.mail) if settings.mail else None, lambda: datetime.now(UTC), url
-    )
+    public_url = settings.public_url or (None if is_everywhere(settings.host) else url)
+    mail = _operator_mail(settings, public_url)
     runtime = Runtime(
         journal=journal,
         robots=registry,
@@ -133,23 +162,43 @@ async def _open(
         worlds=worlds,
         models=models,
         poses=poses,
+        access=access,
+        deeds=deeds,
         speech_abilities=speech,
+        refusals=refusals,
     )
-    add_robot_route(app, registry, token)
-    server = _Server(serve_config(app, settings))
+    add_robot_route(app, registry, access)
+    server = Server(serve_config(app, settings), settings, refusals, tls)
     serving: asyncio.Task[None] | None = None
+    pruning: asyncio.Task[None] | None = None
+    watching: asyncio.Task[None] | None = None
     rendering = asyncio.create_task(_render_prompts(speech, journal), name="rendering")
     try:
         if recover:
             # Before it listens: a run that is not read yet would be unknown to whoever asks.
             await runtime.recover()
+            await deeds.recover(access.sessions)
+        pruning = asyncio.create_task(
+            prune_regularly(
+                journal.prune, poses.forget, settings.keep.keep(), lambda: datetime.now(UTC)
+            ),
+            name="pruning",
+        )
+        # A service for one run alone does not journal what was done to the principals before.
+        watching = asyncio.create_task(_watch_access(access, deeds, journal_changes=recover))
         serving = asyncio.create_task(server.serve(sockets=[config_socket]), name="server")
         await server.wait_until_started(serving)
-        yield Service(runtime, journal, registry, library, url, settings)
+        yield Service(runtime, journal, registry, library, url, public_url, settings)
     finally:
         # First: a report that no run takes any more must not be acknowledged.
         registry.close()
+        if pruning is not None:
+            pruning.cancel()
+            await asyncio.gather(pruning, return_exceptions=True)
         await runtime.close()
+        if watching is not None:
+            watching.cancel()
+            await asyncio.gather(watching, return_exceptions=True)
         await mail.close()
         poses.shut()
         await _stop_speech(speech, rendering)
@@ -157,24 +206,19 @@ async def _open(
             server.should_exit = True
             with suppress(asyncio.CancelledError):
                 await serving
+        await deeds.close()
         config_socket.close()
 
 
-class _Server(uvicorn.Server):
-    """A uvicorn within somebody else's event loop."""
-
-    @contextmanager
-    def capture_signals(self) -> Iterator[None]:
-        """Leave signals to whoever opened the service."""
-        yield
-
-    async def wait_until_started(self, serving: "asyncio.Task[None]") -> None:
-        """Return once it listens; raises what kept it from doing so."""
-        while not self.started:
-            if serving.done():
-                serving.result()
-                raise OSError("the server ended before it listened")
-            await asyncio.sleep(0.005)
+async def _watch_access(access: Access, deeds: DeedLog, *, journal_changes: bool) -> None:
+    """Let go of those who may come in no longer, also where nobody asks for anything."""
+    while True:
+        access.look()
+        access.let_go()
+        deeds.tell_due()
+        if journal_changes:
+            deeds.take_changes(access.principals.changes)
+        await asyncio.sleep(LOOK_EVERY_S)
 
 
 def _pose_records(settings: Settings) -> PoseRecords | None:
@@ -182,6 +226,19 @@ def _pose_records(settings: Settings) -> PoseRecords | None:
     if not settings.record_poses or str(settings.journal_path) == IN_MEMORY:
         return None
     return PoseRecords(settings.journal_path.with_suffix(".poses"))
+
+
+def _tls(settings: Settings) -> ssl.SSLContext | None:
+    if settings.tls_certificate is None or settings.tls_key is None:
+        return None
+    return server_tls(settings.tls_certificate, settings.tls_key)
+
+
+def _operator_mail(settings: Settings, public_url: str | None) -> OperatorMail:
+    mailer = Mailer(settings.mail) if settings.mail else None
+    if mailer is not None and public_url is None:
+        log.warning("mails will not say where the console is: set 'public_url'")
+    return OperatorMail(mailer, lambda: datetime.now(UTC), public_url)
 
 
 def _speech(settings: Settings) -> SpeechAbilities:
@@ -203,8 +260,9 @@ async def _render_prompts(speech: SpeechAbilities, journal: SqliteJournal) -> No
 
 async def _stop_speech(speech: SpeechAbilities, rendering: "asyncio.Task[None]") -> None:
     rendering.cancel()
-    with suppress(asyncio.CancelledError):
-        await rendering
+    (ended,) = await asyncio.gather(rendering, return_exceptions=True)
+    if isinstance(ended, Exception):
+        log.error("prompts were not rendered ahead any more", exc_info=ended)
     await speech.close()
 
 

@@ -6,6 +6,7 @@ from enum import StrEnum
 from typing import Any, Literal, Protocol
 
 from server.errors import InvalidError
+from server.journal.events import Author
 from server.runtime.views import View
 
 
@@ -161,7 +162,9 @@ class DocumentLibrary(Protocol):
         """Check a document without keeping it."""
         ...
 
-    async def save(self, name: str | None, text: str) -> tuple[KeptDocument, bool]:
+    async def save(
+        self, name: str | None, text: str, author: Author | None = None
+    ) -> tuple[KeptDocument, bool]:
         """Check and keep a document; the second value says whether its name is new.
 
         `name` wins over the file's own. Raises `InvalidError`, and `ConflictError` (built in, or
@@ -169,6 +172,6 @@ class DocumentLibrary(Protocol):
         """
         ...
 
-    async def delete(self, name: str) -> None:
+    async def delete(self, name: str, author: Author | None = None) -> None:
         """Raises `NotFoundError`, `ConflictError` (built in, or used by an uploaded one)."""
         ...

@@ -3,15 +3,27 @@
 from collections.abc import Sequence
 from uuid import UUID
 
+from server.limits import LimitName
 from tasks.scene_problem import SceneProblem
 
 
 class ServiceError(Exception):
-    """Base: the message is one clear sentence for the user."""
+    """Base: the message is one clear sentence for the user.
+
+    `limit` is the one that was reached, if that is why.
+    """
+
+    def __init__(self, message: str, *, limit: LimitName | None = None) -> None:
+        super().__init__(message)
+        self.limit = limit
 
 
 class NotFoundError(ServiceError):
     """There is no such run, dialogue, prompt, tree, robot, camera or picture."""
+
+
+class UnreadableError(ServiceError):
+    """What the journal has of a run cannot be read, or is not what was written."""
 
 
 class ConflictError(ServiceError):
@@ -30,8 +42,10 @@ class LostRaceError(ConflictError):
 class InvalidError(ServiceError):
     """What was sent cannot be used; `problems` has one sentence per mistake."""
 
-    def __init__(self, message: str, problems: list[str] | None = None) -> None:
-        super().__init__(message)
+    def __init__(
+        self, message: str, problems: list[str] | None = None, *, limit: LimitName | None = None
+    ) -> None:
+        super().__init__(message, limit=limit)
         self.problems = problems or []
 
 

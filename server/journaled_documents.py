@@ -2,6 +2,7 @@
 
 import asyncio
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from datetime import UTC, datetime
 from typing import Any
 
 from server.documents import (
@@ -17,7 +18,8 @@ from server.documents import (
     WrongDocumentError,
 )
 from server.errors import ConflictError, InvalidError, NotFoundError
-from server.journal.journal import Journal
+from server.journal.events import Author, DocumentDeleted, DocumentKept
+from server.journal.journal import Entry, Journal
 from server.limits import Limits
 
 Summarize = Callable[[str, bool, Mapping[str, Any] | None], DocumentSummary]
@@ -42,9 +44,11 @@ class JournaledDocuments:
         needs: Iterable[DocumentKind] = (),
         users: "Sequence[JournaledDocuments]" = (),
         summarize: Summarize | None = None,
+        utc_now: Callable[[], datetime] = lambda: datetime.now(UTC),
     ) -> None:
         self.kind = kind
         self._journal = journal
+        self._utc_now = utc_now
         self._built_in = built_in
         self._checker = checker
         self._most_chars = most_chars
@@ -102,7 +106,9 @@ class JournaledDocuments:
             worlds=list(checked.worlds),
         )
 
-    async def save(self, name: str | None, text: str) -> tuple[KeptDocument, bool]:
+    async def save(
+        self, name: str | None, text: str, author: Author | None = None
+    ) -> tuple[KeptDocument, bool]:
         uploaded = await self._uploaded()
         checked = await asyncio.to_thread(self._checker.try_in_worlds, text, uploaded)
         name = name or checked.name
@@ -116,6 +122,7 @@ class JournaledDocuments:
             await users.refuse_unfit(self.kind, name, text)
         async with self._saving:
             await self._refuse_too_much(name, text)
+            await self._journal.append(Entry(events=[self._kept(name, not new, author)]))
             await self._journal.save_document(self.kind, name, text)
         definition = {**checked.definition, "name": name}
         kept = KeptDocument(
@@ -134,15 +141,27 @@ class JournaledDocuments:
         if others + len(text) > self._most_chars:
             raise ConflictError(
                 f"there is no room for the {SPOKEN[self.kind]} '{name}': all that are uploaded may "
-                f"have {self._most_chars} characters, and the others have {others}; delete some"
+                f"have {self._most_chars} characters, and the others have {others}; delete some",
+                limit="uploaded_chars",
             )
 
-    async def delete(self, name: str) -> None:
+    async def delete(self, name: str, author: Author | None = None) -> None:
         self._refuse_built_in(name)
         for users in self._users:
             await users.refuse_unfit(self.kind, name, None)
-        if not await self._journal.delete_document(self.kind, name):
-            raise NotFoundError(f"there is no {SPOKEN[self.kind]} '{name}'")
+        async with self._saving:
+            if name not in await self._journal.documents(self.kind):
+                raise NotFoundError(f"there is no {SPOKEN[self.kind]} '{name}'")
+            await self._journal.append(Entry(events=[self._deleted(name, author)]))
+            await self._journal.delete_document(self.kind, name)
+
+    def _kept(self, name: str, replaced: bool, author: Author | None) -> DocumentKept:
+        fields = {"kind": self.kind, "name": name, "replaced": replaced, "author": author}
+        return DocumentKept.model_validate({"wall_time": self._utc_now(), **fields})
+
+    def _deleted(self, name: str, author: Author | None) -> DocumentDeleted:
+        fields = {"kind": self.kind, "name": name, "author": author}
+        return DocumentDeleted.model_validate({"wall_time": self._utc_now(), **fields})
 
     async def refuse_unfit(self, kind: DocumentKind, name: str, text: str | None) -> None:
         """Refuse a change that spoils a document here: another's new text, None where it goes.

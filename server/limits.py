@@ -1,10 +1,29 @@
 """How much of everything there may be; `docs/limits.md` has a row for each."""
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
 AtLeastOne = Annotated[int, Field(ge=1, le=2**31 - 1)]
+Seconds = Annotated[float, Field(gt=0.0, le=86_400.0, allow_inf_nan=False)]
+
+LimitName = Literal[
+    "answers",
+    "world_options",
+    "option_chars",
+    "hello_chars",
+    "departed_robots",
+    "uploaded_chars",
+    "running_runs",
+    "connections",
+    "strangers",
+    "strangers_per_address",
+    "head_s",
+    "body_s",
+    "stuck_client_s",
+    "wrong_tokens",
+]
+"""The limits by name: whoever refuses something says for which of them."""
 
 
 class Limits(BaseModel):
@@ -24,3 +43,19 @@ class Limits(BaseModel):
     """Robots without connection and run that are still listed; those gone longest are forgotten."""
     uploaded_chars: AtLeastOne = 32 * 1024**2
     """Characters of all uploaded files of one kind together."""
+    running_runs: AtLeastOne = 16
+    """Runs that have not ended, at a time; each in a simulated world may take a process."""
+    connections: AtLeastOne = 500
+    """Connections to the service at a time."""
+    strangers: AtLeastOne = 200
+    """Those of them that have not been admitted; for one more the oldest is ended."""
+    strangers_per_address: AtLeastOne = 50
+    """Such connections from one address."""
+    head_s: Seconds = 10.0
+    """How long a request's head may take to come, from the connection or its first byte on."""
+    body_s: Seconds = 60.0
+    """How long the body may take after that."""
+    stuck_client_s: Seconds = 30.0
+    """How long a client may take nothing of what is sent to it."""
+    wrong_tokens: AtLeastOne = 5
+    """Different wrong tokens from one address before it has to wait for the next."""

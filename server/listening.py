@@ -2,8 +2,10 @@
 
 import socket
 
-from server.app import drop_stuck_clients
 from server.settings import Settings
+
+SEND_BUFFER_BYTES = 256 * 1024
+"""What the kernel may hold for a client that does not read; the kernel would go up to megabytes."""
 
 
 def listen(settings: Settings) -> socket.socket:
@@ -13,7 +15,7 @@ def listen(settings: Settings) -> socket.socket:
     # message would wait for the acknowledgement of the first, some 40 ms.
     listening = socket.socket(family, socket.SOCK_STREAM, socket.IPPROTO_TCP)
     listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-    drop_stuck_clients(listening)
+    listening.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SEND_BUFFER_BYTES)
     try:
         listening.bind((settings.host, settings.port))
     except OSError as error:

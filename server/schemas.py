@@ -143,17 +143,20 @@ def asyncapi() -> dict[str, Any]:
     }
 
 
-HELPER_NAME = {"type": "string", "minLength": 1, "maxLength": 64}
+HELPER_NAME = {
+    "type": "string",
+    "minLength": 1,
+    "maxLength": 64,
+    "description": "Needed, and heeded, only where the token is not that of a principal.",
+}
 
 SPEECH_QUERY = {
     "type": "object",
-    "required": ["helper"],
     "properties": {"helper": HELPER_NAME},
 }
 
 HELPER_QUERY = {
     "type": "object",
-    "required": ["helper"],
     "properties": {
         "helper": HELPER_NAME,
         "after": {"type": "integer", "minimum": 0, "description": "The last event seen."},
@@ -163,7 +166,7 @@ HELPER_QUERY = {
 
 LIVE_QUERY = {
     "type": "object",
-    "required": ["run", "helper"],
+    "required": ["run"],
     "properties": {
         "run": {"type": "string", "format": "uuid"},
         "helper": HELPER_NAME,

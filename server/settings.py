@@ -16,7 +16,11 @@ from pydantic_settings import (
 )
 
 from server.dialogues.mail import MailSettings
+from server.journal.sqlite import IN_MEMORY
 from server.limits import Limits
+from server.proxies import ProxyNetwork
+from server.public_url import PublicUrl
+from server.retention import KeepSettings
 from server.speech.voice import VoiceChoice
 
 Seconds = Annotated[float, Field(gt=0, le=86_400, allow_inf_nan=False)]
@@ -52,8 +56,18 @@ class Settings(BaseSettings):
     """The address to listen on; anything but loopback needs a token."""
     port: Annotated[int, Field(ge=0, le=65_535)] = 8080
     """The port to listen on; 0 takes a free one."""
+    public_url: PublicUrl | None = None
+    """The address at which others reach the service (`https://mend.example.com`)."""
     token: SecretStr | None = None
-    """What clients and robots have to show; make it long and random."""
+    """What an admin has to show, or a robot without a credential of its own; long and random."""
+    principals: Path | None = None
+    """The file of principals; `principals.yaml` in `data_dir` unless set."""
+    tls_certificate: Path | None = None
+    """The service's certificate in PEM, with its issuers'; it then speaks TLS alone."""
+    tls_key: Path | None = None
+    """The certificate's private key in PEM, without a password."""
+    trusted_proxies: list[ProxyNetwork] = []
+    """Addresses and networks of the reverse proxies whose forwarded headers are believed."""
     allowed_hosts: list[HostName] = []
     """Names under which clients may reach the service, besides localhost and IP addresses."""
     allowed_origins: list[str] = []
@@ -84,6 +98,8 @@ class Settings(BaseSettings):
     """How many events may wait for one slow client before it is cut off."""
     record_poses: bool = True
     """Whether to record beside the journal where everything was, for replay."""
+    keep: KeepSettings = KeepSettings()
+    """How long ended runs are kept."""
     limits: Limits = Limits()
     """How much of everything there may be."""
     speech_voice: VoiceChoice = "auto"
@@ -101,14 +117,37 @@ class Settings(BaseSettings):
     def journal_path(self) -> Path:
         return self.journal or self.data_dir / "journal.db"
 
+    @property
+    def principals_path(self) -> Path:
+        return self.principals or self.data_dir / "principals.yaml"
+
+    @property
+    def session_key_path(self) -> Path | None:
+        """The key of the sessions, beside the journal; None for one in memory."""
+        in_memory = str(self.journal_path) == IN_MEMORY
+        return None if in_memory else self.journal_path.with_suffix(".key")
+
+    @property
+    def asks_for_tokens(self) -> bool:
+        """Whether a service with these settings lets nobody in without a token."""
+        named = self.token is not None or self.principals is not None
+        return named or self.principals_path.is_file()
+
     @model_validator(mode="after")
     def _require_a_token(self) -> Self:
         if self.token is not None and not self.token.get_secret_value().strip():
             raise ValueError("'token' must not be empty")
-        if self.token is None and not is_loopback(self.host):
+        if not self.asks_for_tokens and not is_loopback(self.host):
             raise ValueError(
-                f"listening on {self.host} needs a token: set MEND_TOKEN, or listen on 127.0.0.1"
+                f"listening on {self.host} needs a token: set MEND_TOKEN, add principals "
+                "('mend access add'), or listen on 127.0.0.1"
             )
+        return self
+
+    @model_validator(mode="after")
+    def _require_certificate_and_key(self) -> Self:
+        if (self.tls_certificate is None) != (self.tls_key is None):
+            raise ValueError("'tls_certificate' and 'tls_key' go together: set both or neither")
         return self
 
     @classmethod
@@ -189,6 +228,14 @@ def _sentence(error: Any) -> str:
     if error["type"] == "extra_forbidden":
         return f"There is no setting '{where}'."
     return f"The setting '{where}' is wrong: {message[0].lower()}{message[1:]}."
+
+
+def is_everywhere(host: str) -> bool:
+    """Whether an address to listen on stands for all of this machine's."""
+    try:
+        return ipaddress.ip_address(host).is_unspecified
+    except ValueError:
+        return host == ""
 
 
 def is_loopback(host: str) -> bool:

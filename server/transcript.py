@@ -7,6 +7,7 @@ from functools import singledispatchmethod
 
 from dialogue.evidence import Change
 from dialogue.script import CloseReason, Help
+from server.access.principal import RESERVED
 from server.journal import events as ev
 from tasks.intervention import Act, Intervention
 from tasks.resolution import Resolution
@@ -118,6 +119,16 @@ def grouped(lines: Iterable[Line]) -> Iterator[list[Line]]:
         yield group
 
 
+def by(author: ev.Author | None) -> str:
+    """Who did something, after what they did; nothing where they have no name."""
+    return "" if author is None or author.principal in RESERVED else f" by {author.principal}"
+
+
+def why_aborted(event: ev.RunAborted) -> str:
+    """Why a run was aborted, or by whom."""
+    return event.reason or by(event.author).strip() or "by a person"
+
+
 class Transcript:
     """Turns the events of one run, in order, into lines.
 
@@ -150,11 +161,11 @@ class Transcript:
 
     @lines.register
     def _(self, event: ev.RunPaused) -> list[Line]:
-        return [_line(event, "", "the run is paused", Tone.RUN)]
+        return [_line(event, "", f"the run is paused{by(event.author)}", Tone.RUN)]
 
     @lines.register
     def _(self, event: ev.RunResumed) -> list[Line]:
-        return [_line(event, "", "the run goes on", Tone.RUN)]
+        return [_line(event, "", f"the run goes on{by(event.author)}", Tone.RUN)]
 
     @lines.register
     def _(self, event: ev.RunFinished) -> list[Line]:
@@ -168,9 +179,19 @@ class Transcript:
 
     @lines.register
     def _(self, event: ev.RunAborted) -> list[Line]:
-        return [
-            _line(event, "", f"the run was aborted: {event.reason or 'by a person'}", Tone.FAILED)
-        ]
+        return [_line(event, "", f"the run was aborted: {why_aborted(event)}", Tone.FAILED)]
+
+    @lines.register
+    def _(
+        self,
+        _event: ev.DocumentKept
+        | ev.DocumentDeleted
+        | ev.SignedIn
+        | ev.SignInFailed
+        | ev.SignedOut
+        | ev.AccessChanged,
+    ) -> list[Line]:
+        return []  # It belongs to no run.
 
     # --- The leaves ---------------------------------------------------------------------------
 

@@ -3,16 +3,47 @@
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 from websockets.protocol import State
 
+from server.visitors import STATE_KEY, Visitor
+
+STRANGER_MESSAGE_BYTES = 64 * 1024
+"""Long enough for a token."""
+
 
 class WebSocketProtocol(WebSocketsSansIOProtocol):
-    """Uvicorn's own, but for a connection that its client is just closing.
+    """Uvicorn's own, but for clients that are just closing, or ping and read nothing."""
 
-    Uvicorn would tell it once more that it ends, which raises, and then leave all others as they
-    are, and the service half shut down.
-    """
+    @property
+    def _visitor(self) -> Visitor | None:
+        """The visitor of `app_state`, where there is one."""
+        visitor: Visitor | None = self.app_state.get(STATE_KEY)
+        return visitor
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        if self._visitor is not None:
+            self._visitor.leave()
+        super().connection_lost(exc)
+
+    def data_received(self, data: bytes) -> None:
+        """Read on; a stranger's messages are short, so that many strangers fill no memory."""
+        stranger = self._visitor is not None and not self._visitor.is_admitted
+        most = self.config.ws_max_size
+        self.conn.max_message_size = min(most, STRANGER_MESSAGE_BYTES) if stranger else most
+        super().data_received(data)
+
+    def handle_ping(self) -> None:
+        """Answer a ping, unless so much waits for the client already."""
+        if self.writable.is_set():
+            super().handle_ping()
+        else:
+            # The pong that was made for it.
+            self.conn.data_to_send()
 
     def shutdown(self) -> None:
-        """End the connection because the server ends."""
+        """End the connection because the server ends.
+
+        Uvicorn would tell one that is just closing once more that it ends, which raises, and then
+        leave all others as they are, and the service half shut down.
+        """
         if self.conn.state in (State.CONNECTING, State.OPEN):
             super().shutdown()
             return

@@ -14,6 +14,7 @@ import signal
 import sys
 import threading
 from functools import partial
+from pathlib import Path
 from uuid import uuid4
 
 from pydantic import ValidationError
@@ -23,6 +24,7 @@ from robots.link.channel import LinkRefusedError
 from robots.link.client import run_agent
 from robots.link.clock import LoopClock
 from robots.link.outbox import IN_MEMORY, Outbox
+from robots.link.pinned_tls import pinned_tls
 from robots.link.websocket import websocket_channel
 from sim.world import WorldAdapter, WorldSetup, WorldUnavailableError
 from tasks.plugins import PluginError, load_plugins
@@ -33,12 +35,16 @@ PR_SET_PDEATHSIG = 1
 
 
 class RobotProcessSetup(StrictModel):
-    """What the process is told: which world, which robot in it, and where the service is."""
+    """What the process is told: which world, which robot in it, and where the service is.
+
+    `certificate` is the file of the service's own, where it speaks TLS.
+    """
 
     world: str
     setup: WorldSetup
     url: str
     token: str | None = None
+    certificate: str | None = None
 
 
 def find_world(name: str) -> WorldAdapter:
@@ -75,9 +81,10 @@ def main() -> int:
 
 
 async def _run(agent: AgentCore, told: RobotProcessSetup) -> None:
+    tls = None if told.certificate is None else pinned_tls(Path(told.certificate))
     await run_agent(
         agent,
-        partial(websocket_channel, told.url, told.token),
+        partial(websocket_channel, told.url, told.token, tls),
         Outbox(IN_MEMORY, told.setup.robot, uuid4().hex),
         LoopClock(),
         random.Random(told.setup.seed),

@@ -2,7 +2,8 @@
 
     python examples/robot/robot.py --url ws://127.0.0.1:8000/ws/robot --robot demo
 
-Needs Python 3.11 and the `websockets` package; the service's token comes from MEND_TOKEN.
+Needs Python 3.11 and the `websockets` package. With --credential FILE it shows its own credential,
+which it fetches the first time with --code (from `mend access enrol`); else MEND_TOKEN, if set.
 """
 
 import argparse
@@ -14,6 +15,9 @@ import random
 import sqlite3
 import time
 from contextlib import suppress
+from pathlib import Path
+from urllib.error import HTTPError
+from urllib.request import Request, urlopen
 
 from websockets.asyncio.client import connect
 from websockets.exceptions import InvalidStatus, WebSocketException
@@ -147,12 +151,33 @@ class Robot:
             await asyncio.sleep(random.uniform(0.1, 1.0))
 
 
+def credential(url, name, file, code):
+    if code and not file.exists():
+        address = "http" + url.removeprefix("ws").replace("/ws/robot", "/api/robots/enrol")
+        body = json.dumps({"robot": name, "code": code}).encode()
+        try:
+            with urlopen(Request(address, body, {"Content-Type": "application/json"})) as answer:
+                token = json.load(answer)["token"]
+        except HTTPError as refused:
+            raise SystemExit(json.load(refused)["detail"]) from None
+        file.touch(mode=0o600)
+        file.write_text(token)
+    return file.read_text().strip()
+
+
 parser = argparse.ArgumentParser(description="A pretend robot for Mend.")
 parser.add_argument("--url", default="ws://127.0.0.1:8000/ws/robot")
 parser.add_argument("--robot", default="demo")
 parser.add_argument("--outbox", default=":memory:", help="an SQLite file that outlives it")
 parser.add_argument("--step-s", type=float, default=0.2, help="how long a step takes")
+parser.add_argument(
+    "--credential", type=Path, help="the file that keeps the robot's own credential"
+)
+parser.add_argument("--code", help="a one-time code, to fetch the credential with")
 told = parser.parse_args()
+token = os.environ.get("MEND_TOKEN")
+if told.credential:
+    token = credential(told.url, told.robot, told.credential, told.code)
 robot = Robot(told.robot, told.outbox, told.step_s)
 with suppress(KeyboardInterrupt):
-    asyncio.run(robot.run(told.url, os.environ.get("MEND_TOKEN")))
+    asyncio.run(robot.run(told.url, token))

@@ -1,11 +1,15 @@
 """A channel to the service over a WebSocket."""
 
+import json
+import ssl
+
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidStatus
 
 from robots.link.channel import ChannelClosedError, LinkRefusedError
 
 MAX_MESSAGE_BYTES = 1 << 20
+TOO_MANY_REQUESTS = 429
 
 
 class WebSocketChannel:
@@ -30,11 +34,13 @@ class WebSocketChannel:
         await self._connection.close()
 
 
-async def websocket_channel(url: str, token: str | None) -> WebSocketChannel:
+async def websocket_channel(
+    url: str, token: str | None, tls: ssl.SSLContext | None = None
+) -> WebSocketChannel:
     """Connect to the service at `url` (`ws://` or `wss://`, path `/ws/robot`).
 
-    Raises `LinkRefusedError` if the service turns the robot away (a wrong token) and
-    `ChannelClosedError` if there is no service.
+    `tls` says whom to trust instead of those whom this machine trusts. Raises `LinkRefusedError` if
+    the service turns the robot away (a wrong token) and `ChannelClosedError` if there is none.
     """
     headers = {} if token is None else {"Authorization": f"Bearer {token}"}
     try:
@@ -45,13 +51,28 @@ async def websocket_channel(url: str, token: str | None) -> WebSocketChannel:
             max_size=MAX_MESSAGE_BYTES,
             user_agent_header=None,
             proxy=None,
+            ssl=tls or (True if url.startswith("wss:") else None),
         )
     except InvalidStatus as error:
         status, body = error.response.status_code, bytes(error.response.body or b"")
+        if status == TOO_MANY_REQUESTS:
+            raise ChannelClosedError(f"{url} asks to wait: {_detail(body, status)}") from error
         if 400 <= status < 500:
-            detail = body.decode(errors="replace").strip() or f"HTTP status {status}"
-            raise LinkRefusedError(f"{url} turned the robot away: {detail}") from error
+            raise LinkRefusedError(
+                f"{url} turned the robot away: {_detail(body, status)}"
+            ) from error
         raise ChannelClosedError(f"{url} answered with status {status}") from error
     except (OSError, InvalidHandshake) as error:
         raise ChannelClosedError(f"no service at {url}: {error}") from error
     return WebSocketChannel(connection)
+
+
+def _detail(body: bytes, status: int) -> str:
+    """What a refusal says: a problem document (RFC 9457), or plain text."""
+    text = body.decode(errors="replace").strip()
+    try:
+        problem = json.loads(text)
+    except (ValueError, RecursionError):
+        return text or f"HTTP status {status}"
+    detail = problem.get("detail") if isinstance(problem, dict) else None
+    return detail if isinstance(detail, str) else text

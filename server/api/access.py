@@ -1,66 +1,223 @@
-"""Who may come in: the token, browser sessions, and the Host and Origin of a request."""
+"""Who may come in: tokens, browser sessions, and the Host and Origin of a request."""
 
-import hashlib
-import hmac
+import asyncio
 import ipaddress
-import secrets
-from collections.abc import Callable, Sequence
+import math
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
 from urllib.parse import urlsplit
 
 from starlette.requests import HTTPConnection
 
+from server.access.known_principals import KnownPrincipals
+from server.access.principal import ANYBODY, TOKEN_NAME, Caller, Principal
+from server.access.roles import Role
+from server.access.sessions import Session, Sessions, new_session_key
+from server.access.tokens import fingerprint, fits
+from server.api.admission import REFUSED, Admission
+from server.api.wrong_tokens import WrongTokens
+from server.household import household_of
+from server.limits import Limits
+from server.refusals import Refusals
+from server.robots.passes import OneRobot, OwnRobots, Pass
+from server.visitors import visitor_of
+
 SESSION_COOKIE = "mend_session"
-SESSION_LIFETIME_S = 12 * 3600
 
 
 class Access:
-    """The rules of admission. Without a token everybody may come in who can reach the service."""
+    """The rules of admission.
+
+    Without a token and without principals everybody may come in who can reach the service.
+    `failed` is told the address of whoever shows something wrong.
+    """
 
     def __init__(
         self,
         token: str | None,
         *,
+        principals: KnownPrincipals | None = None,
+        session_key: bytes | None = None,
+        own_robots: OwnRobots | None = None,
+        failed: Callable[[str | None], None] = lambda _address: None,
         allowed_hosts: Sequence[str] = (),
         allowed_origins: Sequence[str] = (),
+        limits: Limits | None = None,
+        refusals: Refusals | None = None,
         wall_time_s: Callable[[], float],
     ) -> None:
-        self._token = token
+        self.principals = principals or KnownPrincipals(None, wall_time_s)
+        self.sessions = Sessions(session_key or new_session_key(), wall_time_s)
+        self._holder = (
+            None
+            if token is None
+            else Principal(TOKEN_NAME, Role.ADMIN, fingerprint(token), named=False)
+        )
+        self._own_robots = own_robots or OwnRobots()
+        self._wall_time_s = wall_time_s
+        self._failed = failed
+        self._wrong = WrongTokens((limits or Limits()).wrong_tokens, wall_time_s)
+        self._refusals = refusals or Refusals()
         self._hosts = {"localhost", *(host.lower() for host in allowed_hosts)}
         self._origins = {origin.lower().rstrip("/") for origin in allowed_origins}
-        self._wall_time_s = wall_time_s
+        self._watched: dict[int, tuple[Caller, asyncio.Event]] = {}
+
+    # --- Who it is ----------------------------------------------------------------------------
 
     @property
     def required(self) -> bool:
         """Whether a token has to be shown."""
-        return self._token is not None
+        return self._holder is not None or self.principals.required
 
-    def token_fits(self, token: str) -> bool:
-        """Compare with the token, in a time that tells nothing about it."""
-        if self._token is None:
-            return True
-        return secrets.compare_digest(_bytes(token), _bytes(self._token))
+    def of_token(self, token: str) -> Principal | None:
+        """Whose token this is; anybody's where none is needed."""
+        self.look()
+        if not self.required:
+            return ANYBODY
+        if self._holder is not None and fits(token, self._holder.key):
+            return self._holder
+        return self.principals.of_token(token)
 
-    def new_session(self) -> str:
-        """A cookie's value that stands for the token until it expires; survives a restart."""
-        expires = int(self._wall_time_s()) + SESSION_LIFETIME_S
-        return f"{expires}.{self._sign(expires)}"
+    def by_request(self, connection: HTTPConnection) -> Admission:
+        """By what a request shows: a token as a bearer, or else a session cookie.
 
-    def session_fits(self, cookie: str) -> bool:
-        expires, _, signature = cookie.partition(".")
-        if not (expires.isascii() and expires.isdigit() and len(expires) < 12):
-            return False
-        return int(expires) > self._wall_time_s() and secrets.compare_digest(
-            _bytes(signature), _bytes(self._sign(int(expires)))
-        )
+        A robot is let in too: its credential opens nothing but the robots' socket.
+        """
+        bearer = bearer_of(connection)
+        if bearer:
+            return self.by_token(bearer, connection)
+        self.look()
+        if not self.required:
+            return _welcomed(Caller(ANYBODY, address_of(connection)), connection)
+        # Signed with a key that nobody can guess, so guessing it needs no throttle.
+        session = self.sessions.read(connection.cookies.get(SESSION_COOKIE, ""))
+        principal = None if session is None else self.of_session(session)
+        if session is not None and principal is not None:
+            address = address_of(connection)
+            return _welcomed(Caller(principal, address, session.id, session.expires), connection)
+        if bearer is not None:
+            self._failed(address_of(connection))
+        return REFUSED
 
-    def admits(self, connection: HTTPConnection) -> bool:
-        """Whether a connection shows the token, as a bearer or by its session cookie."""
-        if self._token is None:
-            return True
-        scheme, _, credentials = connection.headers.get("authorization", "").partition(" ")
-        if scheme.lower() == "bearer":
-            return self.token_fits(credentials.strip())
-        return self.session_fits(connection.cookies.get(SESSION_COOKIE, ""))
+    def by_bearer(self, connection: HTTPConnection) -> Admission:
+        """By a token as a bearer, and by nothing else."""
+        bearer = bearer_of(connection)
+        if bearer or not self.required:
+            return self.by_token(bearer or "", connection)
+        if bearer is not None:
+            self._failed(address_of(connection))
+        return REFUSED
+
+    def by_token(self, shown: str, connection: HTTPConnection) -> Admission:
+        """By the token that somebody shows on a connection, wherever in it.
+
+        While an address has to wait, what it shows is not even read; else guessing would be as
+        quick as before. Whoever is in already stays in: on a connection that was admitted it is.
+        """
+        self.look()
+        if self.required:
+            wait_s = self.wait_s(shown, connection)
+            if wait_s > 0:
+                return Admission(None, wait_s)
+        principal = self.of_token(shown)
+        if principal is None:
+            self.wrong(shown, connection)
+            return REFUSED
+        return _welcomed(Caller(principal, address_of(connection)), connection)
+
+    def wait_s(self, shown: str, connection: HTTPConnection) -> int:
+        """How many seconds nothing new that this address shows is read; 0 if it is read now.
+
+        What was wrong before is no other guess, and may be read again: the file of principals can
+        have changed since.
+        """
+        household = _household(connection)
+        if _is_in(connection) or self._wrong.is_known(household, _bytes(shown)):
+            return 0
+        wait_s = math.ceil(self._wrong.wait_s(household))
+        if wait_s > 0:
+            self._refusals.note("wrong_tokens")
+        return wait_s
+
+    def wrong(self, shown: str, connection: HTTPConnection) -> None:
+        """Somebody has shown a wrong token or code."""
+        self._wrong.add(_household(connection), _bytes(shown))
+        self._failed(address_of(connection))
+
+    def session(self, connection: HTTPConnection) -> Session | None:
+        """The session of a connection's cookie, if it is a good one."""
+        session = self.sessions.read(connection.cookies.get(SESSION_COOKIE, ""))
+        return session if session is not None and self.of_session(session) else None
+
+    def renewed(self, caller: Caller) -> Caller | None:
+        """The caller with the role that they have now; None if they may come in no longer."""
+        principal = self._named(caller.principal.name) if self.required else ANYBODY
+        if principal is None or principal.key != caller.principal.key:
+            return None
+        if caller.session is not None and not self.sessions.lasts(caller.session):
+            return None
+        if caller.until is not None and caller.until <= self._wall_time_s():
+            return None
+        return replace(caller, principal=principal)
+
+    def of_session(self, session: Session) -> Principal | None:
+        """Whose session it is, if the credential that began it is still good."""
+        principal = self._named(session.name)
+        fit = principal is not None and self.sessions.fits(session, principal)
+        return principal if fit else None
+
+    def _named(self, name: str) -> Principal | None:
+        return self._holder if name == TOKEN_NAME else self.principals.of_name(name)
+
+    # --- While it lasts -----------------------------------------------------------------------
+
+    def look(self) -> None:
+        """See whether the principals have changed, and let go of those who are gone."""
+        if self.principals.look():
+            self.let_go()
+
+    def let_go(self) -> None:
+        """Tell the open connections of everybody who may come in no longer."""
+        for caller, gone in self._watched.values():
+            if self.renewed(caller) is None:
+                gone.set()
+
+    @contextmanager
+    def watched(self, caller: Caller) -> Iterator[asyncio.Event]:
+        """An event that is set once the caller may come in no longer."""
+        gone = asyncio.Event()
+        self._watched[id(gone)] = caller, gone
+        try:
+            yield gone
+        finally:
+            del self._watched[id(gone)]
+
+    # --- Robots -------------------------------------------------------------------------------
+
+    def own_robot(self, connection: HTTPConnection) -> OneRobot | None:
+        """As which robot a process of this service's own may say hello; None for anybody else.
+
+        Its credential is made for its time, and nobody can guess it: it never has to wait.
+        """
+        bearer = bearer_of(connection)
+        robot = None if bearer is None else self._own_robots.of_token(bearer)
+        if robot is None:
+            return None
+        _admit(connection)
+        return OneRobot(robot)
+
+    def robot_pass(self, caller: Caller) -> Pass | None:
+        """As which robot somebody may say hello; None if as none."""
+        if caller.principal.role is Role.ROBOT:
+            return OneRobot(caller.principal.name)
+        return None if caller.principal.named else UnboundRobot(self)
+
+    def bound(self, robot: str) -> bool:
+        """Whether a robot's name belongs to a credential."""
+        return robot in self._own_robots or self.principals.has_robot(robot)
+
+    # --- Host and Origin ----------------------------------------------------------------------
 
     def host_allowed(self, connection: HTTPConnection) -> bool:
         """Whether the Host is a name of this service.
@@ -83,9 +240,56 @@ class Access:
         host = connection.headers.get("host", "").lower()
         return origin in self._origins or origin in (f"http://{host}", f"https://{host}")
 
-    def _sign(self, expires: int) -> str:
-        key = _bytes(self._token or "")
-        return hmac.new(key, f"session:{expires}".encode(), hashlib.sha256).hexdigest()
+
+class UnboundRobot:
+    """The pass of whoever shows the service's own token, or need not show any."""
+
+    def __init__(self, access: Access) -> None:
+        self._access = access
+
+    def why_not(self, robot: str) -> str | None:
+        if not self._access.bound(robot):
+            return None
+        return (
+            f"the robot '{robot}' has a credential of its own: nobody can be it with the "
+            "service's token, or without one"
+        )
+
+
+def bearer_of(connection: HTTPConnection) -> str | None:
+    """What a connection shows as a bearer; empty for what is no bearer, None without a header."""
+    header = connection.headers.get("authorization")
+    if header is None:
+        return None
+    scheme, _, credentials = header.partition(" ")
+    return credentials.strip() if scheme.lower() == "bearer" else ""
+
+
+def address_of(connection: HTTPConnection) -> str | None:
+    """Where a connection comes from."""
+    return None if connection.client is None else connection.client.host
+
+
+def _welcomed(caller: Caller, connection: HTTPConnection) -> Admission:
+    _admit(connection)
+    return Admission(caller)
+
+
+def _admit(connection: HTTPConnection) -> None:
+    """Whoever made this connection is no stranger any more."""
+    visitor = visitor_of(connection.scope)
+    if visitor is not None:
+        visitor.admit()
+
+
+def _is_in(connection: HTTPConnection) -> bool:
+    """Whether the connection was admitted before, and is one client's alone."""
+    visitor = visitor_of(connection.scope)
+    return visitor is not None and visitor.is_admitted and visitor.household is not None
+
+
+def _household(connection: HTTPConnection) -> str:
+    return household_of(connection.client.host) if connection.client else ""
 
 
 def _bytes(text: str) -> bytes:

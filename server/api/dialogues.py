@@ -6,9 +6,11 @@ from uuid import UUID
 from fastapi import APIRouter, Body, Query
 from pydantic import BaseModel, ConfigDict, Field
 
-from server.api.parts import DialogueId, HelperName, Limit, Offset, WithParts
+from server.access.principal import Caller
+from server.api.parts import DialogueId, HelperName, Limit, Offset, WithCaller, WithParts
 from server.api.problems import documented
 from server.api.strict_json import StrictJsonRoute
+from server.errors import InvalidError
 from server.journal.events import Answered, DeadlineExtended
 from server.runtime.views import DialogueView
 
@@ -19,13 +21,13 @@ CHANGES = documented(400, 401, 403, 404, 409, 413, 421, 422)
 
 
 class AnswerRequest(BaseModel):
-    """One helper's answer to one prompt."""
+    """One helper's answer to one prompt; a principal's name is that of its token."""
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
 
     prompt: Annotated[UUID, Field(strict=False)]
     answer: Literal["yes", "no"]
-    helper: HelperName
+    helper: HelperName | None = None
 
 
 class ReleaseRequest(BaseModel):
@@ -33,7 +35,7 @@ class ReleaseRequest(BaseModel):
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
 
-    helper: HelperName
+    helper: HelperName | None = None
 
 
 class ClaimRequest(ReleaseRequest):
@@ -48,7 +50,7 @@ class ExtendRequest(BaseModel):
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
 
     prompt: Annotated[UUID, Field(strict=False)]
-    helper: HelperName
+    helper: HelperName | None = None
 
 
 @router.get("", operation_id="list_dialogues", responses=documented(401, 421, 422))
@@ -59,13 +61,15 @@ async def list_dialogues(
     offset: Offset = 0,
 ) -> list[DialogueView]:
     """Dialogues, all or those of one status."""
-    return parts.runs.dialogues(status)[offset : offset + limit]
+    return await parts.runs.dialogues(status, limit, offset)
 
 
-@router.get("/{dialogue}", operation_id="get_dialogue", responses=documented(401, 404, 421, 422))
+@router.get(
+    "/{dialogue}", operation_id="get_dialogue", responses=documented(401, 404, 421, 422, 500)
+)
 async def get_dialogue(dialogue: DialogueId, parts: WithParts) -> DialogueView:
     """One dialogue with its latest prompt."""
-    return parts.runs.dialogue(dialogue)
+    return await parts.runs.dialogue(dialogue)
 
 
 @router.post(
@@ -77,9 +81,12 @@ async def answer_prompt(
         AnswerRequest, Body(examples=[{"prompt": PROMPT, "answer": "yes", "helper": "anna"}])
     ],
     parts: WithParts,
+    caller: WithCaller,
 ) -> Answered:
     """Answer a prompt. The first answer wins; a later one gets 409 with `answered_by`."""
-    return await parts.runs.answer(dialogue, body.prompt, body.answer, body.helper)
+    return await parts.runs.answer(
+        dialogue, body.prompt, body.answer, _helper(caller, body.helper), caller.author
+    )
 
 
 @router.post("/{dialogue}/claim", operation_id="claim_dialogue", responses=CHANGES)
@@ -87,9 +94,12 @@ async def claim_dialogue(
     dialogue: DialogueId,
     body: Annotated[ClaimRequest, Body(examples=[{"helper": "anna"}])],
     parts: WithParts,
+    caller: WithCaller,
 ) -> DialogueView:
     """Show the other helpers that you are on it; the claim ends with its lease."""
-    return await parts.runs.claim(dialogue, body.helper, take_over=body.take_over)
+    return await parts.runs.claim(
+        dialogue, _helper(caller, body.helper), take_over=body.take_over, author=caller.author
+    )
 
 
 @router.post("/{dialogue}/extend", operation_id="extend_deadline", responses=CHANGES)
@@ -97,9 +107,12 @@ async def extend_deadline(
     dialogue: DialogueId,
     body: Annotated[ExtendRequest, Body(examples=[{"prompt": PROMPT, "helper": "anna"}])],
     parts: WithParts,
+    caller: WithCaller,
 ) -> DeadlineExtended:
     """Move the open question's deadline by its original length, at most ten times."""
-    return await parts.runs.extend(dialogue, body.prompt, body.helper)
+    return await parts.runs.extend(
+        dialogue, body.prompt, _helper(caller, body.helper), caller.author
+    )
 
 
 @router.post("/{dialogue}/release", operation_id="release_dialogue", responses=CHANGES)
@@ -107,6 +120,16 @@ async def release_dialogue(
     dialogue: DialogueId,
     body: Annotated[ReleaseRequest, Body(examples=[{"helper": "anna"}])],
     parts: WithParts,
+    caller: WithCaller,
 ) -> DialogueView:
     """Give up your claim."""
-    return await parts.runs.release(dialogue, body.helper)
+    return await parts.runs.release(dialogue, _helper(caller, body.helper), caller.author)
+
+
+def _helper(caller: Caller, declared: str | None) -> str:
+    """What the helper is called. Raises `InvalidError` where nobody says so."""
+    name = caller.helper_name(declared)
+    if name is None:
+        missing = "body.helper: is missing: with this token everybody says who it is"
+        raise InvalidError(missing, [missing])
+    return name

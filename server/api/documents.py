@@ -7,7 +7,7 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Query, Request, Response
 from pydantic import BaseModel, ConfigDict, ValidationError
 
-from server.api.parts import DocumentName, Limit, Offset, Parts, WithParts
+from server.api.parts import DocumentName, Limit, Offset, Parts, WithCaller, WithParts
 from server.api.problems import ProblemError, documented, validation_sentences
 from server.documents import (
     SPOKEN,
@@ -21,6 +21,7 @@ from server.documents import (
     SceneSummary,
 )
 from server.errors import InvalidError
+from server.journal.events import Author
 from tasks.scene import Name
 
 YAML_TYPES = ("application/yaml", "application/x-yaml", "text/yaml", "text/x-yaml")
@@ -137,8 +138,10 @@ def _add_writing(router: APIRouter, doors: Doors) -> None:
         **documented(400, 401, 403, 409, 413, 415, 421, 422),
     }
 
-    async def keep(upload: DocumentUpload, parts: Parts, response: Response) -> KeptDocument:
-        document, new = await doors.library(parts).save(upload.name, upload.text)
+    async def keep(
+        upload: DocumentUpload, parts: Parts, author: Author, response: Response
+    ) -> KeptDocument:
+        document, new = await doors.library(parts).save(upload.name, upload.text, author)
         response.status_code = 201 if new else 200
         response.headers["Location"] = f"/api{doors.path}/{document.name}"
         return document
@@ -156,9 +159,10 @@ def _add_writing(router: APIRouter, doors: Doors) -> None:
         request: Request,
         response: Response,
         parts: WithParts,
+        caller: WithCaller,
         name: Annotated[Name | None, Query(description="For a YAML body: its name.")] = None,
     ) -> KeptDocument:
-        return await keep(await _read_upload(request, name), parts, response)
+        return await keep(await _read_upload(request, name), parts, caller.author, response)
 
     @router.put(
         f"{doors.path}/{{name}}",
@@ -170,9 +174,13 @@ def _add_writing(router: APIRouter, doors: Doors) -> None:
         openapi_extra=_upload_body(doors),
     )
     async def put_document(
-        name: DocumentName, request: Request, response: Response, parts: WithParts
+        name: DocumentName,
+        request: Request,
+        response: Response,
+        parts: WithParts,
+        caller: WithCaller,
     ) -> KeptDocument:
-        return await keep(await _read_upload(request, name), parts, response)
+        return await keep(await _read_upload(request, name), parts, caller.author, response)
 
     @router.delete(
         f"{doors.path}/{{name}}",
@@ -181,8 +189,8 @@ def _add_writing(router: APIRouter, doors: Doors) -> None:
         description=f"Delete an uploaded {what}; runs that were started with it go on.",
         responses=documented(401, 403, 404, 409, 421, 422),
     )
-    async def delete_document(name: DocumentName, parts: WithParts) -> None:
-        await doors.library(parts).delete(name)
+    async def delete_document(name: DocumentName, parts: WithParts, caller: WithCaller) -> None:
+        await doors.library(parts).delete(name, caller.author)
 
 
 async def _read_upload(request: Request, name: str | None) -> DocumentUpload:

@@ -1,18 +1,21 @@
-"""The gate before every HTTP request: Host, Origin, token and the size of the body."""
+"""The gate before every HTTP request: Host, Origin, token, role and the size of the body."""
 
 import asyncio
+from collections.abc import Mapping
 
 from starlette.datastructures import MutableHeaders
 from starlette.exceptions import HTTPException
 from starlette.requests import HTTPConnection
+from starlette.responses import Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from server.access.permissions import needed_for_request
 from server.api.access import Access
-from server.api.problems import Problem, problem, problem_response
+from server.api.problems import forbidden, problem, problem_response
+from server.api.safe_headers import OVER_TLS, SAFE_HEADERS
 
 MAX_BODY_BYTES = 8 * 1024 * 1024
 PROTECTED = ("/api/", "/metrics")
-OPEN = ("/api/session",)
 SAFE_METHODS = ("GET", "HEAD", "OPTIONS")
 
 
@@ -29,36 +32,66 @@ class Gate:
             return
         connection = HTTPConnection(scope)
         refusal = self._refusal(scope, connection)
-        guarded = _guarded(send, private=scope["path"].startswith(PROTECTED))
+        guarded = _guarded(
+            send,
+            private=scope["path"].startswith(PROTECTED),
+            encrypted=scope["scheme"] == "https",
+        )
         if refusal is None:
             await self._app(scope, _limited(receive), guarded)
-            return
-        headers = {"WWW-Authenticate": "Bearer"} if refusal.status == 401 else {}
-        await problem_response(refusal, headers)(scope, receive, guarded)
+        else:
+            await refusal(scope, receive, guarded)
 
-    def _refusal(self, scope: Scope, connection: HTTPConnection) -> Problem | None:
+    def _refusal(self, scope: Scope, connection: HTTPConnection) -> Response | None:
         path: str = scope["path"]
         if not self._access.host_allowed(connection):
-            return problem(
+            return _refused(
                 421, "this Host is not one of the service's names: add it to 'allowed_hosts'"
             )
         if scope["method"] not in SAFE_METHODS and not self._access.origin_allowed(connection):
-            return problem(403, "pages of this Origin may not do that: see 'allowed_origins'")
-        protected = path.startswith(PROTECTED) and path not in OPEN
-        if protected and not self._access.admits(connection):
-            return problem(401, "show the token: 'Authorization: Bearer ...', or sign in")
+            return _refused(403, "pages of this Origin may not do that: see 'allowed_origins'")
+        if path.startswith(PROTECTED):
+            refusal = self._stranger(scope, connection)
+            if refusal is not None:
+                return refusal
         if _declared_length(connection) > MAX_BODY_BYTES:
-            return problem(413, _too_large())
+            return _refused(413, _too_large())
         return None
 
+    def _stranger(self, scope: Scope, connection: HTTPConnection) -> Response | None:
+        """Why who it is may not do that; what strangers show at an open door is not looked at."""
+        needed = needed_for_request(scope["method"], scope["path"])
+        if needed is None:
+            return None
+        admission = self._access.by_request(connection)
+        if admission.wait_s:
+            return _refused(429, admission.too_many, admission.retry_after)
+        if admission.caller is None:
+            detail = "show the token: 'Authorization: Bearer ...', or sign in"
+            return _refused(401, detail, {"WWW-Authenticate": "Bearer"})
+        scope.setdefault("state", {})["caller"] = admission.caller
+        role = admission.caller.principal.role
+        return None if role.may(needed) else problem_response(forbidden(needed, role))
 
-def _guarded(send: Send, *, private: bool) -> Send:
-    """Nothing is taken for another type than it says, and what is `private` is kept by nobody."""
+
+def _refused(status: int, detail: str, headers: Mapping[str, str] | None = None) -> Response:
+    return problem_response(problem(status, detail), headers)
+
+
+def _guarded(send: Send, *, private: bool, encrypted: bool) -> Send:
+    """Nothing can be misused by a page, and what is `private` is kept by nobody.
+
+    A browser that has come `encrypted` is told to come in no other way.
+    """
 
     async def guarded(message: Message) -> None:
         if message["type"] == "http.response.start":
             headers = MutableHeaders(scope=message)
-            headers.setdefault("X-Content-Type-Options", "nosniff")
+            for name, value in SAFE_HEADERS.items():
+                headers.setdefault(name, value)
+            if encrypted:
+                for name, value in OVER_TLS.items():
+                    headers.setdefault(name, value)
             if private:
                 headers.setdefault("Cache-Control", "no-store")
         await send(message)
@@ -74,7 +107,8 @@ def _declared_length(connection: HTTPConnection) -> int:
 def _limited(receive: Receive) -> Receive:
     """A body without a declared length is counted as it comes.
 
-    One that is still coming when the service stops is refused like anything else.
+    One that is still coming when the service stops, or the client hangs up, is refused like
+    anything else.
     """
     received, complete = 0, False
 
@@ -86,6 +120,9 @@ def _limited(receive: Receive) -> Receive:
             if complete:
                 raise
             raise HTTPException(503, "the service is shutting down") from None
+        if message["type"] == "http.disconnect" and not complete:
+            # Nobody reads this, but it ends the request without a defect in the log.
+            raise HTTPException(400, "the connection ended before the body had come")
         complete = not message.get("more_body", False)
         received += len(message.get("body", b""))
         if received > MAX_BODY_BYTES:

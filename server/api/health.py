@@ -18,6 +18,17 @@ class Health(BaseModel):
     status: Literal["ok"] = "ok"
 
 
+class Readiness(BaseModel):
+    """`degraded`: it works, but some of what was kept is damaged; `damage` has a sentence for each.
+
+    `unreadable_runs` says how many runs cannot be read.
+    """
+
+    status: Literal["ok", "degraded"]
+    unreadable_runs: int
+    damage: list[str]
+
+
 @router.get("/healthz", operation_id="healthz", responses=documented(421))
 async def healthz() -> Health:
     """The process answers."""
@@ -25,9 +36,16 @@ async def healthz() -> Health:
 
 
 @router.get("/readyz", operation_id="readyz", responses=documented(421, 503))
-async def readyz(parts: WithParts) -> Health:
+async def readyz(parts: WithParts) -> Readiness:
     """The journal can be read and written, so runs can be started and watched."""
+    parts.journal.look_for_file()
     if parts.journal.trouble.reason is not None:
         raise JournalWriteError(parts.journal.trouble.reason)
     await parts.journal.read_records(parts.journal.head, 1)
-    return Health()
+    unreadable = await parts.journal.index.count_unreadable()
+    damage = [each.sentence for each in parts.journal.damage]
+    return Readiness(
+        status="degraded" if unreadable or damage else "ok",
+        unreadable_runs=unreadable,
+        damage=damage,
+    )

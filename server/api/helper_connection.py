@@ -4,14 +4,25 @@ import asyncio
 import json
 from abc import ABC, abstractmethod
 from collections.abc import Coroutine
+from contextlib import suppress
 from typing import Any, Generic, TypeVar
 
 from pydantic import BaseModel, ConfigDict, TypeAdapter, ValidationError
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
-from server.api.helper_messages import Auth, Error
+from server.access.permissions import SOCKETS, needed_for_message
+from server.access.principal import Caller
+from server.api.admission import REFUSED
+from server.api.helper_messages import Auth, Error, HelperMessage
 from server.api.parts import HelperName, Parts, parts_of
-from server.api.problems import Problem, problem, validation_sentences
+from server.api.problems import (
+    Problem,
+    forbidden,
+    problem,
+    problem_response,
+    validation_sentences,
+)
+from server.journal.events import Author
 
 THE_END = 1000
 GOING_AWAY = 1001
@@ -24,25 +35,28 @@ MAX_REASON_CHARS = 100
 
 
 class HelperQuery(BaseModel):
-    """The address's parameters: who it is."""
+    """The address's parameters: who it is, where their token does not say so."""
 
     model_config = ConfigDict(extra="ignore", frozen=True)
 
-    helper: HelperName
+    helper: HelperName | None = None
 
 
 Query = TypeVar("Query", bound=HelperQuery)
-Message = TypeVar("Message")
+Message = TypeVar("Message", bound=HelperMessage)
 
 
 class HelperConnection(ABC, Generic[Query]):
-    """One helper's connection, from the handshake to its end.
+    """One helper's connection at `path`, from the handshake to its end.
 
     `query` is the shape of the address's parameters; a text message has at most
     `max_message_chars`.
     """
 
-    def __init__(self, websocket: WebSocket, query: type[Query], max_message_chars: int) -> None:
+    def __init__(
+        self, path: str, websocket: WebSocket, query: type[Query], max_message_chars: int
+    ) -> None:
+        self._path = path
         self._websocket = websocket
         self._query = query
         self._max_message_chars = max_message_chars
@@ -50,26 +64,43 @@ class HelperConnection(ABC, Generic[Query]):
 
     async def run(self) -> None:
         """Let the helper in and serve them, until either side has had enough."""
+        with suppress(WebSocketDisconnect):
+            caller = await self._admitted()
+            if caller is not None:
+                await self._let_in(caller)
+
+    async def _let_in(self, caller: Caller) -> None:
+        self._caller = caller
+        needed, role = SOCKETS[self._path], caller.principal.role
+        if not role.may(needed):
+            await self._turn_away(forbidden(needed, role))
+            return
         try:
-            if await self._admitted():
-                try:
-                    query = self._query.model_validate(dict(self._websocket.query_params))
-                except ValidationError as error:
-                    errors = validation_sentences(error.errors())
-                    await self._turn_away(problem(422, "the address is wrong", errors=errors))
-                else:
-                    await self._serve(query)
-        except WebSocketDisconnect:
-            pass
+            query = self._query.model_validate(dict(self._websocket.query_params))
+        except ValidationError as error:
+            errors = validation_sentences(error.errors())
+            await self._turn_away(problem(422, "the address is wrong", errors=errors))
+            return
+        helper = caller.helper_name(query.helper)
+        if helper is None:
+            missing = ["helper: is missing: with this token everybody says who it is"]
+            await self._turn_away(problem(422, "the address is wrong", errors=missing))
+            return
+        with self._parts.access.watched(caller) as gone:
+            await until_one_ends(self._serve(query, helper), self._leave_when(gone))
+
+    async def _leave_when(self, gone: asyncio.Event) -> None:
+        await gone.wait()
+        await self._websocket.close(POLICY_VIOLATION, "you are no longer signed in")
 
     @abstractmethod
-    async def _serve(self, query: Query) -> None:
+    async def _serve(self, query: Query, helper: str) -> None:
         """Everything after the helper has been let in. May raise `WebSocketDisconnect`."""
 
     # --- letting in ---------------------------------------------------------------------------
 
-    async def _admitted(self) -> bool:
-        """Accept the connection, or close it with 1008.
+    async def _admitted(self) -> Caller | None:
+        """Accept the connection and say who it is, or close it with 1008.
 
         Host and Origin are looked at first. The token comes in a bearer header, in the session
         cookie, or in the first message; never from the address, which ends up in logs.
@@ -77,18 +108,24 @@ class HelperConnection(ABC, Generic[Query]):
         websocket, access = self._websocket, self._parts.access
         if not (access.host_allowed(websocket) and access.origin_allowed(websocket)):
             await websocket.close(POLICY_VIOLATION, "this Host or Origin may not connect")
-            return False
-        admitted = access.admits(websocket)
-        if "authorization" in websocket.headers and not admitted:
+            return None
+        admission = access.by_request(websocket)
+        if admission.wait_s:
+            refusal = problem(429, admission.too_many)
+            await websocket.send_denial_response(problem_response(refusal, admission.retry_after))
+            return None
+        if "authorization" in websocket.headers and admission.caller is None:
             await websocket.close(POLICY_VIOLATION, "this is not the token")
-            return False
+            return None
         await websocket.accept()
-        if not admitted:
+        if admission.caller is None:
             token = await self._first_token()
-            admitted = token is not None and access.token_fits(token)
-        if not admitted:
+            admission = REFUSED if token is None else access.by_token(token, websocket)
+        if admission.wait_s:
+            await self._turn_away(problem(429, admission.too_many), TRY_AGAIN_LATER)
+        elif admission.caller is None:
             await websocket.close(POLICY_VIOLATION, "the first message must show the token")
-        return admitted
+        return admission.caller
 
     async def _first_token(self) -> str | None:
         """The token in the first message; None for any other message, and for none in time."""
@@ -106,6 +143,21 @@ class HelperConnection(ABC, Generic[Query]):
 
     # --- from the helper ----------------------------------------------------------------------
 
+    @property
+    def _author(self) -> Author:
+        """Who the helper is, for the journal."""
+        return self._caller.author
+
+    def _why_not(self, kind: str) -> Problem | None:
+        """Why the helper may not send such a message, with the role that they have now."""
+        self._parts.access.look()
+        caller = self._parts.access.renewed(self._caller)
+        if caller is None:
+            return problem(401, "you are no longer signed in")
+        self._caller = caller
+        needed, role = needed_for_message(self._path, kind), caller.principal.role
+        return None if needed is None or role.may(needed) else forbidden(needed, role)
+
     async def _receive(self) -> str | bytes:
         frame = await self._websocket.receive()
         if frame["type"] == "websocket.disconnect":
@@ -114,17 +166,21 @@ class HelperConnection(ABC, Generic[Query]):
         return bytes(frame.get("bytes") or b"") if text is None else text
 
     async def _read(self, text: str, shape: TypeAdapter[Message]) -> Message | None:
-        """What a text message says; None for one that was refused."""
+        """What a text message says; None for one that was refused, also for want of a role."""
         if len(text) > self._max_message_chars:
             limit = f"a message may have {self._max_message_chars} characters"
             await self._refuse(problem(413, limit))
             return None
         try:
-            return shape.validate_json(text)
+            message = shape.validate_json(text)
         except ValidationError as error:
             errors = validation_sentences(error.errors(include_input=False))
             await self._refuse(problem(422, "the message is wrong", errors=errors), _id_in(text))
             return None
+        refusal = self._why_not(vars(message)["type"])
+        if refusal is not None:
+            await self._refuse(refusal, message.id)
+        return message if refusal is None else None
 
     # --- to the helper ------------------------------------------------------------------------
 
@@ -136,10 +192,10 @@ class HelperConnection(ABC, Generic[Query]):
         fields = refusal.model_dump(include={"status", "title", "detail", "answered_by", "errors"})
         await self._send(Error(id=to, **fields))
 
-    async def _turn_away(self, refusal: Problem) -> None:
+    async def _turn_away(self, refusal: Problem, code: int = POLICY_VIOLATION) -> None:
         """Say why this connection cannot be served, and close it."""
         await self._refuse(refusal)
-        await self._websocket.close(POLICY_VIOLATION, refusal.detail[:MAX_REASON_CHARS])
+        await self._websocket.close(code, refusal.detail[:MAX_REASON_CHARS])
 
 
 async def until_one_ends(*works: Coroutine[Any, Any, None]) -> None:

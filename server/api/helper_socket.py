@@ -29,11 +29,13 @@ from server.api.helper_messages import (
 )
 from server.api.parts import MAX_SEQ
 from server.api.problems import problem, problem_of
+from server.journal.events import NO_RUN
 from server.journal.journal import JournalClosedError
-from server.journal.subscriptions import SubscriptionOverflowError
+from server.journal.subscriptions import PrunedEventsError, SubscriptionOverflowError
 
 router = APIRouter()
 
+HELPER_PATH = "/ws/helper"
 MAX_MESSAGE_CHARS = 64 * 1024
 
 
@@ -43,7 +45,7 @@ class EventsQuery(HelperQuery):
     after: Annotated[int, Field(ge=0, le=MAX_SEQ)] | None = None
 
 
-@router.websocket("/ws/helper")
+@router.websocket(HELPER_PATH)
 async def helper_socket(websocket: WebSocket) -> None:
     """Serve one helper until either side has had enough."""
     await HelperSocket(websocket).run()
@@ -53,15 +55,15 @@ class HelperSocket(HelperConnection[EventsQuery]):
     """One helper's connection: events to them, answers and claims from them."""
 
     def __init__(self, websocket: WebSocket) -> None:
-        super().__init__(websocket, EventsQuery, MAX_MESSAGE_CHARS)
+        super().__init__(HELPER_PATH, websocket, EventsQuery, MAX_MESSAGE_CHARS)
 
-    async def _serve(self, query: EventsQuery) -> None:
+    async def _serve(self, query: EventsQuery, helper: str) -> None:
         """Send a snapshot, then events while taking messages, until one of the two ends."""
         seq = await self._send_snapshot(query.after)
         await until_one_ends(
             self._send_events(seq),
             self._send_trouble(),
-            self._receive_messages(query.helper),
+            self._receive_messages(helper),
         )
 
     # --- to the helper ------------------------------------------------------------------------
@@ -71,8 +73,10 @@ class HelperSocket(HelperConnection[EventsQuery]):
         with self._parts.journal.subscribe(seq, capacity) as subscription:
             try:
                 async for record in subscription:
-                    await self._websocket.send_text(record.text)
-            except SubscriptionOverflowError as error:
+                    # What is of no run is for admins, and comes over REST.
+                    if not _is_of_no_run(record.text):
+                        await self._websocket.send_text(record.text)
+            except (SubscriptionOverflowError, PrunedEventsError) as error:
                 await self._websocket.close(TRY_AGAIN_LATER, str(error))
             except JournalClosedError:
                 await self._websocket.close(GOING_AWAY, "the service stops")
@@ -95,13 +99,23 @@ class HelperSocket(HelperConnection[EventsQuery]):
     async def _send_snapshot(self, after: int | None) -> int:
         head = self._parts.journal.head
         ahead = after is not None and after > head
-        snapshot = await self._parts.runs.snapshot(None if ahead else after)
+        pruned_through = await self._parts.journal.pruned_through()
+        pruned = after is not None and after < pruned_through
+        snapshot = await self._parts.runs.snapshot(None if ahead or pruned else after)
         await self._send(
             SnapshotMessage(seq=snapshot.seq, runs=snapshot.runs, dialogues=snapshot.dialogues)
         )
         if ahead:
             await self._refuse(
                 problem(422, f"there is no event {after} yet: the last one is {head}")
+            )
+        if pruned:
+            await self._refuse(
+                problem(
+                    410,
+                    f"not every event after {after} is there any more: some up to "
+                    f"{pruned_through} were pruned, so the snapshot is that of now",
+                )
             )
         return snapshot.seq
 
@@ -133,14 +147,21 @@ class HelperSocket(HelperConnection[EventsQuery]):
         match message:
             case Answer():
                 done: BaseModel = await runs.answer(
-                    message.dialogue, message.prompt, message.answer, helper
+                    message.dialogue, message.prompt, message.answer, helper, self._author
                 )
             case Claim():
-                done = await runs.claim(message.dialogue, helper, take_over=message.take_over)
+                done = await runs.claim(
+                    message.dialogue, helper, take_over=message.take_over, author=self._author
+                )
             case Release():
-                done = await runs.release(message.dialogue, helper)
+                done = await runs.release(message.dialogue, helper, self._author)
             case Extend():
-                done = await runs.extend(message.dialogue, message.prompt, helper)
+                done = await runs.extend(message.dialogue, message.prompt, helper, self._author)
             case Auth() | Ping():
                 return {}
         return done.model_dump(mode="json")
+
+
+def _is_of_no_run(event: str) -> bool:
+    """Whether an event's JSON says that it belongs to no run; its `run` comes before all else."""
+    return event.partition('"run":"')[2].startswith(str(NO_RUN))

@@ -12,13 +12,14 @@ from server.api.helper_connection import (
     HelperQuery,
     until_one_ends,
 )
-from server.api.problems import problem
-from server.errors import NotFoundError
+from server.api.problems import problem, problem_of
+from server.errors import NotFoundError, UnreadableError
 from server.poses.feed import RunPoses
 from server.poses.layout import Layout
 
 router = APIRouter()
 
+LIVE_PATH = "/ws/live"
 MAX_MESSAGE_CHARS = 4096
 
 
@@ -28,7 +29,7 @@ class LiveQuery(HelperQuery):
     run: UUID
 
 
-@router.websocket("/ws/live")
+@router.websocket(LIVE_PATH)
 async def live_socket(websocket: WebSocket) -> None:
     """Show one helper where everything is, until the run ends or they have seen enough."""
     await LiveSocket(websocket).run()
@@ -38,14 +39,14 @@ class LiveSocket(HelperConnection[LiveQuery]):
     """One watcher's connection."""
 
     def __init__(self, websocket: WebSocket) -> None:
-        super().__init__(websocket, LiveQuery, MAX_MESSAGE_CHARS)
+        super().__init__(LIVE_PATH, websocket, LiveQuery, MAX_MESSAGE_CHARS)
 
-    async def _serve(self, query: LiveQuery) -> None:
+    async def _serve(self, query: LiveQuery, helper: str) -> None:  # noqa: ARG002
         """Send what there is to see, until one of the two ends."""
         try:
-            self._parts.runs.run(query.run)
-        except NotFoundError as error:
-            await self._turn_away(problem(404, str(error)))
+            await self._parts.runs.run(query.run)
+        except (NotFoundError, UnreadableError) as error:
+            await self._turn_away(problem_of(error) or problem(500, str(error)))
         else:
             await until_one_ends(self._show(query.run), self._wait_for_leave())
 
@@ -55,7 +56,7 @@ class LiveSocket(HelperConnection[LiveQuery]):
             await self._show_last(run)
         else:
             await self._follow(poses)
-        if self._parts.runs.run(run).status.ended:
+        if (await self._parts.runs.run(run)).status.ended:
             await self._websocket.close(THE_END, "the run has ended")
         else:
             await self._websocket.close(GOING_AWAY, "the service stops")

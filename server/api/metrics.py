@@ -1,7 +1,6 @@
-"""What Prometheus may know: runs, dialogues, events, subscribers and the journal's commits."""
+"""What Prometheus may know: runs, dialogues, events, subscribers, limits, the journal's commits."""
 
-from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from fastapi import APIRouter, Response
 from prometheus_client import CONTENT_TYPE_LATEST, CollectorRegistry, generate_latest
@@ -9,7 +8,7 @@ from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily, Histo
 from prometheus_client.metrics_core import Metric
 from prometheus_client.registry import Collector
 
-from server.api.parts import Parts, WithParts
+from server.api.parts import MAX_SEQ, Parts, WithParts
 from server.api.problems import documented
 from server.runtime.views import RunStatus
 
@@ -19,20 +18,38 @@ router = APIRouter(tags=["health"])
 class ServiceCollector(Collector):
     """Reads the figures where they are, when they are asked for."""
 
-    def __init__(self, parts: Parts) -> None:
+    def __init__(self, parts: Parts, runs: Mapping[RunStatus, int], open_dialogues: int) -> None:
         self._parts = parts
+        self._run_counts = runs
+        self._open_dialogues = open_dialogues
 
     def collect(self) -> Iterator[Metric]:
         runs = GaugeMetricFamily("mend_runs", "Runs by status.", labels=["status"])
-        counts = Counter(run.status for run in self._parts.runs.runs())
-        for status in RunStatus:
-            runs.add_metric([status.value], counts[status])
+        for status, count in self._run_counts.items():
+            runs.add_metric([status.value], count)
         yield runs
-        open_dialogues = len(self._parts.runs.dialogues("open"))
-        yield GaugeMetricFamily("mend_open_dialogues", "Open dialogues.", value=open_dialogues)
+        yield GaugeMetricFamily(
+            "mend_unreadable_runs",
+            "Runs that cannot be read from the journal.",
+            value=self._run_counts.get(RunStatus.UNREADABLE, 0),
+        )
+        yield GaugeMetricFamily(
+            "mend_open_dialogues", "Open dialogues.", value=self._open_dialogues
+        )
         connected = sum(robot.connected for robot in self._parts.runs.robots())
         yield GaugeMetricFamily("mend_robots_connected", "Robots connected.", value=connected)
+        yield self._refused()
         yield from self._journal()
+
+    def _refused(self) -> Metric:
+        refused = CounterMetricFamily(
+            "mend_refused",
+            "What was beyond a limit, and so refused, ended or forgotten.",
+            labels=["limit"],
+        )
+        for limit, count in self._parts.refusals.counts.items():
+            refused.add_metric([limit], count)
+        return refused
 
     def _journal(self) -> Iterator[Metric]:
         journal = self._parts.journal
@@ -55,6 +72,11 @@ class ServiceCollector(Collector):
             "Whether the journal can be written.",
             value=journal.trouble.reason is None,
         )
+        yield GaugeMetricFamily(
+            "mend_journal_damage",
+            "Places where the journal was found to be damaged when it was opened.",
+            value=len(journal.damage),
+        )
         yield HistogramMetricFamily(
             "mend_journal_commit_seconds",
             "How long a durable commit took.",
@@ -76,5 +98,7 @@ class ServiceCollector(Collector):
 async def metrics(parts: WithParts) -> Response:
     """The service's figures for Prometheus."""
     registry = CollectorRegistry(auto_describe=False)
-    registry.register(ServiceCollector(parts))
+    runs = await parts.runs.count_runs()
+    open_dialogues = len(await parts.runs.dialogues("open", MAX_SEQ, 0))
+    registry.register(ServiceCollector(parts, runs, open_dialogues))
     return Response(generate_latest(registry), media_type=CONTENT_TYPE_LATEST)

@@ -1,6 +1,6 @@
 """What the routes work with: the parts of the service, and parameters that many of them take."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Annotated, Protocol
 from uuid import UUID
 
@@ -8,6 +8,9 @@ from fastapi import Depends, Path, Query
 from pydantic import Field
 from starlette.requests import HTTPConnection
 
+from server.access.changes import PrincipalsEditor
+from server.access.deed_log import DeedLog
+from server.access.principal import Caller
 from server.api.access import Access
 from server.documents import DocumentLibrary
 from server.journal.journal import Journal
@@ -15,6 +18,7 @@ from server.journal.subscriptions import Subscribers
 from server.journal.writer import CommitStatistics
 from server.models import RobotModels
 from server.poses.feed import PoseSource
+from server.refusals import Refusals
 from server.runtime.service import RunService
 from server.runtime.views import WorldView
 from server.settings import Settings
@@ -28,6 +32,8 @@ class ObservedJournal(Journal, Protocol):
 
     @property
     def subscribers(self) -> Subscribers: ...
+
+    def look_for_file(self) -> None: ...
 
     def commit_statistics(self) -> CommitStatistics: ...
 
@@ -52,7 +58,10 @@ class Parts:
     poses: PoseSource
     settings: Settings
     access: Access
+    deeds: DeedLog
+    editor: PrincipalsEditor
     speech: SpeechAbilities = NO_SPEECH
+    refusals: Refusals = field(default_factory=Refusals)
 
 
 def parts_of(connection: HTTPConnection) -> Parts:
@@ -60,6 +69,13 @@ def parts_of(connection: HTTPConnection) -> Parts:
     return parts
 
 
+def known_caller(connection: HTTPConnection) -> Caller:
+    """Who the gate has let in, at a door that lets in nobody else."""
+    caller: Caller = connection.state.caller
+    return caller
+
+
+WithCaller = Annotated[Caller, Depends(known_caller)]
 WithParts = Annotated[Parts, Depends(parts_of)]
 
 RunId = Annotated[UUID, Path(description="The run's id.")]

@@ -19,10 +19,12 @@ MOST_FRAMES = 20_000
 Seconds = Annotated[float, Query(ge=0.0, le=1e9, allow_inf_nan=False)]
 
 
-@router.get("/{run}/layout", operation_id="get_layout", responses=documented(401, 404, 421, 422))
+@router.get(
+    "/{run}/layout", operation_id="get_layout", responses=documented(401, 404, 421, 422, 500)
+)
 async def get_layout(run: RunId, parts: WithParts) -> Layout:
     """What the frames of a run hold, in order, and what does not move in it."""
-    parts.runs.run(run)
+    await parts.runs.run(run)
     layout = await parts.poses.layout(run)
     if layout is None:
         raise NotFoundError(f"the robot of run {run} has not shown where anything is")
@@ -44,7 +46,7 @@ async def get_layout(run: RunId, parts: WithParts) -> Layout:
                 }
             },
         },
-        **documented(401, 404, 421, 422),
+        **documented(401, 404, 421, 422, 500),
     },
 )
 async def get_poses(
@@ -55,7 +57,7 @@ async def get_poses(
     limit: Annotated[int, Query(ge=1, le=MOST_FRAMES)] = MOST_FRAMES,
 ) -> Response:
     """The recorded frames of a span of the run's clock, evenly thinned out to `limit`."""
-    parts.runs.run(run)
+    await parts.runs.run(run)
     until_s = math.inf if to_s is None else to_s
     recorded = await parts.poses.recorded(run, from_s, until_s, limit)
     headers = {"Cache-Control": "no-store"}

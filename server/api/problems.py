@@ -1,5 +1,6 @@
 """Problem documents (RFC 9457): how every refusal looks on the wire."""
 
+import errno
 import json
 import logging
 from collections.abc import Mapping, Sequence
@@ -13,14 +14,20 @@ from pydantic import BaseModel, ConfigDict
 from starlette.exceptions import HTTPException
 from starlette.responses import Response
 
+from server.access.changes import EnrolmentRefusedError
+from server.access.principals_file import PrincipalsFileError
+from server.access.roles import Role, with_article
+from server.api.parts import parts_of
+from server.api.safe_headers import SAFE_HEADERS
 from server.errors import (
     ConflictError,
     InvalidError,
     LostRaceError,
     NotFoundError,
     ServiceError,
+    UnreadableError,
 )
-from server.journal.journal import JournalClosedError, JournalWriteError
+from server.journal.journal import JournalClosedError, JournalReadError, JournalWriteError
 from tasks.unit import unit_of_name
 from tasks.validation import what_is_right
 
@@ -28,10 +35,16 @@ log = logging.getLogger(__name__)
 
 MEDIA_TYPE = "application/problem+json"
 
+NO_DESCRIPTOR = (errno.EMFILE, errno.ENFILE)
+
 STATUSES: tuple[tuple[type[Exception], int], ...] = (
+    (EnrolmentRefusedError, 403),
     (NotFoundError, 404),
     (ConflictError, 409),
     (InvalidError, 422),
+    (UnreadableError, 500),
+    (JournalReadError, 500),
+    (PrincipalsFileError, 503),
     (JournalWriteError, 503),
     (JournalClosedError, 503),
 )
@@ -64,6 +77,11 @@ def problem(status: int, detail: str, **more: Any) -> Problem:
     return Problem(title=HTTPStatus(status).phrase, status=status, detail=detail, **more)
 
 
+def forbidden(needed: Role, role: Role) -> Problem:
+    """What somebody reads who may not do something."""
+    return problem(403, f"this needs the role '{needed}'; you are {with_article(role)}")
+
+
 def problem_of(error: Exception) -> Problem | None:
     """The problem that an error of the service stands for; None if it is a defect."""
     status = next((status for kind, status in STATUSES if isinstance(error, kind)), None)
@@ -76,23 +94,32 @@ def problem_of(error: Exception) -> Problem | None:
     return problem(status, str(error))
 
 
-def problem_response(refusal: Problem, headers: Mapping[str, str] | None = None) -> Response:
+def problem_text(refusal: Problem) -> bytes:
+    """The document itself."""
     # What a client sent may come back in a message, lone surrogates included.
     text = json.dumps(refusal.model_dump(mode="json", exclude_none=True), ensure_ascii=False)
+    return text.encode("utf-8", "replace")
+
+
+def problem_response(refusal: Problem, headers: Mapping[str, str] | None = None) -> Response:
+    """The document as an answer; one of a defect does not go through the gate."""
     return Response(
-        text.encode("utf-8", "replace"),
+        problem_text(refusal),
         refusal.status,
         media_type=MEDIA_TYPE,
-        headers=dict(headers or {}),
+        headers={**SAFE_HEADERS, **(headers or {})},
     )
 
 
 def documented(*statuses: int) -> dict[int | str, dict[str, Any]]:
-    """The refusals of an operation, for its OpenAPI description."""
+    """The refusals of an operation, for its OpenAPI description.
+
+    Whoever may be asked for the token (401) may also be asked to wait with it (429).
+    """
     content = {MEDIA_TYPE: {"schema": {"$ref": "#/components/schemas/Problem"}}}
     return {
         status: {"description": HTTPStatus(status).phrase, "content": content}
-        for status in sorted(statuses)
+        for status in sorted({*statuses, *([429] if 401 in statuses else [])})
     }
 
 
@@ -101,7 +128,14 @@ def answer_errors_with_problems(app: FastAPI) -> None:
     app.add_exception_handler(HTTPException, _http_error)
     app.add_exception_handler(RequestValidationError, _validation_error)
     app.add_exception_handler(ProblemError, _problem_error)
-    for kind in (ServiceError, JournalWriteError, JournalClosedError):
+    app.add_exception_handler(OSError, _no_descriptor)
+    for kind in (
+        ServiceError,
+        JournalReadError,
+        JournalWriteError,
+        JournalClosedError,
+        PrincipalsFileError,
+    ):
         app.add_exception_handler(kind, _service_error)
     app.add_exception_handler(Exception, _defect)
 
@@ -128,10 +162,21 @@ async def _problem_error(_request: Request, error: Exception) -> Response:
     return problem_response(problem(error.status, str(error)), error.headers)
 
 
-async def _service_error(_request: Request, error: Exception) -> Response:
+async def _service_error(request: Request, error: Exception) -> Response:
     refusal = problem_of(error)
     assert refusal is not None, "every service error has a status"
+    if isinstance(error, ServiceError) and error.limit is not None:
+        parts_of(request).refusals.note(error.limit)
     return problem_response(refusal)
+
+
+async def _no_descriptor(_request: Request, error: Exception) -> Response:
+    """Without descriptors no request can be served; there is nothing in that to look into."""
+    assert isinstance(error, OSError)
+    if error.errno not in NO_DESCRIPTOR:
+        raise error
+    detail = "the service has too many files and connections open just now; try again"
+    return problem_response(problem(503, detail), {"Retry-After": "1"})
 
 
 async def _defect(request: Request, error: Exception) -> Response:

@@ -1,15 +1,66 @@
-"""Robots over REST."""
+"""Robots over REST: which there are, and how one fetches its own credential."""
 
-from fastapi import APIRouter
+from datetime import UTC, datetime
 
+from fastapi import APIRouter, Request
+from pydantic import BaseModel, ConfigDict, Field
+
+from server.access.changes import EnrolmentRefusedError
+from server.access.principals_file import RobotName
+from server.access.roles import Role
+from server.api.access import address_of
+from server.api.admission import Admission
 from server.api.parts import Limit, Offset, WithParts
-from server.api.problems import documented
+from server.api.principals import edited
+from server.api.problems import ProblemError, documented
+from server.api.strict_json import StrictJsonRoute
+from server.journal.events import Author
 from server.runtime.views import RobotView
 
-router = APIRouter(prefix="/api/robots", tags=["robots"])
+router = APIRouter(prefix="/api/robots", tags=["robots"], route_class=StrictJsonRoute)
 
 
-@router.get("", operation_id="list_robots", responses=documented(401, 421, 422))
+class EnrolmentRequest(BaseModel):
+    """Which robot it is, and the code that an admin has made for it."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+
+    robot: RobotName = Field(examples=["arm-1"])
+    code: str = Field(max_length=100, examples=["ABCD-EFGH-IJKL-MNOP-QRST-UVWX"])
+
+
+class Credential(BaseModel):
+    """A robot's own credential: its bearer token on `/ws/robot`, good for this name alone."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    robot: str
+    token: str
+
+
+@router.get("", operation_id="list_robots", responses=documented(401, 403, 421, 422))
 async def list_robots(parts: WithParts, limit: Limit = 1000, offset: Offset = 0) -> list[RobotView]:
     """Every robot that is connected or known, with its state."""
     return parts.runs.robots()[offset : offset + limit]
+
+
+@router.post(
+    "/enrol", operation_id="enrol_robot", status_code=201,
+    responses=documented(400, 403, 409, 413, 421, 422, 429, 503),
+)  # fmt: skip
+async def enrol_robot(body: EnrolmentRequest, request: Request, parts: WithParts) -> Credential:
+    """Exchange a one-time code for the robot's own credential, which is shown only now."""
+    address = address_of(request)
+    wait = Admission(None, parts.access.wait_s(body.code, request))
+    if wait.wait_s:
+        raise ProblemError(429, wait.too_many, wait.retry_after)
+    try:
+        token = await edited(
+            parts, lambda: parts.editor.enrol(body.robot, body.code, datetime.now(UTC))
+        )
+    except EnrolmentRefusedError:
+        parts.access.wrong(body.code, request)
+        raise
+    author = Author(principal=body.robot, role=Role.ROBOT, address=address)
+    parts.deeds.access_changed("enrolled", body.robot, Role.ROBOT, author)
+    return Credential(robot=body.robot, token=token)

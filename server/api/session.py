@@ -3,7 +3,10 @@
 from fastapi import APIRouter, Request, Response
 from pydantic import BaseModel, ConfigDict, Field
 
-from server.api.access import SESSION_COOKIE, SESSION_LIFETIME_S
+from server.access.principal import Caller
+from server.access.roles import Role
+from server.access.sessions import SESSION_LIFETIME_S, TooManySessionsError
+from server.api.access import SESSION_COOKIE, address_of
 from server.api.parts import WithParts
 from server.api.problems import ProblemError, documented
 
@@ -11,7 +14,7 @@ router = APIRouter(prefix="/api", tags=["session"])
 
 
 class SignIn(BaseModel):
-    """The service's token."""
+    """The token of a principal, or the service's own."""
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
 
@@ -19,31 +22,57 @@ class SignIn(BaseModel):
 
 
 class SessionView(BaseModel):
-    """Whether a token is needed, and whether this client has shown it."""
+    """Whether a token is needed, whether this client has shown one, and whose it is.
+
+    `name` None: whoever it is says what they are called. `role` None: a stranger.
+    """
 
     model_config = ConfigDict(frozen=True)
 
     required: bool
     signed_in: bool
+    name: str | None
+    role: Role | None
 
 
 @router.get("/session", operation_id="get_session", responses=documented(421))
 async def get_session(request: Request, parts: WithParts) -> SessionView:
-    """Whether a token is needed, and whether this client has shown it."""
-    return SessionView(required=parts.access.required, signed_in=parts.access.admits(request))
+    """Whether a token is needed, whether this client has shown one, and whose it is."""
+    caller = parts.access.by_request(request).caller
+    principal = None if caller is None else caller.principal
+    return SessionView(
+        required=parts.access.required,
+        signed_in=principal is not None,
+        name=principal.name if principal is not None and principal.named else None,
+        role=None if principal is None else principal.role,
+    )
 
 
 @router.post(
     "/session", operation_id="sign_in", status_code=204,
-    responses=documented(400, 401, 403, 413, 421, 422),
+    responses=documented(400, 401, 403, 413, 421, 422, 429),
 )  # fmt: skip
 async def sign_in(body: SignIn, request: Request, response: Response, parts: WithParts) -> None:
-    """Show the token and get a session cookie for it."""
-    if not parts.access.token_fits(body.token):
-        raise ProblemError(401, "this is not the token", {"WWW-Authenticate": "Bearer"})
+    """Show a token and get a session cookie for it; a session that was there before ends."""
+    admission = parts.access.by_token(body.token, request)
+    if admission.wait_s:
+        raise ProblemError(429, admission.too_many, admission.retry_after)
+    if admission.caller is None:
+        raise ProblemError(
+            401, "this is not the token of anybody here", {"WWW-Authenticate": "Bearer"}
+        )
+    principal = admission.caller.principal
+    if principal.role is Role.ROBOT:
+        raise ProblemError(403, "this is the credential of a robot, and no person's token")
+    try:
+        _, cookie = parts.access.sessions.new(principal)
+    except TooManySessionsError as error:
+        raise ProblemError(429, str(error)) from error
+    _end_session(request, parts)
+    parts.deeds.signed_in(principal, address_of(request))
     response.set_cookie(
         SESSION_COOKIE,
-        parts.access.new_session(),
+        cookie,
         max_age=SESSION_LIFETIME_S,
         httponly=True,
         samesite="strict",
@@ -52,6 +81,18 @@ async def sign_in(body: SignIn, request: Request, response: Response, parts: Wit
 
 
 @router.delete("/session", operation_id="sign_out", status_code=204, responses=documented(403, 421))
-async def sign_out(response: Response) -> None:
-    """Forget the session cookie."""
+async def sign_out(request: Request, response: Response, parts: WithParts) -> None:
+    """End the session: its cookie opens nothing any more, wherever else it may be."""
+    _end_session(request, parts)
     response.delete_cookie(SESSION_COOKIE, httponly=True, samesite="strict")
+
+
+def _end_session(request: Request, parts: WithParts) -> None:
+    session = parts.access.session(request)
+    if session is None:
+        return
+    principal = parts.access.of_session(session)
+    assert principal is not None, "a good session is somebody's"
+    parts.access.sessions.end(session.id, session.expires)
+    parts.access.let_go()
+    parts.deeds.signed_out(session, Caller(principal, address_of(request), session.id))

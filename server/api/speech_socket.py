@@ -40,12 +40,13 @@ from server.speech.voice import NoVoice
 
 router = APIRouter()
 
+SPEECH_PATH = "/ws/speech"
 MAX_MESSAGE_CHARS = 4 * 1024
 MAX_SOUND_BYTES = 16 * 1024
 """Half a second."""
 
 
-@router.websocket("/ws/speech")
+@router.websocket(SPEECH_PATH)
 async def speech_socket(websocket: WebSocket) -> None:
     """Serve one helper's microphone until the connection ends."""
     await SpeechSocket(websocket).run()
@@ -55,10 +56,10 @@ class SpeechSocket(HelperConnection[HelperQuery]):
     """One helper's connection; at most one conversation at a time."""
 
     def __init__(self, websocket: WebSocket) -> None:
-        super().__init__(websocket, HelperQuery, MAX_MESSAGE_CHARS)
+        super().__init__(SPEECH_PATH, websocket, HelperQuery, MAX_MESSAGE_CHARS)
         self._talk: Talk | None = None
 
-    async def _serve(self, query: HelperQuery) -> None:  # noqa: ARG002
+    async def _serve(self, query: HelperQuery, helper: str) -> None:  # noqa: ARG002
         """Take messages and sound until the connection ends."""
         try:
             while True:
@@ -112,7 +113,7 @@ class SpeechSocket(HelperConnection[HelperQuery]):
             why_not = f"nothing can be recognized: {ears.why_not}"
             await self._refuse(problem(503, why_not), message.id)
             return
-        question = open_question(self._parts.runs, message.dialogue, message.prompt)
+        question = await open_question(self._parts.runs, message.dialogue, message.prompt)
         await self._end(EndReason.REPLACED)
         ears.check_room()
         over = wait_until_over(

@@ -8,8 +8,10 @@ from typing import Annotated
 
 import typer
 
+from server.cli.access import access_app
 from server.cli.check import check
 from server.cli.failures import CommandLineError
+from server.cli.journal import journal_app
 from server.cli.localize import localize
 from server.cli.map import maps_app
 from server.cli.replay import replay
@@ -70,7 +72,9 @@ COMMANDS: dict[str, tuple[Callable[..., None], str]] = {
 
 for name, (command, summary) in COMMANDS.items():
     app.command(name, short_help=summary)(command)
+app.add_typer(access_app)
 app.add_typer(maps_app)
+app.add_typer(journal_app)
 app.add_typer(scene_app)
 
 

@@ -8,12 +8,12 @@ from robots.localization.logs.log import LogError
 from robots.localization.pictures.failure import PictureError
 from robots.localization.scan import InvalidScanError
 from robots.vision.color_model import ColorModelError
+from server.access.principals_file import PrincipalsFileError
 from server.errors import InvalidError, ServiceError
+from server.journal.backup import BackupError
 from server.journal.file_lock import JournalLockedError
-from server.journal.journal import JournalOpenError
+from server.journal.journal import JournalOpenError, JournalReadError
 from server.journal.migrations import JournalSchemaError
-from server.journal.reader import UnreadableEventError
-from server.journal.upgrades import UnknownEventVersionError
 from server.settings import WrongSettingsError
 from sim.world import WorldUnavailableError
 from tasks.library import NotInLibraryError
@@ -31,16 +31,17 @@ KNOWN_ERRORS = (
     ColorModelError,
     InvalidFileError,
     InvalidScanError,
+    BackupError,
     JournalLockedError,
     JournalOpenError,
+    JournalReadError,
     JournalSchemaError,
     LogError,
     NotInLibraryError,
     PictureError,
     PluginError,
+    PrincipalsFileError,
     ServiceError,
-    UnknownEventVersionError,
-    UnreadableEventError,
     VectorMapError,
     WorldUnavailableError,
     WrongSettingsError,

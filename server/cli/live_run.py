@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Protocol
 from uuid import UUID
 
 from server.cli.failures import INTERRUPTED, NOT_FINISHED, CommandLineError
+from server.cli.local_user import local_author
 from server.cli.output import EventOutput, JsonLines
 from server.cli.reports import write_run_report
 from server.cli.terminal_helper import TerminalHelper
@@ -64,7 +65,7 @@ class LiveRun:
         """
         async with self._open_service(self._settings, recover=False) as service:
             before = service.journal.head
-            run = (await service.runtime.start_run(self._request)).id
+            run = (await service.runtime.start_run(self._request, local_author())).id
             status = await self._watch(service, run, before)
         self._output.close()
         if status is not RunStatus.FINISHED and isinstance(self._output, JsonLines):
@@ -123,7 +124,7 @@ class LiveRun:
 
 async def _abort(service: "Service", run: UUID) -> None:
     with suppress(ConflictError):
-        await service.runtime.abort(run)
+        await service.runtime.abort(run, local_author())
 
 
 async def _events_of(service: "Service", run: UUID, after: int) -> AsyncIterator[ev.Event]:

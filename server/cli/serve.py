@@ -39,5 +39,6 @@ async def _serve(open_service: OpenService, settings: Settings) -> None:
     async with open_service(settings, recover=True) as service:
         for number in (signal.SIGINT, signal.SIGTERM):
             loop.add_signal_handler(number, stop.set)
-        typer.echo(f"Mend listens on {service.url}; its journal is {settings.journal_path}")
+        others = f", others reach it at {settings.public_url}" if settings.public_url else ""
+        typer.echo(f"Mend listens on {service.url}{others}; its journal is {settings.journal_path}")
         await stop.wait()

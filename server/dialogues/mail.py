@@ -23,6 +23,9 @@ from pydantic import (
     model_validator,
 )
 
+FOR_GOOD = 500
+"""SMTP's answers below that are about this moment only."""
+
 
 def _require_address(text: str) -> str:
     if len(text) > 254 or not re.fullmatch(r"[^\s@<>,;:\"\\]+@[^\s@<>,;:\"\\]+", text):
@@ -101,8 +104,24 @@ class MailNotice:
     console_url: str | None = None
 
 
+@dataclass(frozen=True, slots=True)
+class RefusedAddress:
+    """An address that the server does not take a mail for; `for_now`: it may later."""
+
+    address: str
+    reason: str
+    for_now: bool
+
+
 class MailError(Exception):
-    """A mail could not be sent; the message says through which server, and why."""
+    """A mail could not be sent; the message says through which server, and why.
+
+    `for_now`: it is worth trying again.
+    """
+
+    def __init__(self, message: str, *, for_now: bool) -> None:
+        super().__init__(message)
+        self.for_now = for_now
 
 
 class Mailer:
@@ -121,11 +140,11 @@ class Mailer:
 
     async def send(
         self, mail: MailRequest | MailNotice, to: Sequence[str], written: datetime
-    ) -> tuple[str, ...]:
+    ) -> tuple[RefusedAddress, ...]:
         """Send a request for help, or a notice; returns the addresses that the server refused.
 
-        Raises `MailError` when nobody could be written to. A mail that is sent again for the same
-        prompt (or suspicion) has the same Message-ID.
+        Raises `MailError` when it could be sent to none of them for another reason. A mail that is
+        sent again for the same prompt (or suspicion) has the same Message-ID.
         """
         settings = self._settings
         message = self.compose(mail, to, written)
@@ -141,12 +160,19 @@ class Mailer:
                 cert_bundle=str(settings.ca_file) if settings.ca_file else None,
                 timeout=settings.timeout_s,
             )
+        except aiosmtplib.SMTPRecipientsRefused as error:
+            return tuple(
+                _refused(each.recipient, each.code, each.message) for each in error.recipients
+            )
         except (aiosmtplib.SMTPException, OSError) as error:
             raise MailError(
                 f"the mail to {', '.join(to)} could not be sent through "
-                f"{settings.host}:{settings.port}: {_reason(error)}"
+                f"{settings.host}:{settings.port}: {_one_line(str(error)) or type(error).__name__}",
+                for_now=not _is_final(error),
             ) from error
-        return tuple(refused)
+        return tuple(
+            _refused(address, answer.code, answer.message) for address, answer in refused.items()
+        )
 
     def compose(
         self, mail: MailRequest | MailNotice, to: Sequence[str], written: datetime
@@ -177,11 +203,13 @@ def _one_line(text: str) -> str:
     return " ".join(text.split())
 
 
-def _reason(error: Exception) -> str:
-    if isinstance(error, aiosmtplib.SMTPRecipientsRefused):
-        refusals = [f"{each.recipient} is refused ({each.message})" for each in error.recipients]
-        return "; ".join(refusals)
-    return _one_line(str(error)) or type(error).__name__
+def _refused(address: str, code: int, message: str) -> RefusedAddress:
+    return RefusedAddress(address, f"{code} {_one_line(message)}", for_now=code < FOR_GOOD)
+
+
+def _is_final(error: Exception) -> bool:
+    """Whether the server has said that it will never take this, as with a wrong password."""
+    return isinstance(error, aiosmtplib.SMTPResponseException) and error.code >= FOR_GOOD
 
 
 def _is_loopback(host: str) -> bool:

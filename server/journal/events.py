@@ -14,6 +14,7 @@ from dialogue.evidence import Change
 from dialogue.outlook import Outlook
 from dialogue.script import CloseReason, Expectation, Help
 from robots.link.messages import Detection
+from server.access.roles import Role
 from tasks.intervention import Intervention
 from tasks.resolution import Resolution
 
@@ -23,6 +24,17 @@ class EventModel(BaseModel):
 
     # The journal's writer looks for these constants; a null would look like no number at all.
     model_config = ConfigDict(extra="forbid", frozen=True, ser_json_inf_nan="constants")
+
+
+class Author(EventModel):
+    """Who did something: the principal, the role that it had then, and where it came from.
+
+    `address` is None for what was done in the service's own process.
+    """
+
+    principal: str
+    role: Role
+    address: str | None = None
 
 
 class Event(EventModel):
@@ -67,7 +79,7 @@ class RunStarted(Event):
 
     `tree` and `scene` are the checked definitions in their JSON form; `options` the request's
     remaining fields. `script` is the scenario's definition in its JSON form, None without one and
-    in the journals of an older Mend, whose scenarios are all built in.
+    in the journals of an older Mend, whose scenarios are all built in. `author` is None there, too.
     """
 
     type: Literal["run_started"] = "run_started"
@@ -81,6 +93,7 @@ class RunStarted(Event):
     scenario: str | None
     script: dict[str, Any] | None = None
     options: dict[str, Any]
+    author: Author | None = None
 
 
 class NodeStarted(NodeEvent):
@@ -210,6 +223,7 @@ class Claimed(DialogueEvent):
     type: Literal["claimed"] = "claimed"
     helper: str
     lease_until: datetime
+    author: Author | None = None
 
 
 class Released(DialogueEvent):
@@ -218,16 +232,18 @@ class Released(DialogueEvent):
     type: Literal["released"] = "released"
     helper: str
     expired: bool = False
+    author: Author | None = None
 
 
 class Answered(DialogueEvent):
-    """The first answer to a prompt; it won."""
+    """The first answer to a prompt; it won. A scripted one has no `author`."""
 
     type: Literal["answered"] = "answered"
     prompt: UUID
     version: int
     answer: Literal["yes", "no"]
     helper: str
+    author: Author | None = None
 
 
 class DeadlineExtended(DialogueEvent):
@@ -239,6 +255,7 @@ class DeadlineExtended(DialogueEvent):
     deadline: float
     extensions_left: int
     helper: str
+    author: Author | None = None
 
 
 class Escalated(DialogueEvent):
@@ -303,6 +320,7 @@ class InterventionAccepted(Event):
     intervention: Intervention
     by: str
     command: str
+    author: Author | None = None
 
 
 class InterventionDone(Event):
@@ -398,10 +416,12 @@ class SuspectedFalseAlarm(NodeEvent):
 
 class RunPaused(Event):
     type: Literal["run_paused"] = "run_paused"
+    author: Author | None = None
 
 
 class RunResumed(Event):
     type: Literal["run_resumed"] = "run_resumed"
+    author: Author | None = None
 
 
 class MissingPart(EventModel):
@@ -448,6 +468,7 @@ class RunFailed(Event):
 class RunAborted(Event):
     type: Literal["run_aborted"] = "run_aborted"
     reason: str = ""
+    author: Author | None = None
 
 
 class RobotEvent(Event):
@@ -481,6 +502,87 @@ class RobotResumed(RobotEvent):
 
     type: Literal["robot_resumed"] = "robot_resumed"
     step: int
+
+
+NO_RUN = UUID(int=0)
+"""The `run` of what belongs to none."""
+
+
+class ServiceEvent(Event):
+    """Something that was done to the service itself: only admins get to read it."""
+
+    time: float = 0.0
+    run: UUID = NO_RUN
+
+
+class DocumentKept(ServiceEvent):
+    """A task tree, scene or scenario was uploaded; journaled before it is kept."""
+
+    type: Literal["document_kept"] = "document_kept"
+    kind: Literal["tree", "scene", "scenario"]
+    name: str
+    replaced: bool
+    author: Author | None
+
+
+class DocumentDeleted(ServiceEvent):
+    """An uploaded task tree, scene or scenario was deleted; journaled before it is."""
+
+    type: Literal["document_deleted"] = "document_deleted"
+    kind: Literal["tree", "scene", "scenario"]
+    name: str
+    author: Author | None
+
+
+class AddressCount(EventModel):
+    """How often something came from an address."""
+
+    address: str
+    times: int
+
+
+class SignedIn(ServiceEvent):
+    """A principal signed in, `times` since the last such event; `elsewhere`: at more addresses."""
+
+    type: Literal["signed_in"] = "signed_in"
+    principal: str
+    role: Role
+    times: int
+    addresses: list[AddressCount]
+    elsewhere: int = 0
+
+
+class SignInFailed(ServiceEvent):
+    """Wrong tokens and codes were shown, `times` since the event before, by whomever."""
+
+    type: Literal["sign_in_failed"] = "sign_in_failed"
+    times: int
+    addresses: list[AddressCount]
+    elsewhere: int = 0
+
+
+class SignedOut(ServiceEvent):
+    """A session was ended; its cookie, good until `expires`, opens nothing any more."""
+
+    type: Literal["signed_out"] = "signed_out"
+    session: str
+    expires: int
+    author: Author
+
+
+class AccessChanged(ServiceEvent):
+    """Somebody was given access, or it was taken from them.
+
+    `change` is the id that the file of principals gives it where it was changed on the service's
+    machine; `address` of the author is then None.
+    """
+
+    type: Literal["access_changed"] = "access_changed"
+    what: Literal["added", "rotated", "revoked", "enrolment_opened", "enrolled"]
+    principal: str
+    role: Role
+    author: Author
+    change: UUID | None = None
 
 
 AnyEvent = Annotated[
@@ -520,7 +622,13 @@ AnyEvent = Annotated[
     | RobotLost
     | RobotBack
     | RobotHolding
-    | RobotResumed,
+    | RobotResumed
+    | DocumentKept
+    | DocumentDeleted
+    | SignedIn
+    | SignInFailed
+    | SignedOut
+    | AccessChanged,
     Field(discriminator="type"),
 ]
 

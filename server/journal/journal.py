@@ -5,7 +5,9 @@ from dataclasses import dataclass, field
 from typing import Any, Protocol
 from uuid import UUID
 
+from server.journal.chain import Break
 from server.journal.events import Event
+from server.journal.run_index import RunIndex
 from server.journal.subscriptions import DEFAULT_CAPACITY, Record, Subscription
 from server.journal.trouble import Trouble
 
@@ -65,7 +67,10 @@ class Journal(Protocol):
         ...
 
     async def read(self, after: int, limit: int, run: UUID | None = None) -> list[Event]:
-        """Up to `limit` events with `seq` > `after`, in order; of one run if given."""
+        """Up to `limit` events with `seq` > `after`, in order; of one run if given.
+
+        Raises `JournalReadError`, as all that reads.
+        """
         ...
 
     async def read_records(self, after: int, limit: int, run: UUID | None = None) -> list[Record]:
@@ -86,8 +91,30 @@ class Journal(Protocol):
 
     async def picture(self, picture: UUID) -> bytes | None: ...
 
-    async def runs(self) -> list[UUID]:
-        """Every run, in the order in which they began."""
+    @property
+    def index(self) -> RunIndex:
+        """What runs and dialogues there are."""
+        ...
+
+    @property
+    def damage(self) -> Sequence[Break]:
+        """Where it was found to be damaged when it was opened."""
+        ...
+
+    async def mark_unreadable(self, run: UUID, why: str) -> None:
+        """Say in the index that a run's events cannot be read."""
+        ...
+
+    async def mark_readable(self, run: UUID, status: str) -> None:
+        """Take that back: the run has a status again."""
+        ...
+
+    async def is_whole(self, run: UUID) -> bool:
+        """Whether what a run's events were committed with is still as it was written."""
+        ...
+
+    async def pruned_through(self) -> int:
+        """The highest `seq` that was pruned; 0 if none was. Before it events may be missing."""
         ...
 
     async def save_document(self, kind: str, name: str, text: str) -> None:
@@ -109,6 +136,14 @@ class JournalClosedError(Exception):
 
 class JournalOpenError(Exception):
     """The journal's file cannot be opened, or not be written."""
+
+
+class JournalDamagedError(JournalOpenError):
+    """The journal's file is no longer what was written."""
+
+
+class JournalReadError(Exception):
+    """Something of the journal cannot be read; the message says why."""
 
 
 class JournalWriteError(Exception):

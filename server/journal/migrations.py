@@ -1,7 +1,11 @@
 """The journal's tables: one migration per schema version, applied in order, never edited."""
 
 import sqlite3
+from collections.abc import Callable
+from dataclasses import dataclass
 from datetime import UTC, datetime
+
+from server.journal.indexing import index_events
 
 VERSION_1 = """
 CREATE TABLE events (
@@ -36,7 +40,61 @@ INSERT INTO documents (kind, name, text) SELECT 'tree', name, text FROM trees;
 DROP TABLE trees;
 """
 
-MIGRATIONS = (VERSION_1, VERSION_2)
+VERSION_3 = """
+CREATE TABLE runs (
+    run TEXT PRIMARY KEY,
+    begun INTEGER NOT NULL,
+    ended INTEGER,
+    status TEXT NOT NULL,
+    time REAL NOT NULL,
+    started REAL NOT NULL,
+    ended_at REAL,
+    tree TEXT NOT NULL,
+    world TEXT NOT NULL,
+    scenario TEXT,
+    seed INTEGER NOT NULL,
+    speed TEXT NOT NULL,
+    robots TEXT NOT NULL,
+    ending TEXT,
+    why TEXT
+) STRICT;
+CREATE INDEX runs_in_order ON runs (begun);
+CREATE INDEX runs_by_status ON runs (status, begun);
+CREATE INDEX runs_by_end ON runs (ended, begun);
+CREATE TABLE dialogues (
+    dialogue TEXT PRIMARY KEY,
+    run TEXT NOT NULL,
+    opened INTEGER NOT NULL,
+    closed INTEGER
+) STRICT;
+CREATE INDEX dialogues_in_order ON dialogues (opened);
+CREATE INDEX dialogues_of_run ON dialogues (run);
+CREATE TABLE batches (
+    last INTEGER PRIMARY KEY,
+    first INTEGER NOT NULL,
+    written BLOB,
+    kept BLOB,
+    link BLOB NOT NULL
+) STRICT;
+CREATE TABLE pruning (run TEXT PRIMARY KEY) STRICT;
+CREATE TABLE pruned (
+    only INTEGER PRIMARY KEY CHECK (only = 1),
+    through INTEGER NOT NULL,
+    runs INTEGER NOT NULL
+) STRICT;
+INSERT INTO pruned (only, through, runs) VALUES (1, 0, 0);
+"""
+
+
+@dataclass(frozen=True, slots=True)
+class Migration:
+    """What leads to a version: statements, then what cannot be said in SQL."""
+
+    statements: str
+    then: Callable[[sqlite3.Connection], None] | None = None
+
+
+MIGRATIONS = (Migration(VERSION_1), Migration(VERSION_2), Migration(VERSION_3, index_events))
 
 
 class JournalSchemaError(Exception):
@@ -47,13 +105,14 @@ def migrate(connection: sqlite3.Connection) -> None:
     """Bring a journal's tables to the newest version, one transaction per version.
 
     Raises `JournalSchemaError` for a journal from a newer Mend or a file that is none, and
-    `sqlite3.OperationalError` where the file cannot be read or written.
+    `sqlite3.OperationalError` where the file cannot be read or written, another
+    `sqlite3.DatabaseError` where it is damaged.
     """
     try:
         version = _schema_version(connection)
-    except sqlite3.OperationalError:
-        raise
     except sqlite3.DatabaseError as error:
+        if error.sqlite_errorcode != sqlite3.SQLITE_NOTADB:
+            raise
         raise JournalSchemaError(f"the file is not a journal ({error})") from error
     if version > len(MIGRATIONS):
         raise JournalSchemaError(
@@ -61,12 +120,23 @@ def migrate(connection: sqlite3.Connection) -> None:
             "use the newer Mend that wrote it"
         )
     for number in range(version + 1, len(MIGRATIONS) + 1):
-        applied = datetime.now(UTC).isoformat()
-        connection.executescript(
-            f"BEGIN IMMEDIATE; {MIGRATIONS[number - 1]}"
-            f"INSERT INTO schema_version (version, applied) VALUES ({number}, '{applied}');"
-            "COMMIT;"
+        _apply(connection, number, MIGRATIONS[number - 1])
+
+
+def _apply(connection: sqlite3.Connection, number: int, migration: Migration) -> None:
+    applied = datetime.now(UTC).isoformat()
+    try:
+        connection.executescript(f"BEGIN IMMEDIATE; {migration.statements}")
+        if migration.then is not None:
+            migration.then(connection)
+        connection.execute(
+            "INSERT INTO schema_version (version, applied) VALUES (?, ?)", (number, applied)
         )
+        connection.execute("COMMIT")
+    except BaseException:
+        if connection.in_transaction:
+            connection.execute("ROLLBACK")
+        raise
 
 
 def _schema_version(connection: sqlite3.Connection) -> int:

@@ -1,21 +1,16 @@
 """Reading a journal that somebody else may be writing: its runs, events and pictures."""
 
 import sqlite3
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from types import TracebackType
-from typing import Self
+from typing import Any, Self
 from uuid import UUID
 
-from pydantic import ValidationError
-
-from server.journal.events import Event, any_event
+from server.journal.events import Event
+from server.journal.journal import JournalReadError
 from server.journal.migrations import MIGRATIONS, JournalSchemaError
-from server.journal.upgrades import upgrade_text
-
-
-class UnreadableEventError(Exception):
-    """An event is not what any Mend writes; the message says which."""
+from server.journal.stored_event import read_event
 
 
 class JournalReader:
@@ -47,43 +42,48 @@ class JournalReader:
                 "use the newer Mend that wrote it"
             )
 
+    def _select(self, statement: str, parameters: Sequence[Any] = ()) -> list[Any]:
+        try:
+            return self._connection.execute(statement, parameters).fetchall()
+        except sqlite3.Error as error:
+            raise JournalReadError(f"'{self._path}' could not be read: {error}") from error
+
     def runs(self) -> list[UUID]:
-        """Every run, in the order in which they began."""
-        rows = self._connection.execute(
-            "SELECT run FROM events WHERE type = 'run_started' ORDER BY seq"
-        )
+        """Every run, in the order in which they began. Raises `JournalReadError`."""
+        rows = self._select("SELECT run FROM events WHERE type = 'run_started' ORDER BY seq")
         return [UUID(run) for (run,) in rows]
 
     def events(self, run: UUID) -> list[Event]:
         """Every event of a run, in order.
 
-        Raises `UnknownEventVersionError` or `UnreadableEventError`.
+        Raises `JournalReadError`.
         """
-        rows = self._connection.execute(
+        rows = self._select(
             "SELECT seq, body, version FROM events WHERE run = ? ORDER BY seq", (str(run),)
         )
-        return [self._event(seq, upgrade_text(body, version)) for seq, body, version in rows]
+        where = f" of '{self._path}'"
+        return [read_event(seq, body, version, where) for seq, body, version in rows]
 
-    def _event(self, seq: int, text: str) -> Event:
-        try:
-            event: Event = any_event.validate_json(text)
-        except ValidationError as error:
-            first = error.errors(include_url=False, include_input=False, include_context=False)[0]
-            where = ".".join(str(each) for each in first["loc"])
-            raise UnreadableEventError(
-                f"event {seq} of '{self._path}' cannot be read: {where}: {first['msg']}"
-            ) from error
-        return event
+    def of_types(self, types: Sequence[str]) -> Iterator[Event]:
+        """Every event of some types, in order, also those of no run.
+
+        Raises `JournalReadError`.
+        """
+        marks = ", ".join("?" * len(types))
+        rows = self._select(
+            f"SELECT seq, body, version FROM events WHERE type IN ({marks}) ORDER BY seq",
+            tuple(types),
+        )
+        where = f" of '{self._path}'"
+        return (read_event(seq, body, version, where) for seq, body, version in rows)
 
     def pictures(self, pictures: Iterable[UUID]) -> dict[UUID, bytes]:
         """Those of the pictures (JPEG) that the journal has."""
         found = {}
         for picture in pictures:
-            row = self._connection.execute(
-                "SELECT jpeg FROM pictures WHERE id = ?", (str(picture),)
-            ).fetchone()
-            if row is not None:
-                found[picture] = bytes(row[0])
+            rows = self._select("SELECT jpeg FROM pictures WHERE id = ?", (str(picture),))
+            if rows:
+                found[picture] = bytes(rows[0][0])
         return found
 
     def close(self) -> None:

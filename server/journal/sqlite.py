@@ -4,36 +4,40 @@ import asyncio
 import json
 import sqlite3
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import dataclass
+from datetime import datetime
 from functools import partial
 from pathlib import Path
 from typing import Any, NoReturn, TypeVar
 from uuid import UUID
 
-from server.journal.events import Event, any_event
-from server.journal.file_lock import FileLock
-from server.journal.file_mode import OWNERS_FOLDER, keep_to_owner
+from server.journal.chain import Break, Row, is_whole
+from server.journal.events import Event
 from server.journal.journal import (
     DuplicateReceiptError,
     Entry,
     Fold,
     JournalClosedError,
-    JournalOpenError,
+    JournalReadError,
     JournalWriteError,
     Receipt,
 )
-from server.journal.migrations import migrate
+from server.journal.opening import IN_MEMORY, open_journal
+from server.journal.pruning import Keep, Pruned, prune, pruned_through
+from server.journal.run_index import RunIndex, note, note_readable, note_unreadable
+from server.journal.same_file import FileGoneError
+from server.journal.stored_event import current_text, read_event
 from server.journal.subscriptions import DEFAULT_CAPACITY, Record, Subscribers, Subscription
 from server.journal.trouble import Sleep, Trouble
-from server.journal.upgrades import current_version, upgrade_text
+from server.journal.upgrades import current_version
 from server.journal.writer import CommitStatistics, Done, GroupCommitWriter
 
-T = TypeVar("T")
+__all__ = ["IN_MEMORY", "SqliteJournal"]
 
-IN_MEMORY = ":memory:"
+T = TypeVar("T")
 
 PROBE = "probe"
 PROBE_BYTES = 64 * 1024
@@ -55,25 +59,33 @@ class SqliteJournal:
     """A journal in one file, or in memory for tests and runs that nobody needs afterwards.
 
     Implements `server.journal.journal.Journal`. Raises `JournalLockedError` when another process
-    has the file, `JournalSchemaError` when it is no journal that can be read, `JournalOpenError`
-    when the file cannot be opened or written. Only its owner can read the file. Belongs to one
-    event loop at a time.
-    `sleep` is what passes between two tries to write where that is not possible.
+    has the file, `JournalSchemaError` when it is no journal that can be read,
+    `JournalDamagedError` when it is one no longer, `JournalOpenError` when the file cannot be
+    opened or written. Only its owner can read the file. Belongs to one event loop at a time.
+    `sleep` is what passes between two tries to write where that is not possible; the look at the
+    pages on opening takes at most `check_s`.
     """
 
     def __init__(
-        self, path: Path | str, *, busy_timeout_s: float = 5.0, sleep: Sleep = asyncio.sleep
+        self,
+        path: Path | str,
+        *,
+        busy_timeout_s: float = 5.0,
+        check_s: float = 1.0,
+        sleep: Sleep = asyncio.sleep,
     ) -> None:
-        self._lock: FileLock | None = None
-        if str(path) != IN_MEMORY:
-            path = Path(path)
-            path.parent.mkdir(mode=OWNERS_FOLDER, parents=True, exist_ok=True)
-            self._lock = FileLock(path)
-        try:
-            self._open(str(path), busy_timeout_s)
-        except BaseException:
-            self._unlock()
-            raise
+        opened = open_journal(path, busy_timeout_s, check_s)
+        self._lock = opened.lock
+        self._file = opened.file
+        self._write_connection = opened.write
+        self._write_lock = threading.Lock()
+        self._read_connection = opened.read
+        self._read_lock = self._write_lock if opened.read is opened.write else threading.Lock()
+        self._damage = opened.damage
+        self._head = opened.head
+        self._next = self._batch_start = opened.head + 1
+        self._chain = opened.chain
+        self._index = RunIndex(self._select)
         self._subscribers = Subscribers()
         self._version = current_version()
         self._closed = False
@@ -82,41 +94,12 @@ class SqliteJournal:
             self._write_connection,
             self._write_lock,
             on_begin=self._begin,
+            before_commit=self._seal,
             on_rollback=self._roll_back,
             on_commit=self._committed,
             on_failure=lambda reason: self._trouble.began(reason),
         )
         self._trouble = Trouble(self._probe, sleep)
-
-    def _open(self, path: str, busy_timeout_s: float) -> None:
-        try:
-            if path != IN_MEMORY:
-                keep_to_owner(Path(path))
-            self._connect(path, busy_timeout_s)
-        except (sqlite3.OperationalError, OSError) as error:
-            why = error.strerror if isinstance(error, OSError) else str(error)
-            raise JournalOpenError(f"the journal '{path}' cannot be opened: {why}") from error
-
-    def _connect(self, path: str, busy_timeout_s: float) -> None:
-        connect = partial(
-            sqlite3.connect, path, timeout=busy_timeout_s, isolation_level=None,
-            check_same_thread=False,
-        )  # fmt: skip
-        self._write_connection = connect()
-        self._write_lock = threading.Lock()
-        try:
-            migrate(self._write_connection)
-            self._write_connection.execute("PRAGMA journal_mode=WAL")
-            self._write_connection.execute("PRAGMA synchronous=FULL")
-            (head,) = self._write_connection.execute("SELECT max(seq) FROM events").fetchone()
-        except BaseException:
-            self._write_connection.close()
-            raise
-        self._head = int(head or 0)
-        self._next = self._batch_start = self._head + 1
-        in_memory = path == IN_MEMORY
-        self._read_connection = self._write_connection if in_memory else connect()
-        self._read_lock = self._write_lock if in_memory else threading.Lock()
 
     @property
     def head(self) -> int:
@@ -130,6 +113,22 @@ class SqliteJournal:
     @property
     def trouble(self) -> Trouble:
         return self._trouble
+
+    @property
+    def index(self) -> RunIndex:
+        return self._index
+
+    @property
+    def damage(self) -> Sequence[Break]:
+        return self._damage
+
+    def look_for_file(self) -> None:
+        """Notice now, rather than at the next commit, that the journal's file is gone."""
+        try:
+            if self._file is not None:
+                self._file.check()
+        except FileGoneError as error:
+            self._trouble.began(f"the journal could not be written: {error}")
 
     def commit_statistics(self) -> CommitStatistics:
         return self._writer.statistics()
@@ -170,6 +169,21 @@ class SqliteJournal:
         )
         return deleted > 0
 
+    async def mark_unreadable(self, run: UUID, why: str) -> None:
+        await self._writer.submit(lambda connection: note_unreadable(connection, run, why))
+
+    async def mark_readable(self, run: UUID, status: str) -> None:
+        await self._writer.submit(lambda connection: note_readable(connection, run, status))
+
+    async def prune(
+        self, keep: Keep, now: datetime, forget: Callable[[UUID], None] = lambda _: None
+    ) -> Pruned:
+        """Take out what is not kept, while others go on writing.
+
+        `forget` is told of each run that goes. Raises `JournalWriteError`.
+        """
+        return await prune(self._writer.submit, keep, now, forget)
+
     async def _probe(self) -> None:
         """Try to write something that needs room, and take it away again."""
         with suppress(JournalWriteError, JournalClosedError):
@@ -182,13 +196,13 @@ class SqliteJournal:
         if entry.receipt is not None:
             _refuse_duplicate(entry.receipt, connection)
         committed = self._number(entry.events, fold)
-        connection.executemany(
-            INSERT_EVENT,
-            [
+        rows: list[Row] = []
+        for event, record in zip(committed.events, committed.records, strict=True):
+            rows.append(
                 (event.seq, str(event.run), _type(event), event.time, self._version, record.text)
-                for event, record in zip(committed.events, committed.records, strict=True)
-            ],
-        )
+            )
+            note(connection, event, record.text)
+        connection.executemany(INSERT_EVENT, rows)
         if entry.receipt is not None:
             connection.execute(
                 "INSERT OR REPLACE INTO receipts (robot, boot, seq) VALUES (?, ?, ?)",
@@ -203,6 +217,7 @@ class SqliteJournal:
             "INSERT OR REPLACE INTO pictures (id, jpeg) VALUES (?, ?)",
             [(str(picture), jpeg) for picture, jpeg in entry.pictures.items()],
         )
+        self._chain.add(rows)
         self._next += len(committed.events)
         return committed
 
@@ -216,9 +231,16 @@ class SqliteJournal:
 
     def _begin(self) -> None:
         self._batch_start = self._next
+        self._chain.begin()
+
+    def _seal(self, connection: sqlite3.Connection) -> None:
+        self._chain.seal(connection)
+        if self._file is not None:
+            self._file.check()
 
     def _roll_back(self) -> None:
         self._next = self._batch_start
+        self._chain.forget()
 
     def _committed(self, done: list[Done]) -> None:
         self._publish(done)
@@ -241,7 +263,7 @@ class SqliteJournal:
 
     async def read(self, after: int, limit: int, run: UUID | None = None) -> list[Event]:
         records = await self.read_records(after, limit, run)
-        return [any_event.validate_json(record.text) for record in records]
+        return [read_event(record.seq, record.text) for record in records]
 
     async def read_records(self, after: int, limit: int, run: UUID | None = None) -> list[Record]:
         of_run = "" if run is None else "run = :run AND "
@@ -250,7 +272,7 @@ class SqliteJournal:
             " ORDER BY seq LIMIT :limit",
             {"run": str(run), "after": after, "limit": limit},
         )
-        return [Record(seq, upgrade_text(body, version)) for seq, version, body in rows]
+        return [Record(seq, current_text(seq, body, version)) for seq, version, body in rows]
 
     async def received(self, robot: str, boot: str) -> int:
         rows = await self._select(
@@ -266,22 +288,30 @@ class SqliteJournal:
         rows = await self._select("SELECT jpeg FROM pictures WHERE id = ?", (str(picture),))
         return rows[0][0] if rows else None
 
-    async def runs(self) -> list[UUID]:
-        rows = await self._select(
-            "SELECT run FROM events WHERE type = 'run_started' ORDER BY seq", ()
-        )
-        return [UUID(run) for (run,) in rows]
+    async def is_whole(self, run: UUID) -> bool:
+        return await self._read(lambda: self._reading(partial(is_whole, run=str(run))))
+
+    async def pruned_through(self) -> int:
+        return int(await self._read(lambda: self._reading(pruned_through)))
 
     async def documents(self, kind: str) -> dict[str, str]:
         statement = "SELECT name, text FROM documents WHERE kind = ? ORDER BY name"
         return dict(await self._select(statement, (kind,)))
 
     async def _select(self, statement: str, parameters: Any) -> list[Any]:
-        def query() -> list[Any]:
-            with self._read_lock:
-                return self._read_connection.execute(statement, parameters).fetchall()
+        return await self._read(
+            lambda: self._reading(
+                lambda connection: connection.execute(statement, parameters).fetchall()
+            )
+        )
 
-        return await self._read(query)
+    def _reading(self, query: Callable[[sqlite3.Connection], T]) -> T:
+        """Query in the reader's thread. Raises `JournalReadError`."""
+        try:
+            with self._read_lock:
+                return query(self._read_connection)
+        except sqlite3.Error as error:
+            raise JournalReadError(f"the journal could not be read: {error}") from error
 
     async def _read(self, query: Callable[[], T]) -> T:
         if self._closed:
@@ -299,9 +329,6 @@ class SqliteJournal:
         self._readers.shutdown()
         self._read_connection.close()
         self._write_connection.close()
-        self._unlock()
-
-    def _unlock(self) -> None:
         if self._lock is not None:
             self._lock.release()
 

@@ -22,6 +22,10 @@ class SubscriptionOverflowError(Exception):
     """The subscriber fell too far behind; it may subscribe again after the last `seq` it saw."""
 
 
+class PrunedEventsError(Exception):
+    """Not every event after the last one seen is in the journal any more."""
+
+
 class RecordSource(Protocol):
     """Where a subscription finds what was committed before it went live."""
 
@@ -110,7 +114,7 @@ class Subscription:
     async def take(self) -> list[Record]:
         """Wait for the next events; empty only when the subscription or the journal has closed.
 
-        Raises `SubscriptionOverflowError`.
+        Raises `SubscriptionOverflowError`, and `PrunedEventsError` rather than leave one out.
         """
         if not self._live:
             replayed = await self._replay()
@@ -129,13 +133,27 @@ class Subscription:
     async def _replay(self) -> list[Record]:
         """The next page from the journal; empty, and live from then on, when there is no more."""
         if self._seen < self._source.head:
-            return self._remember(await self._source.read_records(self._seen, REPLAY_PAGE))
+            records = await self._source.read_records(self._seen, REPLAY_PAGE)
+            self._refuse_gap(records)
+            return self._remember(records)
         # Nothing is awaited between this and the comparison with the head, and the journal moves
         # its head and publishes in one step: nothing can fall in between.
         self._live = True
         if not self._closed:
             self._subscribers.add(self)
         return []
+
+    def _refuse_gap(self, records: Sequence[Record]) -> None:
+        """Raises `PrunedEventsError` unless the records follow what was seen without a gap."""
+        expected = self._seen + 1
+        for record in records:
+            if record.seq != expected:
+                break
+            expected += 1
+        else:
+            if records:
+                return
+        raise PrunedEventsError(f"event {expected} was pruned: connect again for the state of now")
 
     def _drain(self) -> Iterable[Record]:
         while self._queue:

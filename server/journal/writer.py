@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from server.journal.journal import JournalClosedError, JournalWriteError
+from server.journal.same_file import FileGoneError
 
 MAX_BATCH = 1000
 
@@ -41,7 +42,8 @@ class CommitStatistics:
 class GroupCommitWriter:
     """Runs work in one thread on one connection, as many pieces per transaction as are waiting.
 
-    `on_begin` and `on_rollback` are called in the writer's thread. In the event loop of those who
+    `on_begin`, `before_commit` and `on_rollback` are called in the writer's thread; nothing is
+    committed if `before_commit` raises `FileGoneError`. In the event loop of those who
     wait, in the order of the commits, `on_commit` is called with what was committed, and
     `on_failure` with why nothing could be.
     """
@@ -52,6 +54,7 @@ class GroupCommitWriter:
         lock: threading.Lock,
         *,
         on_begin: Callable[[], None],
+        before_commit: Callable[[sqlite3.Connection], None],
         on_rollback: Callable[[], None],
         on_commit: Callable[[list[Done]], None],
         on_failure: Callable[[str], None],
@@ -59,6 +62,7 @@ class GroupCommitWriter:
         self._connection = connection
         self._lock = lock
         self._on_begin = on_begin
+        self._before_commit = before_commit
         self._on_rollback = on_rollback
         self._on_commit = on_commit
         self._on_failure = on_failure
@@ -131,8 +135,9 @@ class GroupCommitWriter:
                         raise
                     except Exception as error:
                         refused.append((future, error))
+                self._before_commit(self._connection)
                 self._connection.execute("COMMIT")
-        except sqlite3.Error as error:
+        except (sqlite3.Error, FileGoneError) as error:
             self._roll_back()
             self._failures += 1
             failure = JournalWriteError(f"the journal could not be written: {error}")

@@ -169,6 +169,11 @@ class PoseFeed:
         if self._records is not None:
             self._records.close(run)
 
+    def forget(self, run: UUID) -> None:
+        """Delete what was recorded of a run that is over."""
+        if self._records is not None:
+            self._records.forget(run)
+
     def of(self, run: UUID) -> RunPoses | None:
         return self._runs.get(run)
 

@@ -6,6 +6,7 @@ from collections import deque
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TypeVar
 from uuid import UUID
@@ -112,6 +113,11 @@ class PoseRecords:
         """Keep the last layout of a run."""
         path, text = self._layout_path(layout.run), layout.model_dump_json()
         self._do_later(lambda: _write_text(path, text))
+
+    def forget(self, run: UUID) -> None:
+        """Delete the record of a run that is over."""
+        for path in (self._path(run), self._layout_path(run)):
+            self._do_later(partial(path.unlink, missing_ok=True))
 
     async def layout(self, run: UUID) -> Layout | None:
         """The last layout of a run."""

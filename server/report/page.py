@@ -15,7 +15,15 @@ from server.report.record import Fault, RunRecord
 from server.report.timeline import lay_out_timeline
 from server.report.tree_drawing import draw_tree
 from server.report.tree_state import node_states
-from server.transcript import SPOKEN, Line, Transcript, grouped, joined, told_missing
+from server.transcript import (
+    SPOKEN,
+    Line,
+    Transcript,
+    grouped,
+    joined,
+    told_missing,
+    why_aborted,
+)
 
 MAX_CANDIDATES = 8
 """Of each choice, so many candidates are shown."""
@@ -85,8 +93,8 @@ def _verdict(record: RunRecord) -> str:
             return f"The task is done, but {joined(parts)}."
         case ev.RunFailed(reason=reason):
             return f"The run failed: {reason}."
-        case ev.RunAborted(reason=reason):
-            return f"The run was aborted: {reason or 'by a person'}."
+        case ev.RunAborted() as aborted:
+            return f"The run was aborted: {why_aborted(aborted)}."
     return "The run has not ended."
 
 

@@ -1,18 +1,30 @@
 """The WebSocket route on which robots connect: `/ws/robot`."""
 
-import secrets
+import asyncio
 from collections.abc import Collection
+from contextlib import suppress
+from dataclasses import dataclass
 
 from fastapi import FastAPI
-from starlette.responses import PlainTextResponse
+from starlette.responses import Response
 from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketState
 
 from robots.link.channel import ChannelClosedError
+from robots.link.messages import LinkError
+from server.access.principal import Caller
+from server.api.access import Access
+from server.api.problems import problem, problem_response
+from server.robots.passes import Pass
 from server.robots.registry import RobotRegistry
 
 ROBOT_PATH = "/ws/robot"
 
 MAX_MESSAGE_BYTES = 1 << 20
+
+REVOKED = "this credential is good no longer: enrol the robot again"
+NO_CREDENTIAL = (
+    "a robot has to present its credential, or the service's token: 'Authorization: Bearer ...'"
+)
 
 CLOSED_NORMALLY = 1000
 MESSAGE_TOO_BIG = 1009
@@ -61,43 +73,65 @@ class StarletteChannel:
 def add_robot_route(
     app: FastAPI,
     registry: RobotRegistry,
-    token: str | None,
+    access: Access,
     *,
     allowed_origins: Collection[str] = (),
 ) -> None:
     """Serve `/ws/robot`.
 
-    With a `token`, a robot has to present it as a bearer token (else HTTP status 401). A request
-    with an `Origin` comes from a browser and is refused (403) unless that origin is allowed.
+    A robot has to present its credential as a bearer token, or the service's own token where there
+    is one (else HTTP status 401, or 429 while its address has to wait). A request with an `Origin`
+    comes from a browser and is refused (403) unless that origin is allowed.
     """
 
     async def connect(websocket: WebSocket) -> None:
-        refusal = _refusal(websocket, token, allowed_origins)
-        if refusal is not None:
-            await websocket.send_denial_response(refusal)
+        shown = _shown(websocket, access, allowed_origins)
+        if isinstance(shown, Response):
+            await websocket.send_denial_response(shown)
             return
         await websocket.accept()
-        await registry.serve(StarletteChannel(websocket))
+        channel = StarletteChannel(websocket)
+        if shown.caller is None:
+            await registry.serve(channel, shown.robot)
+            return
+        with access.watched(shown.caller) as gone:
+            revoking = asyncio.create_task(_end_when(gone, channel))
+            try:
+                await registry.serve(channel, shown.robot)
+            finally:
+                revoking.cancel()
 
     app.add_api_websocket_route(ROBOT_PATH, connect)
 
 
-def _refusal(
-    websocket: WebSocket, token: str | None, allowed_origins: Collection[str]
-) -> PlainTextResponse | None:
+async def _end_when(gone: asyncio.Event, channel: StarletteChannel) -> None:
+    await gone.wait()
+    with suppress(ChannelClosedError):
+        await channel.send(LinkError(detail=REVOKED).model_dump_json())
+        await channel.close()
+
+
+@dataclass(frozen=True, slots=True)
+class _Shown:
+    """As which robot a connection may say hello; `caller` None: a process of this service's."""
+
+    robot: Pass
+    caller: Caller | None
+
+
+def _shown(
+    websocket: WebSocket, access: Access, allowed_origins: Collection[str]
+) -> _Shown | Response:
     origin = websocket.headers.get("origin")
     if origin is not None and origin not in allowed_origins:
-        return PlainTextResponse("robots connect without an Origin header", status_code=403)
-    if token is not None and not _presents(websocket, token):
-        return PlainTextResponse(
-            "a robot has to present the service's token: 'Authorization: Bearer <token>'",
-            status_code=401,
-            headers={"WWW-Authenticate": "Bearer"},
-        )
-    return None
-
-
-def _presents(websocket: WebSocket, token: str) -> bool:
-    scheme, _, presented = websocket.headers.get("authorization", "").partition(" ")
-    right = secrets.compare_digest(presented.strip().encode(), token.encode())
-    return right and scheme.lower() == "bearer"
+        return problem_response(problem(403, "robots connect without an Origin header"))
+    own = access.own_robot(websocket)
+    if own is not None:
+        return _Shown(own, None)
+    admission = access.by_bearer(websocket)
+    if admission.wait_s:
+        return problem_response(problem(429, admission.too_many), admission.retry_after)
+    robot = None if admission.caller is None else access.robot_pass(admission.caller)
+    if robot is None:
+        return problem_response(problem(401, NO_CREDENTIAL), {"WWW-Authenticate": "Bearer"})
+    return _Shown(robot, admission.caller)

@@ -9,6 +9,7 @@ import sys
 from asyncio.subprocess import DEVNULL, PIPE, Process
 from collections.abc import Callable
 from contextlib import suppress
+from pathlib import Path
 from typing import Protocol
 from uuid import uuid4
 
@@ -18,6 +19,7 @@ from robots.link.clock import LoopClock
 from robots.link.outbox import IN_MEMORY, Outbox
 from server.errors import InvalidError
 from server.plain_text import plain
+from server.robots.passes import OwnRobots
 from server.robots.registry import RobotRegistry
 from sim.robot_process import RobotProcessSetup, find_world
 from sim.world import WorldAdapter, WorldSetup, WorldUnavailableError
@@ -58,15 +60,17 @@ async def launch(
     ended: Ended,
     *,
     registry: RobotRegistry,
+    own_robots: OwnRobots,
     url: str,
-    token: str | None,
+    certificate: Path | None = None,
     hang_s: float = 6.0,
 ) -> SimulatedRobot:
     """Start a simulated robot in a world of the entry points.
 
     A robot in a process of its own that is silent for `hang_s` is killed. `url` is this service's
-    `/ws/robot`, as seen from this machine. Raises `InvalidError` if there is no such world or it
-    cannot run here.
+    `/ws/robot`, as seen from this machine, and `certificate` the service's own, if it speaks TLS;
+    the process gets a credential for its time. Raises `InvalidError` if there is no such world or
+    it cannot run here.
     """
     try:
         adapter = find_world(world_name)
@@ -74,9 +78,11 @@ async def launch(
         raise InvalidError(str(error)) from error
     robot: SimulatedRobot
     if adapter.own_process:
-        robot = RobotProcess(world_name, ended, registry, url, token, hang_s=hang_s)
+        robot = RobotProcess(
+            world_name, ended, registry, own_robots, url, certificate=certificate, hang_s=hang_s
+        )
     else:
-        robot = InProcessRobot(adapter, ended, registry)
+        robot = InProcessRobot(adapter, ended, registry, own_robots)
     await robot.start(setup)
     return robot
 
@@ -92,9 +98,10 @@ class RobotProcess:
         world_name: str,
         ended: Ended,
         registry: RobotRegistry,
+        own_robots: OwnRobots,
         url: str,
-        token: str | None,
         *,
+        certificate: Path | None = None,
         hang_s: float = 6.0,
         start_s: float = 120.0,
         stop_s: float = 2.0,
@@ -103,7 +110,9 @@ class RobotProcess:
         self._ended = ended
         self._registry = registry
         self._url = url
-        self._token = token
+        self._own_robots = own_robots
+        self._token: str | None = None
+        self._certificate = None if certificate is None else str(certificate.resolve())
         self._hang_s = hang_s
         self._start_s = start_s
         self._stop_s = stop_s
@@ -118,6 +127,7 @@ class RobotProcess:
     async def start(self, setup: WorldSetup) -> None:
         """Start the process, after ending the one there may be."""
         await self.stop()
+        self._token = self._own_robots.issue(setup.robot)
         process = await asyncio.create_subprocess_exec(
             sys.executable,
             "-P",
@@ -131,7 +141,11 @@ class RobotProcess:
         self._process = process
         self._watcher = asyncio.create_task(self._watch(process, setup.robot))
         told = RobotProcessSetup(
-            world=self._world_name, setup=setup, url=self._url, token=self._token
+            world=self._world_name,
+            setup=setup,
+            url=self._url,
+            token=self._token,
+            certificate=self._certificate,
         )
         assert process.stdin is not None, "stdin is a pipe"
         process.stdin.write(told.model_dump_json().encode() + b"\n")
@@ -143,6 +157,9 @@ class RobotProcess:
         """End the process, by force if closing its stdin does not do it in time."""
         process, watcher = self._process, self._watcher
         self._process = self._watcher = None
+        if self._token is not None:
+            self._own_robots.withdraw(self._token)
+            self._token = None
         if process is None or watcher is None:
             return
         if watcher is not asyncio.current_task():
@@ -191,10 +208,18 @@ class RobotProcess:
 class InProcessRobot:
     """A robot that runs in this event loop; for worlds that neither block nor crash."""
 
-    def __init__(self, adapter: WorldAdapter, ended: Ended, registry: RobotRegistry) -> None:
+    def __init__(
+        self,
+        adapter: WorldAdapter,
+        ended: Ended,
+        registry: RobotRegistry,
+        own_robots: OwnRobots,
+    ) -> None:
         self._adapter = adapter
         self._ended = ended
         self._registry = registry
+        self._own_robots = own_robots
+        self._token: str | None = None
         self._task: asyncio.Task[None] | None = None
         self._served: set[asyncio.Task[None]] = set()
 
@@ -205,10 +230,15 @@ class InProcessRobot:
     async def start(self, setup: WorldSetup) -> None:
         """Build the world and let the robot connect, after ending the one there may be."""
         await self.stop()
+        # It needs none to come in, but nobody else is to come in under its name.
+        self._token = self._own_robots.issue(setup.robot)
         self._task = asyncio.create_task(self._run(setup), name=f"robot {setup.robot}")
 
     async def stop(self) -> None:
         task, self._task = self._task, None
+        if self._token is not None:
+            self._own_robots.withdraw(self._token)
+            self._token = None
         if task is not None and task is not asyncio.current_task():
             task.cancel()
             await asyncio.gather(task, return_exceptions=True)

@@ -13,7 +13,9 @@ from robots.link.messages import PROTOCOL_VERSION, CommandBody, Hello, LinkError
 from server.errors import ConflictError
 from server.journal.journal import Journal, JournalClosedError
 from server.limits import Limits
+from server.refusals import Refusals
 from server.robots.known_robot import KnownRobot
+from server.robots.passes import Anyone, Pass
 from server.robots.session import NoSenseError, RobotSession, read_message, sentence
 from server.robots.sink import RobotSink
 from server.robots.times import LinkTimes
@@ -35,11 +37,13 @@ class RobotRegistry:
         clock: Callable[[], float],
         times: LinkTimes | None = None,
         limits: Limits | None = None,
+        refusals: Refusals | None = None,
     ) -> None:
         self._journal = journal
         self._clock = clock
         self._times = times or LinkTimes()
         self._limits = limits or Limits()
+        self._refusals = refusals or Refusals()
         self._robots: dict[str, KnownRobot] = {}
         self._closed = False
 
@@ -126,20 +130,29 @@ class RobotRegistry:
         departed = [name for name, robot in self._robots.items() if robot.departed]
         for name in departed[: -self._limits.departed_robots]:
             del self._robots[name]
+            self._refusals.note("departed_robots")
 
     # --- Connections --------------------------------------------------------------------------
 
-    async def serve(self, channel: Channel) -> None:
-        """Serve one connection of a robot until it ends."""
+    async def serve(self, channel: Channel, shown: Pass | None = None) -> None:
+        """Serve one connection of a robot until it ends.
+
+        `shown` says as which robot it may say hello; None for a channel within this process.
+        """
         try:
             hello = await self._greeted(channel)
             if hello is not None and not self._closed:
-                await self._serve_robot(channel, hello)
+                await self._serve_robot(channel, hello, shown or Anyone())
         finally:
             with suppress(ChannelClosedError):
                 await channel.close()
 
-    async def _serve_robot(self, channel: Channel, hello: Hello) -> None:
+    async def _serve_robot(self, channel: Channel, hello: Hello, shown: Pass) -> None:
+        # First: who may not be this robot is to leave no trace of it either.
+        refusal = shown.why_not(hello.robot)
+        if refusal is not None:
+            await _complain(channel, refusal)
+            return
         robot = self._known(hello.robot)
         refusal = robot.why_refused(hello)
         if refusal is not None:
@@ -186,6 +199,7 @@ class RobotRegistry:
         most = self._limits.hello_chars
         if len(text) <= most:
             return None
+        self._refusals.note("hello_chars")
         return f"a hello may have {most} characters; this one has {len(text)}"
 
 

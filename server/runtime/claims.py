@@ -6,6 +6,7 @@ A claim is a courtesy with a lease (wall time); it never keeps anybody from answ
 from datetime import timedelta
 
 from server.errors import ConflictError
+from server.journal.events import Author
 from server.runtime.context import RunContext
 from server.runtime.dialogue_events import DialogueEvents
 from server.runtime.run_state import DialogueState
@@ -17,7 +18,14 @@ class Claims:
     def __init__(self, context: RunContext) -> None:
         self._context = context
 
-    async def claim(self, dialogue: DialogueState, helper: str, *, take_over: bool) -> None:
+    async def claim(
+        self,
+        dialogue: DialogueState,
+        helper: str,
+        *,
+        take_over: bool,
+        author: Author | None = None,
+    ) -> None:
         """Claim a dialogue, or renew one's own claim; `take_over` takes it from another helper.
 
         Raises `ConflictError` while another helper's lease lasts (unless it is taken over), or
@@ -36,18 +44,21 @@ class Claims:
             )
         make = self._make(dialogue)
         lease = timedelta(seconds=self._context.settings.claim_lease_s)
-        claimed = make.claimed(helper, now + lease)
+        claimed = make.claimed(helper, now + lease, author)
         if held is not None and others:
-            released = make.released(held.helper, expired=held.until <= now)
+            released = make.released(held.helper, held.until <= now, author)
             await self._context.commit([released, claimed])
         else:
             await self._context.commit([claimed])
 
-    async def release(self, dialogue: DialogueState, helper: str) -> None:
+    async def release(
+        self, dialogue: DialogueState, helper: str, author: Author | None = None
+    ) -> None:
         """Give up one's own claim. Raises `ConflictError` when the helper has none."""
         if dialogue.claim is None or dialogue.claim.helper != helper:
             raise ConflictError(f"{helper} has no claim on this dialogue to release")
-        await self._context.commit([self._make(dialogue).released(helper, expired=False)])
+        released = self._make(dialogue).released(helper, expired=False, author=author)
+        await self._context.commit([released])
 
     async def expire(self) -> None:
         """Release every claim whose lease has run out."""

@@ -160,6 +160,7 @@ class DialogueDriver:
         answer: Literal["yes", "no"],
         helper: str,
         side: RobotSide,
+        author: ev.Author | None = None,
     ) -> ev.Answered:
         """Take a live helper's answer; the first one wins.
 
@@ -175,10 +176,14 @@ class DialogueDriver:
             raise ConflictError(f"this dialogue is closed ({dialogue.closed})")
         if ask is None or ask.prompt != prompt:
             raise ConflictError("this prompt does not wait for an answer")
-        return await self._take_answer(dialogue, ask, answer, helper, side)
+        return await self._take_answer(dialogue, ask, answer, helper, side, author)
 
     async def extend(
-        self, dialogue: DialogueState, prompt: UUID, helper: str
+        self,
+        dialogue: DialogueState,
+        prompt: UUID,
+        helper: str,
+        author: ev.Author | None = None,
     ) -> ev.DeadlineExtended:
         """Move the open question's deadline by as long as it was first put for.
 
@@ -195,7 +200,7 @@ class DialogueDriver:
                 f"this question was given more time {MOST_EXTENSIONS} times already"
             )
         make = self._make(dialogue)
-        event = make.extended(ask, ask.deadline + length_s, left, helper)
+        event = make.extended(ask, ask.deadline + length_s, left, helper, author)
         (extended,) = await self._context.commit([event])
         assert isinstance(extended, ev.DeadlineExtended), "what is committed keeps its type"
         return extended
@@ -230,11 +235,12 @@ class DialogueDriver:
         answer: Literal["yes", "no"],
         helper: str,
         side: RobotSide,
+        author: ev.Author | None = None,
     ) -> ev.Answered:
         make = self._make(dialogue)
-        before: list[ev.Event] = [make.answered(ask, answer, helper)]
+        before: list[ev.Event] = [make.answered(ask, answer, helper, author)]
         if dialogue.claim is not None and dialogue.claim.helper != helper:
-            before.insert(0, make.released(dialogue.claim.helper, expired=False))
+            before.insert(0, make.released(dialogue.claim.helper, expired=False, author=author))
         committed = await self._converse(dialogue, answer, before, side, helper)
         return next(each for each in committed if isinstance(each, ev.Answered))
 

@@ -57,7 +57,9 @@ class DialogueEvents:
         fields = self.ask(ask, deadline, to, if_silent)
         return fields.model_copy(update={"prompt": asked.prompt, "version": asked.version + 1})
 
-    def answered(self, asked: ev.Prompt, answer: str, helper: str) -> ev.Answered:
+    def answered(
+        self, asked: ev.Prompt, answer: str, helper: str, author: ev.Author | None
+    ) -> ev.Answered:
         return ev.Answered.model_validate(
             {
                 **self._fields(),
@@ -65,11 +67,17 @@ class DialogueEvents:
                 "version": asked.version,
                 "answer": answer,
                 "helper": helper,
+                "author": author,
             }
         )
 
     def extended(
-        self, asked: ev.Prompt, deadline: float, extensions_left: int, helper: str
+        self,
+        asked: ev.Prompt,
+        deadline: float,
+        extensions_left: int,
+        helper: str,
+        author: ev.Author | None,
     ) -> ev.DeadlineExtended:
         return ev.DeadlineExtended(
             **self._fields(),
@@ -78,16 +86,17 @@ class DialogueEvents:
             deadline=deadline,
             extensions_left=extensions_left,
             helper=helper,
+            author=author,
         )
 
     def escalated(self, channel: str, to: str) -> ev.Escalated:
         return ev.Escalated.model_validate({**self._fields(), "channel": channel, "to": to})
 
-    def claimed(self, helper: str, until: datetime) -> ev.Claimed:
-        return ev.Claimed(**self._fields(), helper=helper, lease_until=until)
+    def claimed(self, helper: str, until: datetime, author: ev.Author | None) -> ev.Claimed:
+        return ev.Claimed(**self._fields(), helper=helper, lease_until=until, author=author)
 
-    def released(self, helper: str, expired: bool) -> ev.Released:
-        return ev.Released(**self._fields(), helper=helper, expired=expired)
+    def released(self, helper: str, expired: bool, author: ev.Author | None = None) -> ev.Released:
+        return ev.Released(**self._fields(), helper=helper, expired=expired, author=author)
 
     def first_look(self, look: Look) -> ev.FirstLook:
         return ev.FirstLook(

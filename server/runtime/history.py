@@ -1,36 +1,71 @@
 """The states of runs as the journal has them, at any event of the past."""
 
+from collections import OrderedDict
 from collections.abc import Mapping
-from typing import cast
 from uuid import UUID
 
 from dialogue.script import Script
+from server.errors import UnreadableError
 from server.journal import events as ev
-from server.journal.journal import Journal
+from server.journal.journal import Journal, JournalReadError
 from server.runtime.run_state import RunState
+
+MOST_KEPT = 16
+PAGE = 1000
+MOST_CHARS = 300
 
 
 class History:
-    """Folds journaled events again."""
+    """Folds journaled events again; keeps the states of the few ended runs asked for last."""
 
     def __init__(self, journal: Journal, scripts: Mapping[str, Script]) -> None:
         self._journal = journal
         self._scripts = scripts
+        self._kept: OrderedDict[UUID, RunState] = OrderedDict()
+
+    def kept(self, run: UUID) -> RunState | None:
+        """The last state of a run, if it has ended and is kept."""
+        if run in self._kept:
+            self._kept.move_to_end(run)
+        return self._kept.get(run)
+
+    async def read(self, run: UUID) -> RunState:
+        """The last state of a run as the journal has it. Raises `UnreadableError`."""
+        state = await self.at(run, None)
+        if state is None:
+            raise UnreadableError(f"the journal has no events of run {run}")
+        self.keep(state)
+        return state
+
+    def keep(self, state: RunState) -> None:
+        """Keep a state while it is asked for, if its run has ended."""
+        if not state.status.ended:
+            return
+        self._kept[state.id] = state
+        self._kept.move_to_end(state.id)
+        while len(self._kept) > MOST_KEPT:
+            self._kept.popitem(last=False)
 
     async def at(self, run: UUID, until: int | None) -> RunState | None:
-        """Fold a run's events again, up to `until`; None if it had not begun."""
+        """Fold a run's events again, up to `until`; None if it had not begun.
+
+        Raises `UnreadableError`.
+        """
         state: RunState | None = None
         after = 0
-        while events := await self._journal.read(after, 1000, run):
+        while events := await self._page(run, after):
             for event in events:
                 if until is not None and event.seq > until:
                     return state
-                if state is None:
-                    state = RunState(cast(ev.RunStarted, event), self._scripts)
-                else:
-                    state.fold(event)
+                state = fold_event(run, state, event, self._scripts)
             after = events[-1].seq
         return state
+
+    async def _page(self, run: UUID, after: int) -> list[ev.Event]:
+        try:
+            return await self._journal.read(after, PAGE, run)
+        except JournalReadError as error:
+            raise UnreadableError(f"run {run} cannot be read: {error}") from error
 
     async def is_at(self, state: RunState, at: int) -> bool:
         """Whether a state is that of its run after the journal's event `at`."""
@@ -40,3 +75,27 @@ class History:
         newer = await self._journal.read(seq, 1, state.id)
         # A running run may have gone on meanwhile.
         return state.seq == seq and (not newer or newer[0].seq > at)
+
+
+def fold_event(
+    run: UUID, state: RunState | None, event: ev.Event, scripts: Mapping[str, Script]
+) -> RunState:
+    """The state of a run after one more event; `state` is None before its first.
+
+    Raises `UnreadableError` for an event that no run can have there.
+    """
+    if state is None and not isinstance(event, ev.RunStarted):
+        raise UnreadableError(f"run {run} cannot be read: its first event is not 'run_started'")
+    try:
+        if state is None:
+            assert isinstance(event, ev.RunStarted), "looked at above"
+            return RunState(event, scripts)
+        state.fold(event)
+    except Exception as error:
+        # Whatever a state trips over: the event does not fit what came before it.
+        kind = vars(event).get("type", "?")
+        raise UnreadableError(
+            f"run {run} cannot be read: event {event.seq} ({kind}) does not fit what came before "
+            f"it ({type(error).__name__}: {' '.join(str(error).split())[:MOST_CHARS]})"
+        ) from error
+    return state

@@ -14,7 +14,9 @@ class Interventions:
     def __init__(self, context: RunContext) -> None:
         self._context = context
 
-    async def accept(self, deed: Intervention, by: str, side: RobotSide) -> None:
+    async def accept(
+        self, deed: Intervention, by: str, side: RobotSide, author: ev.Author | None = None
+    ) -> None:
         """Have a person do something in the world that `side` is in."""
         accepted = ev.InterventionAccepted(
             **self._context.stamp(),
@@ -23,6 +25,7 @@ class Interventions:
             intervention=deed,
             by=by,
             command=str(uuid4()),
+            author=author,
         )
         await self._context.commit([accepted])
         if side.hello is not None:

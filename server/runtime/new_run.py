@@ -34,7 +34,7 @@ class NewRuns:
         self._utc_now = utc_now
         self._limits = limits
 
-    async def make(self, request: RunRequest) -> ev.RunStarted:
+    async def make(self, request: RunRequest, author: ev.Author | None = None) -> ev.RunStarted:
         """Raises `NotFoundError` or `InvalidError`."""
         _refuse_too_much(request, self._limits)
         scenario = None
@@ -75,6 +75,7 @@ class NewRuns:
             scenario=request.scenario,
             script=None if scenario is None else scenario.model_dump(mode="json"),
             options=request.model_dump(mode="json"),
+            author=author,
         )
 
 
@@ -83,18 +84,21 @@ def _refuse_too_much(request: RunRequest, limits: Limits) -> None:
     answers = request.answers if isinstance(request.answers, list) else []
     if len(answers) > limits.answers:
         raise InvalidError(
-            f"'answers' has {len(answers)} entries; at most {limits.answers} are taken"
+            f"'answers' has {len(answers)} entries; at most {limits.answers} are taken",
+            limit="answers",
         )
     if len(request.world_options) > limits.world_options:
         raise InvalidError(
             f"'world_options' has {len(request.world_options)} entries; "
-            f"at most {limits.world_options} are taken"
+            f"at most {limits.world_options} are taken",
+            limit="world_options",
         )
     for name, value in request.world_options.items():
         if max(len(name), len(str(value))) > limits.option_chars:
             raise InvalidError(
                 f"the world option '{name[:40]}' is too long: its name and its text may have "
-                f"{limits.option_chars} characters each"
+                f"{limits.option_chars} characters each",
+                limit="option_chars",
             )
 
 

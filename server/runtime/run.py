@@ -389,10 +389,10 @@ class Run:
 
     # --- What people ask for ------------------------------------------------------------------
 
-    async def pause(self) -> None:
+    async def pause(self, author: ev.Author | None = None) -> None:
         """Stop everything where it is. Raises `ConflictError` unless running."""
         self._require(RunStatus.RUNNING, "pause")
-        await self._context.commit([ev.RunPaused(**self._context.stamp())])
+        await self._context.commit([ev.RunPaused(**self._context.stamp(), author=author)])
         self._context.clock.pause()
         self._stop_robots()
 
@@ -401,28 +401,28 @@ class Run:
             if side.doing is Doing.WORKING or side.interruptible or side.doing is Doing.LOOKING:
                 side.stop()
 
-    async def resume(self) -> None:
+    async def resume(self, author: ev.Author | None = None) -> None:
         """Go on. Raises `ConflictError` unless paused."""
         self._require(RunStatus.PAUSED, "resume")
         self._context.clock.resume()
-        await self._context.commit([ev.RunResumed(**self._context.stamp())])
+        await self._context.commit([ev.RunResumed(**self._context.stamp(), author=author)])
 
-    async def abort(self, reason: str = "") -> None:
+    async def abort(self, reason: str = "", author: ev.Author | None = None) -> None:
         """End the run. Raises `ConflictError` if it has ended."""
         state = self._context.state
         if state.status.ended:
             raise ConflictError(f"the run has ended ({state.status})")
         closings = [self._dialogues.abort(each) for each in state.open_dialogues]
-        aborted = ev.RunAborted(**self._context.stamp(), reason=reason)
+        aborted = ev.RunAborted(**self._context.stamp(), reason=reason, author=author)
         await self._context.commit([*closings, aborted])
 
-    async def abort_at_once(self) -> None:
+    async def abort_at_once(self, author: ev.Author | None = None) -> None:
         """End the run; while the journal cannot be written its robots stop, and it ends later.
 
         Raises `ConflictError` if it has ended.
         """
         self._require_going()
-        aborted = self._inbox.ask(self.abort, patient=True)
+        aborted = self._inbox.ask(partial(self.abort, author=author), patient=True)
         troubled = asyncio.create_task(self._context.in_trouble())
         either: list[asyncio.Future[Any]] = [aborted, troubled]
         await asyncio.wait(either, return_when=asyncio.FIRST_COMPLETED)
@@ -453,10 +453,10 @@ class Run:
         if not self._context.state.status.ended:
             await fail_run(self._context, reason)
 
-    async def intervene(self, deed: Intervention) -> None:
+    async def intervene(self, deed: Intervention, author: ev.Author | None = None) -> None:
         """Have a person do something in the simulated world."""
         side = next(iter(self._sides.values()))
-        await self._interventions.accept(deed, "api", side)
+        await self._interventions.accept(deed, "api", side, author)
 
     def _require(self, status: RunStatus, what: str) -> None:
         now = self._context.state.status

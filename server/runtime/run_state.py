@@ -14,8 +14,8 @@ from dialogue.script import CloseReason, Expectation, Script, Turn
 from robots.link.messages import Detection
 from server.journal import events as ev
 from server.runtime.requests import RunRequest
+from server.runtime.run_result import Ending, result_of
 from server.runtime.views import RunResult, RunStatus
-from server.transcript import finished_text
 from tasks.definition import TaskTreeDefinition
 from tasks.issue import Issue, Sensed
 from tasks.resolution import Resolution
@@ -182,6 +182,7 @@ class RunState:
         self.tree.running = True
         self.status = RunStatus.RUNNING
         self.result: RunResult | None = None
+        self.ended: datetime | None = None
         self.executions: dict[str, Execution] = {}
         self.dialogues: dict[UUID, DialogueState] = {}
         self.lost: set[str] = set()
@@ -436,25 +437,18 @@ class RunState:
 
     @_apply.register
     def _(self, event: ev.RunFinished) -> None:
-        self._end(
-            RunStatus.FINISHED,
-            RunResult(
-                reason=finished_text(event.missing, event.unseen),
-                missing=event.missing,
-                unseen=event.unseen,
-            ),
-        )
+        self._end(RunStatus.FINISHED, event)
 
     @_apply.register
     def _(self, event: ev.RunFailed) -> None:
-        self._end(RunStatus.FAILED, RunResult(reason=event.reason, node=event.node))
+        self._end(RunStatus.FAILED, event)
 
     @_apply.register
     def _(self, event: ev.RunAborted) -> None:
-        self._end(RunStatus.ABORTED, RunResult(reason=event.reason or "aborted by a person"))
+        self._end(RunStatus.ABORTED, event)
 
-    def _end(self, status: RunStatus, result: RunResult) -> None:
-        self.status, self.result = status, result
+    def _end(self, status: RunStatus, event: Ending) -> None:
+        self.status, self.result, self.ended = status, result_of(event), event.wall_time
         self.tree.running = False
 
     @_apply.register

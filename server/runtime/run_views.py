@@ -1,9 +1,13 @@
 """From a run's state to what clients see of it."""
 
 from collections.abc import Mapping
-from typing import Literal
+from typing import Literal, cast
 
 from robots.link.messages import Hello
+from server.journal.journal import JournalReadError
+from server.journal.run_index import UNREADABLE, IndexedRun
+from server.journal.stored_event import read_event
+from server.runtime.run_result import Ending, result_of
 from server.runtime.run_state import DialogueState, RunState
 from server.runtime.views import (
     AwaitedHelp,
@@ -11,6 +15,8 @@ from server.runtime.views import (
     NodeView,
     PromptView,
     RobotView,
+    RunResult,
+    RunStatus,
     RunSummary,
     RunView,
 )
@@ -30,10 +36,40 @@ def summary(state: RunState, time: float, trouble: str | None) -> RunSummary:
         status=state.status,
         time=time,
         started=started.wall_time,
+        ended=state.ended,
         robots=started.robots,
         result=state.result,
         trouble=None if state.status.ended else trouble,
     )
+
+
+def summary_of_indexed(run: IndexedRun) -> RunSummary:
+    """One line about a run that is not in memory, as the journal's index has it."""
+    return RunSummary(
+        id=run.run,
+        tree=run.tree,
+        world=run.world,
+        scenario=run.scenario,
+        seed=run.seed,
+        speed=run.speed,
+        status=RunStatus(run.status),
+        time=run.time,
+        started=run.started,
+        ended=run.ended_at,
+        robots=list(run.robots),
+        result=_result_of_indexed(run),
+    )
+
+
+def _result_of_indexed(run: IndexedRun) -> RunResult | None:
+    if run.status == UNREADABLE:
+        return RunResult(reason=run.why or "it cannot be read")
+    if run.ending is None or run.ended is None:
+        return None
+    try:
+        return result_of(cast(Ending, read_event(run.ended, run.ending)))
+    except JournalReadError as error:
+        return RunResult(reason=str(error))
 
 
 def view(

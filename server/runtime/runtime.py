@@ -3,7 +3,7 @@
 import asyncio
 import logging
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from datetime import datetime
 from functools import partial
 from typing import Any, Literal, cast
@@ -14,9 +14,16 @@ import numpy as np
 from dialogue.script import Script
 from server.dialogues.answers import answer_source
 from server.dialogues.escalation import EscalationPolicy
-from server.errors import ConflictError, InvalidError, LostRaceError, NotFoundError
+from server.errors import (
+    ConflictError,
+    InvalidError,
+    LostRaceError,
+    NotFoundError,
+    UnreadableError,
+)
 from server.journal import events as ev
-from server.journal.journal import Entry, Journal
+from server.journal.journal import Entry, Journal, JournalClosedError, JournalWriteError
+from server.journal.run_index import UNREADABLE, IndexedRun, RunPage
 from server.runtime.choosing import potentials_for
 from server.runtime.clock import RunClock, SimulatedClock, WallClock
 from server.runtime.context import RunContext, RunSettings
@@ -29,8 +36,21 @@ from server.runtime.requests import RunRequest
 from server.runtime.robot_side import RobotSide
 from server.runtime.run import Run
 from server.runtime.run_state import DialogueState, RunState
-from server.runtime.run_views import dialogue_view, robot_view, summary, view
-from server.runtime.views import DialogueView, RobotView, RunSummary, RunView, Snapshot
+from server.runtime.run_views import (
+    dialogue_view,
+    robot_view,
+    summary,
+    summary_of_indexed,
+    view,
+)
+from server.runtime.views import (
+    DialogueView,
+    RobotView,
+    RunStatus,
+    RunSummary,
+    RunView,
+    Snapshot,
+)
 from tasks.intervention import Intervention
 from tasks.scenario import Person, Scenario
 from tasks.scene import Scene
@@ -70,7 +90,6 @@ class Runtime:
         self._states: dict[UUID, RunState] = {}
         self._runs: dict[UUID, Run] = {}
         self._tasks: dict[UUID, asyncio.Task[None]] = {}
-        self._unreadable: set[UUID] = set()
         self._promised: dict[str, UUID] = {}
         self._closing = False
         self._new_runs = NewRuns(trees, scenarios, worlds, utc_now, settings.limits)
@@ -80,20 +99,55 @@ class Runtime:
     # --- Beginning and ending -----------------------------------------------------------------
 
     async def recover(self) -> None:
-        """Fold the journal, and take up every run that had not ended."""
-        for run in await self._journal.runs():
-            try:
-                state = await self._history.at(run, None)
-            except Exception:
-                # One run that cannot be read must not keep the others from going on.
-                log.exception("run %s cannot be read from the journal", run)
-                self._unreadable.add(run)
-                continue
-            if state is None:
-                continue
-            self._states[run] = state
-            if not state.status.ended:
-                await self._take_up_or_fail(state)
+        """Fold the runs that had not ended, and take them up. Ended ones are read when asked for.
+
+        What cannot be read, or was found to be damaged, is left alone and listed as unreadable.
+        """
+        damaged = {run: each.sentence for each in self._journal.damage for run in each.runs}
+        for run, why in damaged.items():
+            with suppress(ValueError):
+                await self._cannot_read(UUID(run), f"run {run} is damaged: {why}")
+        for indexed in await self._journal.index.going_on():
+            if str(indexed.run) not in damaged:
+                await self._take_up_again(indexed)
+
+    async def _take_up_again(self, indexed: IndexedRun) -> None:
+        try:
+            state = await self._read_state(indexed)
+        except UnreadableError as error:
+            # One run that cannot be read must not keep the others from going on.
+            log.error("%s", error)
+            return
+        self._states[indexed.run] = state
+        if not state.status.ended:
+            await self._take_up_or_fail(state)
+        self._let_go(state)
+
+    async def _read_state(self, indexed: IndexedRun) -> RunState:
+        """The state of a run that is not in memory. Raises `UnreadableError`."""
+        doubted = indexed.status == UNREADABLE
+        if doubted and not await self._journal.is_whole(indexed.run):
+            raise UnreadableError(indexed.why or f"run {indexed.run} cannot be read")
+        try:
+            state = await self._history.read(indexed.run)
+        except UnreadableError as error:
+            if not doubted:
+                await self._cannot_read(indexed.run, str(error))
+            raise
+        if doubted:
+            with suppress(JournalWriteError, JournalClosedError):
+                await self._journal.mark_readable(indexed.run, state.status)
+        return state
+
+    async def _cannot_read(self, run: UUID, why: str) -> None:
+        """Have a run listed as unreadable from now on."""
+        with suppress(JournalWriteError, JournalClosedError):
+            await self._journal.mark_unreadable(run, why)
+
+    def _let_go(self, state: RunState) -> None:
+        """Of runs that have ended only a few are kept in memory."""
+        if state.status.ended and self._states.pop(state.id, None) is not None:
+            self._history.keep(state)
 
     def _journal_troubled(self, reason: str | None) -> None:
         for run in tuple(self._runs.values()):
@@ -112,17 +166,30 @@ class Runtime:
         """Wait until a run has ended."""
         if run in self._tasks:
             await asyncio.wait([self._tasks[run]])
-        return self.run(run)
+        return await self.run(run)
 
-    async def start_run(self, request: RunRequest) -> RunView:
+    async def start_run(self, request: RunRequest, author: ev.Author | None = None) -> RunView:
         """Begin a run. Raises `NotFoundError`, `InvalidError` or `ConflictError`."""
-        started = await self._new_runs.make(request)
+        self._refuse_one_too_many()
+        started = await self._new_runs.make(request, author)
         if self._closing:
             raise ConflictError("the service is shutting down")
+        # Others may have begun meanwhile.
+        self._refuse_one_too_many()
         if request.world == LIVE:
             self._check_robots(request.robots)
         with self._promise(started):
             return await self._begin(started)
+
+    def _refuse_one_too_many(self) -> None:
+        most = self._settings.limits.running_runs
+        running = len({*self._runs, *self._promised.values()})
+        if running >= most:
+            raise ConflictError(
+                f"{running} runs have not ended yet, and at most {most} may go on at a time: abort "
+                "one, or wait for its end",
+                limit="running_runs",
+            )
 
     @contextmanager
     def _promise(self, started: ev.RunStarted) -> Iterator[None]:
@@ -144,7 +211,8 @@ class Runtime:
         # One that is journaled while the service stops is taken up at the next start.
         if not self._closing:
             await self._take_up_or_fail(state)
-        return self.run(state.id)
+            self._let_go(state)
+        return self._view(state)
 
     def _check_robots(self, robots: list[str]) -> None:
         if not robots:
@@ -212,29 +280,52 @@ class Runtime:
             self._robots.unassign(robot)
         self._runs.pop(state.id, None)
         self._poses.close(state.id)
+        self._let_go(state)
         if not task.cancelled() and (error := task.exception()) is not None:
             log.error("run %s stopped and could not say so", state.id, exc_info=error)
 
     # --- What there is ------------------------------------------------------------------------
 
-    def _state(self, run: UUID) -> RunState:
-        if run not in self._states:
-            raise NotFoundError(f"there is no run {run}")
-        return self._states[run]
+    async def _state(self, run: UUID) -> RunState:
+        """Raises `NotFoundError` or `UnreadableError`."""
+        if run in self._states:
+            return self._states[run]
+        # Looked for in the index first: what is kept in memory may have been pruned.
+        indexed = await self._journal.index.find(run)
+        if indexed is None:
+            pruned = await self._journal.pruned_through()
+            hint = "; ended runs have been pruned from this journal" if pruned else ""
+            raise NotFoundError(f"there is no run {run}{hint}")
+        if run in self._states:
+            return self._states[run]
+        return self._history.kept(run) or await self._read_state(indexed)
 
     def _time(self, state: RunState) -> float:
         run = self._runs.get(state.id)
         return run.context.clock.now() if run and not state.status.ended else state.time
 
-    def runs(self) -> list[RunSummary]:
-        """All runs, newest first."""
+    async def runs(self, page: RunPage) -> list[RunSummary]:
+        """A page of runs, newest first. Raises `NotFoundError` for a page after an unknown run."""
+        if page.before is not None and await self._journal.index.find(page.before) is None:
+            raise NotFoundError(f"there is no run {page.before} after which the list could go on")
         trouble = self._journal.trouble.reason
-        states = reversed(self._states.values())
-        return [summary(state, self._time(state), trouble) for state in states]
+        summaries = []
+        for indexed in await self._journal.index.page(page):
+            state = self._states.get(indexed.run)
+            if state is None or indexed.status == UNREADABLE:
+                summaries.append(summary_of_indexed(indexed))
+            else:
+                summaries.append(summary(state, self._time(state), trouble))
+        return summaries
 
-    def run(self, run: UUID) -> RunView:
-        """Everything about one run. Raises `NotFoundError`."""
-        return self._view(self._state(run))
+    async def count_runs(self) -> Mapping[RunStatus, int]:
+        """How many runs there are of each status."""
+        counts = await self._journal.index.counts()
+        return {status: counts.get(status, 0) for status in RunStatus}
+
+    async def run(self, run: UUID) -> RunView:
+        """Everything about one run. Raises `NotFoundError` or `UnreadableError`."""
+        return self._view(await self._state(run))
 
     def _view(self, state: RunState) -> RunView:
         leaves = np.asarray(state.tree.leaves, dtype=np.int64)
@@ -250,58 +341,68 @@ class Runtime:
         head = self._journal.head
         at = head if seq is None else min(seq, head)
         views = []
-        for run in await self._journal.runs():
-            if run in self._unreadable:
-                continue
-            state: RunState | None = self._states.get(run)
-            if state is None or not await self._history.is_at(state, at):
-                state = await self._history.at(run, at)
+        for run in await self._journal.index.open_at(at):
+            try:
+                state = await self._state_at(run, at)
+            except UnreadableError:
+                continue  # It is listed as unreadable.
             if state is not None and not state.status.ended:
                 views.append(self._view(state))
         return Snapshot(seq=at, runs=views, dialogues=[d for each in views for d in each.dialogues])
 
+    async def _state_at(self, run: UUID, at: int) -> RunState | None:
+        state = self._states.get(run)
+        if state is not None and await self._history.is_at(state, at):
+            return state
+        return await self._history.at(run, at)
+
     # --- What people ask for ------------------------------------------------------------------
 
-    def _running(self, run: UUID) -> Run:
-        state = self._state(run)
+    async def _running(self, run: UUID) -> Run:
+        return self._running_of(await self._state(run))
+
+    def _running_of(self, state: RunState) -> Run:
         if state.status.ended:
             raise ConflictError(f"the run has ended ({state.status})")
-        if run not in self._runs:
+        if state.id not in self._runs:
             raise ConflictError(f"nobody works on this run just now, though it is {state.status}")
-        return self._runs[run]
+        return self._runs[state.id]
 
-    async def pause(self, run: UUID) -> RunView:
+    async def pause(self, run: UUID, author: ev.Author | None = None) -> RunView:
         """Stop a run where it is. Raises `ConflictError` unless it is running."""
-        running = self._running(run)
-        await running.request(running.pause)
-        return self.run(run)
+        running = await self._running(run)
+        await running.request(partial(running.pause, author))
+        return await self.run(run)
 
-    async def resume(self, run: UUID) -> RunView:
+    async def resume(self, run: UUID, author: ev.Author | None = None) -> RunView:
         """Let a paused run go on. Raises `ConflictError` unless it is paused."""
-        running = self._running(run)
-        await running.request(running.resume)
-        return self.run(run)
+        running = await self._running(run)
+        await running.request(partial(running.resume, author))
+        return await self.run(run)
 
-    async def abort(self, run: UUID) -> RunView:
+    async def abort(self, run: UUID, author: ev.Author | None = None) -> RunView:
         """End a run. Raises `ConflictError` if it has ended.
 
         While the journal cannot be written its robots stop at once, and it has ended only later.
         """
-        running = self._running(run)
-        await running.abort_at_once()
-        return self.run(run)
+        running = await self._running(run)
+        await running.abort_at_once(author)
+        return await self.run(run)
 
-    async def intervene(self, run: UUID, intervention: Intervention) -> None:
+    async def intervene(
+        self, run: UUID, intervention: Intervention, author: ev.Author | None = None
+    ) -> None:
         """Have a person do something in a simulated world. Raises `ConflictError`."""
-        running, state = self._running(run), self._state(run)
+        running = await self._running(run)
+        state = running.context.state
         if state.started.world == LIVE:
             raise ConflictError("a run in the world 'live' has no simulated person")
         _check_intervention(state.scene, intervention)
-        await running.request(lambda: running.intervene(intervention))
+        await running.request(lambda: running.intervene(intervention, author))
 
     async def picture(self, run: UUID, camera: str) -> bytes:
         """A camera's picture now, as JPEG. Raises `NotFoundError` or `ConflictError`."""
-        running = self._running(run)
+        running = await self._running(run)
         for robot, side in running.sides.items():
             if side.hello is not None and camera in side.hello.cameras:
                 return await self._robots.take_picture(robot, camera)
@@ -309,38 +410,60 @@ class Runtime:
 
     # --- Dialogues ----------------------------------------------------------------------------
 
-    def dialogues(self, status: Literal["open", "closed"] | None) -> list[DialogueView]:
-        """Every dialogue, oldest first."""
-        views = [
-            dialogue_view(each)
-            for state in self._states.values()
-            for each in state.dialogues.values()
-        ]
+    async def dialogues(
+        self, status: Literal["open", "closed"] | None, limit: int, offset: int
+    ) -> list[DialogueView]:
+        """A page of dialogues, oldest first; without those of runs that cannot be read."""
+        if status == "open":
+            # Whoever hears of an event finds it here already; the index is a moment ahead of that.
+            return self._open_dialogues()[offset : offset + limit]
+        views = []
+        for dialogue, run in await self._journal.index.dialogues(status, limit, offset):
+            try:
+                state = await self._state(run)
+            except (NotFoundError, UnreadableError):
+                continue
+            if dialogue in state.dialogues:
+                views.append(dialogue_view(state.dialogues[dialogue]))
         return [each for each in views if status is None or each.status == status]
 
-    def _dialogue(self, dialogue: UUID) -> tuple[RunState, DialogueState]:
+    def _open_dialogues(self) -> list[DialogueView]:
+        return [dialogue_view(e) for state in self._states.values() for e in state.open_dialogues]
+
+    async def _dialogue(self, dialogue: UUID) -> tuple[RunState, DialogueState]:
+        """Raises `NotFoundError` or `UnreadableError`."""
         for state in self._states.values():
+            if dialogue in state.dialogues:
+                return state, state.dialogues[dialogue]
+        run = await self._journal.index.run_of(dialogue)
+        if run is not None:
+            state = await self._state(run)
             if dialogue in state.dialogues:
                 return state, state.dialogues[dialogue]
         raise NotFoundError(f"there is no dialogue {dialogue}")
 
-    def dialogue(self, dialogue: UUID) -> DialogueView:
-        """One dialogue. Raises `NotFoundError`."""
-        return dialogue_view(self._dialogue(dialogue)[1])
+    async def dialogue(self, dialogue: UUID) -> DialogueView:
+        """One dialogue. Raises `NotFoundError` or `UnreadableError`."""
+        return dialogue_view((await self._dialogue(dialogue))[1])
 
     async def answer(
-        self, dialogue: UUID, prompt: UUID, answer: Literal["yes", "no"], helper: str
+        self,
+        dialogue: UUID,
+        prompt: UUID,
+        answer: Literal["yes", "no"],
+        helper: str,
+        author: ev.Author | None = None,
     ) -> ev.Answered:
         """Answer a prompt: the first answer wins.
 
         Raises `NotFoundError`, `LostRaceError` or `ConflictError`.
         """
-        state, found = self._dialogue(dialogue)
+        state, found = await self._dialogue(dialogue)
         try:
-            run = self._running(state.id)
+            run = self._running_of(state)
             side = run.sides[found.opened.robot]
             answered = await run.request(
-                lambda: run.dialogues.answer(found, prompt, answer, helper, side)
+                lambda: run.dialogues.answer(found, prompt, answer, helper, side, author)
             )
         except ConflictError:
             # Who was first is told also where that answer has ended the run.
@@ -349,28 +472,41 @@ class Runtime:
             raise
         return cast(ev.Answered, answered)
 
-    async def extend(self, dialogue: UUID, prompt: UUID, helper: str) -> ev.DeadlineExtended:
+    async def extend(
+        self, dialogue: UUID, prompt: UUID, helper: str, author: ev.Author | None = None
+    ) -> ev.DeadlineExtended:
         """Give the open question more time. Raises `NotFoundError` or `ConflictError`."""
-        state, found = self._dialogue(dialogue)
-        run = self._running(state.id)
-        extended = await run.request(lambda: run.dialogues.extend(found, prompt, helper))
+        state, found = await self._dialogue(dialogue)
+        run = self._running_of(state)
+        extended = await run.request(lambda: run.dialogues.extend(found, prompt, helper, author))
         return cast(ev.DeadlineExtended, extended)
 
-    async def claim(self, dialogue: UUID, helper: str, *, take_over: bool = False) -> DialogueView:
+    async def claim(
+        self,
+        dialogue: UUID,
+        helper: str,
+        *,
+        take_over: bool = False,
+        author: ev.Author | None = None,
+    ) -> DialogueView:
         """Show the others that a helper is on it.
 
         Raises `ConflictError` while another is, unless it is taken over from them.
         """
-        state, found = self._dialogue(dialogue)
-        run = self._running(state.id)
-        await run.request(lambda: run.claims.claim(found, helper, take_over=take_over))
+        state, found = await self._dialogue(dialogue)
+        run = self._running_of(state)
+        await run.request(
+            lambda: run.claims.claim(found, helper, take_over=take_over, author=author)
+        )
         return dialogue_view(found)
 
-    async def release(self, dialogue: UUID, helper: str) -> DialogueView:
+    async def release(
+        self, dialogue: UUID, helper: str, author: ev.Author | None = None
+    ) -> DialogueView:
         """Give up a claim. Raises `ConflictError` without one."""
-        state, found = self._dialogue(dialogue)
-        run = self._running(state.id)
-        await run.request(lambda: run.claims.release(found, helper))
+        state, found = await self._dialogue(dialogue)
+        run = self._running_of(state)
+        await run.request(lambda: run.claims.release(found, helper, author))
         return dialogue_view(found)
 
     # --- Robots -------------------------------------------------------------------------------

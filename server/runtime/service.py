@@ -1,34 +1,54 @@
 """The runtime as the API, the sockets and the command line see it."""
 
+from collections.abc import Mapping
 from typing import Literal, Protocol
 from uuid import UUID
 
-from server.journal.events import Answered, DeadlineExtended
+from server.journal.events import Answered, Author, DeadlineExtended
+from server.journal.run_index import RunPage
 from server.runtime.requests import RunRequest
-from server.runtime.views import DialogueView, RobotView, RunSummary, RunView, Snapshot
+from server.runtime.views import (
+    DialogueView,
+    RobotView,
+    RunStatus,
+    RunSummary,
+    RunView,
+    Snapshot,
+)
 from tasks.intervention import Intervention
 
 
 class RunService(Protocol):
-    """Runs, dialogues and robots. Every method raises the errors of `server.errors`."""
+    """Runs, dialogues and robots. Every method raises the errors of `server.errors`.
 
-    async def start_run(self, request: RunRequest) -> RunView:
+    `author` is who asks for it; None for what this process does by itself.
+    """
+
+    async def start_run(self, request: RunRequest, author: Author | None = None) -> RunView:
         """Begin a run. Raises `NotFoundError` (tree, scenario, robot), `InvalidError`."""
         ...
 
-    def runs(self) -> list[RunSummary]:
-        """All runs, newest first."""
+    async def runs(self, page: RunPage) -> list[RunSummary]:
+        """A page of runs, newest first."""
         ...
 
-    def run(self, run: UUID) -> RunView: ...
+    async def count_runs(self) -> Mapping[RunStatus, int]:
+        """How many runs there are of each status."""
+        ...
 
-    async def pause(self, run: UUID) -> RunView: ...
+    async def run(self, run: UUID) -> RunView:
+        """One run. Raises `NotFoundError` or `UnreadableError`."""
+        ...
 
-    async def resume(self, run: UUID) -> RunView: ...
+    async def pause(self, run: UUID, author: Author | None = None) -> RunView: ...
 
-    async def abort(self, run: UUID) -> RunView: ...
+    async def resume(self, run: UUID, author: Author | None = None) -> RunView: ...
 
-    async def intervene(self, run: UUID, intervention: Intervention) -> None:
+    async def abort(self, run: UUID, author: Author | None = None) -> RunView: ...
+
+    async def intervene(
+        self, run: UUID, intervention: Intervention, author: Author | None = None
+    ) -> None:
         """Have a person do something in a simulated world. Raises `ConflictError` if it cannot."""
         ...
 
@@ -36,25 +56,45 @@ class RunService(Protocol):
         """A camera's picture now, as JPEG."""
         ...
 
-    def dialogues(self, status: Literal["open", "closed"] | None) -> list[DialogueView]: ...
+    async def dialogues(
+        self, status: Literal["open", "closed"] | None, limit: int, offset: int
+    ) -> list[DialogueView]:
+        """A page of dialogues, oldest first."""
+        ...
 
-    def dialogue(self, dialogue: UUID) -> DialogueView: ...
+    async def dialogue(self, dialogue: UUID) -> DialogueView:
+        """One dialogue. Raises `NotFoundError` or `UnreadableError`."""
+        ...
 
     async def answer(
-        self, dialogue: UUID, prompt: UUID, answer: Literal["yes", "no"], helper: str
+        self,
+        dialogue: UUID,
+        prompt: UUID,
+        answer: Literal["yes", "no"],
+        helper: str,
+        author: Author | None = None,
     ) -> Answered:
         """Answer a prompt: the first answer wins. Raises `LostRaceError`, `ConflictError`."""
         ...
 
-    async def extend(self, dialogue: UUID, prompt: UUID, helper: str) -> DeadlineExtended:
+    async def extend(
+        self, dialogue: UUID, prompt: UUID, helper: str, author: Author | None = None
+    ) -> DeadlineExtended:
         """Move the open question's deadline by its original length. Raises `ConflictError`."""
         ...
 
     async def claim(
-        self, dialogue: UUID, helper: str, *, take_over: bool = False
+        self,
+        dialogue: UUID,
+        helper: str,
+        *,
+        take_over: bool = False,
+        author: Author | None = None,
     ) -> DialogueView: ...
 
-    async def release(self, dialogue: UUID, helper: str) -> DialogueView: ...
+    async def release(
+        self, dialogue: UUID, helper: str, author: Author | None = None
+    ) -> DialogueView: ...
 
     def robots(self) -> list[RobotView]: ...
 

@@ -22,6 +22,8 @@ class RunStatus(StrEnum):
     FINISHED = "finished"
     FAILED = "failed"
     ABORTED = "aborted"
+    UNREADABLE = "unreadable"
+    """What the journal has of it cannot be read, so that nobody can say more; `result` says why."""
 
     @property
     def ended(self) -> bool:
@@ -115,6 +117,7 @@ class RunSummary(View):
     status: RunStatus
     time: float
     started: datetime
+    ended: datetime | None = None
     robots: list[str]
     result: RunResult | None
     trouble: str | None = None

@@ -1,6 +1,6 @@
 """Simulated worlds of runs: starting their robots, and starting them again where they were."""
 
-from collections.abc import Awaitable, Callable, Mapping
+from collections.abc import Awaitable, Callable, Iterable, Mapping
 from functools import partial
 from typing import Protocol
 
@@ -31,17 +31,22 @@ Launch = Callable[[str, WorldSetup, Callable[[str], None]], Awaitable[RobotHandl
 
 
 class SimulatedWorlds:
-    """The worlds of the entry point group `mend.worlds`."""
+    """The worlds of the entry point group `mend.worlds`.
+
+    `reserve` is told the names of robots that are to be started.
+    """
 
     def __init__(
         self,
         adapters: Mapping[str, WorldAdapter],
         journal: Journal,
         launch: Launch,
+        reserve: Callable[[Iterable[str]], None],
     ) -> None:
         self._adapters = adapters
         self._journal = journal
         self._launch = launch
+        self._reserve = reserve
 
     def worlds(self) -> list[WorldView]:
         """Every world that a run may be in, and why one cannot run here."""
@@ -91,7 +96,11 @@ class SimulatedWorlds:
             )
 
     def open(self, state: RunState, run: Callable[[], Run]) -> "SimulatedHardware":
-        """The hardware of a run, which starts it; `run` is asked for only then."""
+        """The hardware of a run, which starts it; `run` is asked for only then.
+
+        From now on nobody else can come in under the names of its robots.
+        """
+        self._reserve(state.started.robots)
         return SimulatedHardware(self._launch, self._journal, self._setup(state), state, run)
 
     def _setup(self, state: RunState) -> WorldSetup:

@@ -5,7 +5,7 @@ from uuid import UUID
 from server.errors import ConflictError, NotFoundError
 from server.journal.events import Answered, DialogueClosed, Prompt, any_event
 from server.journal.journal import Journal, JournalClosedError
-from server.journal.subscriptions import SubscriptionOverflowError
+from server.journal.subscriptions import PrunedEventsError, SubscriptionOverflowError
 from server.runtime.service import RunService
 from server.runtime.views import PromptView
 from server.speech.conversation import EndReason
@@ -17,7 +17,7 @@ async def find_prompt(
     runs: RunService, journal: Journal, dialogue: UUID, prompt: UUID
 ) -> PromptView | Prompt:
     """A prompt of a dialogue, open or long over. Raises `NotFoundError`."""
-    view = runs.dialogue(dialogue)
+    view = await runs.dialogue(dialogue)
     if view.prompt is not None and view.prompt.prompt == prompt:
         return view.prompt
     after = 0
@@ -29,9 +29,9 @@ async def find_prompt(
     raise NotFoundError(f"there is no prompt {prompt} in the dialogue {dialogue}")
 
 
-def open_question(runs: RunService, dialogue: UUID, prompt: UUID) -> PromptView:
+async def open_question(runs: RunService, dialogue: UUID, prompt: UUID) -> PromptView:
     """The open question of a dialogue. Raises `NotFoundError`, `ConflictError` if it is another."""
-    view = runs.dialogue(dialogue)
+    view = await runs.dialogue(dialogue)
     if view.status == "closed" or view.awaiting != "answer" or view.prompt is None:
         raise ConflictError("this dialogue waits for no answer")
     if view.prompt.prompt != prompt:
@@ -47,7 +47,7 @@ async def wait_until_over(
         # Followed before it is looked at, so that nothing happens in between.
         with journal.subscribe(journal.head, capacity) as subscription:
             try:
-                open_question(runs, dialogue, prompt)
+                await open_question(runs, dialogue, prompt)
             except ConflictError:
                 return EndReason.CLOSED
             try:
@@ -56,7 +56,7 @@ async def wait_until_over(
                         reason = _end_in(record.text, dialogue, prompt)
                         if reason is not None:
                             return reason
-            except SubscriptionOverflowError:
+            except (SubscriptionOverflowError, PrunedEventsError):
                 continue
             except JournalClosedError:
                 pass

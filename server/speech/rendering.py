@@ -7,7 +7,7 @@ from collections.abc import Iterable
 
 from server.journal.events import Prompt, any_event
 from server.journal.journal import Journal, JournalClosedError
-from server.journal.subscriptions import SubscriptionOverflowError
+from server.journal.subscriptions import PrunedEventsError, SubscriptionOverflowError
 from server.speech.phrases import FIXED, help_text
 from server.speech.voice import Voice, VoiceError
 
@@ -81,7 +81,7 @@ async def render_prompts(texts: SpokenTexts, journal: Journal) -> None:
                 async for record in subscription:
                     if '"type":"prompt"' in record.text:
                         await _render_prompt(texts, record.text)
-            except SubscriptionOverflowError:
+            except (SubscriptionOverflowError, PrunedEventsError):
                 # Only a head start is lost: what is asked for is rendered then.
                 continue
             except JournalClosedError:

@@ -4,13 +4,13 @@ import asyncio
 import io
 import shutil
 import sys
-import tempfile
 import wave
 from asyncio.subprocess import DEVNULL, PIPE
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Literal, Protocol
 
 RENDER_TIMEOUT_S = 20.0
@@ -47,13 +47,14 @@ class CommandVoice:
     arguments: Callable[[str], Sequence[str]]
 
     async def render(self, text: str) -> bytes:
-        with tempfile.TemporaryDirectory(prefix="mend-voice-") as folder:
-            path = Path(folder) / "speech.wav"
-            await self._run(text, self.arguments(str(path)))
-            try:
+        try:
+            # Without descriptors not even a folder can be removed.
+            with TemporaryDirectory(prefix="mend-voice-", ignore_cleanup_errors=True) as folder:
+                path = Path(folder) / "speech.wav"
+                await self._run(text, self.arguments(str(path)))
                 return _checked(path.read_bytes())
-            except (OSError, EOFError, wave.Error) as error:
-                raise VoiceError(f"{self.engine} wrote no sound: {error}") from error
+        except (OSError, EOFError, wave.Error) as error:
+            raise VoiceError(f"{self.engine} wrote no sound: {error}") from error
 
     async def _run(self, text: str, arguments: Sequence[str]) -> None:
         try:

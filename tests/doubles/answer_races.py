@@ -72,7 +72,7 @@ async def _race_through_a_run(
                         for i in range(helpers)
                     )
                 )
-    if not service.runtime.run(run.id).status.ended:
+    if not (await service.runtime.run(run.id)).status.ended:
         await service.runtime.abort(run.id)
     await service.runtime.wait_for_end(run.id)
     kept = await service.journal.read(0, 1_000_000, run.id)

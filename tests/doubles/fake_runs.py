@@ -1,6 +1,7 @@
 """A runtime without robots: runs and dialogues in memory, their events in a real journal."""
 
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime, timedelta
 from typing import Any, Literal
 from uuid import UUID, uuid4
@@ -10,6 +11,7 @@ from server.documents import CheckedDocument, DocumentMistake, Uploaded, WrongDo
 from server.errors import ConflictError, InvalidError, LostRaceError, NotFoundError
 from server.journal import events as ev
 from server.journal.journal import Entry, Journal
+from server.journal.run_index import RunPage
 from server.runtime.requests import RunRequest
 from server.runtime.views import (
     DialogueView,
@@ -61,7 +63,7 @@ class FakeRuns:
         self._dialogues: dict[UUID, DialogueView] = {}
         self._answers: dict[UUID, str] = {}
 
-    async def start_run(self, request: RunRequest) -> RunView:
+    async def start_run(self, request: RunRequest, author: ev.Author | None = None) -> RunView:
         if request.tree not in TREES:
             raise NotFoundError(f"there is no tree '{request.tree}'")
         if request.world not in ("workcell", "tabletop"):
@@ -98,20 +100,32 @@ class FakeRuns:
                 speed=request.speed,
                 scenario=request.scenario,
                 options=request.model_dump(mode="json"),
+                author=author,
             )
         )
-        return self.run(run)
+        return self.run_now(run)
 
     async def commit(self, *events: ev.Event) -> Sequence[ev.Event]:
         return await self._journal.append(Entry(events=events))
 
-    def runs(self) -> list[RunSummary]:
+    async def runs(self, page: RunPage) -> list[RunSummary]:
         fields = set(RunSummary.model_fields)
-        return [
-            RunSummary(**run.model_dump(include=fields)) for run in reversed(self._runs.values())
+        listed = [
+            RunSummary(**run.model_dump(include=fields))
+            for run in reversed(self._runs.values())
+            if page.statuses is None or run.status in page.statuses
         ]
+        if page.before is not None:
+            listed = listed[[run.id for run in listed].index(page.before) + 1 :]
+        return listed[page.offset : page.offset + page.limit]
 
-    def run(self, run: UUID) -> RunView:
+    async def count_runs(self) -> Mapping[RunStatus, int]:
+        return Counter(run.status for run in self._runs.values())
+
+    async def run(self, run: UUID) -> RunView:
+        return self.run_now(run)
+
+    def run_now(self, run: UUID) -> RunView:
         if run not in self._runs:
             raise NotFoundError(f"there is no run {run}")
         mine = [each for each in self._dialogues.values() if each.run == run]
@@ -122,20 +136,24 @@ class FakeRuns:
             }
         )
 
-    async def pause(self, run: UUID) -> RunView:
+    async def pause(self, run: UUID, author: ev.Author | None = None) -> RunView:
         self._expect(run, RunStatus.RUNNING)
-        return await self._become(run, RunStatus.PAUSED, ev.RunPaused(**_stamp(run)))
+        return await self._become(run, RunStatus.PAUSED, ev.RunPaused(**_stamp(run), author=author))
 
-    async def resume(self, run: UUID) -> RunView:
+    async def resume(self, run: UUID, author: ev.Author | None = None) -> RunView:
         self._expect(run, RunStatus.PAUSED)
-        return await self._become(run, RunStatus.RUNNING, ev.RunResumed(**_stamp(run)))
+        return await self._become(
+            run, RunStatus.RUNNING, ev.RunResumed(**_stamp(run), author=author)
+        )
 
-    async def abort(self, run: UUID) -> RunView:
+    async def abort(self, run: UUID, author: ev.Author | None = None) -> RunView:
         self._expect(run, RunStatus.RUNNING, RunStatus.PAUSED)
-        return await self._become(run, RunStatus.ABORTED, ev.RunAborted(**_stamp(run)))
+        return await self._become(
+            run, RunStatus.ABORTED, ev.RunAborted(**_stamp(run), author=author)
+        )
 
     def _expect(self, run: UUID, *allowed: RunStatus) -> None:
-        status = self.run(run).status
+        status = self.run_now(run).status
         if status not in allowed:
             raise ConflictError(f"the run is {status}")
 
@@ -143,22 +161,33 @@ class FakeRuns:
         await self.commit(event)
         result = RunResult(reason="aborted") if status.ended else None
         self._runs[run] = self._runs[run].model_copy(update={"status": status, "result": result})
-        return self.run(run)
+        return self.run_now(run)
 
-    async def intervene(self, run: UUID, intervention: Intervention) -> None:
+    async def intervene(
+        self, run: UUID, intervention: Intervention, author: ev.Author | None = None
+    ) -> None:
         self._expect(run, RunStatus.RUNNING, RunStatus.PAUSED)
         await self.commit(
+            ev.InterventionAccepted(
+                **_stamp(run),
+                act=intervention.act,
+                object=intervention.object,
+                intervention=intervention,
+                by="api",
+                command=str(uuid4()),
+                author=author,
+            ),
             ev.InterventionDone(
                 **_stamp(run),
                 act=intervention.act,
                 object=intervention.object,
                 intervention=intervention,
                 by="api",
-            )
+            ),
         )
 
     async def picture(self, run: UUID, camera: str) -> bytes:
-        self.run(run)
+        self.run_now(run)
         if camera not in ("head", "forearm"):
             raise NotFoundError(f"there is no camera '{camera}'")
         return JPEG
@@ -221,18 +250,29 @@ class FakeRuns:
         )
         return view
 
-    def dialogues(self, status: Literal["open", "closed"] | None) -> list[DialogueView]:
-        return [each for each in self._dialogues.values() if status in (None, each.status)]
+    async def dialogues(
+        self, status: Literal["open", "closed"] | None, limit: int, offset: int
+    ) -> list[DialogueView]:
+        listed = [each for each in self._dialogues.values() if status in (None, each.status)]
+        return listed[offset : offset + limit]
 
-    def dialogue(self, dialogue: UUID) -> DialogueView:
+    async def dialogue(self, dialogue: UUID) -> DialogueView:
+        return self.dialogue_now(dialogue)
+
+    def dialogue_now(self, dialogue: UUID) -> DialogueView:
         if dialogue not in self._dialogues:
             raise NotFoundError(f"there is no dialogue {dialogue}")
         return self._dialogues[dialogue]
 
     async def answer(
-        self, dialogue: UUID, prompt: UUID, answer: Literal["yes", "no"], helper: str
+        self,
+        dialogue: UUID,
+        prompt: UUID,
+        answer: Literal["yes", "no"],
+        helper: str,
+        author: ev.Author | None = None,
     ) -> ev.Answered:
-        view = self.dialogue(dialogue)
+        view = self.dialogue_now(dialogue)
         if view.prompt is None or view.prompt.prompt != prompt:
             raise NotFoundError(f"there is no prompt {prompt}")
         if prompt in self._answers:
@@ -241,15 +281,22 @@ class FakeRuns:
         self._change(dialogue, status="closed", reason="resolved", answered_by=helper)
         answered, _ = await self.commit(
             ev.Answered(
-                **_of_dialogue(view), prompt=prompt, version=1, answer=answer, helper=helper
+                **_of_dialogue(view),
+                prompt=prompt,
+                version=1,
+                answer=answer,
+                helper=helper,
+                author=author,
             ),
             ev.DialogueClosed(**_of_dialogue(view), reason=CloseReason.RESOLVED),
         )
         assert isinstance(answered, ev.Answered)
         return answered
 
-    async def extend(self, dialogue: UUID, prompt: UUID, helper: str) -> ev.DeadlineExtended:
-        view = self.dialogue(dialogue)
+    async def extend(
+        self, dialogue: UUID, prompt: UUID, helper: str, author: ev.Author | None = None
+    ) -> ev.DeadlineExtended:
+        view = self.dialogue_now(dialogue)
         if view.prompt is None or view.prompt.prompt != prompt:
             raise NotFoundError(f"there is no prompt {prompt}")
         if view.status == "closed" or view.prompt.extensions_left == 0:
@@ -265,26 +312,38 @@ class FakeRuns:
                 deadline=deadline,
                 extensions_left=left,
                 helper=helper,
+                author=author,
             )
         )
         assert isinstance(extended, ev.DeadlineExtended)
         return extended
 
-    async def claim(self, dialogue: UUID, helper: str, *, take_over: bool = False) -> DialogueView:
-        view = self.dialogue(dialogue)
+    async def claim(
+        self,
+        dialogue: UUID,
+        helper: str,
+        *,
+        take_over: bool = False,
+        author: ev.Author | None = None,
+    ) -> DialogueView:
+        view = self.dialogue_now(dialogue)
         if view.status == "closed":
             raise ConflictError("the dialogue is closed")
         if view.claimed_by not in (None, helper) and not take_over:
             raise ConflictError(f"{view.claimed_by} is on it")
         until = datetime.now(UTC) + timedelta(seconds=30)
-        await self.commit(ev.Claimed(**_of_dialogue(view), helper=helper, lease_until=until))
+        await self.commit(
+            ev.Claimed(**_of_dialogue(view), helper=helper, lease_until=until, author=author)
+        )
         return self._change(dialogue, claimed_by=helper, claimed_until=until)
 
-    async def release(self, dialogue: UUID, helper: str) -> DialogueView:
-        view = self.dialogue(dialogue)
+    async def release(
+        self, dialogue: UUID, helper: str, author: ev.Author | None = None
+    ) -> DialogueView:
+        view = self.dialogue_now(dialogue)
         if view.claimed_by != helper:
             raise ConflictError(f"{helper} has no claim on it")
-        await self.commit(ev.Released(**_of_dialogue(view), helper=helper))
+        await self.commit(ev.Released(**_of_dialogue(view), helper=helper, author=author))
         return self._change(dialogue, claimed_by=None, claimed_until=None)
 
     def _change(self, dialogue: UUID, **fields: Any) -> DialogueView:
@@ -308,8 +367,8 @@ class FakeRuns:
     async def snapshot(self, seq: int | None) -> Snapshot:
         return Snapshot(
             seq=self._journal.head if seq is None else seq,
-            runs=[self.run(run) for run, view in self._runs.items() if not view.status.ended],
-            dialogues=self.dialogues("open"),
+            runs=[self.run_now(run) for run, view in self._runs.items() if not view.status.ended],
+            dialogues=[each for each in self._dialogues.values() if each.status == "open"],
         )
 
 

@@ -2,12 +2,14 @@
 
 import asyncio
 import socket
+import time
 from collections.abc import AsyncIterator, Iterator
 from contextlib import asynccontextmanager, contextmanager
 
 import uvicorn
 from fastapi import FastAPI
 
+from server.api.access import Access
 from server.robots.endpoint import ROBOT_PATH, add_robot_route
 from server.robots.registry import RobotRegistry
 from server.websocket_protocol import WebSocketProtocol
@@ -28,10 +30,12 @@ async def served(
     port: int = 0,
     *,
     allowed_origins: tuple[str, ...] = (),
+    access: Access | None = None,
 ) -> AsyncIterator[str]:
     """Serve robots; gives the URL that they connect to."""
     app = FastAPI()
-    add_robot_route(app, registry, token, allowed_origins=allowed_origins)
+    access = access or Access(token, wall_time_s=time.time)
+    add_robot_route(app, registry, access, allowed_origins=allowed_origins)
     listener = socket.create_server(("127.0.0.1", port))
     config = uvicorn.Config(app, log_level="warning", ws=WebSocketProtocol, lifespan="off")
     server = _Server(config)

@@ -95,7 +95,7 @@ class PlayedDialogues(FakeRuns):
     async def answer(
         self, dialogue: UUID, prompt: UUID, answer: Literal["yes", "no"], helper: str
     ) -> ev.Answered:
-        self.dialogue(dialogue)
+        self.dialogue_now(dialogue)
         played = self._played[dialogue]
         if prompt in self._won:
             raise LostRaceError(prompt, self._won[prompt])
@@ -111,7 +111,7 @@ class PlayedDialogues(FakeRuns):
     async def see(self, dialogue: UUID, *, fulfilled: bool = True) -> None:
         """The robot sees the promised help, or has waited for it in vain."""
         played = self._played[dialogue]
-        awaited = self.dialogue(dialogue).help
+        awaited = self.dialogue_now(dialogue).help
         assert awaited is not None, "no help is awaited"
         of = _of(dialogue, played.raised)
         if fulfilled:

@@ -45,7 +45,7 @@ class RecordedRuns:
     started: Callable[[], None] = lambda: None
     requests: list[RunRequest] = field(default_factory=list)
 
-    async def start_run(self, request: RunRequest) -> Any:
+    async def start_run(self, request: RunRequest, author: ev.Author) -> Any:  # noqa: ARG002
         if request.tree == "nowhere":
             raise NotFoundError("there is no tree 'nowhere'")
         self.requests.append(request)
@@ -73,7 +73,7 @@ class RecordedRuns:
             await self._ended.wait()
         return SimpleNamespace(status=self._status)
 
-    async def abort(self, run: UUID) -> None:
+    async def abort(self, run: UUID, author: ev.Author) -> None:  # noqa: ARG002
         last = self.events[-1]
         aborted = ev.RunAborted(time=last.time, wall_time=last.wall_time, run=run)
         await self._play([aborted])

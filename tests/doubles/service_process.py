@@ -2,6 +2,7 @@
 
 import asyncio
 import os
+import resource
 import signal
 import socket
 import sys
@@ -22,14 +23,20 @@ START_S = 60.0
 class ServiceProcess:
     """`mend serve` on a port and a journal that stay the same over its lives."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, *, descriptors: int | None = None, **environment: str) -> None:
         self._folder = folder
+        self._descriptors = descriptors
+        self._environment = environment
         self._port = _free_port()
         self._process: asyncio.subprocess.Process | None = None
 
     @property
     def url(self) -> str:
         return f"http://127.0.0.1:{self._port}"
+
+    @property
+    def port(self) -> int:
+        return self._port
 
     @property
     def journal(self) -> Path:
@@ -47,14 +54,21 @@ class ServiceProcess:
             "MEND_DATA_DIR": str(self._folder),
             "MEND_PORT": str(self._port),
             "MEND_LOG_LEVEL": "warning",
+            **self._environment,
         }
         with (self._folder / "stderr").open("a") as complaints:
             self._process = await asyncio.create_subprocess_exec(
                 str(Path(sys.executable).with_name("mend")), "serve",
                 env=environment, stdout=asyncio.subprocess.DEVNULL, stderr=complaints,
+                preexec_fn=self._bound,
             )  # fmt: skip
         async with MendClient(self.url) as client:
             await client.wait_until_ready(START_S)
+
+    def _bound(self) -> None:
+        """In the new process: it may have only so many descriptors."""
+        if self._descriptors is not None:
+            resource.setrlimit(resource.RLIMIT_NOFILE, (self._descriptors, self._descriptors))
 
     async def kill(self) -> None:
         """`kill -9`; returns when it is gone, and its robots with it."""
@@ -65,11 +79,13 @@ class ServiceProcess:
         orphans = await asyncio.to_thread(psutil.wait_procs, robots, timeout=10.0)
         assert orphans[1] == [], "a simulated robot outlived its service"
 
-    async def stop(self) -> None:
-        """Let it end by itself, if it still runs."""
-        if self._process is not None and self._process.returncode is None:
+    async def stop(self) -> int | None:
+        """Let it end by itself, if it still runs; its exit code."""
+        if self._process is None:
+            return None
+        if self._process.returncode is None:
             self._process.terminate()
-            await self._process.wait()
+        return await self._process.wait()
 
     def robots(self) -> list[psutil.Process]:
         """The processes of its simulated robots."""
@@ -109,9 +125,11 @@ class ServiceProcess:
 
 
 @asynccontextmanager
-async def service_process(folder: Path) -> AsyncIterator[ServiceProcess]:
-    """A service that runs, until the end of the block."""
-    service = ServiceProcess(folder)
+async def service_process(
+    folder: Path, *, descriptors: int | None = None, **environment: str
+) -> AsyncIterator[ServiceProcess]:
+    """A service that runs, until the end of the block; `environment` has more variables for it."""
+    service = ServiceProcess(folder, descriptors=descriptors, **environment)
     await service.start()
     try:
         yield service

@@ -1,25 +1,37 @@
 """The whole service around a fake runtime, in this process or behind real sockets."""
 
+import asyncio
 import contextlib
+import shutil
+import tempfile
+import time
+import weakref
 from collections.abc import AsyncIterator, Callable, Sequence
 from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
 from typing import Any
 
 import httpx
-import uvicorn
 from fake_runs import TREES, FakeRuns, FakeTreeChecker, FakeWorlds
 from fastapi import FastAPI
 
-from server.app import create_app, serve_config
+from server.access.deed_log import DeedLog
+from server.api.access import Access
+from server.app import build_access, create_app
 from server.documents import DocumentKind
 from server.fixed_documents import GivenFiles, NamedTexts, fixed_documents
 from server.journal.sqlite import SqliteJournal
 from server.journaled_documents import JournaledDocuments
 from server.library import build_library
+from server.limits import LimitName
+from server.listening import listen
 from server.models import RobotModels
 from server.poses.feed import PoseFeed
 from server.poses.record import PoseRecords
+from server.refusals import Refusals
 from server.scene_checks import WorldChecks
+from server.serving import Server, serve_config
 from server.settings import Settings
 from server.speech.abilities import NO_SPEECH, SpeechAbilities
 
@@ -35,7 +47,28 @@ class ServiceUnderTest:
     journal: SqliteJournal
     settings: Settings
     poses: PoseFeed
+    access: Access
+    deeds: DeedLog
     url: str = "http://localhost"
+    served_by: Server | None = None
+
+    @property
+    def server(self) -> Server:
+        assert self.served_by is not None, "it is behind a socket"
+        return self.served_by
+
+    @property
+    def refusals(self) -> Refusals:
+        refusals: Refusals = self.app.state.parts.refusals
+        return refusals
+
+    async def refused(self, limit: LimitName) -> None:
+        """Wait until something was refused for this limit."""
+        await _until(lambda: self.refusals.counts[limit] > 0)
+
+    async def left_alone(self) -> None:
+        """Wait until no connection is left."""
+        await _until(lambda: len(self.server.visitors) == 0)
 
     @property
     def ws(self) -> str:
@@ -47,18 +80,29 @@ class ServiceUnderTest:
         return httpx.AsyncClient(transport=transport, base_url=self.url, **arguments)
 
 
+async def _until(true: Callable[[], bool]) -> None:
+    async with asyncio.timeout(60):
+        while not true():  # noqa: ASYNC110 - the service has no events for its tests
+            await asyncio.sleep(0.01)
+
+
 def build(
     speech: SpeechAbilities = NO_SPEECH,
     *,
     runs_in: Callable[[SqliteJournal], FakeRuns] = FakeRuns,
     records: PoseRecords | None = None,
     models: Sequence[Any] = (),
+    wall_time_s: Callable[[], float] = time.time,
     **settings: Any,
 ) -> ServiceUnderTest:
     """A service on an empty journal in memory; `models` are adapters that provide some."""
     journal = SqliteJournal(":memory:")
     runs = runs_in(journal)
-    chosen = Settings(port=0, **settings)
+    folder = Path(tempfile.mkdtemp())
+    chosen = Settings(port=0, **{"data_dir": folder, **settings})
+    deeds = DeedLog(journal, lambda: datetime.now(UTC))
+    refusals = Refusals()
+    access = build_access(chosen, deeds, refusals=refusals, wall_time_s=wall_time_s)
     library = build_library(journal, fixed_documents(GivenFiles(), None), WorldChecks({}))
     trees = JournaledDocuments(DocumentKind.TREE, journal, NamedTexts(TREES), FakeTreeChecker())
     poses = PoseFeed(lambda *_: None, lambda _: None, records)
@@ -72,9 +116,14 @@ def build(
         worlds=FakeWorlds(),
         models=RobotModels(models),
         poses=poses,
+        access=access,
+        deeds=deeds,
         speech_abilities=speech,
+        refusals=refusals,
     )
-    return ServiceUnderTest(app, runs, journal, chosen, poses)
+    service = ServiceUnderTest(app, runs, journal, chosen, poses, access, deeds)
+    weakref.finalize(service, shutil.rmtree, folder)
+    return service
 
 
 @contextlib.asynccontextmanager
@@ -83,9 +132,11 @@ async def serving(
 ) -> AsyncIterator[ServiceUnderTest]:
     """A service behind a real socket on a free port."""
     service = build(speech, **arguments)
-    server = uvicorn.Server(serve_config(service.app, service.settings))
+    config = serve_config(service.app, service.settings)
+    server = Server(config, service.settings, service.refusals)
+    service.served_by = server
     server.config.log_level = None
-    socket = server.config.bind_socket()
+    socket = listen(service.settings)
     service.url = f"http://127.0.0.1:{socket.getsockname()[1]}"
     server.config.load()
     server.lifespan = server.config.lifespan_class(server.config)

@@ -18,6 +18,7 @@ class Inbox:
     """What a local SMTP server took in, and whom it refuses."""
 
     refuses: tuple[str, ...] = ()
+    refusal: str = "550 no such mailbox"
     mails: list[EmailMessage] = field(default_factory=list)
     recipients: list[str] = field(default_factory=list)
 
@@ -30,7 +31,7 @@ class Inbox:
         rcpt_options: list[str],  # noqa: ARG002
     ) -> str:
         if address in self.refuses:
-            return "550 no such mailbox"
+            return self.refusal
         envelope.rcpt_tos.append(address)
         return "250 OK"
 

@@ -18,7 +18,7 @@ async def test_question_survives_a_lost_connection(stage: Stage) -> None:
     await expect(page.get_by_text("No connection to the service.")).to_be_hidden(timeout=60_000)
     await page.locator(".answer.yes").click()
     await expect(page.get_by_text("There is nothing to press")).to_be_visible()
-    assert stage.runs.dialogue(dialogue).answered_by == "anna"
+    assert stage.runs.dialogue_now(dialogue).answered_by == "anna"
 
 
 async def test_what_happened_meanwhile_is_there_afterwards(stage: Stage) -> None:
@@ -27,7 +27,7 @@ async def test_what_happened_meanwhile_is_there_afterwards(stage: Stage) -> None
     await expect(page.locator(".answer.yes")).to_be_enabled()
     await page.context.set_offline(True)
     await expect(page.get_by_text("No connection to the service.")).to_be_visible()
-    prompt = stage.runs.dialogue(dialogue).prompt
+    prompt = stage.runs.dialogue_now(dialogue).prompt
     assert prompt is not None
     await stage.runs.answer(dialogue, prompt.prompt, "no", "bob")
     await page.context.set_offline(False)

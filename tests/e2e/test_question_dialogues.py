@@ -82,7 +82,7 @@ async def make(stage: Stage, page: Page, dialogue: UUID, call: str, answer: Answ
     if call in ("seen:moved", "not_seen"):
         await stage.runs.see(dialogue, fulfilled=call == "seen:moved")
         return
-    prompt = stage.runs.dialogue(dialogue).prompt
+    prompt = stage.runs.dialogue_now(dialogue).prompt
     assert prompt is not None
     final = next(each.final for each in prompt.answers if each.value == call)
     await page.clock.fast_forward(ARMED_AFTER_MS)

@@ -38,7 +38,7 @@ async def test_answer_to_a_question_that_nobody_can_have_read_is_not_taken_and_t
         await expect(page.get_by_role("heading", name=question)).to_be_visible()
         await give(page, "yes")
         await expect(too_early).to_be_visible()
-        assert stage.runs.dialogue(dialogue).awaiting == "answer"
+        assert stage.runs.dialogue_now(dialogue).awaiting == "answer"
         # Its time begins once it is drawn, and so with the frame after that.
         await page.clock.run_for(1_000)
         await expect(page.locator(f".answer.{answer}")).to_be_enabled()
@@ -57,7 +57,7 @@ async def test_final_answer_can_be_undone(stage: Stage) -> None:
     await page.get_by_role("button", name="Undo").click()
     await page.clock.fast_forward(10_000)
     await expect(page.get_by_role("button", name="Undo")).to_be_hidden()
-    assert stage.runs.dialogue(dialogue).awaiting == "answer"
+    assert stage.runs.dialogue_now(dialogue).awaiting == "answer"
     await page.keyboard.press("n")
     await expect(page.get_by_role("button", name="Undo")).to_be_visible()
     await page.keyboard.press("Escape")
@@ -65,7 +65,7 @@ async def test_final_answer_can_be_undone(stage: Stage) -> None:
     await page.locator(".answer.no").click()
     await page.clock.fast_forward(3_100)
     await expect(page.get_by_text("I try again (attempt 2 of 3)").first).to_be_visible()
-    assert stage.runs.dialogue(dialogue).answered_by == "anna"
+    assert stage.runs.dialogue_now(dialogue).answered_by == "anna"
 
 
 async def test_held_answer_is_sent_when_the_page_is_left(stage: Stage) -> None:
@@ -86,7 +86,7 @@ async def test_held_answer_is_dropped_when_somebody_else_answers(stage: Stage) -
     await page.clock.install()
     await page.locator(".answer.no").click()
     await expect(page.get_by_role("button", name="Undo")).to_be_visible()
-    prompt = stage.runs.dialogue(dialogue).prompt
+    prompt = stage.runs.dialogue_now(dialogue).prompt
     assert prompt is not None
     await stage.runs.answer(dialogue, prompt.prompt, "yes", "bob")
     await expect(page.get_by_text("Your NO was not sent: bob answered first.")).to_be_visible()
@@ -161,7 +161,7 @@ async def test_keys_can_be_changed_and_switched_off(stage: Stage) -> None:
     await page.keyboard.press("j")
     await page.keyboard.press("n")
     await page.locator(".answer.no").focus()
-    assert stage.runs.dialogue(dialogue).awaiting == "answer"
+    assert stage.runs.dialogue_now(dialogue).awaiting == "answer"
 
 
 async def test_seconds_before_the_fault_can_be_scrubbed_by_key(stage: Stage) -> None:

@@ -36,7 +36,7 @@ async def test_tree_shows_states_and_levels_as_the_service_says(
     page = await open_page(f"/runs/{run.id}")
     green_leg = page.get_by_role("treeitem", name="green leg")
     await expect(green_leg).to_have_attribute("data-state", "in_dialogue", timeout=WAIT_MS)
-    view = service.runtime.run(run.id)
+    view = await service.runtime.run(run.id)
     await wait_for_tree(page, told(view.nodes, {each.node for each in view.dialogues}))
     owner = view.robots[0]
     await expect(green_leg).to_have_accessible_name(re.compile(f"held by {owner}"))
@@ -68,12 +68,12 @@ async def test_run_is_paused_and_resumed(service: Service, open_page: OpenPage) 
     page = await open_page(f"/runs/{run.id}")
     await page.get_by_role("button", name="Pause", exact=True).click()
     await expect(status(page)).to_have_text("paused")
-    assert service.runtime.run(run.id).status is RunStatus.PAUSED
-    view = service.runtime.run(run.id)
+    assert (await service.runtime.run(run.id)).status is RunStatus.PAUSED
+    view = await service.runtime.run(run.id)
     await wait_for_tree(page, told(view.nodes, {each.node for each in view.dialogues}))
     await page.get_by_role("button", name="Resume").click()
     await expect(status(page)).to_have_text("running")
-    assert service.runtime.run(run.id).status is RunStatus.RUNNING
+    assert (await service.runtime.run(run.id)).status is RunStatus.RUNNING
 
 
 async def test_abort_is_asked_once_before_it_is_done(service: Service, open_page: OpenPage) -> None:
@@ -82,12 +82,12 @@ async def test_abort_is_asked_once_before_it_is_done(service: Service, open_page
     await page.get_by_role("button", name="Abort …").click()
     await page.get_by_role("button", name="Let it go on").click()
     await expect(page.get_by_role("dialog")).to_be_hidden()
-    assert service.runtime.run(run.id).status is RunStatus.RUNNING
+    assert (await service.runtime.run(run.id)).status is RunStatus.RUNNING
     await page.get_by_role("button", name="Abort …").click()
     await page.get_by_role("button", name="Abort the run").click()
     await expect(status(page)).to_have_text("aborted")
     await expect(page.get_by_role("button", name="Pause", exact=True)).to_have_count(0)
-    assert service.runtime.run(run.id).status is RunStatus.ABORTED
+    assert (await service.runtime.run(run.id)).status is RunStatus.ABORTED
 
 
 async def test_nothing_is_lost_when_the_page_comes_in_the_middle(

@@ -7,6 +7,7 @@ from console_in_browser import TOKEN, OpenPage
 from playwright.async_api import Page, expect
 
 from server.composition import Service
+from server.journal.run_index import RunPage
 from server.runtime.requests import RunRequest
 
 # One event loop for all tests of the console, and so one browser.
@@ -30,11 +31,11 @@ async def test_run_is_started_with_what_was_chosen(service: Service, open_page: 
     await page.get_by_role("spinbutton", name="Attempts").fill("2")
     await page.get_by_role("button", name="Start the run").click()
     await page.wait_for_url("**/runs/*-*")
-    (run,) = service.runtime.runs()
+    (run,) = await service.runtime.runs(RunPage())
     assert page.url.endswith(f"/runs/{run.id}")
     assert (run.tree, run.world, run.scenario) == ("eket", "tabletop", "eket_paper")
     assert (run.seed, run.speed) == (7, "max")
-    options = service.runtime.run(run.id).options
+    options = (await service.runtime.run(run.id)).options
     assert (options["answers"], options["max_attempts"]) == (None, 2)
 
 

@@ -70,8 +70,8 @@ async def spoken(tmp_path: Path) -> AsyncIterator[Spoken]:
 async def test_yes_is_heard_and_answers(spoken: Spoken) -> None:
     runs, dialogue, page = await spoken("yes i will")
     await expect(page.get_by_text("The robot watches for")).to_be_visible(timeout=60_000)
-    assert runs.dialogue(dialogue).answered_by == "anna"
-    assert runs.dialogue(dialogue).help is not None
+    assert runs.dialogue_now(dialogue).answered_by == "anna"
+    assert runs.dialogue_now(dialogue).help is not None
 
 
 async def test_no_answers_every_question_until_the_dialogue_closes(spoken: Spoken) -> None:
@@ -79,7 +79,7 @@ async def test_no_answers_every_question_until_the_dialogue_closes(spoken: Spoke
     # The second no is final: it is held back like that of a button, and then sent.
     await expect(page.get_by_role("button", name="Undo")).to_be_visible(timeout=60_000)
     await expect(page.get_by_text("No robot asks anything")).to_be_visible(timeout=60_000)
-    assert runs.dialogue(dialogue).reason == "resolved"
+    assert runs.dialogue_now(dialogue).reason == "resolved"
 
 
 async def test_what_is_not_understood_ends_at_the_buttons(spoken: Spoken) -> None:
@@ -89,7 +89,7 @@ async def test_what_is_not_understood_ends_at_the_buttons(spoken: Spoken) -> Non
     await expect(page.get_by_text("Not understood. Please use the buttons.")).to_be_visible(
         timeout=60_000
     )
-    assert runs.dialogue(dialogue).awaiting == "answer"
+    assert runs.dialogue_now(dialogue).awaiting == "answer"
     await page.locator(".answer.yes").click()
     await expect(page.get_by_text("The robot watches for")).to_be_visible()
 

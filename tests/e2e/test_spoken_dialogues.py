@@ -121,12 +121,12 @@ async def test_a_question_is_said_again_on_request(
         dialogue = await stage.runs.open(stage.run, "dropped")
         await console.speak("repeat")
         said = await console.message("say")
-        prompt = stage.runs.dialogue(dialogue).prompt
+        prompt = stage.runs.dialogue_now(dialogue).prompt
         assert prompt is not None
         assert (said["what"], said["text"]) == ("question", prompt.text)
         await console.message("listening")
         await expect(console.page.get_by_text("Speak now: yes or no")).to_be_visible()
-        assert stage.runs.dialogue(dialogue).awaiting == "answer"
+        assert stage.runs.dialogue_now(dialogue).awaiting == "answer"
 
 
 async def test_help_says_what_each_answer_will_do(
@@ -138,12 +138,12 @@ async def test_help_says_what_each_answer_will_do(
         async with console.page.expect_request("**/speech/help"):
             await console.speak("help")
         said = await console.message("say")
-        prompt = stage.runs.dialogue(dialogue).prompt
+        prompt = stage.runs.dialogue_now(dialogue).prompt
         assert prompt is not None
         assert said["what"] == "help"
         assert all(each.effect in said["text"] for each in prompt.answers)
         await console.message("listening")
-        assert stage.runs.dialogue(dialogue).awaiting == "answer"
+        assert stage.runs.dialogue_now(dialogue).awaiting == "answer"
 
 
 async def test_stop_pauses_the_run_and_answers_nothing(
@@ -154,8 +154,8 @@ async def test_stop_pauses_the_run_and_answers_nothing(
         dialogue = await stage.runs.open(stage.run, "dropped")
         await console.speak("stop")
         await expect(console.page.get_by_text("the run is paused").first).to_be_visible()
-        assert stage.runs.run(stage.run).status is RunStatus.PAUSED
-        assert stage.runs.dialogue(dialogue).awaiting == "answer"
+        assert stage.runs.run_now(stage.run).status is RunStatus.PAUSED
+        assert stage.runs.dialogue_now(dialogue).awaiting == "answer"
 
 
 OpenConsole = Callable[[Persons, str], Awaitable[SpokenConsole]]

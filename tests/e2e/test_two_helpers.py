@@ -39,7 +39,7 @@ async def test_claim_never_keeps_anybody_from_answering(stage: Stage) -> None:
     await expect(bob.get_by_text("anna is answering.")).to_be_visible()
     await bob.locator(".answer.yes").click()
     await expect(anna.get_by_text("bob answered YES.")).to_be_visible()
-    assert stage.runs.dialogue(dialogue).answered_by == "bob"
+    assert stage.runs.dialogue_now(dialogue).answered_by == "bob"
 
 
 async def test_of_two_helpers_who_race_one_wins_and_the_other_is_told(stage: Stage) -> None:
@@ -55,7 +55,7 @@ async def test_of_two_helpers_who_race_one_wins_and_the_other_is_told(stage: Sta
         winner = {"anna": bob, "bob": anna}
         for page in (anna, bob):
             await expect(page.get_by_text("The robot watches for the yellow bar")).to_be_visible()
-        by = stage.runs.dialogue(dialogue).answered_by
+        by = stage.runs.dialogue_now(dialogue).answered_by
         assert by is not None
         told = winner[by].get_by_role("status", name="What became of questions")
         await expect(told).to_contain_text(f"{by} ")

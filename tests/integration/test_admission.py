@@ -12,6 +12,8 @@ from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import InvalidStatus
 
 RIGHT = {"Authorization": f"Bearer {TOKEN}"}
+STRANGER = {"required": True, "signed_in": False, "name": None, "role": None}
+HOLDER = {"required": True, "signed_in": True, "name": None, "role": "admin"}
 WRONG = {"Authorization": "Bearer not-the-token-at-all"}
 
 
@@ -70,10 +72,10 @@ async def test_closed_doors_need_the_token(
 
 async def test_bearer_and_cookie_open_the_doors(client: httpx.AsyncClient) -> None:
     assert (await client.get("/api/runs", headers=RIGHT)).status_code == 200
-    assert (await client.get("/api/session")).json() == {"required": True, "signed_in": False}
+    assert (await client.get("/api/session")).json() == STRANGER
     await sign_in(client)
     assert (await client.get("/api/runs")).status_code == 200
-    assert (await client.get("/api/session")).json() == {"required": True, "signed_in": True}
+    assert (await client.get("/api/session")).json() == HOLDER
     assert (await client.delete("/api/session")).status_code == 204
     assert (await client.get("/api/runs")).status_code == 401
 
@@ -190,4 +192,4 @@ async def test_allowed_host_is_served() -> None:
     ):
         response = await client.get("/healthz", headers={"Host": "mend.example:8080"})
         assert response.status_code == 200
-        assert (await client.get("/api/session")).json() == {"required": False, "signed_in": True}
+        assert (await client.get("/api/session")).json() == {**HOLDER, "required": False}

@@ -11,7 +11,6 @@ from recorded_service import recorded_events
 from sample_events import detected, paused
 from service_under_test import TOKEN, ServiceUnderTest, build, serving
 
-from server.app import serve_config
 from server.client import IDLE_S, MendClient
 from server.client_errors import (
     CommandRefusedError,
@@ -23,6 +22,7 @@ from server.journal.events import Answered, Event, RunAborted, RunStarted
 from server.journal.journal import Entry
 from server.runtime.requests import RunRequest
 from server.runtime.views import RunStatus, Snapshot
+from server.serving import serve_config
 from server.settings import Settings
 from tasks.intervention import Act, Intervention
 

@@ -122,5 +122,5 @@ async def test_a_wrong_token_ends_it_with_a_sentence(journal: SqliteJournal) -> 
     async with served(registry, "another") as url, example_robot(url) as process:
         _, complaint = await process.communicate()
     assert process.returncode == 1
-    assert b"has to present the service's token" in complaint
+    assert b"has to present its credential" in complaint
     assert b"Traceback" not in complaint

@@ -2,6 +2,7 @@ import asyncio
 import contextlib
 import json
 from collections.abc import AsyncIterator
+from datetime import UTC, datetime, timedelta
 from typing import Any
 from uuid import UUID, uuid4
 
@@ -13,6 +14,7 @@ from service_under_test import ServiceUnderTest, serving
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed
 
+from server.journal.pruning import Keep
 from server.runtime.requests import RunRequest
 
 REQUEST = RunRequest(tree="eket", world="tabletop", speed="max")
@@ -86,6 +88,26 @@ async def test_after_that_lies_ahead_gets_the_head_and_an_error(service: Service
         error = await receive(socket)
         assert error["type"] == "error"
         assert "99" in error["detail"]
+
+
+async def test_after_from_before_what_was_pruned_gets_the_state_of_now_and_says_so(
+    service: ServiceUnderTest,
+) -> None:
+    ended = await service.runs.start_run(REQUEST)
+    await service.runs.abort(ended.id)
+    going_on = await service.runs.start_run(REQUEST)
+    await service.runs.commit(paused(run=going_on.id))
+    await service.journal.prune(Keep(ended_within=timedelta(0)), datetime.now(UTC) + timedelta(1))
+    async with helper(service, "helper=anna&after=1") as socket:
+        snapshot = await receive(socket)
+        assert (snapshot["seq"], len(snapshot["runs"])) == (4, 1)
+        error = await receive(socket)
+        assert (error["type"], error["status"]) == ("error", 410)
+        assert "not every event after 1 is there any more: some up to 2 were" in error["detail"]
+        await service.runs.commit(paused(run=going_on.id))
+        assert (await receive(socket))["seq"] == 5
+    async with helper(service, "helper=anna&after=2") as socket:
+        assert [(await receive(socket))["seq"] for _ in range(4)] == [2, 3, 4, 5]
 
 
 async def test_answer_is_confirmed_and_the_second_one_is_told_who_was_first(
@@ -284,4 +306,6 @@ def big(run: UUID) -> Any:
     """An event that fills the buffers of a socket soon."""
     from server.journal.events import RunFailed
 
-    return RunFailed(**paused(run=run).model_dump(exclude={"type", "seq"}), reason="x" * 20_000)
+    return RunFailed(
+        **paused(run=run).model_dump(exclude={"type", "seq", "author"}), reason="x" * 20_000
+    )

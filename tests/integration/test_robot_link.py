@@ -58,7 +58,7 @@ async def test_a_behavior_is_started_and_reported_over_a_websocket(journal: Sqli
 async def test_a_wrong_token_ends_the_robot_with_a_sentence(journal: SqliteJournal) -> None:
     registry = RobotRegistry(journal, time.monotonic)
     async with served(registry, "secret") as url:
-        with pytest.raises(LinkRefusedError, match="has to present the service's token"):
+        with pytest.raises(LinkRefusedError, match="has to present its credential"):
             await run_agent(
                 CountingAgent(),
                 partial(websocket_channel, url, "wrong"),

@@ -15,8 +15,10 @@ from loopback import served
 from recording_sink import RecordingSink
 
 from robots.link.messages import Interrupt, Shutdown, Start
+from server.api.access import Access
 from server.errors import InvalidError
 from server.journal.sqlite import SqliteJournal
+from server.robots.passes import OwnRobots
 from server.robots.process import RobotProcess, launch
 from server.robots.registry import RobotRegistry
 from sim.world import WorldSetup
@@ -56,9 +58,11 @@ async def test_a_killed_process_is_reported_once_and_can_be_started_again(
     ended: asyncio.Queue[str] = asyncio.Queue()
     sink = RecordingSink(journal)
     registry.assign("counter", sink)
-    async with served(registry, "secret") as url:
+    own = OwnRobots()
+    access = Access("secret", own_robots=own, wall_time_s=time.time)
+    async with served(registry, access=access) as url:
         robot = await launch(
-            "counting", SETUP, ended.put_nowait, registry=registry, url=url, token="secret"
+            "counting", SETUP, ended.put_nowait, registry=registry, own_robots=own, url=url
         )
         await sink.wait_until(lambda: len(sink.hellos) == 1)
         registry.send("counter", "c1", START)
@@ -89,7 +93,7 @@ async def test_a_process_that_hangs_is_killed(journal: SqliteJournal) -> None:
     sink = RecordingSink(journal)
     registry.assign("counter", sink)
     async with served(registry) as url:
-        robot = RobotProcess("counting", ended.put_nowait, registry, url, None, hang_s=1.5)
+        robot = RobotProcess("counting", ended.put_nowait, registry, OwnRobots(), url, hang_s=1.5)
         await robot.start(SETUP)
         await sink.wait_until(lambda: len(sink.hellos) == 1)
         registry.send("counter", "c1", Interrupt(retreat=False))
@@ -106,7 +110,9 @@ async def test_a_shut_down_process_says_that_it_ended(journal: SqliteJournal) ->
     sink = RecordingSink(journal)
     registry.assign("counter", sink)
     async with served(registry) as url:
-        await launch("counting", SETUP, ended.put_nowait, registry=registry, url=url, token=None)
+        await launch(
+            "counting", SETUP, ended.put_nowait, registry=registry, own_robots=OwnRobots(), url=url
+        )
         await sink.wait_until(lambda: len(sink.hellos) == 1)
         registry.send("counter", "c1", Shutdown())
         assert await ended.get() == "its process ended with code 0"
@@ -119,7 +125,12 @@ async def test_a_robot_within_the_service_runs_without_a_socket(journal: SqliteJ
     sink = RecordingSink(journal)
     registry.assign("counter", sink)
     robot = await launch(
-        "embedded", SETUP, ended.put_nowait, registry=registry, url="ws://unused", token=None
+        "embedded",
+        SETUP,
+        ended.put_nowait,
+        registry=registry,
+        own_robots=OwnRobots(),
+        url="ws://unused",
     )
     await sink.wait_until(lambda: len(sink.hellos) == 1)
     registry.send("counter", "c1", START)
@@ -137,11 +148,21 @@ async def test_a_world_that_cannot_run_here_is_refused_with_its_reason(
     ended: asyncio.Queue[str] = asyncio.Queue()
     with pytest.raises(InvalidError, match="needs a package that is not installed"):
         await launch(
-            "absent", SETUP, ended.put_nowait, registry=registry, url="ws://unused", token=None
+            "absent",
+            SETUP,
+            ended.put_nowait,
+            registry=registry,
+            own_robots=OwnRobots(),
+            url="ws://unused",
         )
     with pytest.raises(InvalidError, match="there is no world 'nowhere'"):
         await launch(
-            "nowhere", SETUP, ended.put_nowait, registry=registry, url="ws://unused", token=None
+            "nowhere",
+            SETUP,
+            ended.put_nowait,
+            registry=registry,
+            own_robots=OwnRobots(),
+            url="ws://unused",
         )
 
 

@@ -20,6 +20,7 @@ from recorded_service import RecordedService, recorded_events
 
 from server.cli import main
 from server.cli.check import kind_of_file
+from server.cli.local_user import local_user
 from server.documents import DocumentKind
 from server.journal import events as ev
 from server.journal.reader import JournalReader
@@ -626,7 +627,7 @@ def test_ctrl_c_aborts_a_real_run_which_its_journal_then_tells(data_dir: Path) -
         first = ev.any_event.validate_json(process.stdout.readline())
         process.send_signal(signal.SIGINT)
         out, err = process.communicate(timeout=60)
-    assert (process.returncode, err) == (130, "mend: the run was aborted: by a person\n")
+    assert (process.returncode, err) == (130, f"mend: the run was aborted: by {local_user()}\n")
     assert isinstance(ev.any_event.validate_json(out.splitlines()[-1]), ev.RunAborted)
     (journal,) = (data_dir / "runs").glob("*.sqlite")
     with JournalReader(journal) as reader:

@@ -5,8 +5,9 @@ import logging
 
 import pytest
 
-from server.app import described_app, serve_config
+from server.app import described_app
 from server.log_secrets import SECRETS
+from server.serving import serve_config
 from server.settings import Settings
 
 

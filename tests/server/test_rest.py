@@ -1,5 +1,7 @@
 """Runs, dialogues and what goes with them over REST; documents: `test_documents_over_rest.py`."""
 
+import errno
+import os
 from collections.abc import AsyncIterator
 from typing import Any
 from uuid import UUID
@@ -8,8 +10,10 @@ import httpx
 import pytest
 from service_under_test import ServiceUnderTest, build
 
+from server.journal import events as ev
+from server.journal.run_index import RunPage
 from server.runtime.requests import RunRequest
-from server.runtime.views import RunView
+from server.runtime.views import RunSummary, RunView
 from tasks.library import SCENARIOS
 
 # Fixed, so that every worker collects the same tests.
@@ -299,7 +303,7 @@ async def test_intervention_is_checked_and_done(
     assert done.status_code == 201
     for wrong in ({"act": "steal"}, {"act": "eat", "object": "x"}, {"act": "move", "object": "x"}):
         assert (await client.post(path, json=wrong)).status_code == 422
-    assert service.journal.head == 2
+    assert service.journal.head == 3
 
 
 async def test_camera_picture_is_a_jpeg(client: httpx.AsyncClient) -> None:
@@ -328,7 +332,8 @@ async def test_body_above_the_limit_is_refused(client: httpx.AsyncClient) -> Non
 async def test_health_scenarios_robots_and_metrics(client: httpx.AsyncClient) -> None:
     await start(client)
     assert (await client.get("/healthz")).json() == {"status": "ok"}
-    assert (await client.get("/readyz")).json() == {"status": "ok"}
+    ready = (await client.get("/readyz")).json()
+    assert ready == {"status": "ok", "unreadable_runs": 0, "damage": []}
     scenarios = (await client.get("/api/scenarios")).json()
     assert [each["name"] for each in scenarios] == SCENARIOS.names()
     assert all(each["built_in"] and each["tree"] == "eket" for each in scenarios)
@@ -366,8 +371,8 @@ async def test_an_abort_that_is_not_kept_yet_is_accepted(
 ) -> None:
     run = await start(client)
 
-    async def stop(run: UUID) -> RunView:
-        return service.runs.run(run)
+    async def stop(run: UUID, author: ev.Author) -> RunView:  # noqa: ARG001
+        return service.runs.run_now(run)
 
     monkeypatch.setattr(service.runs, "abort", stop)
     response = await client.post(f"/api/runs/{run}/abort")
@@ -436,3 +441,20 @@ async def test_poses_of_a_run_that_showed_nothing_are_empty_and_of_no_run_not_fo
     assert (await client.get(f"/api/runs/{run}/layout")).status_code == 404
     assert (await client.get(f"/api/runs/{NOBODY}/poses")).status_code == 404
     assert (await client.get(f"/api/runs/{run}/poses?from_s=nan")).status_code == 422
+
+
+@pytest.mark.parametrize(
+    ("number", "status"), [(errno.EMFILE, 503), (errno.ENFILE, 503), (errno.EIO, 500)]
+)
+async def test_without_a_file_descriptor_the_client_is_asked_to_try_again(
+    service: ServiceUnderTest, monkeypatch: pytest.MonkeyPatch, number: int, status: int
+) -> None:
+    async def fail(_page: RunPage) -> list[RunSummary]:
+        raise OSError(number, os.strerror(number))
+
+    monkeypatch.setattr(service.runs, "runs", fail)
+    async with service.client() as client:
+        response = await client.get("/api/runs")
+    assert response.status_code == status
+    problem_in(response)
+    assert ("retry-after" in response.headers) is (status == 503)

@@ -1,7 +1,9 @@
+from datetime import timedelta
 from pathlib import Path
 
 import pytest
 
+from server.journal.pruning import Keep
 from server.limits import Limits
 from server.settings import Settings, WrongSettingsError, default_data_dir, load_settings
 
@@ -85,6 +87,15 @@ def test_loopback_needs_no_token(host: str) -> None:
         ("MEND_PORT", "70000", "The setting 'port' is wrong: "),
         ("MEND_ASK_DEADLINE_S", "0", "The setting 'ask_deadline_s' is wrong: "),
         ("MEND_ASK_DEADLINE_S", "inf", "The setting 'ask_deadline_s' is wrong: "),
+        ("MEND_PUBLIC_URL", "mend.example.com", "one looks like https://mend.example.com"),
+        ("MEND_PUBLIC_URL", "ftp://mend.example.com", "is not an address of a web page"),
+        ("MEND_PUBLIC_URL", "https://", "is not an address of a web page"),
+        ("MEND_PUBLIC_URL", "https://mend.example.com:http", "is not an address"),
+        ("MEND_PUBLIC_URL", "https://mend.example.com/mend", "the console is at the root"),
+        ("MEND_PUBLIC_URL", "https://mend.example.com/?a=b", "the console is at the root"),
+        ("MEND_PUBLIC_URL", "https://anna:secret@mend.example.com", "no user or password"),
+        ("MEND_TLS_KEY", "key.pem", "'tls_certificate' and 'tls_key' go together"),
+        ("MEND_TRUSTED_PROXIES", '["proxy"]', "'proxy' is neither an IP address nor a network"),
         ("MEND_TOKEN", " ", "'token' must not be empty"),
         ("MEND_PROT", "1", "There is no setting MEND_PROT"),
         ("MEND_HELPERS", "anna", "cannot be read"),
@@ -117,6 +128,13 @@ def test_wrong_file_is_one_clear_sentence(tmp_path: Path, text: str, sentence: s
         load_settings(write(tmp_path / "mend.toml", text))
     (problem,) = wrong.value.problems
     assert sentence in problem
+
+
+def test_the_public_address_has_no_slash_at_its_end() -> None:
+    assert load_settings(public_url="https://mend.example.com/").public_url == (
+        "https://mend.example.com"
+    )
+    assert load_settings(public_url="http://[::1]:8080").public_url == "http://[::1]:8080"
 
 
 def test_every_mistake_is_told_at_once() -> None:
@@ -157,3 +175,15 @@ def test_limits_are_set_by_variables(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("MEND_LIMITS__ANSWERS", "0")
     with pytest.raises(WrongSettingsError, match=r"limits\.answers"):
         load_settings()
+
+
+def test_what_is_kept_is_set_by_days_number_and_size(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert load_settings().keep.keep().all
+    monkeypatch.setenv("MEND_KEEP__DAYS", "30")
+    monkeypatch.setenv("MEND_KEEP__RUNS", "1000")
+    monkeypatch.setenv("MEND_KEEP__PICTURES_MB", "1.5")
+    assert load_settings().keep.keep() == Keep(timedelta(days=30), 1000, 1_500_000)
+    for wrong in ("0", "-1", "many"):
+        monkeypatch.setenv("MEND_KEEP__RUNS", wrong)
+        with pytest.raises(WrongSettingsError, match=r"The setting 'keep\.runs' is wrong"):
+            load_settings()

@@ -100,7 +100,7 @@ async def test_runs_are_listed_in_the_order_in_which_they_began(journal: SqliteJ
     runs = [uuid4() for _ in range(5)]
     for run in runs:
         await journal.append(Entry(events=[started(run), paused(run=run)]))
-    assert await journal.runs() == runs
+    assert [each.run for each in await journal.index.going_on()] == runs
 
 
 async def test_entry_that_cannot_be_written_is_refused_alone(journal: SqliteJournal) -> None:
@@ -217,7 +217,7 @@ def test_a_disk_that_fails_as_a_journal_is_opened_is_told(
     def fail(_: object) -> None:
         raise sqlite3.OperationalError("disk I/O error")
 
-    monkeypatch.setattr("server.journal.sqlite.migrate", fail)
+    monkeypatch.setattr("server.journal.opening.migrate", fail)
     with pytest.raises(JournalOpenError, match=r"journal\.db' cannot be opened: disk I/O error"):
         SqliteJournal(tmp_path / "journal.db")
 

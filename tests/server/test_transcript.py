@@ -8,6 +8,7 @@ from uuid import UUID
 import pytest
 
 from dialogue.script import CloseReason, Help
+from server.access.roles import Role
 from server.journal import events as ev
 from server.transcript import Line, Tone, Transcript, grouped
 from tasks.intervention import Act, Intervention
@@ -260,6 +261,15 @@ def test_a_run_that_fails_or_is_aborted_says_why() -> None:
         "the run has failed: 'top' could not be done"
     ]
     assert told(ev.RunAborted(**EVENT)) == ["the run was aborted: by a person"]
+
+
+def test_who_paused_or_aborted_a_run_is_told_by_name() -> None:
+    olga = ev.Author(principal="olga", role=Role.OPERATOR, address="10.0.0.7")
+    nameless = ev.Author(principal="token", role=Role.ADMIN)
+    assert told(ev.RunPaused(**EVENT, author=olga)) == ["the run is paused by olga"]
+    assert told(ev.RunResumed(**EVENT, author=nameless)) == ["the run goes on"]
+    assert told(ev.RunAborted(**EVENT, author=olga)) == ["the run was aborted: by olga"]
+    assert told(ev.RunAborted(**EVENT, author=nameless)) == ["the run was aborted: by a person"]
 
 
 def test_every_event_type_has_a_line_of_its_own_or_is_told_by_others() -> None:

@@ -1,19 +1,16 @@
 """Operators are written to through a real SMTP server, and failures are told in one sentence."""
 
-import shutil
-import ssl
-import subprocess
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from datetime import UTC, datetime
-from pathlib import Path
 from uuid import UUID
 
 import pytest
 from aiosmtpd.smtp import SMTP, AuthResult, Envelope, LoginPassword, Session
+from certificates import Certificate, make_certificate
 from pydantic import ValidationError
 from smtp_inbox import Inbox, Watched, WatchedSMTP, listening, smtp_server
 
-from server.dialogues.mail import Mailer, MailError, MailRequest, MailSettings
+from server.dialogues.mail import Mailer, MailError, MailRequest, MailSettings, RefusedAddress
 
 WRITTEN = datetime(2026, 1, 1, 12, 0, tzinfo=UTC)
 OPERATORS = ("ops@example.org", "night@example.org")
@@ -81,21 +78,30 @@ async def test_addresses_that_the_server_refuses_are_returned() -> None:
     inbox = Inbox(refuses=("night@example.org",))
     async with smtp_server(inbox) as port:
         refused = await mailer(port).send(REQUEST, OPERATORS, WRITTEN)
-    assert refused == ("night@example.org",)
+    assert refused == (RefusedAddress("night@example.org", "550 no such mailbox", for_now=False),)
     assert inbox.recipients == ["ops@example.org"]
 
 
-async def test_a_mail_that_reaches_nobody_is_an_error() -> None:
+async def test_a_mail_that_reaches_nobody_returns_all_addresses() -> None:
     async with smtp_server(Inbox(refuses=OPERATORS)) as port:
-        with pytest.raises(MailError, match=r"ops@example\.org is refused .*no such mailbox"):
-            await mailer(port).send(REQUEST, OPERATORS, WRITTEN)
+        refused = await mailer(port).send(REQUEST, OPERATORS, WRITTEN)
+    assert [each.address for each in refused] == list(OPERATORS)
+
+
+@pytest.mark.parametrize(("answer", "for_now"), [("451 come back", True), ("550 no", False)])
+async def test_the_server_says_whether_it_is_worth_trying_again(answer: str, for_now: bool) -> None:
+    inbox = Inbox(refuses=OPERATORS[:1], refusal=answer)
+    async with smtp_server(inbox) as port:
+        (refused,) = await mailer(port).send(REQUEST, OPERATORS, WRITTEN)
+    assert refused.for_now is for_now
 
 
 async def test_a_server_that_is_not_there_is_named() -> None:
     async with smtp_server(Inbox()) as port:
         pass
-    with pytest.raises(MailError, match=rf"could not be sent through 127\.0\.0\.1:{port}: "):
+    with pytest.raises(MailError, match=rf"through 127\.0\.0\.1:{port}: ") as error:
         await mailer(port).send(REQUEST, OPERATORS, WRITTEN)
+    assert error.value.for_now
 
 
 async def test_a_server_that_never_speaks_is_not_waited_for() -> None:
@@ -112,37 +118,9 @@ async def test_a_server_without_encryption_is_not_talked_to_in_clear() -> None:
     assert inbox.mails == []
 
 
-@dataclass(frozen=True)
-class Certificate:
-    """A self-signed certificate for loopback, and its key."""
-
-    path: Path
-    key: Path
-
-    def server_context(self) -> ssl.SSLContext:
-        context = ssl.create_default_context(ssl.Purpose.CLIENT_AUTH)
-        context.load_cert_chain(self.path, self.key)
-        return context
-
-
 @pytest.fixture(scope="module")
 def certificate(tmp_path_factory: pytest.TempPathFactory) -> Certificate:
-    openssl = shutil.which("openssl")
-    if openssl is None:
-        pytest.skip("there is no openssl to make a certificate with")
-    folder = tmp_path_factory.mktemp("certificate")
-    made = Certificate(folder / "cert.pem", folder / "key.pem")
-    subprocess.run(
-        [
-            *(openssl, "req", "-x509", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:P-256"),
-            *("-nodes", "-days", "2", "-subj", "/CN=localhost"),
-            *("-addext", "subjectAltName=IP:127.0.0.1"),
-            *("-keyout", str(made.key), "-out", str(made.path)),
-        ],
-        check=True,
-        capture_output=True,
-    )
-    return made
+    return make_certificate(tmp_path_factory.mktemp("certificate"), "127.0.0.1")
 
 
 @pytest.mark.parametrize("trusted", [True, False])
@@ -158,7 +136,7 @@ async def test_only_a_server_with_a_trusted_certificate_gets_the_mail(
         return WatchedSMTP(inbox, tls_context=None if from_first_byte else context)
 
     async with listening(protocol, from_first_byte) as port:
-        sending = mailer(port, tls=tls, ca_file=certificate.path if trusted else None)
+        sending = mailer(port, tls=tls, ca_file=certificate.issuer if trusted else None)
         if trusted:
             await sending.send(REQUEST, OPERATORS, WRITTEN)
         else:
@@ -190,7 +168,7 @@ async def test_the_server_may_want_a_password(
 
     async with listening(protocol) as port:
         sending = mailer(
-            port, tls="starttls", ca_file=certificate.path, user="mend", password=password
+            port, tls="starttls", ca_file=certificate.issuer, user="mend", password=password
         )
         if taken:
             await sending.send(REQUEST, OPERATORS, WRITTEN)
@@ -198,6 +176,7 @@ async def test_the_server_may_want_a_password(
             with pytest.raises(MailError, match="could not be sent through") as caught:
                 await sending.send(REQUEST, OPERATORS, WRITTEN)
             assert password not in str(caught.value)
+            assert not caught.value.for_now
     assert bool(inbox.mails) is taken
 
 

@@ -111,6 +111,7 @@ def every_event() -> list[ev.Event]:
             deadline=40.0,
             to="anna",
         ),
+        ev.FirstLook(**talk(), fulfilled=[], position=(0.6, -0.2, 0.7)),
         ev.ClipRecorded(
             **work(),
             issue="dropped",
@@ -150,6 +151,9 @@ def every_event() -> list[ev.Event]:
         ev.NodeLeftOut(**node(), robot="robot", helper="ben"),
         ev.NodeReturned(**node(), robot="robot"),
         ev.NodeAbandoned(**node(), leaf="/1/0", reason="no robot can reach it"),
+        ev.SuspectedFalseAlarm(
+            **node(), robot="robot", issue="dropped", object="pink_bar", times=3, told=["operators"]
+        ),
         ev.RunPaused(**stamp()),
         ev.RunResumed(**stamp()),
         ev.RunFinished(**stamp(), missing=[missing]),

@@ -27,7 +27,7 @@ async def open_question(service: PretendService) -> DialogueView:
 
 async def first_question(service: PretendService) -> DialogueView:
     async with asyncio.timeout(60):
-        while not (waiting := service.runtime.dialogues("open")):  # noqa: ASYNC110
+        while not (waiting := await service.runtime.dialogues("open", 100, 0)):  # noqa: ASYNC110
             await asyncio.sleep(0)
     return waiting[0]
 
@@ -113,7 +113,7 @@ async def test_more_time_moves_the_deadline_by_its_original_length(
         extended = await service.runtime.extend(view.dialogue, before.prompt, "ann")
         assert extended.deadline == pytest.approx(before.deadline + 60.0 * number)
         assert extended.helper == "ann"
-        after = prompt_in(service.runtime.dialogue(view.dialogue))
+        after = prompt_in(await service.runtime.dialogue(view.dialogue))
         assert after.deadline == extended.deadline
         assert after.extensions_left == extended.extensions_left == 10 - number
         assert after.prompt == before.prompt
@@ -135,7 +135,7 @@ async def test_the_next_question_of_a_dialogue_has_its_own_time(service: Pretend
     for _ in range(10):
         await service.runtime.extend(view.dialogue, prompt_in(view).prompt, "ann")
     await service.runtime.answer(view.dialogue, prompt_in(view).prompt, "no", "ann")
-    second = prompt_in(service.runtime.dialogue(view.dialogue))
+    second = prompt_in(await service.runtime.dialogue(view.dialogue))
     assert second.prompt != prompt_in(view).prompt
     assert second.extensions_left == 10
     with pytest.raises(ConflictError):
@@ -167,9 +167,9 @@ async def test_a_restart_keeps_the_moved_deadline_and_what_is_left(tmp_path: Pat
     async with pretend_service(ONE_PART, FAULT, journal=path, patient=True) as service:
         view = await open_question(service)
         await service.runtime.extend(view.dialogue, prompt_in(view).prompt, "ann")
-        before = service.runtime.dialogue(view.dialogue)
+        before = await service.runtime.dialogue(view.dialogue)
     async with pretend_service(ONE_PART, journal=path, patient=True, boot=2) as service:
-        after = service.runtime.dialogue(view.dialogue)
+        after = await service.runtime.dialogue(view.dialogue)
         assert after.prompt == before.prompt
         extended = await service.runtime.extend(view.dialogue, prompt_in(view).prompt, "bob")
         assert extended.extensions_left == 8
@@ -182,10 +182,10 @@ async def test_the_clip_of_a_fault_is_kept_after_the_question_and_belongs_to_it(
     async with pretend_service(ONE_PART, FAULT, patient=True, films=True) as service:
         view = await open_question(service)
         async with asyncio.timeout(60):
-            while not service.runtime.dialogue(view.dialogue).clip:  # noqa: ASYNC110
+            while not (await service.runtime.dialogue(view.dialogue)).clip:  # noqa: ASYNC110
                 await asyncio.sleep(0)
         events = await service.journal.read(0, 1000)
-        clip = service.runtime.dialogue(view.dialogue).clip
+        clip = (await service.runtime.dialogue(view.dialogue)).clip
         pictures = [await service.journal.picture(each.picture) for each in clip]
     raised = next(each for each in events if isinstance(each, ev.IssueRaised))
     recorded = next(each for each in events if isinstance(each, ev.ClipRecorded))
@@ -207,14 +207,14 @@ async def test_a_clip_of_no_dialogue_is_not_kept(service: PretendService) -> Non
     clip = ClipTaken(execution="other", issue="missed", pictures=[])
     await service.robots.report(robot, clip)
     assert service.journal.head == head
-    assert service.runtime.dialogue(view.dialogue).clip == []
+    assert (await service.runtime.dialogue(view.dialogue)).clip == []
 
 
 async def test_a_second_clip_of_one_issue_is_not_kept() -> None:
     async with pretend_service(ONE_PART, FAULT, patient=True, films=True) as service:
         view = await open_question(service)
         async with asyncio.timeout(60):
-            while not (first := service.runtime.dialogue(view.dialogue).clip):  # noqa: ASYNC110
+            while not (first := (await service.runtime.dialogue(view.dialogue)).clip):  # noqa: ASYNC110
                 await asyncio.sleep(0)
         events = await service.journal.read(0, 1000)
         raised = next(each for each in events if isinstance(each, ev.IssueRaised))
@@ -224,4 +224,4 @@ async def test_a_second_clip_of_one_issue_is_not_kept() -> None:
         await service.robots.report(robot, again)
         kept = await service.journal.read(0, 1000)
         assert sum(isinstance(each, ev.ClipRecorded) for each in kept) == 1
-        assert service.runtime.dialogue(view.dialogue).clip == first
+        assert (await service.runtime.dialogue(view.dialogue)).clip == first

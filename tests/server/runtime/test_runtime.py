@@ -12,10 +12,17 @@ from pretend_service import NoHardware, PretendService, PretendWorlds, pretend_s
 from task_documents import definition_of
 
 from server.dialogues.escalation import EscalationPolicy
-from server.errors import ConflictError, InvalidError, LostRaceError, NotFoundError
+from server.errors import (
+    ConflictError,
+    InvalidError,
+    LostRaceError,
+    NotFoundError,
+    UnreadableError,
+)
 from server.journal import events as ev
 from server.journal.audit import audit
 from server.journal.journal import Entry
+from server.journal.run_index import RunPage
 from server.runtime.context import RunSettings
 from server.runtime.requests import RunRequest
 from server.runtime.run_state import RunState
@@ -174,7 +181,7 @@ async def open_question(service: PretendService, **fields: Any) -> DialogueView:
 
 async def first_open_dialogue(service: PretendService) -> DialogueView:
     async with asyncio.timeout(60):
-        while not (waiting := service.runtime.dialogues("open")):  # noqa: ASYNC110
+        while not (waiting := await service.runtime.dialogues("open", 100, 0)):  # noqa: ASYNC110
             await asyncio.sleep(0)
     return waiting[0]
 
@@ -235,7 +242,7 @@ async def test_a_claim_shows_and_does_not_keep_another_from_answering() -> None:
             dialogue.dialogue, prompt_of(dialogue), "yes", "bob"
         )
         assert answered.helper == "bob"
-        assert service.runtime.dialogue(dialogue.dialogue).claimed_by is None
+        assert (await service.runtime.dialogue(dialogue.dialogue)).claimed_by is None
         events = await service.journal.read(0, 1000, dialogue.run)
     released = [(each.helper, each.expired) for each in of_type(events, ev.Released)]
     assert released == [("ann", False)]
@@ -261,11 +268,11 @@ async def test_a_run_can_be_paused_resumed_and_aborted() -> None:
         with pytest.raises(ConflictError):
             await runtime.resume(run)
         assert (await runtime.pause(run)).status is RunStatus.PAUSED
-        assert {each.activation_level for each in runtime.run(run).nodes} == {0.0}
+        assert {each.activation_level for each in (await runtime.run(run)).nodes} == {0.0}
         assert (await runtime.resume(run)).status is RunStatus.RUNNING
         assert (await runtime.abort(run)).status is RunStatus.ABORTED
         await runtime.wait_for_end(run)
-        assert runtime.dialogue(dialogue.dialogue).reason == "aborted"
+        assert (await runtime.dialogue(dialogue.dialogue)).reason == "aborted"
         for late in (runtime.pause, runtime.abort):
             with pytest.raises(ConflictError):
                 await late(run)
@@ -291,7 +298,7 @@ async def test_after_a_restart_the_same_dialogue_is_still_open(tmp_path: Path) -
         before = await open_question(service)
     async with pretend_service(TWO_PARTS, journal=path, boot=2) as service:
         await first_open_dialogue(service)
-        after = service.runtime.dialogue(before.dialogue)
+        after = await service.runtime.dialogue(before.dialogue)
         assert after.prompt == before.prompt
         assert after.status == "open"
         await service.runtime.answer(before.dialogue, prompt_of(before), "yes", "ann")
@@ -367,7 +374,7 @@ async def test_a_run_that_cannot_be_taken_up_fails_and_the_others_go_on(
 
     monkeypatch.setattr(PretendWorlds, "open", refuse)
     async with pretend_service(TWO_PARTS, journal=path, boot=2) as service:
-        failed = service.runtime.run(stuck.id)
+        failed = await service.runtime.run(stuck.id)
         finished = await service.runtime.wait_for_end(other.id)
     assert failed.status is RunStatus.FAILED
     assert failed.result is not None
@@ -384,8 +391,13 @@ async def test_a_run_that_cannot_be_read_does_not_keep_the_service_from_starting
         impossible = of_type(events, ev.NodeDone)[0].model_copy(update={"node": "/7"})
         await service.journal.append(Entry(events=[impossible]))
     async with pretend_service(TWO_PARTS, journal=path) as service:
-        with pytest.raises(NotFoundError):
-            service.runtime.run(view.id)
+        with pytest.raises(UnreadableError, match=r"\(node_done\) does not fit what came before"):
+            await service.runtime.run(view.id)
+        [listed] = await service.runtime.runs(RunPage())
+        assert listed.status is RunStatus.UNREADABLE
+        assert listed.result is not None
+        assert "node_done" in listed.result.reason
+        assert (await service.runtime.count_runs())[RunStatus.UNREADABLE] == 1
         again, _ = await service.run_to_end()
         assert again.status is RunStatus.FINISHED
         assert (await service.runtime.snapshot(None)).runs == []
@@ -395,7 +407,7 @@ async def test_a_run_that_cannot_be_read_does_not_keep_the_service_from_starting
 async def test_a_refusal_that_nobody_waits_for_any_more_leaves_the_run_alone() -> None:
     async with pretend_service(TWO_PARTS, HELD) as service:
         dialogue = await open_question(service)
-        run = service.run_of(service.runtime.run(dialogue.run))
+        run = service.run_of(await service.runtime.run(dialogue.run))
         asked = asyncio.create_task(run.request(run.resume))
         await asyncio.sleep(0)
         asked.cancel()

@@ -14,6 +14,7 @@ from robots.link.messages import Interrupt, Start
 from server.journal import events as ev
 from server.journal.audit import audit
 from server.journal.journal import JournalWriteError
+from server.journal.run_index import RunPage
 from server.runtime.requests import RunRequest
 from server.runtime.views import RunStatus, RunView
 
@@ -87,12 +88,12 @@ async def test_on_a_full_disk_robots_hold_and_go_on_when_there_is_space(disk: Sm
         reason = await in_trouble(service)
         assert reason == "the journal could not be written: database or disk is full"
         assert interrupts(service) == [False]
-        assert service.runtime.run(run.id).trouble == reason
-        assert [each.trouble for each in service.runtime.runs()] == [reason]
-        assert service.runtime.run(run.id).status is RunStatus.RUNNING
+        assert (await service.runtime.run(run.id)).trouble == reason
+        assert [each.trouble for each in await service.runtime.runs(RunPage())] == [reason]
+        assert (await service.runtime.run(run.id)).status is RunStatus.RUNNING
         disk.free()
         await check_end(service, run, RunStatus.FINISHED)
-        assert service.runtime.run(run.id).trouble is None
+        assert (await service.runtime.run(run.id)).trouble is None
 
 
 async def test_a_disk_that_fills_in_the_middle_of_a_run_loses_nothing(disk: SmallDisk) -> None:

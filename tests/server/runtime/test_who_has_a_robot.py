@@ -9,6 +9,7 @@ from pretend_service import PretendService, pretend_service
 from task_documents import definition_of
 
 from server.errors import ConflictError, InvalidError
+from server.journal.run_index import RunPage
 from server.runtime.requests import RunRequest
 from server.runtime.views import RunStatus, RunView
 
@@ -36,7 +37,7 @@ async def test_of_two_runs_that_want_one_robot_at_once_one_gets_it() -> None:
         (run,) = [each for each in came_of_it if isinstance(each, RunView)]
         (refusal,) = [each for each in came_of_it if isinstance(each, ConflictError)]
         assert str(refusal) == f"the robot 'duo' is busy with run {run.id}"
-        assert [each.id for each in service.runtime.runs()] == [run.id]
+        assert [each.id for each in await service.runtime.runs(RunPage())] == [run.id]
 
 
 async def test_a_robot_is_free_again_after_two_runs_wanted_it_at_once() -> None:

@@ -4,6 +4,7 @@ import asyncio
 import io
 import shutil
 import sys
+import tempfile
 import wave
 from pathlib import Path
 
@@ -90,6 +91,15 @@ async def test_a_program_that_fails_is_one_sentence(
     voice = CommandVoice("speak", str(bin_folder / "speak"), lambda path: (path,))
     with pytest.raises(VoiceError, match=sentence):
         await voice.render("Shall I?")
+
+
+async def test_a_folder_that_cannot_be_made_is_one_sentence(
+    bin_folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    program(bin_folder, "speak", "")
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "nowhere"))
+    with pytest.raises(VoiceError, match=r"speak wrote no sound: .* No such file or directory"):
+        await CommandVoice("speak", "speak", lambda path: (path,)).render("hello")
 
 
 async def test_a_program_that_is_gone_is_one_sentence(tmp_path: Path) -> None:

@@ -1,6 +1,7 @@
 // Giving an answer: at once, or, where it cannot be taken back otherwise, after three seconds in
 // which it can be undone. Buttons, keys and speech all come through here.
 import { effect, signal } from "@preact/signals";
+import { may } from "../state/access";
 import { tellEnding } from "../state/endings";
 import { dialogueOf, type Question } from "../state/questions";
 import { helperName } from "../state/preferences";
@@ -30,6 +31,7 @@ let timer = 0;
 /** Answer the open question of a dialogue. */
 export function answer(question: Question, value: Answer): void {
   const { prompt } = question;
+  if (!may("helper")) return;
   if (prompt === null || question.awaiting !== "answer" || given.value.has(prompt.prompt)) return;
   if (held.value?.prompt === prompt.prompt && held.value.answer === value) return;
   const option = prompt.answers.find((each) => each.value === value);

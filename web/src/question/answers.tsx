@@ -1,4 +1,5 @@
 // The two answers, large, each with what it will do; and the one that is held back for a moment.
+import { may, whyNot } from "../state/access";
 import { keys, keysOn } from "../state/preferences";
 import type { Question } from "../state/questions";
 import { connection } from "../state/service";
@@ -20,7 +21,8 @@ export function Answers({ question, arming: { armed, tooEarly }, onAnswer }: Ans
   const waiting = held.value?.prompt === prompt.prompt ? held.value : null;
   const busy = given.value.has(prompt.prompt) || question.awaiting !== "answer";
   const offline = connection.value !== "connected";
-  const closed = !armed || busy || offline;
+  const allowed = may("helper");
+  const closed = !armed || busy || offline || !allowed;
   const mistake = mistakes.value.get(prompt.prompt);
   return (
     <div class="answering">
@@ -58,10 +60,11 @@ export function Answers({ question, arming: { armed, tooEarly }, onAnswer }: Ans
       {prompt.timeout_effect !== "" && <p class="answer-timeout">Without an answer: {prompt.timeout_effect}</p>}
       <p class="answering-note" role="status">
         {waiting !== null && <span class="unseen">Your {WORDS[waiting.answer]} is sent in 3 seconds. Escape takes it back.</span>}
+        {!allowed && whyNot("Answering", "helper")}
         {offline && "No connection to the service. You can answer as soon as it is back."}
         {mistake !== undefined && <span class="mistake">{mistake}</span>}
         {busy && !offline && "Sent."}
-        {tooEarly && !busy && !offline && <strong>This question has only just come. Read it, then answer again.</strong>}
+        {tooEarly && !busy && !offline && allowed && <strong>This question has only just come. Read it, then answer again.</strong>}
       </p>
     </div>
   );

@@ -1,4 +1,5 @@
 // Who is on a question, for everybody to see.
+import { may } from "../state/access";
 import { helperName } from "../state/preferences";
 import type { Question } from "../state/questions";
 import { claim, release } from "./claiming";
@@ -10,9 +11,11 @@ export function ClaimStrip({ question }: { question: Question }) {
     return (
       <div class="claim">
         <p class="quiet">Nobody is on it yet.</p>
-        <button type="button" class="button" onClick={() => void claim(dialogue, false)}>
-          I am on it
-        </button>
+        {may("helper") && (
+          <button type="button" class="button" onClick={() => void claim(dialogue, false)}>
+            I am on it
+          </button>
+        )}
       </div>
     );
   }
@@ -25,11 +28,12 @@ export function ClaimStrip({ question }: { question: Question }) {
         </span>
         {mine ? "You are on it." : `${by} is answering.`}
       </p>
-      {mine ? (
+      {mine && (
         <button type="button" class="button" onClick={() => release(dialogue)}>
           Let go
         </button>
-      ) : (
+      )}
+      {!mine && may("helper") && (
         <button type="button" class="button" onClick={() => void claim(dialogue, true)}>
           Take over
         </button>

@@ -1,5 +1,6 @@
 // Who is on a question: a claim is made when a helper begins to act on a card, and each activity
 // renews its lease. It tells the others; it never keeps them from answering.
+import { may } from "../state/access";
 import { helperName } from "../state/preferences";
 import { dialogueOf, type Question } from "../state/questions";
 import { command, connection } from "../state/service";
@@ -11,7 +12,7 @@ let last: { dialogue: string; at: number } | null = null;
 /** Note that this helper does something on a card. */
 export function actOn(question: Question): void {
   const { dialogue } = question;
-  if (connection.value !== "connected" || isOthers(dialogueOf(dialogue))) return;
+  if (!may("helper") || connection.value !== "connected" || isOthers(dialogueOf(dialogue))) return;
   if (last?.dialogue === dialogue && performance.now() - last.at < RENEW_AFTER_MS) return;
   void claim(dialogue, false);
 }

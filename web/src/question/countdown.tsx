@@ -1,6 +1,7 @@
 // How long a question waits: told calmly, and out loud only once, before it is too late.
 import { useEffect, useState } from "preact/hooks";
 import type { Question } from "../state/questions";
+import { may } from "../state/access";
 import { runs } from "../state/service";
 import { command } from "../state/service";
 import { runTime } from "../state/run_clock";
@@ -35,7 +36,7 @@ export function Countdown({ question }: { question: Question }) {
       <p class="unseen" role="status">
         {late && left > 0 ? "Less than 25 seconds are left to answer. You can ask for more time." : ""}
       </p>
-      {prompt.extensions_left > 0 && (
+      {prompt.extensions_left > 0 && may("helper") && (
         <button type="button" class="button" onClick={more}>
           More time
         </button>

@@ -1,5 +1,6 @@
 // Hearing the question and answering it by voice: a switch here, the code when it is switched on.
 import { useState } from "preact/hooks";
+import { may } from "../state/access";
 import { keys, keysOn } from "../state/preferences";
 import type { Question } from "../state/questions";
 import { lastHeard, type SpeechPhase, speechLacks, speechPhase } from "../speech/speech_state";
@@ -31,13 +32,15 @@ export function SpeechControls({ question, onAct }: { question: Question; onAct(
   const heard = lastHeard.value;
   return (
     <div class="speech">
-      <button type="button" class="button mic" aria-pressed={on} onClick={toggle}>
-        <svg viewBox="0 0 20 20" width="20" height="20" aria-hidden="true">
-          <rect x="7" y="2" width="6" height="10" rx="3" />
-          <path d="M4 9.5a6 6 0 0 0 12 0M10 15.5V18" />
-        </svg>
-        Listen and speak
-      </button>
+      {may("helper") && (
+        <button type="button" class="button mic" aria-pressed={on} onClick={toggle}>
+          <svg viewBox="0 0 20 20" width="20" height="20" aria-hidden="true">
+            <rect x="7" y="2" width="6" height="10" rx="3" />
+            <path d="M4 9.5a6 6 0 0 0 12 0M10 15.5V18" />
+          </svg>
+          Listen and speak
+        </button>
+      )}
       <button
         type="button"
         class="button"

@@ -1,6 +1,7 @@
 // The head of a run: what it is, how it goes, and pause, resume and abort.
 import { useState } from "preact/hooks";
 import { Confirm } from "../app/confirm";
+import { may, whyNot } from "../state/access";
 import { plain } from "../tree/words";
 import * as rest from "../wire/rest";
 import { ended, type RunState } from "./fold";
@@ -13,6 +14,7 @@ const STATUS_WORDS = {
   finished: "finished",
   failed: "failed",
   aborted: "aborted",
+  unreadable: "unreadable",
 } as const;
 
 export function RunHeader({ newest, moment }: { newest: RunState; moment: Moment }) {
@@ -67,6 +69,7 @@ function RunControls({ run, paused }: { run: string; paused: boolean }) {
     }
     setBusy(false);
   };
+  if (!may("operator")) return <p class="quiet small">{whyNot("Pausing or aborting it", "operator")}</p>;
   return (
     <div class="run-controls">
       <p role="status" class="mistake small">

@@ -7,6 +7,7 @@ export const STATUS_WORDS: Readonly<Record<RunStatus, string>> = {
   finished: "Finished",
   failed: "Failed",
   aborted: "Aborted",
+  unreadable: "Unreadable",
 };
 
 /** Beside the word and the colour, a sign for those who do not tell colours. */
@@ -16,6 +17,7 @@ export const STATUS_SIGNS: Readonly<Record<RunStatus, string>> = {
   finished: "✓",
   failed: "✕",
   aborted: "■",
+  unreadable: "?",
 };
 
 /** What came of a run, in a sentence; empty while it goes on. */

@@ -1,6 +1,7 @@
 // The list of runs, newest first, by state.
 import { signal } from "@preact/signals";
 import { useEffect, useState } from "preact/hooks";
+import { may } from "../state/access";
 import { questions } from "../state/questions";
 import type { RunStatus, RunSummary } from "../wire/types";
 import { useRunsPage } from "./runs_page";
@@ -21,6 +22,7 @@ const FILTERS: readonly Filter[] = [
   { name: "Finished", statuses: ["finished"] },
   { name: "Failed", statuses: ["failed"] },
   { name: "Aborted", statuses: ["aborted"] },
+  { name: "Unreadable", statuses: ["unreadable"] },
 ];
 
 /** Chosen once, kept while one looks at a run and comes back. */
@@ -35,9 +37,11 @@ export function RunsView() {
     <section class="page">
       <div class="page-head">
         <h1>Runs</h1>
-        <a class="button primary" href="/start">
-          Start a run
-        </a>
+        {may("operator") && (
+          <a class="button primary" href="/start">
+            Start a run
+          </a>
+        )}
       </div>
       <Filters />
       <p class="mistake" role="alert">

@@ -1,5 +1,5 @@
 // The transcript of a run: each event as the lines that a person reads.
-import type { Act, Change, CloseReason, Event, Help, Intervention, MissingPart, NodeStarted, Resolution, RunFinished } from "../wire/types";
+import type { Act, Author, Change, CloseReason, Event, Help, Intervention, MissingPart, NodeStarted, Resolution, RunFinished } from "../wire/types";
 import { plain } from "../tree/words";
 
 /** What kind of news a line brings; each has its own look. */
@@ -89,6 +89,14 @@ export function deed(intervention: Intervention): string {
   return act === "steal" && manner === "pull" ? `pulls ${name} out of the gripper` : about(DEEDS[act], name);
 }
 
+const NAMELESS: readonly string[] = ["token", "anybody"];
+
+/** Who did something, after what they did; nothing where they have no name, or in an old journal. */
+function by(author: Author | null | undefined): string {
+  const name = author?.principal ?? "token";
+  return NAMELESS.includes(name) ? "" : ` by ${name}`;
+}
+
 /** The lines of an event; none for those that others already tell. */
 export function linesOf(event: Event): Line[] {
   const line = (tone: Tone, text: string, speaker = ""): Line[] => [
@@ -98,9 +106,9 @@ export function linesOf(event: Event): Line[] {
     case "run_started":
       return line("run", `The run of ${plain(event.tree_name)} in ${plain(event.world)} begins.`);
     case "run_paused":
-      return line("run", "The run is paused.");
+      return line("run", `The run is paused${by(event.author)}.`);
     case "run_resumed":
-      return line("run", "The run goes on.");
+      return line("run", `The run goes on${by(event.author)}.`);
     case "run_finished":
       return [
         ...event.missing.flatMap((part) =>
@@ -111,7 +119,7 @@ export function linesOf(event: Event): Line[] {
     case "run_failed":
       return line("failed", `The run has failed: ${event.reason}`);
     case "run_aborted":
-      return line("failed", `The run was aborted: ${event.reason || "by a person"}.`);
+      return line("failed", `The run was aborted: ${event.reason || by(event.author).trim() || "by a person"}.`);
     case "node_started":
       return line("choice", `starts ${plain(event.name)}${attempt(event)}${comparison(event)}.`, event.robot);
     case "step_started":

@@ -1,4 +1,5 @@
 // What a helper can set on this device.
+import { principal } from "../state/access";
 import { helperName, soundOn, type Theme, theme } from "../state/preferences";
 import { call, signOut, tokenRequired } from "../state/service";
 import { AnswerKeys } from "./answer_keys";
@@ -27,11 +28,12 @@ export function SettingsView() {
           id="helper-name"
           value={helperName.value}
           maxlength={64}
+          readOnly={principal.value !== null}
           onChange={rename}
           aria-describedby="helper-name-hint"
         />
         <p id="helper-name-hint" class="small quiet">
-          The robots and the other helpers see who answered.
+          {principal.value === null ? "The robots and the other helpers see who answered." : "It goes with your token."}
         </p>
       </div>
       <AnswerKeys />

@@ -59,7 +59,7 @@ function TokenForm() {
           </button>
         </div>
         <p id="token-hint" class="small quiet">
-          Ask whoever runs the service: it is its setting MEND_TOKEN.
+          Your own, or the service's (its setting MEND_TOKEN): ask whoever runs it.
         </p>
       </div>
       <p id="token-mistake" class="mistake" role="alert">

@@ -3,6 +3,7 @@ import { signal } from "@preact/signals";
 import { type ConnectionState, HelperSocket } from "../wire/helper_socket";
 import * as rest from "../wire/rest";
 import type { Event, RunStatus, RunSummary, SnapshotMessage } from "../wire/types";
+import { principal, role } from "./access";
 import { helperName } from "./preferences";
 import { takeDialogueEvent, takeDialogues } from "./questions";
 
@@ -46,8 +47,11 @@ export function onSnapshot(listener: () => void): () => void {
 /** Find out who this is, and connect when that is known. */
 export async function begin(): Promise<void> {
   try {
-    const { required, signed_in } = await rest.session();
+    const { required, signed_in, name, role: given } = await rest.session();
     tokenRequired.value = required;
+    role.value = given;
+    principal.value = name;
+    if (name !== null) helperName.value = name;
     session.value = required && !signed_in ? "needs_token" : helperName.value === "" ? "needs_name" : "in";
   } catch {
     becomes("lost");
@@ -108,6 +112,7 @@ function becomes(state: ConnectionState): void {
 
 async function mayReconnect(): Promise<boolean> {
   const found = await rest.session().catch(() => null);
+  if (found !== null && (!found.required || found.signed_in)) role.value = found.role;
   if (found === null || !found.required || found.signed_in) return true;
   endSession();
   return false;

@@ -1,5 +1,6 @@
 // Under which name a text is saved, and whether it may take another's place.
 import { useState } from "preact/hooks";
+import { may, whyNot } from "../state/access";
 import { Confirm } from "../app/confirm";
 import * as rest from "../wire/rest";
 import type { DocumentSummary } from "../wire/types";
@@ -62,9 +63,10 @@ export function SaveForm({ tree, text, name, trees, changed, onName, onSaved, on
             Discard changes
           </button>
         )}
-        <button class="button primary" type="submit" disabled={saving}>
+        <button class="button primary" type="submit" disabled={saving || !may("operator")}>
           Save
         </button>
+        {!may("operator") && <p class="quiet">{whyNot("Saving", "operator")}</p>}
       </div>
       <p id="save-mistake" class="mistake" role="alert">
         {mistake}

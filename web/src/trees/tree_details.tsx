@@ -1,5 +1,6 @@
 // One task tree of the library: its drawing, its file, and what can be done with it.
 import { useEffect, useState } from "preact/hooks";
+import { may } from "../state/access";
 import { Confirm } from "../app/confirm";
 import { go } from "../app/router";
 import { connection } from "../state/service";
@@ -55,6 +56,7 @@ function TreeActions({ tree }: { tree: DocumentView }) {
       setMistake((error as Error).message);
     }
   };
+  if (!may("operator")) return null;
   return (
     <div class="page-actions">
       {!tree.built_in && (

@@ -1,5 +1,6 @@
 // The library of task trees: all of them in a list, and the chosen one beside it.
 import { useEffect, useState } from "preact/hooks";
+import { may } from "../state/access";
 import { connection } from "../state/service";
 import * as rest from "../wire/rest";
 import type { DocumentSummary } from "../wire/types";
@@ -25,12 +26,14 @@ export function TreesView({ tree }: { tree: string | null }) {
       <section class="page">
         <div class="page-head">
           <h1>Task trees</h1>
-          <div class="page-actions">
-            <FileButton onFile={take} />
-            <a class="button" href="/edit">
-              Write a new one
-            </a>
-          </div>
+          {may("operator") && (
+            <div class="page-actions">
+              <FileButton onFile={take} />
+              <a class="button" href="/edit">
+                Write a new one
+              </a>
+            </div>
+          )}
         </div>
         <p class="mistake" role="alert">
           {mistake}
@@ -38,7 +41,9 @@ export function TreesView({ tree }: { tree: string | null }) {
         <div class="library">
           <nav class="library-list" aria-label="Task trees">
             <TreeList trees={trees} chosen={chosen} />
-            <p class="small quiet library-hint">Drop a task file (YAML or JSON) anywhere here to upload it.</p>
+            {may("operator") && (
+              <p class="small quiet library-hint">Drop a task file (YAML or JSON) anywhere here to upload it.</p>
+            )}
           </nav>
           {chosen !== null && <TreeDetails key={chosen} tree={chosen} />}
         </div>

@@ -1,5 +1,6 @@
 // The run's scene: robot and objects in 3-D at the moment that is shown, and what a person may do there.
 import { useEffect, useMemo, useRef, useState } from "preact/hooks";
+import { may } from "../../state/access";
 import { helperName } from "../../state/preferences";
 import { runs } from "../../state/service";
 import type { Moment } from "../moment";
@@ -30,7 +31,7 @@ export function ScenePanel({ run, moment }: ScenePanelProps) {
   const layout = source.layout.value;
   const places = layout?.places.map((each) => each.name) ?? [];
   const running = runs.value.get(run)?.status === "running";
-  const offered = layout?.simulated === true && running && moment.live.value;
+  const offered = layout?.simulated === true && running && moment.live.value && may("operator");
   const { menu, putting, note, ...doing } = useIntervening(run, offered, source);
   const toggleList = () => {
     setListed(!listed);

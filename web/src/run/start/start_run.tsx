@@ -1,5 +1,6 @@
 // Starting a run: which task tree, where, how fast, and who answers.
 import { useEffect, useState } from "preact/hooks";
+import { may, whyNot } from "../../state/access";
 import { go } from "../../app/router";
 import { connection } from "../../state/service";
 import * as rest from "../../wire/rest";
@@ -111,9 +112,10 @@ function StartForm({ tree, choices }: { tree: string | null; choices: Choices })
         <Mistake field="interventions" mistakes={mistakes} />
       </fieldset>
       <div class="page-actions">
-        <button class="button primary" type="submit" disabled={starting}>
+        <button class="button primary" type="submit" disabled={starting || !may("operator")}>
           {starting ? "Starting …" : "Start the run"}
         </button>
+        {!may("operator") && <p class="quiet">{whyNot("Starting a run", "operator")}</p>}
         <Mistake field="form" mistakes={mistakes} />
       </div>
     </form>

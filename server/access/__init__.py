@@ -1,0 +1,1 @@
+"""Who may do what here: principals and their roles, tokens, sessions, and the deeds of each."""

@@ -1,0 +1,150 @@
+"""Journals what people do to the service itself; sign-ins are counted, so that none floods it."""
+
+import asyncio
+from collections.abc import Callable, Iterable
+from contextlib import suppress
+from datetime import datetime, timedelta
+from uuid import UUID
+
+from server.access.principal import Caller, Principal
+from server.access.principals_file import Change, What
+from server.access.roles import Role
+from server.access.sessions import Session, Sessions
+from server.access.tally import Tally
+from server.journal import events as ev
+from server.journal.journal import Entry, Journal, JournalClosedError
+
+TOLD_EVERY = timedelta(minutes=1)
+"""Sign-ins of one principal, and failed ones of everybody, make one event in so long."""
+
+LAST_WORDS_S = 2.0
+"""So long a service that stops waits for its journal to take what was told."""
+
+PAGE = 1000
+
+
+class DeedLog:
+    """The deeds of principals as events of the journal, that belong to no run."""
+
+    def __init__(self, journal: Journal, utc_now: Callable[[], datetime]) -> None:
+        self._journal = journal
+        self._utc_now = utc_now
+        self._sign_ins: dict[tuple[str, Role], Tally] = {}
+        self._failed = Tally()
+        self._told: dict[tuple[str, Role] | None, datetime] = {}
+        self._journaled: set[UUID] = set()
+        self._writing: set[asyncio.Task[None]] = set()
+
+    # --- What is done -------------------------------------------------------------------------
+
+    def access_changed(self, what: What, name: str, role: Role, author: ev.Author) -> None:
+        """Somebody was given access or lost it, through the API."""
+        self._add_later(
+            ev.AccessChanged(
+                wall_time=self._utc_now(), what=what, principal=name, role=role, author=author
+            )
+        )
+
+    def signed_out(self, session: Session, caller: Caller) -> None:
+        """A session was ended."""
+        self._add_later(
+            ev.SignedOut(
+                wall_time=self._utc_now(),
+                session=session.id,
+                expires=session.expires,
+                author=caller.author,
+            )
+        )
+
+    def signed_in(self, principal: Principal, address: str | None) -> None:
+        """Somebody has shown a right token to begin a session."""
+        who = principal.name, principal.role
+        self._sign_ins.setdefault(who, Tally()).add(address)
+        self.tell_due()
+
+    def failed(self, address: str | None) -> None:
+        """Somebody has shown a wrong token or code."""
+        self._failed.add(address)
+        self.tell_due()
+
+    # --- What is told together ----------------------------------------------------------------
+
+    def tell_due(self) -> None:
+        """Journal what was counted, where the last event about it is long enough ago."""
+        for who in [each for each in self._sign_ins if self._is_due(each)]:
+            tally = self._sign_ins.pop(who)
+            self._add_later(
+                ev.SignedIn(principal=who[0], role=who[1], **self._of_tally(tally, who))
+            )
+        if self._failed.times and self._is_due(None):
+            tally, self._failed = self._failed, Tally()
+            self._add_later(ev.SignInFailed(**self._of_tally(tally, None)))
+
+    def _is_due(self, who: tuple[str, Role] | None) -> bool:
+        told = self._told.get(who)
+        return told is None or self._utc_now() - told >= TOLD_EVERY
+
+    def _of_tally(self, tally: Tally, who: tuple[str, Role] | None) -> dict[str, object]:
+        self._told[who] = now = self._utc_now()
+        return {
+            "wall_time": now,
+            "times": tally.times,
+            "addresses": tally.addresses,
+            "elsewhere": tally.elsewhere,
+        }
+
+    # --- What the file of principals tells ------------------------------------------------------
+
+    async def recover(self, sessions: Sessions) -> None:
+        """Read what was journaled before: which sessions have ended, which changes are known."""
+        after = 0
+        while events := await self._journal.read(after, PAGE, ev.NO_RUN):
+            for event in events:
+                match event:
+                    case ev.SignedOut(session=number, expires=expires):
+                        sessions.end(number, expires)
+                    case ev.AccessChanged(change=UUID() as change):
+                        self._journaled.add(change)
+            after = events[-1].seq
+
+    def take_changes(self, changes: Iterable[Change]) -> None:
+        """Journal what was done to the file on this machine, each change once."""
+        for change in changes:
+            if change.id not in self._journaled:
+                self._journaled.add(change.id)
+                self._add_later(
+                    ev.AccessChanged(
+                        wall_time=change.when,
+                        what=change.what,
+                        principal=change.name,
+                        role=change.role,
+                        author=ev.Author(principal=change.by, role=Role.ADMIN),
+                        change=change.id,
+                    )
+                )
+
+    # --- Writing ------------------------------------------------------------------------------
+
+    def _add_later(self, event: ev.Event) -> None:
+        """Journal it as soon as that is possible; nobody waits for it."""
+        task = asyncio.create_task(self._add_patiently(event))
+        self._writing.add(task)
+        task.add_done_callback(self._writing.discard)
+
+    async def _add_patiently(self, event: ev.Event) -> None:
+        with suppress(JournalClosedError):
+            await self._journal.append(Entry(events=[event]), patient=True)
+
+    async def written(self) -> None:
+        """Wait until what was told is journaled."""
+        await asyncio.gather(*self._writing)
+
+    async def close(self) -> None:
+        """Journal what was only counted so far, if that is possible now."""
+        self._told.clear()
+        self.tell_due()
+        if self._writing:
+            await asyncio.wait(self._writing, timeout=LAST_WORDS_S)
+        for task in self._writing:
+            task.cancel()
+        await asyncio.gather(*self._writing, return_exceptions=True)

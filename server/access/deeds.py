@@ -1,0 +1,153 @@
+"""Deeds: what people did, when and from where, as the audit lists it."""
+
+from collections.abc import Iterator, Sequence
+from datetime import datetime
+from pathlib import Path
+from uuid import UUID
+
+from pydantic import BaseModel, ConfigDict
+
+from server.access.roles import Role, with_article
+from server.journal import events as ev
+from server.journal.reader import JournalReader
+
+
+class Deed(BaseModel):
+    """One deed. `who` None: nobody who is known; `seq` is its event, `run` None: of no run."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    seq: int
+    when: datetime
+    who: str | None
+    role: Role | None
+    address: str | None
+    deed: str
+    what: str
+    run: UUID | None
+
+
+DEEDS: frozenset[str] = frozenset(
+    {
+        "run_started", "run_paused", "run_resumed", "run_aborted", "intervention_accepted",
+        "answered", "claimed", "released", "deadline_extended",
+        "document_kept", "document_deleted", "signed_in", "sign_in_failed", "signed_out",
+        "access_changed",
+    }
+)  # fmt: skip
+"""The types of events that are deeds; some of them only where somebody did them."""
+
+
+def deeds_in(journal: Path) -> Iterator[Deed]:
+    """Every deed in a journal's file, in order; it may be in use.
+
+    Raises `FileNotFoundError`, `JournalSchemaError` and what reading an event raises.
+    """
+    with JournalReader(journal) as reader:
+        for event in reader.of_types(sorted(DEEDS)):
+            deed = deed_of(event)
+            if deed is not None:
+                yield deed
+
+
+def deed_of(event: ev.Event) -> Deed | None:
+    """The deed that an event tells of; None for what no person did."""
+    match event:
+        case ev.SignedIn():
+            signed = f"signed in {_times(event.times)}{_from(event.addresses, event.elsewhere)}"
+            return _deed(event, event.principal, event.role, _only(event), signed)
+        case ev.SignInFailed():
+            showed = f"showed wrong tokens {_times(event.times)}"
+            showed += _from(event.addresses, event.elsewhere)
+            return _deed(event, None, None, _only(event), showed)
+        case ev.Released(expired=True):
+            return None
+    what = _what(event)
+    if what is None:
+        return None
+    author: ev.Author | None = getattr(event, "author", None)
+    if author is None:
+        helper = getattr(event, "helper", None)
+        return None if helper == "script" else _deed(event, helper, None, None, what)
+    return _deed(event, author.principal, author.role, author.address, what)
+
+
+def _deed(
+    event: ev.Event, who: str | None, role: Role | None, address: str | None, what: str
+) -> Deed:
+    return Deed(
+        seq=event.seq,
+        when=event.wall_time,
+        who=who,
+        role=role,
+        address=address,
+        deed=str(vars(event)["type"]),
+        what=what,
+        run=None if event.run == ev.NO_RUN else event.run,
+    )
+
+
+def _what(event: ev.Event) -> str | None:
+    match event:
+        case ev.RunStarted(tree_name=tree, world=world):
+            return f"started a run of '{tree}' in '{world}'"
+        case ev.RunPaused():
+            return "paused the run"
+        case ev.RunResumed():
+            return "let the run go on"
+        case ev.RunAborted(reason=reason):
+            return "aborted the run" + (f": {reason}" if reason else "")
+        case ev.InterventionAccepted(act=act, object=part):
+            return f"intervened: {act}" + (f" '{part}'" if part else "")
+        case ev.SignedOut():
+            return "signed out"
+    return _what_of_dialogue(event) or _what_of_access(event)
+
+
+def _what_of_dialogue(event: ev.Event) -> str | None:
+    match event:
+        case ev.Answered(answer=answer, issue=issue, name=name, helper=helper):
+            return f"answered {answer} as '{helper}' ({issue}, '{name}')"
+        case ev.Claimed(issue=issue, name=name, helper=helper):
+            return f"claimed the dialogue as '{helper}' ({issue}, '{name}')"
+        case ev.Released(issue=issue, name=name, helper=helper):
+            return f"released the claim of '{helper}' ({issue}, '{name}')"
+        case ev.DeadlineExtended(issue=issue, name=name, helper=helper):
+            return f"took more time as '{helper}' ({issue}, '{name}')"
+    return None
+
+
+def _what_of_access(event: ev.Event) -> str | None:
+    match event:
+        case ev.DocumentKept(kind=kind, name=name, replaced=replaced):
+            return f"{'replaced' if replaced else 'uploaded'} the {kind} '{name}'"
+        case ev.DocumentDeleted(kind=kind, name=name):
+            return f"deleted the {kind} '{name}'"
+        case ev.AccessChanged(what="added", principal=name, role=role):
+            return f"added '{name}' as {with_article(role)}"
+        case ev.AccessChanged(what="rotated", principal=name):
+            return f"gave '{name}' a new token"
+        case ev.AccessChanged(what="revoked", principal=name):
+            return f"revoked '{name}'"
+        case ev.AccessChanged(what="enrolment_opened", principal=name):
+            return f"made a code for the robot '{name}'"
+        case ev.AccessChanged(principal=name):
+            return f"enrolled as the robot '{name}'"
+    return None
+
+
+def _only(event: ev.SignedIn | ev.SignInFailed) -> str | None:
+    """The address, where there is only one."""
+    only = len(event.addresses) == 1 and event.elsewhere == 0
+    return event.addresses[0].address if only else None
+
+
+def _times(times: int) -> str:
+    return "once" if times == 1 else f"{times} times"
+
+
+def _from(addresses: Sequence[ev.AddressCount], elsewhere: int) -> str:
+    if len(addresses) <= 1 and elsewhere == 0:
+        return ""
+    listed = ", ".join(f"{each.address} ({each.times})" for each in addresses)
+    return f", from {listed}" + (f" and elsewhere ({elsewhere})" if elsewhere else "")

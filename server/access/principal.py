@@ -1,0 +1,51 @@
+"""A principal: somebody whom the service knows by what they show."""
+
+from dataclasses import dataclass
+
+from server.access.roles import Role
+from server.journal.events import Author
+
+
+@dataclass(frozen=True, slots=True)
+class Principal:
+    """Who it is and what they may do.
+
+    `key` changes with the credential: what is bound to it ends with that. Without a `named` one
+    whoever comes says what they are called.
+    """
+
+    name: str
+    role: Role
+    key: str
+    named: bool = True
+
+
+ANYBODY = Principal("anybody", Role.ADMIN, "", named=False)
+"""Whoever can reach a service that asks for no token."""
+
+TOKEN_NAME = "token"
+"""The name of whoever shows the service's one token (`MEND_TOKEN`)."""
+
+RESERVED = (ANYBODY.name, TOKEN_NAME)
+
+
+@dataclass(frozen=True, slots=True)
+class Caller:
+    """A principal on one connection; `session` is the cookie's, if it came by one.
+
+    `until`: when that session expires, in seconds of 1970.
+    """
+
+    principal: Principal
+    address: str | None = None
+    session: str | None = None
+    until: float | None = None
+
+    @property
+    def author(self) -> Author:
+        """How the journal names them."""
+        return Author(principal=self.principal.name, role=self.principal.role, address=self.address)
+
+    def helper_name(self, declared: str | None) -> str | None:
+        """What a helper is called: a principal's own name, else what they say; None without."""
+        return self.principal.name if self.principal.named else declared

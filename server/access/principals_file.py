@@ -1,0 +1,202 @@
+"""The file of principals: who there is, with hashes of their tokens; read, checked and changed."""
+
+import fcntl
+import os
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from datetime import datetime
+from pathlib import Path
+from typing import Annotated, Literal, Self
+from uuid import UUID
+
+import yaml
+from pydantic import (
+    AwareDatetime,
+    BaseModel,
+    ConfigDict,
+    Field,
+    StringConstraints,
+    ValidationError,
+    model_validator,
+)
+from pydantic_core import ErrorDetails
+
+from server.access.principal import RESERVED
+from server.access.roles import Role
+from server.journal.file_mode import OWNERS_FOLDER, keep_to_owner
+from tasks.validation import what_is_right
+
+HEADING = "# Written by `mend access`. Tokens are not in here, only their hashes.\n"
+KEPT_CHANGES = 1000
+"""So many changes are kept here for a service that has not yet journaled them."""
+
+PrincipalName = Annotated[
+    str, StringConstraints(min_length=1, max_length=64, pattern=r"^[^\x00-\x1f\x7f]+$")
+]
+RobotName = Annotated[
+    str, StringConstraints(min_length=1, max_length=128, pattern=r"^[^\x00-\x1f\x7f]+$")
+]
+Sha256 = Annotated[str, StringConstraints(pattern=r"^[0-9a-f]{64}$")]
+
+
+class PrincipalsFileError(Exception):
+    """The file of principals cannot be used; one sentence per mistake."""
+
+
+class FileModel(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class KeptPrincipal(FileModel):
+    """One principal; `id` is the part of its token that finds it."""
+
+    name: RobotName
+    role: Role
+    id: Annotated[str, StringConstraints(pattern=r"^[0-9a-f]{8}$")]
+    sha256: Sha256
+    added: AwareDatetime
+    expires: AwareDatetime | None = None
+
+    def valid(self, now: datetime) -> bool:
+        """Whether its token is still good."""
+        return self.expires is None or self.expires > now
+
+
+class Enrolment(FileModel):
+    """That a robot may fetch its credential once, with a code, until it `expires`."""
+
+    robot: RobotName
+    sha256: Sha256
+    expires: AwareDatetime
+
+
+What = Literal["added", "rotated", "revoked", "enrolment_opened", "enrolled"]
+
+
+class Change(FileModel):
+    """What was done to the file on this machine, `by` whom (a user of the operating system)."""
+
+    id: UUID
+    when: AwareDatetime
+    by: str
+    what: What
+    name: RobotName
+    role: Role
+
+
+class Principals(FileModel):
+    """Everything that the file holds; `changes` are for the service to journal."""
+
+    principals: list[KeptPrincipal] = []
+    enrolments: list[Enrolment] = []
+    changes: Annotated[list[Change], Field(max_length=KEPT_CHANGES)] = []
+
+    @model_validator(mode="after")
+    def _each_once(self) -> Self:
+        for what in ("name", "id"):
+            seen = [getattr(each, what) for each in self.principals]
+            twice = next((each for each in seen if seen.count(each) > 1), None)
+            if twice is not None:
+                raise ValueError(f"two principals have the {what} '{twice}'; each needs its own")
+        reserved = next((each.name for each in self.principals if each.name in RESERVED), None)
+        if reserved is not None:
+            raise ValueError(f"no principal can be called '{reserved}'; take another name")
+        return self
+
+    def named(self, name: str) -> KeptPrincipal | None:
+        """The principal of that name."""
+        return next((each for each in self.principals if each.name == name), None)
+
+
+def read_principals(path: Path) -> Principals:
+    """What the file says; nobody where there is none.
+
+    Raises `PrincipalsFileError` with every mistake.
+    """
+    try:
+        text = path.read_text(encoding="utf-8")
+    except FileNotFoundError:
+        return Principals()
+    except (OSError, UnicodeDecodeError) as error:
+        why = error.strerror if isinstance(error, OSError) else "it is not UTF-8"
+        raise PrincipalsFileError(f"The principals in {path} cannot be read: {why}.") from error
+    return principals_of(text, str(path))
+
+
+def principals_of(text: str, source: str) -> Principals:
+    """What the text of such a file says. Raises `PrincipalsFileError`."""
+    try:
+        loaded = yaml.safe_load(text)
+    except yaml.YAMLError as error:
+        where = getattr(error, "problem_mark", None)
+        line = "" if where is None else f", line {where.line + 1}"
+        raise PrincipalsFileError(f"{source}{line}: this is not YAML.") from error
+    if not isinstance(loaded, dict | None):
+        raise PrincipalsFileError(f"{source}: a file of principals has the key 'principals'.")
+    try:
+        return Principals.model_validate(loaded or {})
+    except ValidationError as error:
+        sentences = [_sentence(source, each) for each in error.errors(include_url=False)]
+        raise PrincipalsFileError("\n".join(dict.fromkeys(sentences))) from error
+
+
+def _sentence(source: str, mistake: ErrorDetails) -> str:
+    where = ".".join(str(each) for each in mistake["loc"])
+    if mistake["type"] == "extra_forbidden":
+        return f"{source}: {where}: is not known here."
+    if mistake["type"] == "missing":
+        return f"{source}: {where}: is missing."
+    if mistake["type"] == "value_error":
+        return f"{source}: {str(mistake['msg']).removeprefix('Value error, ')}."
+    return f"{source}: {where}: {what_is_right([mistake], None)}."
+
+
+class Edit:
+    """The file's content while nobody else may change it; what `principals` is then, is kept."""
+
+    def __init__(self, principals: Principals) -> None:
+        self.principals = principals
+
+
+@contextmanager
+def edited(path: Path) -> Iterator[Edit]:
+    """Change the file, alone: it is replaced as a whole, or not at all.
+
+    Raises `PrincipalsFileError` where it has mistakes, `OSError` where it cannot be written.
+    """
+    path.parent.mkdir(mode=OWNERS_FOLDER, parents=True, exist_ok=True)
+    lock = path.with_name(path.name + ".lock")
+    keep_to_owner(lock)
+    _give_to_owner_of_folder(lock)
+    with lock.open("w") as held:
+        fcntl.flock(held, fcntl.LOCK_EX)
+        edit = Edit(read_principals(path))
+        before = edit.principals
+        yield edit
+        if edit.principals != before:
+            _replace(path, edit.principals)
+
+
+def _replace(path: Path, principals: Principals) -> None:
+    checked = Principals.model_validate(principals.model_dump())
+    text = yaml.safe_dump(checked.model_dump(mode="json", exclude_none=True), sort_keys=False)
+    with tempfile.NamedTemporaryFile(
+        "w", encoding="utf-8", dir=path.parent, prefix=path.name, delete=False
+    ) as written:
+        try:
+            written.write(HEADING + text)
+            written.flush()
+            os.fsync(written.fileno())
+            _give_to_owner_of_folder(Path(written.name))
+            Path(written.name).replace(path)
+        except BaseException:
+            Path(written.name).unlink(missing_ok=True)
+            raise
+
+
+def _give_to_owner_of_folder(file: Path) -> None:
+    """What root writes is for the service, which runs as whoever has the folder."""
+    if os.geteuid() == 0:
+        folder = file.parent.stat()
+        os.chown(file, folder.st_uid, folder.st_gid)

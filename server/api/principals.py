@@ -1,0 +1,206 @@
+"""Principals and deeds over REST, for admins."""
+
+import re
+from collections.abc import Callable
+from datetime import UTC, datetime
+from typing import Annotated, Literal, TypeVar
+
+from fastapi import APIRouter, Path, Query
+from pydantic import AwareDatetime, BaseModel, ConfigDict, Field
+from starlette.concurrency import run_in_threadpool
+
+from server.access.changes import LONGEST_DAYS
+from server.access.deeds import DEEDS, Deed, deed_of
+from server.access.principals_file import PrincipalName, RobotName
+from server.access.roles import Role
+from server.api.parts import After, Limit, Parts, WithCaller, WithParts
+from server.api.problems import ProblemError, documented
+from server.api.strict_json import StrictJsonRoute
+from server.errors import NotFoundError
+from server.journal.events import any_event
+
+router = APIRouter(prefix="/api/access", tags=["access"], route_class=StrictJsonRoute)
+
+SCANNED_AT_ONCE = 1000
+MOST_SCANNED = 20_000
+"""So many events are looked through for one page of deeds."""
+
+Name = Annotated[str, Path(min_length=1, max_length=128, examples=["anna"])]
+Days = Annotated[float, Field(gt=0, le=LONGEST_DAYS, allow_inf_nan=False)]
+TYPE = re.compile(r'"type":"(\w+)"')
+"""Where an event's JSON says of which type it is."""
+
+CHANGES = documented(400, 401, 403, 404, 409, 413, 421, 422, 503)
+
+Done = TypeVar("Done")
+
+
+class Strict(BaseModel):
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+
+
+class NewPrincipal(Strict):
+    """Whom to add; without `expires_days` the token lasts until it is revoked."""
+
+    name: PrincipalName = Field(examples=["anna"])
+    role: Literal["viewer", "helper", "operator", "admin"]
+    expires_days: Days | None = None
+
+
+class Rotation(Strict):
+    """How long the new token lasts; unless said as long as the old one did."""
+
+    expires_days: Days | None = None
+
+
+class NewEnrolment(Strict):
+    """Which robot may fetch its credential, and for how long it may."""
+
+    robot: RobotName = Field(examples=["arm-1"])
+    minutes: Annotated[float, Field(gt=0, le=7 * 24 * 60, allow_inf_nan=False)] = 15
+
+
+class View(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class PrincipalView(View):
+    """A principal; `valid` is false once its token has expired."""
+
+    name: str
+    role: Role
+    added: AwareDatetime
+    expires: AwareDatetime | None
+    valid: bool
+
+
+class TokenView(View):
+    """A new token, which is shown only this once."""
+
+    name: str
+    token: str
+
+
+class CodeView(View):
+    """A one-time code, which is shown only this once."""
+
+    robot: str
+    code: str
+
+
+class DeedsPage(View):
+    """Deeds in order. `seq`: up to which event was read; `more`: whether events follow it."""
+
+    deeds: list[Deed]
+    seq: int
+    more: bool
+
+
+@router.get("/principals", operation_id="list_principals", responses=documented(401, 403, 421))
+async def list_principals(parts: WithParts) -> list[PrincipalView]:
+    """Every principal and robot that has a token of its own."""
+    now = datetime.now(UTC)
+    return [
+        PrincipalView(
+            name=each.name,
+            role=each.role,
+            added=each.added,
+            expires=each.expires,
+            valid=each.valid(now),
+        )
+        for each in parts.access.principals.all()
+    ]
+
+
+@router.post("/principals", operation_id="add_principal", status_code=201, responses=CHANGES)
+async def add_principal(body: NewPrincipal, parts: WithParts, caller: WithCaller) -> TokenView:
+    """Add a principal, and get its token: it is shown only now."""
+    token = await edited(
+        parts,
+        lambda: parts.editor.add(body.name, Role(body.role), datetime.now(UTC), body.expires_days),
+    )
+    parts.deeds.access_changed("added", body.name, Role(body.role), caller.author)
+    return TokenView(name=body.name, token=token)
+
+
+@router.post("/principals/{name}/rotate", operation_id="rotate_principal", responses=CHANGES)
+async def rotate_principal(
+    name: Name, body: Rotation, parts: WithParts, caller: WithCaller
+) -> TokenView:
+    """Give a principal a new token; the old one and its sessions end."""
+    role = _role(parts, name)
+    token = await edited(
+        parts, lambda: parts.editor.rotate(name, datetime.now(UTC), body.expires_days)
+    )
+    parts.deeds.access_changed("rotated", name, role, caller.author)
+    return TokenView(name=name, token=token)
+
+
+@router.delete(
+    "/principals/{name}", operation_id="revoke_principal", status_code=204, responses=CHANGES
+)
+async def revoke_principal(name: Name, parts: WithParts, caller: WithCaller) -> None:
+    """End a principal: its token, its sessions and its connections."""
+    role = await edited(parts, lambda: parts.editor.revoke(name, datetime.now(UTC)))
+    parts.deeds.access_changed("revoked", name, role, caller.author)
+
+
+@router.post("/enrolments", operation_id="open_enrolment", status_code=201, responses=CHANGES)
+async def open_enrolment(body: NewEnrolment, parts: WithParts, caller: WithCaller) -> CodeView:
+    """Make a code with which a robot fetches its own credential, once."""
+    code = await edited(
+        parts,
+        lambda: parts.editor.open_enrolment(body.robot, datetime.now(UTC), body.minutes),
+    )
+    parts.deeds.access_changed("enrolment_opened", body.robot, Role.ROBOT, caller.author)
+    return CodeView(robot=body.robot, code=code)
+
+
+@router.get("/deeds", operation_id="list_deeds", responses=documented(401, 403, 421, 422))
+async def list_deeds(
+    parts: WithParts,
+    after: After = 0,
+    limit: Limit = 100,
+    who: Annotated[str | None, Query(max_length=128, description="Only this one's.")] = None,
+) -> DeedsPage:
+    """Who did what, when, and from where; go on with `seq` as `after` while there is `more`."""
+    deeds: list[Deed] = []
+    last = after
+    while last - after < MOST_SCANNED:
+        records = await parts.journal.read_records(last, SCANNED_AT_ONCE)
+        for record in records:
+            last = record.seq
+            deed = _deed(record.text)
+            if deed is not None and who in (None, deed.who):
+                deeds.append(deed)
+            if len(deeds) == limit:
+                return DeedsPage(deeds=deeds, seq=last, more=last < parts.journal.head)
+        if not records:
+            break
+    return DeedsPage(deeds=deeds, seq=last, more=last < parts.journal.head)
+
+
+async def edited(parts: Parts, change: Callable[[], Done]) -> Done:
+    """Change the file beside the event loop, and know at once what is new in it."""
+    try:
+        done = await run_in_threadpool(change)
+    except OSError as error:
+        why = error.strerror or str(error)
+        raise ProblemError(503, f"the file of principals cannot be written: {why}") from error
+    parts.access.look()
+    return done
+
+
+def _role(parts: Parts, name: str) -> Role:
+    found = next((each for each in parts.access.principals.all() if each.name == name), None)
+    if found is None:
+        raise NotFoundError(f"there is no principal '{name}'")
+    return found.role
+
+
+def _deed(text: str) -> Deed | None:
+    # Most events are no deeds, and their type is found without reading all of them.
+    kind = TYPE.search(text)
+    if kind is None or kind.group(1) not in DEEDS:
+        return None
+    return deed_of(any_event.validate_json(text))

@@ -1,0 +1,155 @@
+"""`mend access`: who may do what, and who did what."""
+
+import sys
+from collections.abc import Iterator
+from datetime import UTC, datetime
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from server.access.changes import LONGEST_DAYS, PrincipalsEditor
+from server.access.principals_file import read_principals
+from server.access.roles import Role
+from server.cli.failures import told_plainly
+from server.cli.local_user import local_user
+from server.cli.output import print_rows
+from server.settings import Settings, load_settings
+
+access_app = typer.Typer(
+    name="access",
+    help="Say who may do what, enrol robots, and see who did what.",
+    short_help="Say who may do what, and see who did what.",
+    no_args_is_help=True,
+    rich_markup_mode=None,
+)
+
+Name = Annotated[str, typer.Argument(metavar="NAME", help="The principal's name.")]
+Expires = Annotated[
+    float | None,
+    typer.Option("--expires", metavar="DAYS", min=0.001, max=LONGEST_DAYS, help="For how long."),
+]
+Config = Annotated[Path | None, typer.Option(help="The service's settings in a TOML file.")]
+
+
+class PersonsRole(StrEnum):
+    """The roles that a person may have."""
+
+    VIEWER = "viewer"
+    HELPER = "helper"
+    OPERATOR = "operator"
+    ADMIN = "admin"
+
+
+@access_app.command()
+def add(
+    name: Name,
+    role: Annotated[PersonsRole, typer.Option(help="What they may do; each more than the last.")],
+    expires: Expires = None,
+    config: Config = None,
+) -> None:
+    """Add a principal and print its token, which is kept nowhere else."""
+    with told_plainly():
+        settings = load_settings(config)
+        token = _editor(settings).add(name, Role(role), datetime.now(UTC), expires)
+        typer.echo(token)
+        _warn_without_admin(settings)
+
+
+@access_app.command("list")
+def list_principals(config: Config = None) -> None:
+    """List the principals and the robots that have a credential of their own."""
+    with told_plainly():
+        principals = read_principals(load_settings(config).principals_path)
+    now = datetime.now(UTC)
+    print_rows(
+        [
+            (
+                each.name,
+                str(each.role),
+                f"{each.added:%Y-%m-%d %H:%M}",
+                "" if each.expires is None else f"{each.expires:%Y-%m-%d %H:%M}",
+                "" if each.valid(now) else "expired",
+            )
+            for each in principals.principals
+        ],
+        ("name", "role", "added", "expires", ""),
+    )
+
+
+@access_app.command()
+def rotate(name: Name, expires: Expires = None, config: Config = None) -> None:
+    """Give a principal a new token and print it; the old one and its sessions end."""
+    with told_plainly():
+        typer.echo(_editor(load_settings(config)).rotate(name, datetime.now(UTC), expires))
+
+
+@access_app.command()
+def revoke(name: Name, config: Config = None) -> None:
+    """End a principal: its token, its sessions and its connections."""
+    with told_plainly():
+        _editor(load_settings(config)).revoke(name, datetime.now(UTC))
+
+
+@access_app.command()
+def enrol(
+    robot: Annotated[str, typer.Argument(metavar="ROBOT", help="The robot's name.")],
+    minutes: Annotated[float, typer.Option(min=0.1, max=10_080, help="How long it is good.")] = 15,
+    config: Config = None,
+) -> None:
+    """Print a code with which a robot fetches its own credential, once."""
+    with told_plainly():
+        settings = load_settings(config)
+        typer.echo(_editor(settings).open_enrolment(robot, datetime.now(UTC), minutes))
+        _warn_without_admin(settings)
+
+
+@access_app.command()
+def audit(
+    journal: Annotated[Path | None, typer.Option(help="The journal's file.")] = None,
+    who: Annotated[str | None, typer.Option(help="Only what this principal did.")] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="One JSON object per line.")] = False,
+    config: Config = None,
+) -> None:
+    """List what people did: when, who, from where, what. The service may be running."""
+    # Imported only here: events bring half of the service with them.
+    from server.access.deeds import Deed, deeds_in
+
+    def found(path: Path) -> Iterator[Deed]:
+        return (each for each in deeds_in(path) if who in (None, each.who))
+
+    with told_plainly():
+        path = journal or load_settings(config).journal_path
+        if as_json:
+            for each in found(path):
+                sys.stdout.write(each.model_dump_json() + "\n")
+            return
+        rows: list[tuple[str, ...]] = [
+            (
+                f"{each.when:%Y-%m-%d %H:%M:%S}",
+                each.who or "",
+                str(each.role or ""),
+                each.address or "",
+                each.what,
+            )
+            for each in found(path)
+        ]
+        print_rows(rows, ("when (UTC)", "who", "role", "from", "what"))
+
+
+def _editor(settings: Settings) -> PrincipalsEditor:
+    return PrincipalsEditor(settings.principals_path, by=local_user(), keep_changes=True)
+
+
+def _warn_without_admin(settings: Settings) -> None:
+    """Once there are principals a service asks everybody for a token; somebody should have one."""
+    if settings.token is not None:
+        return
+    principals = read_principals(settings.principals_path).principals
+    if not any(each.role is Role.ADMIN for each in principals):
+        typer.echo(
+            "From now on the service asks everybody for a token, and nobody is an admin yet: "
+            "'mend access add NAME --role admin', or set MEND_TOKEN.",
+            err=True,
+        )

@@ -1,0 +1,22 @@
+"""What was refused because a limit was reached, counted for those who run the service."""
+
+from collections.abc import Mapping
+from types import MappingProxyType
+
+from server.limits import LimitName, Limits
+
+
+class Refusals:
+    """How often something was beyond each limit, since the service started."""
+
+    def __init__(self) -> None:
+        self._counts: dict[str, int] = dict.fromkeys(Limits.model_fields, 0)
+
+    @property
+    def counts(self) -> Mapping[str, int]:
+        """By the limit's name; a limit that was never reached has 0."""
+        return MappingProxyType(self._counts)
+
+    def note(self, limit: LimitName, times: int = 1) -> None:
+        """Something was beyond this limit, and so refused, ended or forgotten."""
+        self._counts[limit] += times

@@ -1,0 +1,95 @@
+"""The server: uvicorn's, which takes its connections from an acceptor of ours."""
+
+import asyncio
+import socket
+import ssl
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import uvicorn
+from fastapi import FastAPI
+from uvicorn.config import STARTUP_FAILURE
+
+from server.accepting import Acceptor
+from server.http_protocol import HttpProtocol
+from server.log_secrets import hide_secrets
+from server.proxies import TrustedProxies
+from server.refusals import Refusals
+from server.settings import Settings
+from server.visitors import STATE_KEY, Visitor, Visitors
+from server.websocket_protocol import WebSocketProtocol
+
+MAX_SOCKET_MESSAGE_BYTES = 4 * 1024 * 1024
+"""Robots send pictures; helpers get an `error` message for anything above 64 KiB."""
+
+
+def serve_config(app: FastAPI, settings: Settings) -> uvicorn.Config:
+    """How uvicorn serves the application."""
+    proxies = TrustedProxies(settings.trusted_proxies)
+    config = uvicorn.Config(
+        app,
+        host=settings.host,
+        port=settings.port,
+        log_level=settings.log_level,
+        http=HttpProtocol,
+        ws=WebSocketProtocol,
+        ws_max_size=MAX_SOCKET_MESSAGE_BYTES,
+        # Compressing the same event again for every client costs more than it saves.
+        ws_per_message_deflate=False,
+        timeout_graceful_shutdown=5,
+        server_header=False,
+        # Anybody can send such headers: they are believed of configured proxies only.
+        proxy_headers=bool(proxies),
+        forwarded_allow_ips=proxies.as_written,
+    )
+    # After the configuration, which sets up uvicorn's loggers.
+    hide_secrets()
+    return config
+
+
+class Server(uvicorn.Server):
+    """A uvicorn within somebody else's event loop, on sockets that are bound already."""
+
+    def __init__(
+        self,
+        config: uvicorn.Config,
+        settings: Settings,
+        refusals: Refusals,
+        tls: ssl.SSLContext | None = None,
+    ) -> None:
+        super().__init__(config)
+        proxies = TrustedProxies(settings.trusted_proxies)
+        self.visitors = Visitors(settings.limits, refusals, time.monotonic, proxies)
+        self._tls = tls
+
+    @contextmanager
+    def capture_signals(self) -> Iterator[None]:
+        """Leave signals to whoever opened the service."""
+        yield
+
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        """Take connections from now on."""
+        await self.lifespan.startup()
+        if self.lifespan.should_exit:
+            sys.exit(STARTUP_FAILURE)
+        acceptors = [
+            Acceptor(each, self._protocol, self.visitors, self._tls) for each in sockets or []
+        ]
+        for acceptor in acceptors:
+            acceptor.start(self.config.backlog)
+        self.servers = acceptors  # type: ignore[assignment]
+        self.started = True
+
+    def _protocol(self, visitor: Visitor) -> asyncio.Protocol:
+        state = self.lifespan.state | {STATE_KEY: visitor}
+        return HttpProtocol(self.config, self.server_state, state)
+
+    async def wait_until_started(self, serving: "asyncio.Task[None]") -> None:
+        """Return once it listens; raises what kept it from doing so."""
+        while not self.started:
+            if serving.done():
+                serving.result()
+                raise OSError("the server ended before it listened")
+            await asyncio.sleep(0.005)

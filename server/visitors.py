@@ -1,0 +1,211 @@
+"""Every connection to the service: how many there may be, and how long each may take for what."""
+
+import logging
+from collections import Counter
+from collections.abc import Callable, Container
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Protocol
+
+from starlette.types import Scope
+
+from server.household import household_of
+from server.limits import LimitName, Limits
+from server.rare_log import RareLog
+from server.refusals import Refusals
+
+log = logging.getLogger(__name__)
+
+STATE_KEY = "visitor"
+"""Under this name a scope's state has the visitor whose request it is."""
+
+
+class Phase(StrEnum):
+    """What a connection is waiting for."""
+
+    HEAD = "head"
+    """The head of a request, or the TLS handshake before the first."""
+    BODY = "body"
+    """The body of a request whose head has come."""
+    SERVICE = "service"
+    """Nothing that its client owes."""
+
+
+class Connection(Protocol):
+    """Of a transport, what shows whether its client reads."""
+
+    def get_write_buffer_size(self) -> int: ...
+
+
+@dataclass(frozen=True, slots=True)
+class Beyond:
+    """Why a connection is not taken, or ended: the limit, and one sentence."""
+
+    limit: LimitName
+    sentence: str
+
+
+End = Callable[[Beyond], None]
+
+
+class Visitor:
+    """One connection. It is a stranger until it is admitted; `end` ends it."""
+
+    def __init__(self, visitors: "Visitors", household: str | None, end: End) -> None:
+        self.household = household
+        self.end = end
+        self.is_admitted = False
+        self.phase = Phase.HEAD
+        self.since = visitors.now()
+        self._visitors = visitors
+        self._connection: Connection | None = None
+        self._unread = 0
+        self._read_at = self.since
+
+    def connected(self, connection: Connection, end: End) -> None:
+        """Its connection is made; `end` is how to end it from now on."""
+        self._connection = connection
+        self.end = end
+
+    def enter(self, phase: Phase) -> None:
+        """Something else is waited for; for the same again it gets no more time."""
+        if phase is not self.phase:
+            self.phase, self.since = phase, self._visitors.now()
+
+    def admit(self) -> None:
+        """It is no stranger any more."""
+        self.is_admitted = True
+        self._visitors.no_stranger(self)
+
+    def leave(self) -> None:
+        """The connection is gone. Saying so twice does nothing."""
+        self._visitors.leave(self)
+
+    def stuck_for_s(self) -> float:
+        """How long its client has taken nothing of what waits for it; 0 if nothing waits."""
+        now = self._visitors.now()
+        unread = 0 if self._connection is None else self._connection.get_write_buffer_size()
+        if unread == 0 or unread < self._unread:
+            self._read_at = now
+        self._unread = unread
+        return now - self._read_at
+
+
+class Visitors:
+    """All connections of one service, within its limits. `now` is any monotonic clock in seconds.
+
+    Who comes from one of `proxies` is not counted by address: many come from the same.
+    """
+
+    def __init__(
+        self,
+        limits: Limits,
+        refusals: Refusals,
+        now: Callable[[], float],
+        proxies: Container[str] = (),
+    ) -> None:
+        self.now = now
+        self._limits = limits
+        self._refusals = refusals
+        self._proxies = proxies
+        self._rare_log = RareLog(log, now)
+        # Both in the order in which they came.
+        self._here: dict[Visitor, None] = {}
+        self._strangers: dict[Visitor, None] = {}
+        self._by_household: Counter[str] = Counter()
+
+    def __len__(self) -> int:
+        return len(self._here)
+
+    def come(self, address: str, end: End) -> Visitor | Beyond:
+        """Somebody has connected: a stranger, unless there is no room.
+
+        Where there are as many strangers as there may be, the one who has been here longest is
+        ended: so whoever shows the token at once comes in, however many others only wait.
+        """
+        household = None if address in self._proxies else household_of(address)
+        beyond = self._no_room(household)
+        if beyond is not None:
+            self._note(beyond)
+            return beyond
+        if len(self._strangers) >= self._limits.strangers:
+            self._end(next(iter(self._strangers)), self._too_many_strangers())
+        visitor = Visitor(self, household, end)
+        self._here[visitor] = self._strangers[visitor] = None
+        if household is not None:
+            self._by_household[household] += 1
+        return visitor
+
+    def _no_room(self, household: str | None) -> Beyond | None:
+        limits = self._limits
+        if len(self._here) >= limits.connections:
+            return Beyond(
+                "connections", f"the service has {limits.connections} connections and takes no more"
+            )
+        if household is None or self._by_household[household] < limits.strangers_per_address:
+            return None
+        return Beyond(
+            "strangers_per_address",
+            f"{limits.strangers_per_address} connections from {household} have not shown the "
+            "token yet, and no more are taken from there",
+        )
+
+    def _too_many_strangers(self) -> Beyond:
+        most = self._limits.strangers
+        return Beyond(
+            "strangers",
+            f"more than {most} connections had not shown the token: the oldest was ended",
+        )
+
+    def no_stranger(self, visitor: Visitor) -> None:
+        """It is not counted as one any more."""
+        if visitor not in self._strangers:
+            return
+        del self._strangers[visitor]
+        if visitor.household is not None:
+            self._by_household[visitor.household] -= 1
+            if self._by_household[visitor.household] == 0:
+                del self._by_household[visitor.household]
+
+    def leave(self, visitor: Visitor) -> None:
+        """Its connection is gone."""
+        self._here.pop(visitor, None)
+        self.no_stranger(visitor)
+
+    def end_overdue(self) -> None:
+        """End every connection whose client has taken too long for what it owes."""
+        for visitor in tuple(self._here):
+            beyond = self._overdue(visitor)
+            if beyond is not None:
+                self._end(visitor, beyond)
+
+    def _overdue(self, visitor: Visitor) -> Beyond | None:
+        limits, waited_s = self._limits, self.now() - visitor.since
+        if visitor.stuck_for_s() >= limits.stuck_client_s:
+            sentence = (
+                f"the client took nothing of what it was sent for {limits.stuck_client_s:g} s"
+            )
+            return Beyond("stuck_client_s", sentence)
+        if visitor.phase is Phase.HEAD and waited_s >= limits.head_s:
+            return Beyond("head_s", f"no request came within {limits.head_s:g} s")
+        if visitor.phase is Phase.BODY and waited_s >= limits.body_s:
+            return Beyond("body_s", f"the request's body did not come within {limits.body_s:g} s")
+        return None
+
+    def _end(self, visitor: Visitor, beyond: Beyond) -> None:
+        self._note(beyond)
+        # So that it is ended once.
+        visitor.enter(Phase.SERVICE)
+        self.no_stranger(visitor)
+        visitor.end(beyond)
+
+    def _note(self, beyond: Beyond) -> None:
+        self._refusals.note(beyond.limit)
+        self._rare_log.warn(beyond.limit, f"{beyond.limit}: {beyond.sentence}")
+
+
+def visitor_of(scope: Scope) -> Visitor | None:
+    """Whose request it is; None where there is no connection, as in a test of the application."""
+    visitor = scope.get("state", {}).get(STATE_KEY)
+    assert visitor is None or isinstance(visitor, Visitor)
+    return visitor

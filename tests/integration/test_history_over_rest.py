@@ -1,0 +1,141 @@
+"""A service with a past: over REST, damaged in places, and pruned as it is told to."""
+
+import sqlite3
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager, closing
+from pathlib import Path
+from typing import Any
+
+import httpx
+import pytest
+from made_up_history import made_up_run, picture_id, run_id, write_history
+
+from server.client import MendClient
+from server.composition import open_service
+from server.retention import KeepSettings
+from server.runtime.views import Snapshot
+from server.settings import Settings
+
+RUNS = 12
+EVENTS = len(made_up_run())
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    write_history(tmp_path / "journal.db", RUNS, pictures=True)
+    return tmp_path
+
+
+@asynccontextmanager
+async def service(folder: Path, **more: Any) -> AsyncIterator[httpx.AsyncClient]:
+    settings = Settings(
+        port=0, data_dir=folder, speech_voice="none", speech_recognition=False, log_level="error",
+        **more,
+    )  # fmt: skip
+    async with (
+        open_service(settings) as opened,
+        httpx.AsyncClient(base_url=opened.url, timeout=60) as client,
+    ):
+        yield client
+
+
+def alter(folder: Path, statement: str, *parameters: object) -> None:
+    with closing(sqlite3.connect(folder / "journal.db")) as connection, connection:
+        connection.execute(statement, parameters)
+
+
+async def test_the_list_goes_on_from_a_run(folder: Path) -> None:
+    async with service(folder) as client:
+        pages: list[str] = []
+        cursor: dict[str, str] = {}
+        while page := (await client.get("/api/runs", params={"limit": 5, **cursor})).json():
+            pages += [each["id"] for each in page]
+            cursor = {"before": pages[-1]}
+        assert pages == [str(run_id(n)) for n in reversed(range(RUNS))]
+        unknown = await client.get("/api/runs", params={"before": str(picture_id(0))})
+        assert unknown.status_code == 404
+        assert "after which the list could go on" in unknown.json()["detail"]
+
+
+async def test_a_run_that_cannot_be_read_is_told_everywhere(folder: Path) -> None:
+    last = str(run_id(RUNS - 1))
+    alter(folder, "UPDATE events SET body = '{}' WHERE type = 'answered' AND run = ?", last)
+    async with service(folder) as client:
+        [listed, _] = (await client.get("/api/runs", params={"limit": 2})).json()
+        assert (listed["id"], listed["status"]) == (last, "unreadable")
+        assert "is damaged" in listed["result"]["reason"]
+        view = await client.get(f"/api/runs/{last}")
+        assert view.status_code == 500
+        assert "is damaged" in view.json()["detail"]
+        ready = await client.get("/readyz")
+        assert ready.status_code == 200
+        assert (ready.json()["status"], ready.json()["unreadable_runs"]) == ("degraded", 1)
+        assert "not what was committed" in ready.json()["damage"][0]
+        metrics = (await client.get("/metrics")).text
+        assert "mend_unreadable_runs 1.0" in metrics
+        assert "mend_journal_damage 1.0" in metrics
+        assert (await client.get("/api/runs", params={"status": "finished"})).status_code == 200
+
+
+async def test_an_ended_run_that_turns_out_to_be_damaged_is_listed_so_from_then_on(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    first = str(run_id(0))
+    alter(folder, "UPDATE events SET body = '{}' WHERE type = 'answered' AND run = ?", first)
+    monkeypatch.setattr("server.journal.quick_check.TAIL_BATCHES", 2)
+    async with service(folder) as client:
+        assert (await client.get("/readyz")).json()["status"] == "ok"
+    for _ in range(2):
+        async with service(folder) as client:
+            view = await client.get(f"/api/runs/{first}")
+            assert view.status_code == 500
+            page = (await client.get("/api/runs", params={"status": "unreadable"})).json()
+            assert [each["id"] for each in page] == [first]
+
+
+async def test_a_journal_whose_file_goes_is_not_ready(folder: Path) -> None:
+    async with service(folder) as client:
+        assert (await client.get("/readyz")).status_code == 200
+        (folder / "journal.db").rename(folder / "elsewhere.db")
+        gone = await client.get("/readyz")
+        assert gone.status_code == 503
+        assert "was deleted or moved" in gone.json()["detail"]
+        refused = await client.post("/api/runs", json={"tree": "eket", "world": "tabletop"})
+        assert refused.status_code == 503
+
+
+async def test_a_service_prunes_what_it_is_told_not_to_keep(folder: Path) -> None:
+    poses = folder / "journal.poses"
+    poses.mkdir()
+    for number in (0, RUNS - 1):
+        (poses / f"{run_id(number)}.poses").write_bytes(b"")
+        (poses / f"{run_id(number)}.layout.json").write_text("{}")
+    async with service(folder, keep=KeepSettings(runs=2)) as client:
+        # The events go after the runs, and a picture with its event.
+        last_to_go = f"/api/pictures/{picture_id(RUNS - 3)}"
+        while (await client.get(last_to_go)).status_code == 200:
+            pass
+        for path in ("", "/events", "/layout", "/poses"):
+            gone = await client.get(f"/api/runs/{run_id(0)}{path}")
+            assert gone.status_code == 404
+            assert "ended runs have been pruned" in gone.json()["detail"]
+        assert (await client.get(f"/api/pictures/{picture_id(0)}")).status_code == 404
+        assert (await client.get(f"/api/pictures/{picture_id(RUNS - 1)}")).status_code == 200
+    left = {each.name for each in poses.iterdir()}
+    assert left == {f"{run_id(RUNS - 1)}.poses", f"{run_id(RUNS - 1)}.layout.json"}
+
+
+async def test_a_client_that_follows_from_before_what_was_pruned_begins_anew(
+    folder: Path,
+) -> None:
+    async with service(folder, keep=KeepSettings(runs=1)) as client:
+        while (await client.get(f"/api/pictures/{picture_id(RUNS - 2)}")).status_code == 200:
+            pass
+        async with (
+            MendClient(str(client.base_url)) as mend,
+            mend.follow("anna", after=3) as stream,
+        ):
+            async for message in stream:
+                assert isinstance(message, Snapshot)
+                assert message.seq == RUNS * EVENTS
+                break

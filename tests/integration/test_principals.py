@@ -1,0 +1,375 @@
+"""People and robots with credentials of their own, at a real service over real sockets."""
+
+import asyncio
+import json
+from collections.abc import AsyncIterator
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+from uuid import UUID
+
+import httpx
+import pytest
+from people import NAMES, People, serving_people
+from service_under_test import TOKEN, ServiceUnderTest, serving
+from websockets.asyncio.client import ClientConnection, connect
+
+from server.access.deeds import deeds_in
+from server.access.roles import Role
+from server.access.sessions import SESSION_LIFETIME_S
+from server.client import MendClient
+from server.composition import open_service
+from server.journal import events as ev
+from server.settings import Settings
+
+Served = tuple[ServiceUnderTest, People]
+RUN = {"tree": "eket", "world": "tabletop"}
+
+
+@pytest.fixture
+async def served(tmp_path: Path) -> AsyncIterator[Served]:
+    async with serving_people(tmp_path) as served:
+        yield served
+
+
+def as_a(served: Served, role: Role) -> httpx.AsyncClient:
+    service, people = served
+    return httpx.AsyncClient(base_url=service.url, headers=people.headers(role))
+
+
+async def message(socket: ClientConnection) -> Any:
+    async with asyncio.timeout(60):
+        return json.loads(await socket.recv())
+
+
+async def close_code(socket: ClientConnection) -> int | None:
+    async with asyncio.timeout(60):
+        await socket.wait_closed()
+    return socket.close_code
+
+
+async def sign_in(client: httpx.AsyncClient, token: str) -> str:
+    answer = await client.post("/api/session", json={"token": token})
+    assert answer.status_code == 204
+    return client.cookies["mend_session"]
+
+
+async def with_cookie(service: ServiceUnderTest, cookie: str) -> int:
+    async with httpx.AsyncClient(base_url=service.url) as client:
+        headers = {"Cookie": f"mend_session={cookie}"}
+        return (await client.get("/api/runs", headers=headers)).status_code
+
+
+# --- Sessions -------------------------------------------------------------------------------------
+
+
+async def test_a_cookie_that_was_signed_out_opens_nothing_wherever_it_was_copied_to() -> None:
+    async with (
+        serving(token=TOKEN) as service,
+        httpx.AsyncClient(base_url=service.url) as client,
+    ):
+        copied = await sign_in(client, TOKEN)
+        assert await with_cookie(service, copied) == 200
+        assert (await client.delete("/api/session")).status_code == 204
+        assert await with_cookie(service, copied) == 401
+
+
+async def test_signing_in_again_ends_the_session_before(served: Served) -> None:
+    service, people = served
+    async with httpx.AsyncClient(base_url=service.url) as client:
+        first = await sign_in(client, people.tokens[Role.HELPER])
+        second = await sign_in(client, people.tokens[Role.HELPER])
+    assert first != second
+    assert await with_cookie(service, first) == 401
+    assert await with_cookie(service, second) == 200
+
+
+@pytest.mark.parametrize("how", ["revoke", "rotate"])
+async def test_sessions_end_with_the_credential_that_began_them(served: Served, how: str) -> None:
+    service, people = served
+    async with httpx.AsyncClient(base_url=service.url) as client:
+        cookie = await sign_in(client, people.tokens[Role.HELPER])
+    assert await with_cookie(service, cookie) == 200
+    getattr(people.editor, how)(NAMES[Role.HELPER], datetime.now(UTC))
+    assert await with_cookie(service, cookie) == 401
+
+
+async def test_a_session_says_whose_it_is(served: Served) -> None:
+    service, people = served
+    async with httpx.AsyncClient(base_url=service.url) as client:
+        await sign_in(client, people.tokens[Role.HELPER])
+        view = (await client.get("/api/session")).json()
+    assert view == {"required": True, "signed_in": True, "name": "henri", "role": "helper"}
+
+
+async def test_a_robot_cannot_sign_in(served: Served) -> None:
+    service, people = served
+    async with httpx.AsyncClient(base_url=service.url) as client:
+        answer = await client.post("/api/session", json={"token": people.tokens[Role.ROBOT]})
+    assert answer.status_code == 403
+    assert "credential of a robot" in answer.json()["detail"]
+
+
+# --- Connections ----------------------------------------------------------------------------------
+
+
+async def test_the_open_socket_of_somebody_revoked_is_closed(served: Served) -> None:
+    service, people = served
+    async with connect(service.ws, additional_headers=people.headers(Role.HELPER)) as socket:
+        assert (await message(socket))["type"] == "snapshot"
+        people.revoke(Role.HELPER)
+        async with as_a(served, Role.VIEWER) as other:
+            assert (await other.get("/api/runs")).status_code == 200
+        assert await close_code(socket) == 1008
+
+
+async def test_the_open_socket_of_a_session_is_closed_when_that_is_signed_out(
+    served: Served,
+) -> None:
+    service, people = served
+    async with httpx.AsyncClient(base_url=service.url) as client:
+        cookie = await sign_in(client, people.tokens[Role.HELPER])
+        headers = {"Cookie": f"mend_session={cookie}"}
+        async with connect(service.ws, additional_headers=headers) as socket:
+            await message(socket)
+            await client.delete("/api/session")
+            assert await close_code(socket) == 1008
+
+
+async def test_a_message_after_a_change_of_the_file_finds_the_new_role(served: Served) -> None:
+    service, people = served
+    async with connect(service.ws, additional_headers=people.headers(Role.HELPER)) as socket:
+        await message(socket)
+        text = people.file.read_text()
+        people.file.write_text(text.replace("role: helper\n  id", "role: viewer\n  id"))
+        dialogue = "2dc8e3f6-6479-4c12-9baf-d2534d0b7e34"
+        await socket.send(json.dumps({"type": "claim", "id": 1, "dialogue": dialogue}))
+        refusal = await message(socket)
+    assert (refusal["id"], refusal["status"]) == (1, 403)
+    assert "this needs the role 'helper'; you are a viewer" in refusal["detail"]
+
+
+# --- Who did it -----------------------------------------------------------------------------------
+
+
+async def test_a_helper_is_called_by_the_name_of_the_token(served: Served) -> None:
+    service, people = served
+    run = await start(served)
+    view = await service.runs.raise_issue(run)
+    assert view.prompt is not None
+    address = f"{service.ws}?helper=somebody_else"
+    async with connect(address, additional_headers=people.headers(Role.HELPER)) as socket:
+        await message(socket)
+        claim = {"type": "claim", "dialogue": str(view.dialogue)}
+        await socket.send(json.dumps(claim))
+    async with as_a(served, Role.HELPER) as client:
+        answer = await client.post(
+            f"/api/dialogues/{view.dialogue}/answers",
+            json={"prompt": str(view.prompt.prompt), "answer": "yes", "helper": "anna"},
+        )
+    assert answer.status_code == 201
+    assert answer.json()["helper"] == "henri"
+    assert answer.json()["author"] == {
+        "principal": "henri", "role": "helper", "address": "127.0.0.1",
+    }  # fmt: skip
+    (claimed,) = await of_type(service, ev.Claimed)
+    assert (claimed.helper, claimed.author.principal) == ("henri", "henri")
+
+
+async def test_with_the_services_token_helpers_say_their_names(tmp_path: Path) -> None:
+    async with serving_people(tmp_path, token=TOKEN) as (service, _):
+        headers = {"Authorization": f"Bearer {TOKEN}"}
+        async with httpx.AsyncClient(base_url=service.url, headers=headers) as client:
+            run = UUID((await client.post("/api/runs", json=RUN)).json()["id"])
+            view = await service.runs.raise_issue(run)
+            address = f"/api/dialogues/{view.dialogue}/claim"
+            assert (await client.post(address, json={})).status_code == 422
+            assert (await client.post(address, json={"helper": "anna"})).status_code == 200
+        (claimed,) = await of_type(service, ev.Claimed)
+        assert claimed.helper == "anna"
+        assert (claimed.author.principal, claimed.author.role) == ("token", "admin")
+        async with connect(service.ws, additional_headers=headers) as socket:
+            assert (await message(socket))["errors"] == [
+                "helper: is missing: with this token everybody says who it is"
+            ]
+
+
+async def test_what_an_operator_does_names_them(served: Served) -> None:
+    service, _ = served
+    run = await start(served)
+    async with as_a(served, Role.OPERATOR) as client:
+        for what in ("pause", "resume"):
+            assert (await client.post(f"/api/runs/{run}/{what}")).status_code == 200
+        steal = {"act": "steal", "object": "pink_bar"}
+        answer = await client.post(f"/api/runs/{run}/interventions", json=steal)
+        assert answer.status_code == 201
+        assert (await client.post(f"/api/runs/{run}/abort")).status_code == 200
+        tree = {"name": "mine", "text": "then: []"}
+        assert (await client.post("/api/trees", json=tree)).status_code == 201
+        assert (await client.put("/api/trees/mine", json=tree)).status_code == 200
+        assert (await client.delete("/api/trees/mine")).status_code == 204
+        assert (await client.delete("/api/trees/mine")).status_code == 404
+    olga = ev.Author(principal="olga", role=Role.OPERATOR, address="127.0.0.1")
+    events = await service.journal.read(0, 100)
+    done = [each for each in events if getattr(each, "author", None) == olga]
+    assert [each.type for each in done] == [  # type: ignore[attr-defined]
+        "run_started", "run_paused", "run_resumed", "intervention_accepted", "run_aborted",
+        "document_kept", "document_kept", "document_deleted",
+    ]  # fmt: skip
+
+
+async def test_the_audit_is_for_admins_and_tells_who_did_what_from_where(served: Served) -> None:
+    service, people = served
+    run = await start(served)
+    async with httpx.AsyncClient(base_url=service.url) as client:
+        await sign_in(client, people.tokens[Role.HELPER])
+        wrong = {"Authorization": "Bearer wrong"}
+        assert (await client.get("/api/runs", headers=wrong)).status_code == 401
+        assert (await client.delete("/api/session")).status_code == 204
+    async with as_a(served, Role.ADMIN) as admin:
+        page = (await admin.get("/api/access/deeds")).json()
+        of_olga = (await admin.get("/api/access/deeds", params={"who": "olga"})).json()
+        first = (await admin.get("/api/access/deeds", params={"limit": 1})).json()
+        after = {"after": first["seq"]}
+        rest = (await admin.get("/api/access/deeds", params=after)).json()
+    told = [(each["deed"], each["who"], each["address"]) for each in page["deeds"]]
+    assert sorted(told, key=str) == sorted(
+        [
+            ("run_started", "olga", "127.0.0.1"),
+            ("signed_in", "henri", "127.0.0.1"),
+            ("sign_in_failed", None, "127.0.0.1"),
+            ("signed_out", "henri", "127.0.0.1"),
+        ],
+        key=str,
+    )
+    assert [each["run"] for each in of_olga["deeds"]] == [str(run)]
+    assert first["more"]
+    assert not rest["more"]
+    assert first["deeds"] + rest["deeds"] == page["deeds"]
+
+
+async def test_helpers_hear_nothing_of_what_belongs_to_no_run(served: Served) -> None:
+    service, people = served
+    async with connect(service.ws, additional_headers=people.headers(Role.ADMIN)) as socket:
+        await message(socket)
+        async with as_a(served, Role.OPERATOR) as client:
+            tree = {"name": "mine", "text": "then: []"}
+            assert (await client.post("/api/trees", json=tree)).status_code == 201
+        await start(served)
+        assert (await message(socket))["type"] == "run_started"
+
+
+async def test_the_events_of_no_run_are_not_those_of_a_run(served: Served) -> None:
+    async with as_a(served, Role.OPERATOR) as client:
+        tree = {"name": "mine", "text": "then: []"}
+        assert (await client.post("/api/trees", json=tree)).status_code == 201
+        assert (await client.get(f"/api/runs/{ev.NO_RUN}/events")).status_code == 404
+
+
+async def test_nobody_need_ask_anything_for_somebody_revoked_to_be_let_go(tmp_path: Path) -> None:
+    people = People(tmp_path)
+    settings = Settings(port=0, data_dir=tmp_path, speech_voice="none")
+    async with open_service(settings) as service:
+        address = service.url.replace("http", "ws", 1) + "/ws/helper"
+        async with connect(address, additional_headers=people.headers(Role.HELPER)) as socket:
+            assert (await message(socket))["type"] == "snapshot"
+            people.revoke(Role.HELPER)
+            assert await close_code(socket) == 1008
+
+
+async def test_an_open_socket_ends_with_its_session() -> None:
+    clock = [1_000_000.0]
+    async with serving(token=TOKEN, wall_time_s=lambda: clock[0]) as service:
+        async with httpx.AsyncClient(base_url=service.url) as client:
+            headers = {"Cookie": f"mend_session={await sign_in(client, TOKEN)}"}
+        async with connect(f"{service.ws}?helper=anna", additional_headers=headers) as socket:
+            await message(socket)
+            clock[0] += SESSION_LIFETIME_S
+            service.access.let_go()
+            assert await close_code(socket) == 1008
+
+
+# --- Admins ---------------------------------------------------------------------------------------
+
+
+async def test_an_admin_adds_rotates_and_revokes_over_rest(served: Served) -> None:
+    service, _ = served
+    async with as_a(served, Role.ADMIN) as admin:
+        body = {"name": "nina", "role": "helper", "expires_days": 1}
+        token = (await admin.post("/api/access/principals", json=body)).json()["token"]
+        again = await admin.post("/api/access/principals", json=body)
+        assert again.status_code == 409
+        assert await status(service, token) == 200
+        listed = (await admin.get("/api/access/principals")).json()
+        assert [each["name"] for each in listed][-1] == "nina"
+        assert token not in json.dumps(listed)
+        rotated = await admin.post("/api/access/principals/nina/rotate", json={})
+        assert await status(service, token) == 401
+        assert await status(service, rotated.json()["token"]) == 200
+        assert (await admin.delete("/api/access/principals/nina")).status_code == 204
+        assert await status(service, rotated.json()["token"]) == 401
+        assert (await admin.delete("/api/access/principals/nina")).status_code == 404
+        reserved = {"name": "token", "role": "admin"}
+        answer = await admin.post("/api/access/principals", json=reserved)
+        assert answer.status_code == 422
+    await service.deeds.written()
+    changes = await of_type(service, ev.AccessChanged)
+    assert [(each.what, each.principal, each.author.principal) for each in changes] == [
+        (what, "nina", "ada") for what in ("added", "rotated", "revoked")
+    ]
+
+
+async def test_the_client_manages_access_and_reads_deeds(served: Served) -> None:
+    service, people = served
+    async with MendClient(service.url, token=people.tokens[Role.ADMIN]) as admin:
+        given = await admin.add_principal("nina & co", "viewer", expires_days=2)
+        assert await status(service, given.token) == 200
+        rotated = await admin.rotate_principal("nina & co")
+        assert await status(service, given.token) == 401
+        assert [each.name for each in await admin.principals()][-1] == "nina & co"
+        await admin.revoke_principal("nina & co")
+        assert await status(service, rotated.token) == 401
+        assert (await admin.open_enrolment("arm-7", minutes=1)).robot == "arm-7"
+        await service.deeds.written()
+        deeds = (await admin.deeds(who="ada")).deeds
+    assert [each.what for each in deeds] == [
+        "added 'nina & co' as a viewer",
+        "gave 'nina & co' a new token",
+        "revoked 'nina & co'",
+        "made a code for the robot 'arm-7'",
+    ]
+
+
+async def test_the_audit_of_a_journal_that_is_in_use_is_read_from_its_file(tmp_path: Path) -> None:
+    People(tmp_path)
+    settings = Settings(port=0, data_dir=tmp_path, speech_voice="none")
+    async with open_service(settings) as service, asyncio.timeout(60):
+        with service.journal.subscribe(0) as subscription:
+            async for record in subscription:
+                if record.seq == len(NAMES):
+                    break
+        deeds = list(deeds_in(settings.journal_path))
+    assert [(each.who, each.what) for each in deeds] == [
+        ("root", f"added '{name}' as {'an' if name in ('olga', 'ada') else 'a'} {role}")
+        for role, name in NAMES.items()
+    ]
+
+
+# --- What they share ------------------------------------------------------------------------------
+
+
+async def start(served: Served) -> UUID:
+    async with as_a(served, Role.OPERATOR) as client:
+        answer = await client.post("/api/runs", json=RUN)
+    assert answer.status_code == 201
+    return UUID(answer.json()["id"])
+
+
+async def status(service: ServiceUnderTest, token: str) -> int:
+    headers = {"Authorization": f"Bearer {token}"}
+    async with httpx.AsyncClient(base_url=service.url, headers=headers) as client:
+        return (await client.get("/api/runs")).status_code
+
+
+async def of_type(service: ServiceUnderTest, kind: type[ev.Event]) -> list[Any]:
+    return [each for each in await service.journal.read(0, 1000) if isinstance(each, kind)]

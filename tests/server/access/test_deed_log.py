@@ -1,0 +1,91 @@
+"""What people do to the service is journaled, and nobody can flood the journal with sign-ins."""
+
+from collections.abc import AsyncIterator
+from datetime import UTC, datetime, timedelta
+from uuid import uuid4
+
+import pytest
+
+from server.access.deed_log import DeedLog
+from server.access.principal import Caller, Principal
+from server.access.principals_file import Change
+from server.access.roles import Role
+from server.access.sessions import Sessions
+from server.journal import events as ev
+from server.journal.sqlite import SqliteJournal
+
+ANNA = Principal("anna", Role.HELPER, "key")
+
+
+class Clock:
+    def __init__(self) -> None:
+        self.now = datetime(2026, 5, 4, 12, tzinfo=UTC)
+
+    def __call__(self) -> datetime:
+        return self.now
+
+
+@pytest.fixture
+async def journal() -> AsyncIterator[SqliteJournal]:
+    journal = SqliteJournal(":memory:")
+    yield journal
+    journal.close()
+
+
+async def test_ten_thousand_wrong_tokens_make_two_events(journal: SqliteJournal) -> None:
+    clock = Clock()
+    deeds = DeedLog(journal, clock)
+    for number in range(10_000):
+        deeds.failed(f"10.0.{number // 256}.{number % 256}")
+    clock.now += timedelta(minutes=1)
+    deeds.tell_due()
+    await deeds.written()
+    first, second = await journal.read(0, 10, ev.NO_RUN)
+    assert isinstance(first, ev.SignInFailed)
+    assert isinstance(second, ev.SignInFailed)
+    assert (first.times, second.times) == (1, 9_999)
+    assert len(second.addresses) == 20
+    assert second.elsewhere == 9_979
+
+
+async def test_sign_ins_of_one_principal_are_told_once_a_minute(journal: SqliteJournal) -> None:
+    clock = Clock()
+    deeds = DeedLog(journal, clock)
+    for _ in range(5):
+        deeds.signed_in(ANNA, "10.0.0.1")
+    await deeds.close()
+    told = [each for each in await journal.read(0, 10) if isinstance(each, ev.SignedIn)]
+    assert [(each.principal, each.times) for each in told] == [("anna", 1), ("anna", 4)]
+    assert told[1].addresses == [ev.AddressCount(address="10.0.0.1", times=4)]
+
+
+async def test_a_session_that_was_ended_stays_so_after_a_restart(journal: SqliteJournal) -> None:
+    clock = Clock()
+    key, wall = b"k" * 32, clock.now.timestamp
+    sessions = Sessions(key, wall)
+    session, cookie = sessions.new(ANNA)
+    deeds = DeedLog(journal, clock)
+    deeds.signed_out(session, Caller(ANNA, "10.0.0.1", session.id))
+    await deeds.close()
+    again = Sessions(key, wall)
+    assert again.read(cookie) is not None
+    await DeedLog(journal, clock).recover(again)
+    assert again.read(cookie) is None
+
+
+async def test_a_change_of_the_file_is_journaled_once_also_after_a_restart(
+    journal: SqliteJournal,
+) -> None:
+    clock = Clock()
+    change = Change(
+        id=uuid4(), when=clock.now, by="root", what="revoked", name="anna", role=Role.HELPER
+    )
+    for _ in range(2):
+        deeds = DeedLog(journal, clock)
+        await deeds.recover(Sessions(b"k" * 32, clock.now.timestamp))
+        deeds.take_changes([change])
+        deeds.take_changes([change])
+        await deeds.close()
+    (event,) = await journal.read(0, 10)
+    assert isinstance(event, ev.AccessChanged)
+    assert (event.what, event.principal, event.author.principal) == ("revoked", "anna", "root")

@@ -1,0 +1,177 @@
+"""Backups: whole while the journal is written, and put back as they were made."""
+
+import asyncio
+import json
+import sqlite3
+from collections.abc import AsyncIterator
+from contextlib import closing
+from pathlib import Path
+
+import pytest
+from checked_journal import checked, truncated
+from made_up_history import write_history
+from sample_events import paused
+from service_process import service_process
+from typer.testing import CliRunner
+
+from server.cli import app
+from server.client import MendClient
+from server.client_stream import EventStream
+from server.journal.backup import BackupError, back_up, restore
+from server.journal.events import Event
+from server.journal.file_lock import JournalLockedError
+from server.journal.journal import Entry
+from server.journal.migrations import JournalSchemaError
+from server.journal.sqlite import SqliteJournal
+from server.runtime.requests import RunRequest
+from server.runtime.views import Snapshot
+
+
+def contents(path: Path) -> list[str]:
+    with closing(sqlite3.connect(path)) as connection:
+        return list(connection.iterdump())
+
+
+async def test_a_copy_made_while_the_journal_is_written_is_whole(tmp_path: Path) -> None:
+    path, target = tmp_path / "journal.db", tmp_path / "copy.db"
+    write_history(path, 20)
+    journal = SqliteJournal(path)
+    stop = asyncio.Event()
+
+    async def write() -> int:
+        count = 0
+        while not stop.is_set():
+            await journal.append(Entry(events=[paused(float(count))]))
+            count += 1
+        return count
+
+    writing = asyncio.create_task(write())
+    for _ in range(5):
+        await asyncio.to_thread(back_up, path, target, force=True)
+        broken = [
+            e for e in checked(target).findings if "chain" in e.sentence or "commit" in e.sentence
+        ]
+        assert broken == []
+    stop.set()
+    assert await writing > 0
+    journal.close()
+
+
+def test_a_restored_journal_is_the_one_that_was_backed_up(tmp_path: Path) -> None:
+    path, target = tmp_path / "journal.db", tmp_path / "copy.db"
+    write_history(path, 3)
+    before = contents(path)
+    back_up(path, target)
+    write_history(path, 2, first=3)
+    assert contents(path) != before
+    restore(target, path, force=True)
+    assert contents(path) == before
+    assert sorted(each.name for each in tmp_path.iterdir()) == [
+        "copy.db", "journal.db", "journal.db.lock",
+    ]  # fmt: skip
+
+
+async def test_what_the_log_of_the_old_journal_holds_does_not_spoil_the_restored_one(
+    tmp_path: Path,
+) -> None:
+    path, target = tmp_path / "journal.db", tmp_path / "copy.db"
+    write_history(path, 3)
+    back_up(path, target)
+    before = contents(target)
+    journal = SqliteJournal(path)
+    for number in range(200):
+        await journal.append(Entry(events=[paused(float(number))]))
+    log = path.with_name("journal.db-wal").read_bytes()
+    journal.close()
+    # As a kill leaves it.
+    path.with_name("journal.db-wal").write_bytes(log)
+    restore(target, path, force=True)
+    assert contents(path) == before
+
+
+def test_a_file_that_is_there_is_replaced_only_by_force(tmp_path: Path) -> None:
+    path, target = tmp_path / "journal.db", tmp_path / "copy.db"
+    write_history(path, 1)
+    target.write_text("precious")
+    with pytest.raises(BackupError, match="is there already: give --force"):
+        back_up(path, target)
+    assert target.read_text() == "precious"
+    back_up(path, target, force=True)
+    with pytest.raises(BackupError, match="is there already"):
+        restore(target, path)
+    with pytest.raises(BackupError, match="is the journal itself"):
+        back_up(path, path, force=True)
+    with pytest.raises(BackupError, match="is a directory"):
+        back_up(path, tmp_path)
+
+
+def test_a_damaged_backup_replaces_nothing(tmp_path: Path) -> None:
+    path, target = tmp_path / "journal.db", tmp_path / "copy.db"
+    write_history(path, 30, pictures=True)
+    back_up(path, target)
+    before = contents(path)
+    truncated(target)
+    with pytest.raises((BackupError, JournalSchemaError)):
+        restore(target, path, force=True)
+    assert contents(path) == before
+
+
+def test_a_journal_in_use_is_not_replaced(tmp_path: Path) -> None:
+    path, target = tmp_path / "journal.db", tmp_path / "copy.db"
+    write_history(path, 1)
+    back_up(path, target)
+    journal = SqliteJournal(path)
+    with pytest.raises(JournalLockedError):
+        restore(target, path, force=True)
+    journal.close()
+
+
+async def aislice(stream: EventStream, count: int) -> AsyncIterator[Snapshot | Event]:
+    async for message in stream:
+        yield message
+        count -= 1
+        if count == 0:
+            return
+
+
+def mend(*arguments: str) -> tuple[int, str]:
+    outcome = CliRunner().invoke(app, ["journal", *arguments])
+    return outcome.exit_code, outcome.output + str(outcome.exception or "")
+
+
+def test_all_of_it_from_the_command_line(tmp_path: Path) -> None:
+    path, target = tmp_path / "journal.db", tmp_path / "copy.db"
+    write_history(path, 5)
+    assert mend("backup", str(target), "--journal", str(path))[0] == 0
+    code, output = mend("prune", "--runs", "2", "--journal", str(path))
+    assert (code, "3 runs" in output) == (0, True)
+    assert mend("check", str(path)) == (0, f"{path}: 2 runs, {2 * 48} events, nothing is wrong\n")
+    assert mend("restore", str(target), "--journal", str(path))[0] != 0
+    assert mend("restore", str(target), "--journal", str(path), "--force")[0] == 0
+    assert mend("check", str(path))[1].startswith(f"{path}: 5 runs")
+    assert "--runs: " in mend("prune", "--runs", "0", "--journal", str(path))[1]
+
+
+@pytest.mark.slow
+async def test_a_backup_of_a_killed_service_goes_on_where_it_was(tmp_path: Path) -> None:
+    target = tmp_path / "copy.db"
+    async with service_process(tmp_path) as service:
+        async with MendClient(service.url) as client:
+            run = await client.start_run(
+                RunRequest(tree="eket", world="tabletop", speed=5.0, answers=["yes"] * 9)
+            )
+            async with asyncio.timeout(60), client.follow("watcher", after=0) as stream:
+                seen = [message async for message in aislice(stream, 6)]
+            assert len(seen) == 6
+            await asyncio.to_thread(back_up, service.journal, target)
+            known = [each.seq for each in await client.events(run.id, limit=1000)]
+        await service.kill()
+        await asyncio.to_thread(restore, target, service.journal, force=True)
+        await service.start()
+        async with MendClient(service.url) as client:
+            ended = await client.wait_for_end(run.id)
+            after = [each.seq for each in await client.events(run.id, limit=1000)]
+            ready = json.loads((await client._request("GET", "/readyz")).content)
+    assert ended.status == "finished"
+    assert known[:5] == after[:5]
+    assert ready == {"status": "ok", "unreadable_runs": 0, "damage": []}

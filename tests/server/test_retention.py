@@ -1,0 +1,55 @@
+"""A service prunes again and again, and lets nothing that fails keep it from that."""
+
+from collections.abc import Callable
+from datetime import UTC, datetime
+from uuid import UUID, uuid4
+
+from server.journal.journal import JournalClosedError, JournalWriteError
+from server.journal.pruning import Keep, Pruned
+from server.retention import EVERY_S, prune_regularly
+
+NOW = datetime(2026, 1, 1, tzinfo=UTC)
+
+
+class PretendJournal:
+    """Fails at its second pruning, and is closed at its fourth."""
+
+    def __init__(self, run: UUID) -> None:
+        self.asked: list[tuple[Keep, datetime]] = []
+        self._run = run
+
+    async def prune(self, keep: Keep, now: datetime, forget: Callable[[UUID], None]) -> Pruned:
+        self.asked.append((keep, now))
+        if len(self.asked) == 2:
+            raise JournalWriteError("the disk is full")
+        if len(self.asked) == 4:
+            raise JournalClosedError("the journal is closed")
+        forget(self._run)
+        return Pruned(runs=[self._run])
+
+
+async def pruned(journal: PretendJournal, keep: Keep) -> tuple[list[UUID], list[float]]:
+    """The runs whose poses were forgotten, and the pauses."""
+    forgotten: list[UUID] = []
+    pauses: list[float] = []
+
+    async def sleep(seconds: float) -> None:
+        pauses.append(seconds)
+
+    await prune_regularly(journal.prune, forgotten.append, keep, lambda: NOW, sleep)
+    return forgotten, pauses
+
+
+async def test_it_goes_on_after_a_failure_until_the_journal_is_closed() -> None:
+    run = uuid4()
+    journal = PretendJournal(run)
+    forgotten, pauses = await pruned(journal, Keep(ended_runs=3))
+    assert journal.asked == [(Keep(ended_runs=3), NOW)] * 4
+    assert forgotten == [run, run]
+    assert pauses == [EVERY_S] * 3
+
+
+async def test_where_all_is_kept_nothing_is_ever_pruned() -> None:
+    journal = PretendJournal(uuid4())
+    assert await pruned(journal, Keep()) == ([], [])
+    assert journal.asked == []
