@@ -15,7 +15,7 @@ from typing import Literal
 import numpy as np
 
 from sim.workcell.cameras import Optics, WorkcellCamera, forearm_optics, head_optics
-from sim.workcell.options import read_options
+from sim.workcell.options import WorkcellOptions
 from sim.workcell.world import WorkcellWorld
 from tasks.scene_file import built_in_scene
 
@@ -59,7 +59,7 @@ def main() -> None:
     pictures = 5 if parser.parse_args().quick else 100
     scene = built_in_scene("eket")
     worlds = {
-        renderer: WorkcellWorld(scene, 1, read_options({"renderer": renderer}))
+        renderer: WorkcellWorld(scene, 1, WorkcellOptions(renderer=renderer))
         for renderer in ("bullet", "fast")
     }
     print("| camera | size | PyBullet, ms | fast, ms | ratio | depth differs, mm (median) |")

@@ -25,7 +25,7 @@ from robots.link.messages import IssueDetected, Look, Looked, ReportBody, Start
 from robots.robot import Robot
 from sim.simulated_agent import SimulatedAgent
 from sim.workcell.colors import learn_colors
-from sim.workcell.options import read_options
+from sim.workcell.options import WorkcellOptions
 from sim.workcell.parts import PartPose
 from sim.workcell.world import WorkcellWorld
 from tasks.plugins import load_plugins
@@ -68,7 +68,7 @@ def order_of(random: Random) -> list[str]:
 
 def build(scene: Scene, seed: int, options: dict[str, Any], tally: Tally) -> None:
     """One whole base; ends at the first issue."""
-    chosen = read_options(options)
+    chosen = WorkcellOptions.model_validate(options)
     world = WorkcellWorld(scene, seed, chosen)
     model = learn_colors(scene, chosen.camera_noise)
     catalogue = Catalogue.from_scene(scene)

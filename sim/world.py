@@ -4,6 +4,8 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any, Protocol, runtime_checkable
 
+from pydantic import BaseModel
+
 from robots.agent import AgentCore
 from robots.body import Body
 from robots.link.messages import ShownObject, ShownPose
@@ -91,6 +93,11 @@ class WorldAdapter(Protocol):
     @property
     def lays_out_anything(self) -> bool:
         """Whether it makes up objects and places that a tree names and no scene file describes."""
+        ...
+
+    @property
+    def options(self) -> type[BaseModel]:
+        """What a run may choose about it; every field has a default, others are forbidden."""
         ...
 
     def check_available(self) -> None:

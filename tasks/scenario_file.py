@@ -8,6 +8,7 @@ from typing import Any
 
 from tasks.definition import BehaviorNode, TaskTreeDefinition
 from tasks.document import DocumentError, LinedMapping, read_document, read_text
+from tasks.intervention import Act
 from tasks.library import SCENARIOS
 from tasks.problem import InvalidFileError, Problem
 from tasks.scenario import Scenario, Trigger
@@ -101,6 +102,9 @@ def find_misfits(
     """
     misfits = [] if scene is None else _missing_in_scene(scenario, scene)
     for index, each in enumerate(scenario.interventions):
+        if each.do.act is Act.PLACE and each.do.place is None:
+            where = ("interventions", index, "do")
+            misfits.append(Misfit(where, f"{_spoken(where)}: act 'place' needs a 'place'"))
         if each.when is not None and (scene is None or each.when.object in scene.objects):
             misfits += _missing_steps(each.when, index, tree, step_counts)
     return misfits

@@ -61,7 +61,7 @@ class _SceneCheck:
         """The plain mistakes first; what follows from one is not told as well."""
         found = [*self._handling()]
         found += [*self._standing(_Told(found)), *self._overlaps(), *self._merging()]
-        return [*found, *self._doing(_Told(found))]
+        return [*found, *_each_once(self._doing(_Told(found)))]
 
     def _handling(self) -> list[SceneProblem]:
         names = dict.fromkeys(job.name for job in self._jobs)
@@ -132,7 +132,7 @@ class _SceneCheck:
             return self._in_no_order(jobs)
         moved = {each.name for each in self._jobs}
         found = [self._problem(job, self._moments, moved) for job in jobs]
-        return list(dict.fromkeys(each for each in found if each is not None))
+        return [each for each in found if each is not None]
 
     def _in_no_order(self, jobs: Sequence[Job]) -> list[SceneProblem]:
         """What is wrong with the parts that cannot be taken, whatever was taken away before."""
@@ -148,7 +148,7 @@ class _SceneCheck:
                 else:
                     stuck[job] = problem
             if len(stuck) == len(waiting):
-                return list(dict.fromkeys(stuck.values()))
+                return list(stuck.values())
             waiting = list(stuck)
 
     def _problem(self, job: Job, moments: Moments, moved: set[str]) -> SceneProblem | None:
@@ -190,6 +190,14 @@ class _SceneCheck:
             if found is not None:
                 return found
         return None
+
+
+def _each_once(found: Sequence[SceneProblem]) -> list[SceneProblem]:
+    """What is wrong with the scatter, which all parts have in common, is told of one of them."""
+    of_scatter = [each for each in found if each.where[0] == "scatter"]
+    return [
+        each for each in dict.fromkeys(found) if each.where[0] != "scatter" or each is of_scatter[0]
+    ]
 
 
 class _Told:

@@ -30,6 +30,8 @@ _SEEN_M = 0.0015
 """A part may be seen so far away from where it is."""
 _SIDES = (-1.0, 1.0)
 _STEP_M, _STEPS = 0.002, 100
+_MM_M = 0.001
+_SCATTER_STEP_M = 0.0005
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,6 +80,8 @@ class ArmCheck:
     def told(self, hindrance: Hindrance, moved: set[str]) -> SceneProblem:
         """The hindrance in a sentence; `moved` are the parts that leaves take away."""
         reason = hindrance.barred.reason
+        if self.scatter.xy > 0.0 and self._strewn(0.0).possible(hindrance):
+            return self._too_strewn(hindrance)
         if isinstance(reason, Crowding):
             return self._tight(hindrance)
         bar = self._bar(hindrance)
@@ -86,6 +90,31 @@ class ArmCheck:
         if reason.touched is not None:
             return self._touching(hindrance, reason.touched)
         return self._out_of_reach(hindrance)
+
+    def possible(self, hindrance: Hindrance) -> bool:
+        """Whether the same part could be taken there amid the same things."""
+        return self.hindrance(hindrance.start, hindrance.place, hindrance.around) is None
+
+    def _strewn(self, xy_m: float) -> "ArmCheck":
+        """The same with parts that start up to so far from where the scene says."""
+        return replace(self, scatter=self.scatter.model_copy(update={"xy": xy_m}))
+
+    def _too_strewn(self, hindrance: Hindrance) -> SceneProblem:
+        """What is possible but for the scatter; told once for a scene."""
+        fits_m, fails_m = 0.0, self.scatter.xy
+        while fails_m - fits_m > _SCATTER_STEP_M:
+            half_m = (fits_m + fails_m) / 2
+            if self._strewn(half_m).possible(hindrance):
+                fits_m = half_m
+            else:
+                fails_m = half_m
+        name, start = hindrance.start.name, hindrance.start.pose
+        return SceneProblem(
+            ("scatter", "xy"),
+            f"a scatter of {1e3 * self.scatter.xy:g} mm may put {name} where the arm cannot take "
+            f"it: with {1e3 * math.floor(fits_m / _MM_M) * _MM_M:.0f} mm at most it can, around "
+            f"({start.x:.3f}, {start.y:.3f})",
+        )
 
     @property
     def _spare(self) -> Spare:
@@ -115,17 +144,17 @@ class ArmCheck:
         lacking_m, least = min(
             ((self._lacking_m(each), each) for each in crowded), key=lambda pair: pair[0]
         )
-        name, neighbour = hindrance.start.name, least.by.name
+        name, neighbour = hindrance.start.name, _spoken_of(least.by, hindrance.around)
         apart = f"put them {1e3 * lacking_m:.0f} mm further apart"
         if least.at_place and hindrance.place is not None:
             return SceneProblem(
                 hindrance.place.where,
-                f"{neighbour} is too close to the place of {name} for the fingers to let it go "
+                f"{neighbour} is too close to the place of {name} for the fingers to let {name} go "
                 f"there: {apart}",
             )
         return SceneProblem(
             hindrance.start.where,
-            f"{neighbour} stands too close to {name} for the fingers to grasp that: {apart}",
+            f"{neighbour} is too close to {name} for the fingers to grasp that: {apart}",
         )
 
     def _lacking_m(self, crowding: Crowding) -> float:
@@ -203,6 +232,14 @@ def _too_far(name: str, standing: Standing, verb: str) -> str:
         f"the arm does not reach ({pose.x:.3f}, {pose.y:.3f}, {standing.bottom_z:.3f}), where "
         f"{name} {verb}, with the gripper pointing down"
     )
+
+
+def _spoken_of(box: SeenBox, around: Sequence[Standing]) -> str:
+    """A part where it stands, or the place where it is to be by then."""
+    standing = next((each for each in around if box in each.boxes), None)
+    if standing is not None and standing.where[0] == "places":
+        return f"the place of {standing.name}"
+    return str(box.name)
 
 
 def _boxes(around: Sequence[Standing]) -> list[SeenBox]:

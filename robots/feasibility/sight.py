@@ -59,6 +59,13 @@ def out_of_picture(job: Job, head: Viewpoint, scatter: Scatter) -> SceneProblem 
     Where the part starts, from wherever the scatter may put it, or at its place.
     """
     if not _in_picture(job.start, head, scatter):
+        if scatter.xy > 0.0 and _in_picture(job.start, head, Scatter(yaw=scatter.yaw)):
+            return SceneProblem(
+                ("scatter", "xy"),
+                f"a scatter of {1e3 * scatter.xy:g} mm may put {job.name} where the head camera's "
+                f"picture does not hold all of it: make it smaller, or move {job.name} towards the "
+                "middle of the table",
+            )
         return _told_out_of_picture(job.start, "where it starts")
     if job.place is not None and not _in_picture(job.place, head, Scatter()):
         return _told_out_of_picture(job.place, "at its place")

@@ -54,8 +54,8 @@ def _tips_over(
     mend = "put its middle further over what carries it" if carriers else "lay it on its side"
     yield SceneProblem(
         standing.where,
-        f"{name} {where}; at least {math.degrees(LEAST_STABILITY_RAD):.0f} are needed: {mend}, or "
-        "let it be lower or wider",
+        f"{name} {where}, and has to stand leaning by {math.degrees(LEAST_STABILITY_RAD):.0f} "
+        f"degrees: {mend}, or let it be lower or wider",
     )
 
 

@@ -20,6 +20,8 @@ NARROWEST_M = 0.010
 """What is lower, or narrower, does not stand out from the table in a noisy picture."""
 RIM_M = 0.005
 """Of a plate under a square knob so much has to be seen beside that."""
+_ROUNDING_M = 1e-9
+"""Sides that are said in whole millimetres differ by them only nearly, as numbers."""
 _SQUARE_M = 0.0025
 """A knob, or a plate, is square if its sides differ by less."""
 _OBLONG_M = 0.008
@@ -87,7 +89,7 @@ def _look_alike(scene: Scene, one: str, other: str, model: ColorModel) -> bool:
     if (first.knob is None) != (second.knob is None):
         return False
     apart_m = np.abs(_measures(first) - _measures(second)).max()
-    return bool(apart_m < SIZE_RESOLUTION_M) and model.look_alike(one, other)
+    return bool(apart_m < SIZE_RESOLUTION_M - _ROUNDING_M) and model.look_alike(one, other)
 
 
 def _measures(each: SceneObject) -> np.ndarray[tuple[int], np.dtype[np.float64]]:

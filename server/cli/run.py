@@ -4,6 +4,7 @@ import asyncio
 import secrets
 import sys
 from functools import partial
+from json import loads
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -65,6 +66,14 @@ def run(
     journal: Annotated[
         Path | None, typer.Option(help="The journal's file; otherwise one of the run's own.")
     ] = None,
+    option: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME=VALUE",
+            help="What the world has to choose (docs/worlds.md), such as camera_noise=4; may be "
+            "given several times.",
+        ),
+    ] = None,
     max_attempts: Annotated[
         int, typer.Option(help="After so many failed attempts a leaf is given up.")
     ] = 3,
@@ -99,6 +108,7 @@ def run(
             answers="none" if given is None and not asks_at_terminal else given,
             interventions=interventions,
             max_attempts=max_attempts,
+            world_options=_read_options(option or []),
             person=None if person is None else Person(acts=person),
         )
         if report is not None:
@@ -148,6 +158,27 @@ def _read_speed(text: str) -> Any:
         return float(text)
     except ValueError:
         raise CommandLineError(f"--speed is '{text}'; it has to be a number or max") from None
+
+
+def _read_options(given: list[str]) -> dict[str, Any]:
+    options: dict[str, Any] = {}
+    for each in given:
+        name, equals, text = each.partition("=")
+        if not (name and equals):
+            raise CommandLineError(f"--option is '{each}'; it has to be NAME=VALUE")
+        if name in options:
+            raise CommandLineError(f"--option '{name}' is given twice")
+        options[name] = _read_value(text)
+    return options
+
+
+def _read_value(text: str) -> Any:
+    """A number, true or false; anything else is text."""
+    try:
+        value = loads(text)
+    except ValueError:
+        return text
+    return value if isinstance(value, (bool, int, float)) else text
 
 
 def _request(**fields: Any) -> RunRequest:

@@ -47,13 +47,15 @@ class NewRuns:
             )
         tree = await self._trees.load(request.tree, request.scene)
         if request.world == LIVE:
+            if request.world_options:
+                raise InvalidError("'world_options' is for simulated worlds; 'live' has none")
             scene = tree.scene or Scene(name="live", objects={}, places={})
         else:
             if request.robots:
                 raise InvalidError(
                     f"'robots' is for the world 'live'; '{request.world}' brings its own"
                 )
-            self._worlds.check(request.world)
+            self._worlds.check(request.world, request.world_options)
             scene = tree.scene or self._worlds.lay_out(request.world, tree, request.seed)
             # Before the scenario has its way: out of reach is what it may put things to.
             refuse = self._worlds.refuse_impossible

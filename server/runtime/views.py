@@ -148,11 +148,15 @@ class RobotView(View):
 
 
 class WorldView(View):
-    """A world that a run may be in; `reason` says why it cannot run here."""
+    """A world that a run may be in; `reason` says why it cannot run here.
+
+    `options`: what a run may choose about it in `world_options`, a JSON Schema for each name.
+    """
 
     name: str
     available: bool
     reason: str | None
+    options: dict[str, Any]
 
 
 class Snapshot(View):

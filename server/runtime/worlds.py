@@ -2,7 +2,7 @@
 
 from collections.abc import Awaitable, Callable, Iterable, Mapping
 from functools import partial
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from server.runtime.views import WorldView
 from server.scene_checks import WorldChecks
 from sim.mischief import random_interventions
 from sim.world import WorldAdapter, WorldSetup, WorldUnavailableError
+from sim.world_options import WorldOptionError, read_options
 from tasks.definition import BehaviorNode
 from tasks.scenario import ScriptedIntervention
 from tasks.scene import Scene
@@ -50,24 +51,31 @@ class SimulatedWorlds:
 
     def worlds(self) -> list[WorldView]:
         """Every world that a run may be in, and why one cannot run here."""
-        live = WorldView(name=LIVE, available=True, reason=None)
+        live = WorldView(name=LIVE, available=True, reason=None, options={})
         return [live, *(self._view(name) for name in sorted(self._adapters))]
 
     def _view(self, name: str) -> WorldView:
+        adapter = self._adapters[name]
         try:
-            self._adapters[name].check_available()
+            adapter.check_available()
+            reason = None
         except WorldUnavailableError as error:
-            return WorldView(name=name, available=False, reason=str(error))
-        return WorldView(name=name, available=True, reason=None)
+            reason = str(error)
+        options = adapter.options.model_json_schema().get("properties", {})
+        return WorldView(name=name, available=reason is None, reason=reason, options=options)
 
-    def check(self, world: str) -> None:
-        """Raise `InvalidError` when there is no such world, or it cannot run here."""
+    def check(self, world: str, options: Mapping[str, Any]) -> None:
+        """Raise `InvalidError` where there is no such world, or none with such options here."""
         if world not in self._adapters:
             known = ", ".join(["live", *self._adapters])
             raise InvalidError(f"there is no world '{world}'; there are {known}")
         try:
             self._adapters[world].check_available()
         except WorldUnavailableError as error:
+            raise InvalidError(str(error)) from error
+        try:
+            read_options(self._adapters[world].options, world, options)
+        except WorldOptionError as error:
             raise InvalidError(str(error)) from error
 
     def lay_out(self, world: str, tree: LoadedTree, seed: int) -> Scene:

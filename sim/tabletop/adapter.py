@@ -1,9 +1,6 @@
 """The tabletop as a kind of world that runs can name (entry point `mend.worlds`)."""
 
 from collections.abc import Iterable, Sequence
-from typing import Any
-
-from pydantic import ValidationError
 
 from robots.catalogue import Catalogue
 from robots.feasibility.check import check_scene
@@ -17,6 +14,7 @@ from sim.tabletop.layout import lay_out
 from sim.tabletop.scenery import head_viewpoint
 from sim.tabletop.world import TabletopOptions, TabletopWorld, reach_for
 from sim.world import WorldSetup
+from sim.world_options import read_options
 from tasks.definition import BehaviorNode, GoalNode
 from tasks.plugins import load_plugins
 from tasks.scene import Scene
@@ -28,6 +26,7 @@ class TabletopAdapter:
 
     own_process = False
     lays_out_anything = True
+    options = TabletopOptions
 
     def check_available(self) -> None:
         """Always passes: nothing but Mend itself is needed."""
@@ -59,7 +58,7 @@ class TabletopAdapter:
 
         Raises `ValueError` for options or a snapshot that do not fit.
         """
-        options = _read_options(setup.options)
+        options = read_options(TabletopOptions, "tabletop", setup.options)
         world = TabletopWorld(setup.scene, setup.seed, options)
         robot = Robot(
             setup.robot,
@@ -78,15 +77,6 @@ class TabletopAdapter:
             interventions=setup.interventions,
             snapshot=setup.snapshot,
         )
-
-
-def _read_options(options: dict[str, Any]) -> TabletopOptions:
-    try:
-        return TabletopOptions.model_validate(options)
-    except ValidationError as error:
-        first = error.errors()[0]
-        where = ".".join(str(part) for part in first["loc"])
-        raise ValueError(f"world option '{where}' of the tabletop: {first['msg']}") from error
 
 
 adapter = TabletopAdapter()

@@ -7,7 +7,7 @@ from dataclasses import astuple
 from typing import Annotated, Any
 
 import numpy as np
-from pydantic import Field
+from pydantic import ConfigDict, Field
 
 from robots.body import Reach
 from robots.link.messages import ShownObject, ShownPose
@@ -33,18 +33,18 @@ REACH_MAX_M = 0.79
 
 
 class TabletopOptions(StrictModel):
-    """What a run may choose about the world.
+    """What a run may choose about the world."""
 
-    `camera_noise`: standard deviation of each colour channel, in grey levels of 255. `light`: how
-    far light and exposure vary by the seed and with time, from 0 (not at all) to 1. `depth_noise`:
-    how noisy the head camera's depth is, from 0 (not at all) to 1 (as a Kinect's). `reach_m`: how
-    far from its base the robot can grasp; by default at least to every place of the scene.
-    """
+    model_config = ConfigDict(use_attribute_docstrings=True)
 
     camera_noise: Annotated[float, Field(ge=0.0, le=30.0, strict=False)] = 0.0
+    """Standard deviation of each colour channel of the cameras, in grey levels of 255."""
     light: Annotated[float, Field(ge=0.0, le=1.0, strict=False)] = 0.0
+    """How far light and exposure vary by the seed and with time, from 0 (not at all) to 1."""
     depth_noise: Annotated[float, Field(ge=0.0, le=1.0, strict=False)] = 0.0
+    """How noisy the head camera's depth is, from 0 (not at all) to 1 (as a Kinect's)."""
     reach_m: Annotated[float, Field(ge=REACH_MIN_M, le=10.0, strict=False)] | None = None
+    """How far from its base the robot can grasp, in metres; null: at least to every place."""
 
 
 class TabletopWorld:

@@ -10,9 +10,10 @@ from robots.vision.color_model import ColorModel
 from robots.vision.lookalikes import find_lookalikes
 from sim.simulated_agent import SimulatedAgent
 from sim.workcell.arm_planner import neutral_arm
-from sim.workcell.options import read_options
+from sim.workcell.options import WorkcellOptions
 from sim.workcell.robot_model import MODEL, check_installed, robot_urdf
 from sim.world import WorldSetup
+from sim.world_options import read_options
 from tasks.definition import BehaviorNode, GoalNode
 from tasks.plugins import load_plugins
 from tasks.scene import Scene
@@ -24,6 +25,7 @@ class WorkcellAdapter:
 
     own_process = True
     lays_out_anything = False
+    options = WorkcellOptions
 
     model = MODEL
 
@@ -45,7 +47,7 @@ class WorkcellAdapter:
         from sim.workcell.colors import learn_colors
         from sim.workcell.world import WorkcellWorld
 
-        options = read_options(setup.options)
+        options = read_options(WorkcellOptions, "workcell", setup.options)
         world = WorkcellWorld(setup.scene, setup.seed, options)
         robot = Robot(
             setup.robot,

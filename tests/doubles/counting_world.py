@@ -7,6 +7,7 @@ from counting_agent import CountingAgent
 
 from robots.link.messages import CommandBody, Interrupt
 from sim.world import WorldSetup, WorldUnavailableError
+from tasks.scene import StrictModel
 
 
 class HangingAgent(CountingAgent):
@@ -18,8 +19,14 @@ class HangingAgent(CountingAgent):
         super().handle(command_id, body)
 
 
+class NoOptions(StrictModel):
+    """There is nothing to choose."""
+
+
 class CountingWorld:
     """Implements `sim.world.WorldAdapter`."""
+
+    options = NoOptions
 
     lays_out_anything = False
 

@@ -49,8 +49,8 @@ class FakeWorlds:
 
     def worlds(self) -> list[WorldView]:
         return [
-            WorldView(name="tabletop", available=True, reason=None),
-            WorldView(name="workcell", available=False, reason="it needs PyBullet"),
+            WorldView(name="tabletop", available=True, reason=None, options={}),
+            WorldView(name="workcell", available=False, reason="it needs PyBullet", options={}),
         ]
 
 

@@ -145,6 +145,9 @@ def test_help_names_every_command(mend: Mend) -> None:
         ["run", "eket", "--answers", ""],
         ["run", "eket", "--interventions", "always"],
         ["run", "eket", "--max-attempts", "0"],
+        ["run", "eket", "--option", "light"],
+        ["run", "eket", "--option", "=1"],
+        ["run", "eket", "--option", "light=1", "--option", "light=0"],
         ["run", "eket", "--scenario", "no_such"],
         ["run", "nowhere"],
         ["run", "no_such_file.yaml"],
@@ -261,7 +264,8 @@ def test_options_become_the_request(mend: Mend, service: Callable[..., RecordedS
     recorded = service()
     words = (
         "run eket --world tabletop --seed 7 --speed max --answers yes,no,silence "
-        "--interventions random --max-attempts 5 --no-person"
+        "--interventions random --max-attempts 5 --no-person "
+        "--option camera_noise=4 --option renderer=fast --option on=true"
     )
     mend(*words.split())
     (request,) = recorded.requests
@@ -274,6 +278,7 @@ def test_options_become_the_request(mend: Mend, service: Callable[..., RecordedS
         "interventions": "random",
         "max_attempts": 5,
         "person": {"acts": False},
+        "world_options": {"camera_noise": 4, "renderer": "fast", "on": True},
     }
 
 
@@ -746,6 +751,14 @@ def test_a_run_that_the_robot_cannot_do_is_refused(data_dir: Path, tmp_path: Pat
     assert "cannot do the tree 'just_one' in the scene 'bench'" in err
     assert f"mend: {scene}:3: " in err
     assert "takes 12 to 78 mm" in err
+
+
+def test_a_run_with_an_option_that_its_world_has_not_is_refused(data_dir: Path) -> None:
+    words = "run eket --world tabletop --json --option camera_nois=4"
+    with begin(data_dir, *words.split()) as process:
+        out, err = process.communicate(timeout=120)
+    assert (process.returncode, out) == (2, "")
+    assert "the world 'tabletop' has no option 'camera_nois'; it has 'camera_noise', " in err
 
 
 @pytest.mark.slow

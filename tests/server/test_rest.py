@@ -408,7 +408,12 @@ async def test_openapi_names_every_operation_and_has_examples(client: httpx.Asyn
 
 async def test_worlds_say_why_they_cannot_run(client: httpx.AsyncClient) -> None:
     tabletop, workcell = (await client.get("/api/worlds")).json()
-    assert tabletop == {"name": "tabletop", "available": True, "reason": None}
+    assert tabletop == {
+        "name": "tabletop",
+        "available": True,
+        "reason": None,
+        "options": {},
+    }
     assert workcell["available"] is False
     assert workcell["reason"]
 

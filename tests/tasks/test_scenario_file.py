@@ -118,6 +118,14 @@ def test_an_act_without_what_it_needs_is_told() -> None:
     assert problems_of(text) == ["mine.yaml:5: 'interventions.0.do': act 'move' needs a pose 'to'"]
 
 
+def test_an_act_of_placing_says_where() -> None:
+    put = GOOD.replace("{act: steal, object: pink_bar}", "{act: place, object: pink_bar}")
+    (misfit,) = find_misfits(
+        check_scenario_text(put, source="mine.yaml"), TREE, None, {"pick_and_place": 8}
+    )
+    assert misfit.message == "interventions[0].do: act 'place' needs a 'place'"
+
+
 def test_names_that_the_scene_has_not_are_told() -> None:
     cup = SceneObject(color=(1.0, 0.0, 0.0), size=(0.1, 0.1, 0.1), pose=Pose(x=0.5, y=0.0))
     scene = Scene(name="tea", objects={"cup": cup}, places={"tray": Place(pose=cup.pose)})

@@ -164,7 +164,7 @@ def test_a_part_wide_both_ways_beside_another_is_told_how_far_to_move_it() -> No
         return problems_of(scene(parts, target=FREE), leaf("one", "target", None))
 
     (found,) = beside(-0.365)
-    assert "two stands too close to one" in found.message
+    assert "two is too close to one" in found.message
     assert beside(-0.30) == []
 
 
@@ -210,7 +210,22 @@ def test_scatter_needs_its_room_too() -> None:
     scattered = made.model_copy(update={"scatter": Scatter(xy=0.02)})
     assert problems_of(made, leaf("one", "target", None)) == []
     (found,) = problems_of(scattered, leaf("one", "target", None))
-    assert "two stands too close to one" in found.message
+    assert found.where == ("scatter", "xy")
+    assert found.message == (
+        "a scatter of 20 mm may put one where the arm cannot take it: with 5 mm at most it can, "
+        "around (0.500, -0.400)"
+    )
+
+
+def test_too_large_a_scatter_is_told_once_and_not_as_out_of_reach() -> None:
+    parts = {f"part_{n}": box(0.5, -0.5 + 0.2 * n) for n in range(2)}
+    made = scene(parts, target=FREE)
+    scattered = made.model_copy(update={"scatter": Scatter(xy=0.4)})
+    leaves = [leaf(name, "target", None) for name in parts]
+    assert problems_of(made, leaves[0]) == []
+    (found,) = problems_of(scattered, *leaves)
+    assert found.where == ("scatter", "xy")
+    assert "a scatter of 400 mm may put part_0 where the arm cannot take it" in found.message
 
 
 @given(
@@ -235,7 +250,7 @@ def test_what_may_be_placed_before_is_in_the_way_of_the_fingers() -> None:
     )
     one, tall = leaf("one", "left"), leaf("tall", "right")
     (found,) = problems_of(made, goal("and"), one, tall)
-    assert "tall stands too close to one" in found.message
+    assert "tall is too close to one" in found.message
     assert problems_of(made, goal("then"), one, tall) == []
 
 
@@ -251,7 +266,7 @@ def test_what_open_fingers_pass_over_must_not_be_met_as_they_close(
     found = problems_of(scene(parts, target=FREE), leaf("peg", "target", None))
     tight = [each for each in found if "for the fingers" in each.message]
     assert (tight == []) is possible
-    assert all("stands too close to peg" in each.message for each in tight)
+    assert all("is too close to peg" in each.message for each in tight)
 
 
 def test_a_height_that_is_given_hardly_too_low_takes_the_fingers_no_room() -> None:
@@ -410,7 +425,7 @@ def test_of_a_small_top_the_head_camera_has_to_see_nearly_all(side_m: float, tol
         (0.26, 0.1, 0.20, Scatter(), "where it starts"),
         (0.0, 0.26, 0.20, Scatter(), "at its place"),
         (0.29, 0.1, 0.05, Scatter(), "where it starts"),
-        (0.26, 0.1, 0.05, Scatter(xy=0.03), "where it starts"),
+        (0.26, 0.1, 0.05, Scatter(xy=0.03), "scattered"),
         (0.255, 0.1, 0.05, Scatter(yaw=1.57), "where it starts"),
         (0.0, 0.26, 0.05, Scatter(xy=0.03, yaw=1.57), None),
     ],
@@ -428,6 +443,11 @@ def test_what_the_head_cameras_picture_does_not_hold_is_told(
         f"the head camera's picture does not hold all of part {told}: move it towards the middle "
         "of the table"
     )
+    if told == "scattered":
+        sentence = (
+            "a scatter of 30 mm may put part where the head camera's picture does not hold all of "
+            "it: make it smaller, or move part towards the middle of the table"
+        )
     assert [each.message for each in problems] == ([sentence] if told else [])
 
 

@@ -53,12 +53,13 @@ def test_what_is_almost_equal_is_named_with_what_would_be_right(other: SceneObje
     [
         part(),
         part(size=(0.035, 0.05, 0.04)),
+        part(size=(0.034, 0.05, 0.04)),
         part(size=(0.03, 0.05, 0.045)),
         part(color=(0.8, 0.4, 0.1)),
         part(color=(0.4, 0.05, 0.05)),
         part(knob=(0.02, 0.02, 0.02)),
     ],
-    ids=["equal", "wider", "higher", "another hue", "darker", "with a knob"],
+    ids=["equal", "wider", "4 mm wider", "higher", "another hue", "darker", "with a knob"],
 )
 def test_equal_and_different_parts_are_no_problem(other: SceneObject) -> None:
     assert check({"one": part(), "other": other}) == []

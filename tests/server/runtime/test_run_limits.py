@@ -24,6 +24,7 @@ LIMITS = Limits(answers=2, world_options=2, option_chars=5)
         ({"world_options": {"a": 1, "b": 2, "c": 3}}, "'world_options' has 3 entries"),
         ({"world_options": {"abcdef": 1}}, "the world option 'abcdef' is too long"),
         ({"world_options": {"a": "abcdef"}}, "the world option 'a' is too long"),
+        ({"world": "live", "world_options": {"a": 1}}, "is for simulated worlds"),
     ],
 )
 async def test_a_request_that_holds_too_much_is_refused(

@@ -9,7 +9,7 @@ from workcell_hands import Hands
 
 from robots.body import CameraImage
 from robots.vision.projection import project, unproject
-from sim.workcell.options import WorkcellOptions, read_options
+from sim.workcell.options import WorkcellOptions
 from sim.workcell.parts import Part
 from sim.workcell.physics import to_matrix
 from sim.workcell.rendering import Rendering
@@ -25,7 +25,7 @@ def worlds(scene: Scene) -> Iterator[dict[str, WorkcellWorld]]:
     """The same moment, a part in the gripper, with either renderer."""
     both = {}
     for renderer in ("bullet", "fast"):
-        both[renderer] = WorkcellWorld(scene, 5, read_options({"renderer": renderer}))
+        both[renderer] = WorkcellWorld(scene, 5, WorkcellOptions(renderer=renderer))
         Hands(both[renderer]).pick("bar")
     yield both
     for world in both.values():
@@ -74,7 +74,7 @@ def test_the_forearm_camera_sees_what_the_gripper_holds(worlds: dict[str, Workce
 
 @pytest.mark.parametrize("renderer", ["bullet", "fast"])
 def test_unprojected_pixels_lie_on_the_parts_surface(scene: Scene, renderer: str) -> None:
-    world = WorkcellWorld(scene, 5, read_options({"renderer": renderer, "depth_noise": 0.0}))
+    world = WorkcellWorld(scene, 5, WorkcellOptions(renderer=renderer, depth_noise=0.0))
     image, rendering = world.head.capture_with_bodies()
     for name in ("leg", "bar"):
         part = world.parts[name]
@@ -147,17 +147,3 @@ def test_the_same_seed_gives_the_same_pictures(scene: Scene) -> None:
         pictures.append(world.head.capture().bgr)
         world.close()
     assert np.array_equal(*pictures)
-
-
-@pytest.mark.parametrize(
-    ("options", "problem"),
-    [
-        ({"renderer": "slow"}, "world option 'renderer' of the workcell"),
-        ({"light": 2}, "world option 'light' of the workcell"),
-        ({"camera_noise": -1}, "world option 'camera_noise' of the workcell"),
-        ({"fog": 1}, "world option 'fog' of the workcell"),
-    ],
-)
-def test_a_wrong_option_is_named(options: dict[str, object], problem: str) -> None:
-    with pytest.raises(ValueError, match=problem):
-        read_options(options)
