@@ -93,7 +93,12 @@ class PlayedDialogues(FakeRuns):
         return dialogue
 
     async def answer(
-        self, dialogue: UUID, prompt: UUID, answer: Literal["yes", "no"], helper: str
+        self,
+        dialogue: UUID,
+        prompt: UUID,
+        answer: Literal["yes", "no"],
+        helper: str,
+        author: ev.Author | None = None,
     ) -> ev.Answered:
         self.dialogue_now(dialogue)
         played = self._played[dialogue]
@@ -103,7 +108,7 @@ class PlayedDialogues(FakeRuns):
             raise ConflictError("this prompt does not wait for an answer")
         self._won[prompt] = helper
         played.helper = helper
-        answered = played.make.answered(played.asked, answer, helper)
+        answered = played.make.answered(played.asked, answer, helper, author)
         committed = await self._go_on(dialogue, answer, [answered])
         assert isinstance(committed[0], ev.Answered)
         return committed[0]

@@ -64,7 +64,7 @@ async def test_a_helper_is_called_as_the_token_says_and_answers(consoles: Consol
     await expect(page.get_by_role("link", name="henri")).to_be_visible()
     await page.get_by_role("button", name="I am on it").click()
     await expect(page.get_by_text("You are on it.")).to_be_visible()
-    assert runs.dialogue(view.dialogue).claimed_by == "henri"
+    assert runs.dialogue_now(view.dialogue).claimed_by == "henri"
     await page.goto("/start")
     await expect(page.get_by_text("Starting a run needs the role operator")).to_be_visible()
     await expect(page.get_by_role("button", name="Start the run")).to_be_disabled()
