@@ -35,6 +35,15 @@ class Entry:
     pictures: Mapping[UUID, bytes] = field(default_factory=dict)
 
 
+@dataclass(frozen=True, slots=True)
+class UnreadableEvent:
+    """An event that cannot be read, and the sentence that says why; `run` None: it is of none."""
+
+    seq: int
+    why: str
+    run: UUID | None = None
+
+
 Fold = Callable[[list[Event]], None]
 """Changes the state as committed events say."""
 
@@ -75,6 +84,15 @@ class Journal(Protocol):
 
     async def read_records(self, after: int, limit: int, run: UUID | None = None) -> list[Record]:
         """What `read` returns, as the JSON text of each event."""
+        ...
+
+    async def read_readable(
+        self, after: int, limit: int, run: UUID | None = None
+    ) -> list[Event | UnreadableEvent]:
+        """What `read` returns; in the place of an event that cannot be read, which one and why.
+
+        Raises `JournalReadError` where not even the numbers of the events can be read.
+        """
         ...
 
     def subscribe(self, after: int, capacity: int = DEFAULT_CAPACITY) -> Subscription:

@@ -8,8 +8,9 @@ from typing import Any, Self
 from uuid import UUID
 
 from server.journal.events import Event
-from server.journal.journal import JournalReadError
+from server.journal.journal import JournalReadError, UnreadableEvent
 from server.journal.migrations import MIGRATIONS, JournalSchemaError
+from server.journal.readable import event_of
 from server.journal.stored_event import read_event
 
 
@@ -64,18 +65,17 @@ class JournalReader:
         where = f" of '{self._path}'"
         return [read_event(seq, body, version, where) for seq, body, version in rows]
 
-    def of_types(self, types: Sequence[str]) -> Iterator[Event]:
-        """Every event of some types, in order, also those of no run.
+    def of_types(self, types: Sequence[str]) -> Iterator[Event | UnreadableEvent]:
+        """Every event of some types, in order, also those of no run and those that are unreadable.
 
         Raises `JournalReadError`.
         """
         marks = ", ".join("?" * len(types))
         rows = self._select(
-            f"SELECT seq, body, version FROM events WHERE type IN ({marks}) ORDER BY seq",
+            f"SELECT seq, run, body, version FROM events WHERE type IN ({marks}) ORDER BY seq",
             tuple(types),
         )
-        where = f" of '{self._path}'"
-        return (read_event(seq, body, version, where) for seq, body, version in rows)
+        return (event_of(seq, run, body, version) for seq, run, body, version in rows)
 
     def pictures(self, pictures: Iterable[UUID]) -> dict[UUID, bytes]:
         """Those of the pictures (JPEG) that the journal has."""

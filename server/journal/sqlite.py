@@ -24,9 +24,11 @@ from server.journal.journal import (
     JournalReadError,
     JournalWriteError,
     Receipt,
+    UnreadableEvent,
 )
 from server.journal.opening import IN_MEMORY, open_journal
 from server.journal.pruning import Keep, Pruned, prune, pruned_through
+from server.journal.readable import read_readable
 from server.journal.run_index import RunIndex, note, note_readable, note_unreadable
 from server.journal.same_file import FileGoneError
 from server.journal.stored_event import current_text, read_event
@@ -273,6 +275,12 @@ class SqliteJournal:
             {"run": str(run), "after": after, "limit": limit},
         )
         return [Record(seq, current_text(seq, body, version)) for seq, version, body in rows]
+
+    async def read_readable(
+        self, after: int, limit: int, run: UUID | None = None
+    ) -> list[Event | UnreadableEvent]:
+        query = partial(read_readable, after=after, limit=limit, run=run)
+        return await self._read(lambda: self._reading(query))
 
     async def received(self, robot: str, boot: str) -> int:
         rows = await self._select(
