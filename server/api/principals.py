@@ -15,13 +15,13 @@ from server.access.principals_file import PrincipalName, RobotName
 from server.access.roles import Role
 from server.api.parts import After, Limit, Parts, WithCaller, WithParts
 from server.api.problems import ProblemError, documented
-from server.api.strict_json import StrictJsonRoute
+from server.api.repeatable import SecretRoute
 from server.errors import NotFoundError
 from server.journal.journal import JournalReadError
 from server.journal.stored_event import read_event
 from server.journal.subscriptions import Record
 
-router = APIRouter(prefix="/api/access", tags=["access"], route_class=StrictJsonRoute)
+router = APIRouter(prefix="/api/access", tags=["access"], route_class=SecretRoute)
 
 SCANNED_AT_ONCE = 1000
 MOST_SCANNED = 20_000

@@ -7,6 +7,7 @@ from uuid import UUID
 
 from server.journal.chain import Break
 from server.journal.events import Event
+from server.journal.keyed_request import FirstAnswer, KeptRequest, KeyedRequest
 from server.journal.run_index import RunIndex
 from server.journal.subscriptions import DEFAULT_CAPACITY, Record, Subscription
 from server.journal.trouble import Trouble
@@ -22,10 +23,20 @@ class Receipt:
 
 
 @dataclass(frozen=True, slots=True)
+class Document:
+    """An uploaded file; one of the same kind and name is replaced. `text` None: it is deleted."""
+
+    kind: str
+    name: str
+    text: str | None
+
+
+@dataclass(frozen=True, slots=True)
 class Entry:
     """What is committed together, all or nothing.
 
     `world` replaces the run's latest world state (`world_run` says whose); `pictures` are JPEGs.
+    With events whose author asked under an idempotency key that request is kept.
     """
 
     events: Sequence[Event] = ()
@@ -33,6 +44,7 @@ class Entry:
     world_run: UUID | None = None
     world: Mapping[str, Any] | None = None
     pictures: Mapping[UUID, bytes] = field(default_factory=dict)
+    document: Document | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,11 +147,19 @@ class Journal(Protocol):
         """The highest `seq` that was pruned; 0 if none was. Before it events may be missing."""
         ...
 
-    async def save_document(self, kind: str, name: str, text: str) -> None:
-        """Keep an uploaded file; replaces one of the same kind and name."""
+    async def find_request(self, principal: str, key: str, since: float) -> KeptRequest | None:
+        """The request that somebody made under a key, if that was after `since` (s of 1970)."""
         ...
 
-    async def delete_document(self, kind: str, name: str) -> bool: ...
+    async def keep_answer(
+        self, request: KeyedRequest, answer: FirstAnswer | None, most: int, since: float
+    ) -> int:
+        """Add what a request was answered, and forget what need not be kept.
+
+        That is all requests from before `since`, and of this principal all but the latest `most`.
+        Returns how many of theirs went for being too many.
+        """
+        ...
 
     async def documents(self, kind: str) -> dict[str, str]:
         """The texts of uploaded files of a kind, by name."""
