@@ -34,6 +34,8 @@ from server.api import worlds as worlds_api
 from server.api.access import Access
 from server.api.gate import Gate
 from server.api.idempotency_key import take_keys
+from server.api.openapi_links import add_links
+from server.api.openapi_responses import document_answers
 from server.api.parts import ObservedJournal, Parts, WorldList
 from server.api.problems import Problem, answer_errors_with_problems
 from server.api.repeats import Repeats
@@ -200,6 +202,8 @@ def _describe(app: FastAPI) -> None:
             }
             schema["security"] = [{"token": []}, {"session": []}, {}]
             take_keys(schema)
+            document_answers(schema)
+            add_links(schema)
         assert app.openapi_schema is not None, "generating it keeps it"
         return app.openapi_schema
 
