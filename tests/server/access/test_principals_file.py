@@ -137,7 +137,18 @@ ENTRY = f"role: helper, id: '01234567', sha256: '{HASH}', added: 2026-01-01T00:0
 @pytest.mark.parametrize(
     ("text", "sentence"),
     [
-        ("principals: [", "f.yaml, line 1: this is not YAML."),
+        (
+            "principals: [",
+            "f.yaml:2: the text is not valid YAML or JSON: did not find expected node content.",
+        ),
+        (
+            "principals: []\nprincipals: []",
+            "f.yaml:2: the key 'principals' is given twice, first in line 1.",
+        ),
+        ("!!set {a}", "f.yaml:1: the tag 'tag:yaml.org,2002:set' is not allowed."),
+        ("[" * 30_000, "f.yaml:1: values nest deeper than 4000 levels."),
+        (f"people: {'[' * 3000}{']' * 3000}", "f.yaml: people: is not known here."),
+        (f"people: {'9' * 5000}", "f.yaml: people: is not known here."),
         ("- anna", "f.yaml: a file of principals has the key 'principals'."),
         ("people: []", "f.yaml: people: is not known here."),
         ("principals: [{name: anna}]", "f.yaml: principals.0.role: is missing."),

@@ -246,3 +246,19 @@ def test_a_damaged_file_tells_what_to_do(journal: Path) -> None:
     truncated(journal)
     with pytest.raises(JournalDamagedError, match=r"'mend journal check' tells more"):
         SqliteJournal(journal)
+
+
+def test_an_event_that_names_no_run_is_told_by_the_check(journal: Path) -> None:
+    content = journal.read_bytes()
+    with closing(sqlite3.connect(journal)) as connection, connection:
+        connection.execute("PRAGMA writable_schema = ON")
+        connection.execute(
+            "UPDATE sqlite_schema SET sql = replace(replace(sql, 'run TEXT NOT NULL', 'run TEXT'),"
+            " ') STRICT', ')') WHERE name = 'events'"
+        )
+    alter(journal, "UPDATE events SET run = NULL WHERE seq = 3")
+    assert journal.read_bytes() != content
+    outcome = CliRunner().invoke(app, ["journal", "check", str(journal)])
+    assert outcome.exit_code == 1
+    assert outcome.exception is None or isinstance(outcome.exception, SystemExit)
+    assert "event 3 is kept as the number, run, type or time of another" in outcome.output
