@@ -49,8 +49,8 @@ interventions:
   - {when: {object: pink_bar, step: 4}, do: {act: steal, object: pink_bar}}
 answers: [yes]
 """
-COUNTED = (ev.SignedIn, ev.SignInFailed)
-"""Sign-ins are told in the journal whatever comes of them, at most one event a minute."""
+COUNTED = (ev.SignedIn, ev.SignInFailed, ev.RobotHolding)
+"""Sign-ins are told whatever comes of them; a robot says that it holds a moment after a pause."""
 
 
 @dataclass
@@ -64,6 +64,7 @@ class Bench:
     complaints: Complaints
     run: UUID = field(default_factory=uuid4)
     paused: UUID = field(default_factory=uuid4)
+    of_robot: set[UUID] = field(default_factory=set)
 
     @property
     def headers(self) -> dict[str, str]:
@@ -156,7 +157,7 @@ def requests(made: Bench) -> Sequence[Request]:
     dialogue = f"/api/dialogues/{other}"
     start = {"tree": "eket", "world": "tabletop", "speed": "max", "seed": 7, "answers": ["yes"],
              "scenario": None, "scene": None, "interventions": None, "robots": [],
-             "max_attempts": 3, "world_options": {"a": 1.0},
+             "max_attempts": 3, "world_options": {"depth_noise": 1.0},
              "person": {"acts": True}}  # fmt: skip
     uploads = [
         Request("POST", f"/api/{kind}{more}", {"name": "own", "text": text}, text)
@@ -244,7 +245,8 @@ def _mutated(client: httpx.AsyncClient, mutator: Mutator, request: Request) -> h
         headers["Content-Encoding"] = draw.choice(ENCODINGS)
     if draw.random() < 0.2:
         key = mutator.of_bytes(b'"8e03978e-40d5-43e8-bc93-6894a57f9324"')
-        headers["Idempotency-Key"] = "".join(chr(each) for each in key if 32 <= each < 127)[:400]
+        printable = "".join(chr(each) for each in key if 32 <= each < 127)
+        headers["Idempotency-Key"] = printable[:400].strip()
     try:
         return client.build_request(request.method, path, content=content, headers=headers)
     except (httpx.InvalidURL, ValueError):
@@ -445,7 +447,6 @@ async def fuzz_robot(made: Bench, mutations: int, seed: int) -> Found:
     found, mutator = Found(), Mutator(seed)
     before = await made.state()
     headers = {"Authorization": f"Bearer {made.robot_token}"}
-    own: set[UUID] = set()
     async with httpx.AsyncClient(
         base_url=made.service.url, headers=made.headers, timeout=PATIENCE_S
     ) as client:
@@ -455,10 +456,10 @@ async def fuzz_robot(made: Bench, mutations: int, seed: int) -> Found:
             async with connect(
                 made.socket("/ws/robot"), additional_headers=headers, max_size=None
             ) as socket:
-                number = await _one_start(made, found, mutator, robot, socket, client, own, number,
+                number = await _one_start(made, found, mutator, robot, socket, client, number,
                                           mutations)  # fmt: skip
     after = await made.state()
-    strangers = [each for each in await made.since(before[1]) if each.run not in own]
+    strangers = [each for each in await made.since(before[1]) if each.run not in made.of_robot]
     if after[0] != before[0]:
         found.add(Finding("robot", "documents or principals are not what they were", b""))
     for each in strangers[:5]:
@@ -468,7 +469,7 @@ async def fuzz_robot(made: Bench, mutations: int, seed: int) -> Found:
 
 async def _one_start(
     made: Bench, found: Found, mutator: Mutator, robot: Robot, socket: ClientConnection,
-    client: httpx.AsyncClient, own: set[UUID], number: int, mutations: int,
+    client: httpx.AsyncClient, number: int, mutations: int,
 ) -> int:  # fmt: skip
     """One start of the robot's program: a hello, now and then a mutated one, and what follows."""
     greeting = json.dumps(hello(robot.boot)).encode()
@@ -481,7 +482,7 @@ async def _one_start(
     try:
         for answer in await _said(socket, mutator, greeting):
             robot.take(answer)
-        await _have_a_run(made, client, own)
+        await _have_a_run(made, client)
         while number < mutations and mutator.random.random() < 0.97:
             name, number = f"robot #{number}", number + 1
             found.tried += 1
@@ -498,12 +499,12 @@ async def _one_start(
     return number
 
 
-async def _have_a_run(made: Bench, client: httpx.AsyncClient, own: set[UUID]) -> None:
+async def _have_a_run(made: Bench, client: httpx.AsyncClient) -> None:
     """A run of the robot's own, begun anew where the last one has ended."""
-    for run in own:
+    for run in made.of_robot:
         if not (await made.service.runtime.run(run)).status.ended:
             return
     body = {"tree": "eket", "world": "live", "robots": [ROBOT], "answers": "none"}
     answer = await client.post("/api/runs", json=body)
     if answer.is_success:
-        own.add(UUID(answer.json()["id"]))
+        made.of_robot.add(UUID(answer.json()["id"]))

@@ -110,6 +110,15 @@ class WorldAdapter(Protocol):
 
 
 @runtime_checkable
+class OptionChecker(Protocol):
+    """A world adapter that knows beforehand which options it takes."""
+
+    def check_options(self, options: dict[str, Any]) -> None:
+        """Raises `ValueError` with one sentence for options that it does not take."""
+        ...
+
+
+@runtime_checkable
 class ModelProvider(Protocol):
     """A world adapter whose robot can be drawn from model files."""
 

@@ -53,7 +53,7 @@ class NewRuns:
                 raise InvalidError(
                     f"'robots' is for the world 'live'; '{request.world}' brings its own"
                 )
-            self._worlds.check(request.world)
+            self._worlds.check(request.world, request.world_options)
             scene = tree.scene or self._worlds.lay_out(request.world, tree, request.seed)
             # Before the scenario has its way: out of reach is what it may put things to.
             refuse = self._worlds.refuse_impossible

@@ -1,8 +1,8 @@
 """What the runtime needs of its surroundings, as it sees them: trees, robots and worlds."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 from uuid import UUID
 
 from robots.link.messages import CommandBody, Hello
@@ -67,8 +67,8 @@ class Robots(Protocol):
 class Worlds(Protocol):
     """The worlds that a run can be in, apart from `live`."""
 
-    def check(self, world: str) -> None:
-        """Raises `InvalidError` when there is no such world, or it cannot run here."""
+    def check(self, world: str, options: Mapping[str, Any]) -> None:
+        """Raises `InvalidError` when there is no such world, or it cannot run here with these."""
         ...
 
     def lay_out(self, world: str, tree: LoadedTree, seed: int) -> Scene:

@@ -2,7 +2,7 @@
 
 from collections.abc import Awaitable, Callable, Iterable, Mapping
 from functools import partial
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from server.runtime.run_state import RunState
 from server.runtime.views import WorldView
 from server.scene_checks import WorldChecks
 from sim.mischief import random_interventions
-from sim.world import WorldAdapter, WorldSetup, WorldUnavailableError
+from sim.world import OptionChecker, WorldAdapter, WorldSetup, WorldUnavailableError
 from tasks.definition import BehaviorNode
 from tasks.scenario import ScriptedIntervention
 from tasks.scene import Scene
@@ -60,8 +60,8 @@ class SimulatedWorlds:
             return WorldView(name=name, available=False, reason=str(error))
         return WorldView(name=name, available=True, reason=None)
 
-    def check(self, world: str) -> None:
-        """Raise `InvalidError` when there is no such world, or it cannot run here."""
+    def check(self, world: str, options: Mapping[str, Any]) -> None:
+        """Raise `InvalidError` when there is no such world, or it cannot run here with these."""
         if world not in self._adapters:
             known = ", ".join(["live", *self._adapters])
             raise InvalidError(f"there is no world '{world}'; there are {known}")
@@ -69,6 +69,12 @@ class SimulatedWorlds:
             self._adapters[world].check_available()
         except WorldUnavailableError as error:
             raise InvalidError(str(error)) from error
+        adapter = self._adapters[world]
+        if isinstance(adapter, OptionChecker):
+            try:
+                adapter.check_options(dict(options))
+            except ValueError as error:
+                raise InvalidError(str(error)) from error
 
     def lay_out(self, world: str, tree: LoadedTree, seed: int) -> Scene:
         """A scene for a tree that has none. Raises `InvalidError` where the world cannot."""

@@ -54,6 +54,10 @@ class TabletopAdapter:
         """
         return learn_colors(scene, TabletopOptions())
 
+    def check_options(self, options: dict[str, Any]) -> None:
+        """Raises `ValueError` for options that it does not take."""
+        _read_options(options)
+
     def create_agent(self, setup: WorldSetup) -> SimulatedAgent:
         """Build the world and the robot in it.
 

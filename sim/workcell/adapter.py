@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from robots.catalogue import Catalogue
 from robots.feasibility.check import check_scene
@@ -34,6 +35,10 @@ class WorkcellAdapter:
     def check_available(self) -> None:
         """Raise `WorldUnavailableError` where PyBullet or the robot's description is missing."""
         check_installed()
+
+    def check_options(self, options: dict[str, Any]) -> None:
+        """Raises `ValueError` for options that it does not take."""
+        read_options(options)
 
     def create_agent(self, setup: WorldSetup) -> SimulatedAgent:
         """Build the world and the robot in it.

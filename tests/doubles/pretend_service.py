@@ -49,7 +49,7 @@ class PretendWorlds:
     restarted: list[str] = field(default_factory=list)
     scene: Scene = BARE
 
-    def check(self, world: str) -> None: ...
+    def check(self, world: str, options: Any) -> None: ...
 
     def lay_out(self, world: str, tree: LoadedTree, seed: int) -> Scene:  # noqa: ARG002
         return self.scene
