@@ -310,6 +310,16 @@ LI_LIM = b"""\
 1\t45\t68\t10\t912\t967\t90\t0\t2
 2\t45\t70\t-10\t825\t1000\t90\t1\t0
 """
+TRANSFER = b"""\
+nr nv nt capacity
+1 1 1 10
+node x y tw_start tw_end load
+p0 10 0 0 10 3
+d0 20 -3 0 100 -3
+o0 0 0 0 100 0
+e0 0 0 0 100 0
+t0 5 5 0 100 0
+"""
 
 
 def _instances() -> list[Reader]:
@@ -319,7 +329,7 @@ def _instances() -> list[Reader]:
         read_delivery(path, "auto", transfers=True)
 
     return [
-        Reader("delivery or instance", "file.txt", [LI_LIM], read),
+        Reader("delivery or instance", "file.txt", [LI_LIM, TRANSFER], read),
         Reader(
             "delivery of any format", "d.yaml", _files("examples/deliveries/*.yaml"), read, True
         ),

@@ -49,8 +49,9 @@ interventions:
   - {when: {object: pink_bar, step: 4}, do: {act: steal, object: pink_bar}}
 answers: [yes]
 """
-COUNTED = (ev.SignedIn, ev.SignInFailed, ev.RobotHolding)
-"""Sign-ins are told whatever comes of them; a robot says that it holds a moment after a pause."""
+COUNTED = (ev.SignedIn, ev.SignInFailed, ev.RobotHolding, ev.InterventionDone)
+"""Sign-ins are told whatever comes of them. A robot says a moment later that it holds after a
+pause, and that what was to be done to its world is."""
 
 
 @dataclass
@@ -83,7 +84,7 @@ class Bench:
         return digest.hexdigest(), journal.head
 
     async def since(self, seq: int) -> list[ev.Event]:
-        """The events after one, but for those that only count sign-ins."""
+        """The events after one, but for those that follow from what was sent before."""
         found: list[ev.Event] = []
         while page := await self.service.journal.read(seq, 1000):
             found += [each for each in page if not isinstance(each, COUNTED)]

@@ -140,6 +140,8 @@ def principals_of(text: str, source: str) -> Principals:
     except ValidationError as error:
         sentences = [_sentence(source, each) for each in error.errors(include_url=False)]
         raise PrincipalsFileError("\n".join(dict.fromkeys(sentences))) from error
+    except RecursionError as error:
+        raise PrincipalsFileError(f"{source}: something in it is nested too deeply.") from error
 
 
 def _sentence(source: str, mistake: ErrorDetails) -> str:

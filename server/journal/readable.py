@@ -7,6 +7,7 @@ from uuid import UUID
 
 from server.journal.events import NO_RUN, Event
 from server.journal.journal import UnreadableEvent
+from server.journal.sqlite_errors import SQLITE_ERRORS
 from server.journal.stored_event import UnreadableEventError, read_event
 
 COLUMNS = "SELECT seq, run, body, version FROM events"
@@ -24,7 +25,7 @@ def read_readable(
     values = {"run": str(run), "after": after, "limit": limit}
     try:
         rows = connection.execute(f"{COLUMNS} {wanted}", values).fetchall()
-    except sqlite3.Error:
+    except SQLITE_ERRORS:
         # The numbers stand in the index over the runs, which may be whole where a row is not.
         seqs = connection.execute(f"SELECT seq FROM events {wanted}", values).fetchall()
         return list(_one_by_one(connection, [seq for (seq,) in seqs], run))
@@ -37,7 +38,7 @@ def _one_by_one(
     for seq in seqs:
         try:
             row = connection.execute(f"{COLUMNS} WHERE seq = ?", (seq,)).fetchone()
-        except sqlite3.Error as error:
+        except SQLITE_ERRORS as error:
             yield UnreadableEvent(seq, f"event {seq} cannot be read: {error}", _run(run))
             continue
         if row is None:

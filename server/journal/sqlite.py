@@ -41,6 +41,7 @@ from server.journal.pruning import Keep, Pruned, prune, pruned_through
 from server.journal.readable import read_readable
 from server.journal.run_index import RunIndex, note, note_readable, note_unreadable
 from server.journal.same_file import FileGoneError
+from server.journal.sqlite_errors import SQLITE_ERRORS
 from server.journal.stored_event import current_text, read_event
 from server.journal.subscriptions import DEFAULT_CAPACITY, Record, Subscribers, Subscription
 from server.journal.trouble import Sleep, Trouble
@@ -325,7 +326,7 @@ class SqliteJournal:
         try:
             with self._read_lock:
                 return query(self._read_connection)
-        except sqlite3.Error as error:
+        except SQLITE_ERRORS as error:
             raise JournalReadError(f"the journal could not be read: {error}") from error
 
     async def _read(self, query: Callable[[], T]) -> T:

@@ -148,6 +148,11 @@ ENTRY = f"role: helper, id: '01234567', sha256: '{HASH}', added: 2026-01-01T00:0
         ("!!set {a}", "f.yaml:1: the tag 'tag:yaml.org,2002:set' is not allowed."),
         ("[" * 30_000, "f.yaml:1: values nest deeper than 4000 levels."),
         (f"people: {'[' * 3000}{']' * 3000}", "f.yaml: people: is not known here."),
+        (
+            f"principals: [{{name: {'[' * 3000}{']' * 3000}, {ENTRY}}}]",
+            "f.yaml: principals.0.name: must be a valid string, but it is nested too deeply to be "
+            "shown.",
+        ),
         (f"people: {'9' * 5000}", "f.yaml: people: is not known here."),
         ("- anna", "f.yaml: a file of principals has the key 'principals'."),
         ("people: []", "f.yaml: people: is not known here."),
