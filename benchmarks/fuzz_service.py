@@ -56,7 +56,7 @@ pause, and that what was to be done to its world is."""
 
 @dataclass
 class Bench:
-    """A service with a run that waits for an answer, another that is paused, and credentials."""
+    """A service with credentials, two paused runs, and a third that `asks` for an answer."""
 
     service: Service
     folder: Path
@@ -66,6 +66,9 @@ class Bench:
     run: UUID = field(default_factory=uuid4)
     paused: UUID = field(default_factory=uuid4)
     of_robot: set[UUID] = field(default_factory=set)
+    asking: UUID = field(default_factory=uuid4)
+    dialogue: str = ""
+    prompt: str = ""
 
     @property
     def headers(self) -> dict[str, str]:
@@ -84,10 +87,12 @@ class Bench:
         return digest.hexdigest(), journal.head
 
     async def since(self, seq: int) -> list[ev.Event]:
-        """The events after one, but for those that follow from what was sent before."""
+        """The events after one, but for those of the run that asks, and those that follow later."""
         found: list[ev.Event] = []
         while page := await self.service.journal.read(seq, 1000):
-            found += [each for each in page if not isinstance(each, COUNTED)]
+            found += [
+                each for each in page if not isinstance(each, COUNTED) and each.run != self.asking
+            ]
             seq = page[-1].seq
         return found
 
@@ -138,6 +143,16 @@ async def _set_the_stage(made: Bench) -> None:
             setattr(made, which, UUID(answer.json()["id"]))
         for each in (made.paused, made.run):
             (await client.post(f"/api/runs/{each}/pause")).raise_for_status()
+        answer = await client.post("/api/runs", json={**body, "speed": 20.0})
+        made.asking = UUID(answer.json()["id"])
+        steal = {"act": "steal", "object": "green_leg"}
+        await client.post(f"/api/runs/{made.asking}/interventions", json=steal)
+        async with asyncio.timeout(PATIENCE_S):
+            while not made.prompt:
+                for each in (await client.get("/api/dialogues?status=open")).json():
+                    if each["awaiting"] == "answer":
+                        made.dialogue, made.prompt = each["dialogue"], each["prompt"]["prompt"]
+                await asyncio.sleep(0.05)
 
 
 # --- Requests -------------------------------------------------------------------------------------
@@ -154,8 +169,8 @@ class Request:
 
 
 def requests(made: Bench) -> Sequence[Request]:
-    run, other = f"/api/runs/{made.run}", str(uuid4())
-    dialogue = f"/api/dialogues/{other}"
+    run, prompt = f"/api/runs/{made.run}", made.prompt
+    dialogue = f"/api/dialogues/{made.dialogue}"
     start = {"tree": "eket", "world": "tabletop", "speed": "max", "seed": 7, "answers": ["yes"],
              "scenario": None, "scene": None, "interventions": None, "robots": [],
              "max_attempts": 3, "world_options": {"depth_noise": 1.0},
@@ -174,9 +189,9 @@ def requests(made: Bench) -> Sequence[Request]:
         Request("POST", "/api/runs", {"tree": "eket", "world": "live", "robots": ["nobody"]}),
         Request("POST", f"{run}/interventions", steal),
         Request("POST", f"{run}/resume", {}),
-        Request("POST", f"{dialogue}/answers", {"prompt": other, "answer": "yes", "helper": "a"}),
+        Request("POST", f"{dialogue}/answers", {"prompt": prompt, "answer": "yes", "helper": "a"}),
         Request("POST", f"{dialogue}/claim", {"helper": "anna", "take_over": True}),
-        Request("POST", f"{dialogue}/extend", {"prompt": other, "helper": "anna"}),
+        Request("POST", f"{dialogue}/extend", {"prompt": prompt, "helper": "anna"}),
         Request("POST", f"{dialogue}/release", {"helper": "anna"}),
         Request("POST", "/api/session", {"token": "wrong"}),
         Request("POST", "/api/robots/enrol", {"robot": ROBOT, "code": "ABCD-EFGH"}),
@@ -281,7 +296,7 @@ async def _judge(
 
 async def _tidy(made: Bench, client: httpx.AsyncClient) -> None:
     """End what a mutation has begun, so that nothing goes on beside the next one."""
-    kept = {made.run, made.paused}
+    kept = {made.run, made.paused, made.asking}
     for status in ("running", "paused"):
         for each in (await client.get("/api/runs", params={"status": status})).json():
             if UUID(each["id"]) not in kept:
@@ -298,12 +313,14 @@ async def _tidy(made: Bench, client: httpx.AsyncClient) -> None:
 async def fuzz_helper(made: Bench, mutations: int, seed: int) -> Found:
     """Send a helper's mutated messages; a connection that is closed is made again."""
     found, mutator = Found(), Mutator(seed)
-    other = str(uuid4())
+    asked = {"dialogue": made.dialogue, "prompt": made.prompt}
+    of_it = {"dialogue": made.dialogue}
     messages = [
-        {"type": "answer", "dialogue": other, "prompt": other, "answer": "yes", "id": 1},
-        {"type": "claim", "dialogue": other, "take_over": True, "id": "a"},
-        {"type": "release", "dialogue": other},
-        {"type": "extend", "dialogue": other, "prompt": other},
+        {"type": "claim", **of_it, "take_over": True, "id": "a"},
+        {"type": "claim", **of_it},
+        {"type": "release", **of_it},
+        {"type": "extend", **asked},
+        {"type": "answer", **asked, "answer": "yes", "id": 1},
         {"type": "ping", "id": 7},
         {"type": "auth", "token": "wrong"},
     ]
