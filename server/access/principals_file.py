@@ -25,7 +25,6 @@ from pydantic_core import ErrorDetails
 from server.access.principal import RESERVED
 from server.access.roles import Role
 from server.journal.file_mode import OWNERS_FOLDER, keep_to_owner
-from tasks.document import DocumentError, read_document
 from tasks.validation import what_is_right
 
 HEADING = "# Written by `mend access`. Tokens are not in here, only their hashes.\n"
@@ -128,11 +127,17 @@ def read_principals(path: Path) -> Principals:
 def principals_of(text: str, source: str) -> Principals:
     """What the text of such a file says. Raises `PrincipalsFileError`."""
     try:
-        loaded, mistakes = read_document(text)
-    except DocumentError as error:
-        raise PrincipalsFileError(f"{error.problem.describe(source)}.") from error
-    if mistakes:
-        raise PrincipalsFileError("\n".join(f"{each.describe(source)}." for each in mistakes))
+        # As the file is written: with YAML 1.2's numbers an id such as 6798e113 would be one.
+        loaded = yaml.safe_load(text)
+    except yaml.YAMLError as error:
+        where = getattr(error, "problem_mark", None)
+        line = "" if where is None else f", line {where.line + 1}"
+        raise PrincipalsFileError(f"{source}{line}: this is not YAML.") from error
+    except RecursionError as error:
+        raise PrincipalsFileError(f"{source}: something in it is nested too deeply.") from error
+    except (ValueError, TypeError, AttributeError) as error:
+        # Numbers with too many digits, days that no month has, a mapping as a key.
+        raise PrincipalsFileError(f"{source}: a value in it cannot be read.") from error
     if not isinstance(loaded, dict | None):
         raise PrincipalsFileError(f"{source}: a file of principals has the key 'principals'.")
     try:
