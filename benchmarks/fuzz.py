@@ -3,7 +3,8 @@
 Valid examples are mutated: what they say, and their bytes. Each part runs in a process of its own
 with 512 MB of memory beyond what it has once it is ready. Nothing may end in a 5xx, a traceback or
 a crash; what is refused must change nothing, and a robot with a valid credential nothing but
-its own run. The same seed draws the same mutations.
+its own run. The same seed draws the same mutations; ids and tokens in the examples are new each
+time.
 
     python benchmarks/fuzz.py [--mutations 10000] [--seed 1] [--only files rest helper robot]
 
