@@ -87,6 +87,9 @@ def _json_segments(text: str, path: Path) -> np.ndarray:
     except ValidationError as error:
         _tell([_describe(dict(each), path) for each in error.errors()], path)
         raise
+    except ValueError as error:
+        # A number with more digits than Python reads.
+        raise VectorMapError(f"{path}: a number in it is too long") from error
     rows = [[each.p0.x, each.p0.y, each.p1.x, each.p1.y] for each in read]
     return np.array(rows, dtype=np.float64).reshape(-1, 4)
 

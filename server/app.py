@@ -33,8 +33,12 @@ from server.api import principals as principals_api
 from server.api import worlds as worlds_api
 from server.api.access import Access
 from server.api.gate import Gate
+from server.api.idempotency_key import take_keys
+from server.api.openapi_links import add_links
+from server.api.openapi_responses import document_answers
 from server.api.parts import ObservedJournal, Parts, WorldList
 from server.api.problems import Problem, answer_errors_with_problems
+from server.api.repeats import Repeats
 from server.documents import DocumentLibrary
 from server.models import RobotModels
 from server.poses.feed import PoseSource
@@ -87,6 +91,7 @@ def create_app(
     speech_abilities: SpeechAbilities = NO_SPEECH,
     refusals: Refusals | None = None,
     lifespan: Lifespan | None = None,
+    wall_time_s: Callable[[], float] = time.time,
 ) -> FastAPI:
     """Build the application around a runtime and a journal.
 
@@ -94,6 +99,7 @@ def create_app(
     `refusals` are those that `access` counts too.
     """
     app = described_app(lifespan)
+    refusals = refusals or Refusals()
     app.state.parts = Parts(
         service,
         journal,
@@ -107,8 +113,9 @@ def create_app(
         access,
         deeds,
         PrincipalsEditor(settings.principals_path, by="", keep_changes=False),
+        Repeats(journal, settings.limits, refusals, wall_time_s),
         speech_abilities,
-        refusals or Refusals(),
+        refusals,
     )
     app.add_middleware(Gate, access=access)
     return app
@@ -194,6 +201,9 @@ def _describe(app: FastAPI) -> None:
                 "session": {"type": "apiKey", "in": "cookie", "name": "mend_session"},
             }
             schema["security"] = [{"token": []}, {"session": []}, {}]
+            take_keys(schema)
+            document_answers(schema)
+            add_links(schema)
         assert app.openapi_schema is not None, "generating it keeps it"
         return app.openapi_schema
 

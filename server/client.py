@@ -2,7 +2,7 @@
 
 import asyncio
 import contextlib
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Awaitable
 from types import TracebackType
 from typing import Any, Literal, Self, TypeVar
 from urllib.parse import quote
@@ -16,6 +16,7 @@ from server.api.problems import Problem, problem
 from server.api.speech import SpeechView
 from server.client_connection import HelperDoor
 from server.client_errors import RefusedError, UnreachableError
+from server.client_retries import send_once
 from server.client_speech import SpeechStream
 from server.client_stream import EventStream
 from server.documents import (
@@ -35,6 +36,7 @@ from server.journal.events import (
     RunFailed,
     RunFinished,
 )
+from server.journal.trouble import Sleep
 from server.runtime.requests import RunRequest
 from server.runtime.views import DialogueView, RobotView, RunSummary, RunView, Snapshot
 from tasks.intervention import Intervention
@@ -56,12 +58,19 @@ _events: TypeAdapter[Any] = TypeAdapter(list[AnyEvent])
 class MendClient:
     """Talks to one service; an asynchronous context manager.
 
-    Every method raises `RefusedError` or `UnreachableError`.
+    Every method raises `RefusedError` or `UnreachableError`. What changes something is sent under
+    an idempotency key, and sent again where a connection was lost before the answer had come.
     """
 
     def __init__(
-        self, url: str = DEFAULT_URL, *, token: str | None = None, timeout_s: float = 30.0
+        self,
+        url: str = DEFAULT_URL,
+        *,
+        token: str | None = None,
+        timeout_s: float = 30.0,
+        sleep: Sleep = asyncio.sleep,
     ) -> None:
+        self._sleep = sleep
         self._url = url.rstrip("/")
         self._headers = {"Authorization": f"Bearer {token}"} if token else {}
         self._http = httpx.AsyncClient(
@@ -319,12 +328,19 @@ class MendClient:
         return TypeAdapter(shape).validate_json(response.content)
 
     async def _post(self, path: str, shape: type[T], body: Any = None) -> T:
-        response = await self._request("POST", path, json=body)
+        response = await self._answer(
+            send_once(
+                lambda headers: self._http.post(path, json=body, headers=headers), self._sleep
+            )
+        )
         return TypeAdapter(shape).validate_json(response.content)
 
     async def _request(self, method: str, path: str, **more: Any) -> httpx.Response:
+        return await self._answer(self._http.request(method, path, **more))
+
+    async def _answer(self, sent: Awaitable[httpx.Response]) -> httpx.Response:
         try:
-            response = await self._http.request(method, path, **more)
+            response = await sent
         except httpx.HTTPError as error:
             raise UnreachableError(f"no service answers at {self._url}: {error}") from error
         if response.is_error:

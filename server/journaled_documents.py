@@ -19,7 +19,7 @@ from server.documents import (
 )
 from server.errors import ConflictError, InvalidError, NotFoundError
 from server.journal.events import Author, DocumentDeleted, DocumentKept
-from server.journal.journal import Entry, Journal
+from server.journal.journal import Document, Entry, Journal
 from server.limits import Limits
 
 Summarize = Callable[[str, bool, Mapping[str, Any] | None], DocumentSummary]
@@ -122,8 +122,12 @@ class JournaledDocuments:
             await users.refuse_unfit(self.kind, name, text)
         async with self._saving:
             await self._refuse_too_much(name, text)
-            await self._journal.append(Entry(events=[self._kept(name, not new, author)]))
-            await self._journal.save_document(self.kind, name, text)
+            await self._journal.append(
+                Entry(
+                    events=[self._kept(name, not new, author)],
+                    document=Document(self.kind, name, text),
+                )
+            )
         definition = {**checked.definition, "name": name}
         kept = KeptDocument(
             name=name,
@@ -152,8 +156,12 @@ class JournaledDocuments:
         async with self._saving:
             if name not in await self._journal.documents(self.kind):
                 raise NotFoundError(f"there is no {SPOKEN[self.kind]} '{name}'")
-            await self._journal.append(Entry(events=[self._deleted(name, author)]))
-            await self._journal.delete_document(self.kind, name)
+            await self._journal.append(
+                Entry(
+                    events=[self._deleted(name, author)],
+                    document=Document(self.kind, name, None),
+                )
+            )
 
     def _kept(self, name: str, replaced: bool, author: Author | None) -> DocumentKept:
         fields = {"kind": self.kind, "name": name, "replaced": replaced, "author": author}

@@ -22,6 +22,8 @@ LimitName = Literal[
     "body_s",
     "stuck_client_s",
     "wrong_tokens",
+    "idempotency_keys",
+    "idempotency_s",
 ]
 """The limits by name: whoever refuses something says for which of them."""
 
@@ -59,3 +61,7 @@ class Limits(BaseModel):
     """How long a client may take nothing of what is sent to it."""
     wrong_tokens: AtLeastOne = 5
     """Different wrong tokens from one address before it has to wait for the next."""
+    idempotency_keys: AtLeastOne = 1000
+    """Requests under an idempotency key that are kept of one principal, the latest ones."""
+    idempotency_s: Seconds = 86_400.0
+    """How long they are kept."""

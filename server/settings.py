@@ -28,13 +28,16 @@ HostName = Annotated[str, Field(min_length=1, max_length=253)]
 
 CONFIG_VARIABLE = "MEND_CONFIG"
 
+MOST_CHARS = 500
+"""Of a sentence about a setting."""
+
 
 class WrongSettingsError(Exception):
     """The service cannot start with these settings; one sentence per mistake."""
 
     def __init__(self, problems: list[str]) -> None:
-        super().__init__("\n".join(problems))
-        self.problems = problems
+        self.problems = [_short(each) for each in problems]
+        super().__init__("\n".join(self.problems))
 
 
 class Settings(BaseSettings):
@@ -204,6 +207,8 @@ def _with_file(path: Path | None) -> type[Settings]:
                 file = TomlConfigSettingsSource(settings_cls, path)
             except (ValueError, OSError) as error:
                 raise WrongSettingsError([f"{path} is not a TOML file: {error}."]) from error
+            except RecursionError as error:
+                raise WrongSettingsError([f"{path} is nested too deeply."]) from error
             return init_settings, env_settings, file
 
     return SettingsFromFile
@@ -228,6 +233,11 @@ def _sentence(error: Any) -> str:
     if error["type"] == "extra_forbidden":
         return f"There is no setting '{where}'."
     return f"The setting '{where}' is wrong: {message[0].lower()}{message[1:]}."
+
+
+def _short(sentence: str) -> str:
+    """A sentence that may have something very long in it, cut off."""
+    return sentence if len(sentence) <= MOST_CHARS else f"{sentence[:MOST_CHARS]}..."
 
 
 def is_everywhere(host: str) -> bool:

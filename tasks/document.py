@@ -12,8 +12,8 @@ import yaml
 from tasks.problem import Problem
 
 MAX_BYTES = 32 * 1024 * 1024
-MAX_DEPTH = 20_000
-"""How deep mappings and lists may nest."""
+MAX_DEPTH = 4_000
+"""How deep mappings and lists may nest. The time to read them grows with the square of it."""
 MAX_VALUES = 4_000_000
 """How many values a document may have, those repeated by aliases counted again."""
 

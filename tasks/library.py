@@ -5,6 +5,9 @@ from importlib.resources import files
 
 from tasks.problem import list_names
 
+MOST_SHOWN = 64
+"""Characters of an unknown name in a sentence; no name that there is has more."""
+
 
 class NotInLibraryError(LookupError):
     """The library has nothing of that name; raised by `Shelf.read`."""
@@ -29,8 +32,9 @@ class Shelf:
         """The text of a file. Raises `NotInLibraryError`."""
         # Only a listed name is opened, so that a name is never taken for a path.
         if name not in self.names():
+            shown = name if len(name) <= MOST_SHOWN else f"{name[:MOST_SHOWN]}..."
             raise NotInLibraryError(
-                f"there is no {self.what} '{name}' in the library; "
+                f"there is no {self.what} '{shown}' in the library; "
                 f"it has {list_names(self.names()) or 'none'}"
             )
         return files("tasks").joinpath(self.folder, f"{name}.yaml").read_text(encoding="utf-8")

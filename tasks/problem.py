@@ -5,6 +5,8 @@ from dataclasses import dataclass
 
 _MAX_TOLD = 50
 _MAX_LISTED = 12
+_MOST_CHARS = 1000
+"""Of one message: what is quoted in it may be of any length."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,10 +24,9 @@ class Problem:
     def describe(self, source: str) -> str:
         """One line: where it is and what is wrong."""
         place = source if self.line is None else f"{source}:{self.line}"
-        return f"{place}: {self.message}" if self.node_path is None else self._with_node(place)
-
-    def _with_node(self, place: str) -> str:
-        return f"{place}: {self.node_path}: {self.message}"
+        node = "" if self.node_path is None else f"{self.node_path}: "
+        cut = "..." if len(self.message) > _MOST_CHARS else ""
+        return f"{place}: {node}{self.message[:_MOST_CHARS]}{cut}"
 
 
 class InvalidFileError(Exception):

@@ -94,7 +94,10 @@ def _known_keys(mistake: ErrorDetails, model: type[BaseModel]) -> str:
 
 
 def _show(value: Any) -> str:
-    shown = json.dumps(value, default=str)
+    try:
+        shown = json.dumps(value, default=str)
+    except RecursionError:
+        return "nested too deeply to be shown"
     if len(shown) > _MAX_VALUE_CHARACTERS:
         return shown[:_MAX_VALUE_CHARACTERS] + "..."
     return shown

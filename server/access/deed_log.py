@@ -1,7 +1,8 @@
 """Journals what people do to the service itself; sign-ins are counted, so that none floods it."""
 
 import asyncio
-from collections.abc import Callable, Iterable
+import logging
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from datetime import datetime, timedelta
 from uuid import UUID
@@ -12,7 +13,15 @@ from server.access.roles import Role
 from server.access.sessions import Session, Sessions
 from server.access.tally import Tally
 from server.journal import events as ev
-from server.journal.journal import Entry, Journal, JournalClosedError
+from server.journal.journal import (
+    Entry,
+    Journal,
+    JournalClosedError,
+    JournalReadError,
+    UnreadableEvent,
+)
+
+log = logging.getLogger(__name__)
 
 TOLD_EVERY = timedelta(minutes=1)
 """Sign-ins of one principal, and failed ones of everybody, make one event in so long."""
@@ -34,6 +43,7 @@ class DeedLog:
         self._told: dict[tuple[str, Role] | None, datetime] = {}
         self._journaled: set[UUID] = set()
         self._writing: set[asyncio.Task[None]] = set()
+        self._unreadable: list[str] = []
 
     # --- What is done -------------------------------------------------------------------------
 
@@ -96,16 +106,36 @@ class DeedLog:
     # --- What the file of principals tells ------------------------------------------------------
 
     async def recover(self, sessions: Sessions) -> None:
-        """Read what was journaled before: which sessions have ended, which changes are known."""
+        """Read what was journaled before: which sessions have ended, which changes are known.
+
+        What cannot be read is left out, and told in `unreadable`.
+        """
         after = 0
-        while events := await self._journal.read(after, PAGE, ev.NO_RUN):
-            for event in events:
-                match event:
-                    case ev.SignedOut(session=number, expires=expires):
-                        sessions.end(number, expires)
-                    case ev.AccessChanged(change=UUID() as change):
-                        self._journaled.add(change)
-            after = events[-1].seq
+        try:
+            while events := await self._journal.read_readable(after, PAGE, ev.NO_RUN):
+                for event in events:
+                    self._recall(event, sessions)
+                after = events[-1].seq
+        except JournalReadError as error:
+            self._cannot_read(f"what belongs to no run cannot be read after event {after}: {error}")
+
+    def _recall(self, event: ev.Event | UnreadableEvent, sessions: Sessions) -> None:
+        match event:
+            case UnreadableEvent(why=why):
+                self._cannot_read(why)
+            case ev.SignedOut(session=number, expires=expires):
+                sessions.end(number, expires)
+            case ev.AccessChanged(change=UUID() as change):
+                self._journaled.add(change)
+
+    def _cannot_read(self, why: str) -> None:
+        log.error("%s", why)
+        self._unreadable.append(why)
+
+    @property
+    def unreadable(self) -> Sequence[str]:
+        """A sentence for each event that belongs to no run and could not be read."""
+        return tuple(self._unreadable)
 
     def take_changes(self, changes: Iterable[Change]) -> None:
         """Journal what was done to the file on this machine, each change once."""

@@ -9,16 +9,20 @@ from pydantic import BaseModel, ConfigDict
 
 from server.access.roles import Role, with_article
 from server.journal import events as ev
+from server.journal.journal import UnreadableEvent
 from server.journal.reader import JournalReader
 
 
 class Deed(BaseModel):
-    """One deed. `who` None: nobody who is known; `seq` is its event, `run` None: of no run."""
+    """One deed. `who` None: nobody who is known; `seq` is its event, `run` None: of no run.
+
+    `when` is None where the event cannot be read; `deed` is then `unreadable`, and `what` says why.
+    """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
     seq: int
-    when: datetime
+    when: datetime | None
     who: str | None
     role: Role | None
     address: str | None
@@ -37,11 +41,14 @@ DEEDS: frozenset[str] = frozenset(
 )  # fmt: skip
 """The types of events that are deeds; some of them only where somebody did them."""
 
+UNREADABLE = "unreadable"
+"""In the place of a type: the event cannot be read."""
+
 
 def deeds_in(journal: Path) -> Iterator[Deed]:
     """Every deed in a journal's file, in order; it may be in use.
 
-    Raises `FileNotFoundError`, `JournalSchemaError` and what reading an event raises.
+    Raises `FileNotFoundError`, `JournalSchemaError` and `JournalReadError`.
     """
     with JournalReader(journal) as reader:
         for event in reader.of_types(sorted(DEEDS)):
@@ -50,9 +57,17 @@ def deeds_in(journal: Path) -> Iterator[Deed]:
                 yield deed
 
 
-def deed_of(event: ev.Event) -> Deed | None:
-    """The deed that an event tells of; None for what no person did."""
+def deed_of(event: ev.Event | UnreadableEvent) -> Deed | None:
+    """The deed that an event tells of; None for what no person did.
+
+    What cannot be read may have been one.
+    """
     match event:
+        case UnreadableEvent(seq=seq, why=why, run=run):
+            return Deed(
+                seq=seq, when=None, who=None, role=None, address=None, deed=UNREADABLE, what=why,
+                run=run,
+            )  # fmt: skip
         case ev.SignedIn():
             signed = f"signed in {_times(event.times)}{_from(event.addresses, event.elsewhere)}"
             return _deed(event, event.principal, event.role, _only(event), signed)

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from server.access.roles import Role
 from server.journal.events import Author
+from server.journal.keyed_request import KeyedAuthor, KeyedRequest
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,18 +34,27 @@ RESERVED = (ANYBODY.name, TOKEN_NAME)
 class Caller:
     """A principal on one connection; `session` is the cookie's, if it came by one.
 
-    `until`: when that session expires, in seconds of 1970.
+    `until`: when that session expires, in seconds of 1970. `request` is the one that they make, if
+    it came under an idempotency key.
     """
 
     principal: Principal
     address: str | None = None
     session: str | None = None
     until: float | None = None
+    request: KeyedRequest | None = None
 
     @property
     def author(self) -> Author:
         """How the journal names them."""
-        return Author(principal=self.principal.name, role=self.principal.role, address=self.address)
+        who = {
+            "principal": self.principal.name,
+            "role": self.principal.role,
+            "address": self.address,
+        }
+        if self.request is None:
+            return Author.model_validate(who)
+        return KeyedAuthor.model_validate({**who, "request": self.request})
 
     def helper_name(self, declared: str | None) -> str | None:
         """What a helper is called: a principal's own name, else what they say; None without."""

@@ -127,11 +127,17 @@ def read_principals(path: Path) -> Principals:
 def principals_of(text: str, source: str) -> Principals:
     """What the text of such a file says. Raises `PrincipalsFileError`."""
     try:
+        # As the file is written: with YAML 1.2's numbers an id such as 6798e113 would be one.
         loaded = yaml.safe_load(text)
     except yaml.YAMLError as error:
         where = getattr(error, "problem_mark", None)
         line = "" if where is None else f", line {where.line + 1}"
         raise PrincipalsFileError(f"{source}{line}: this is not YAML.") from error
+    except RecursionError as error:
+        raise PrincipalsFileError(f"{source}: something in it is nested too deeply.") from error
+    except (ValueError, TypeError, AttributeError) as error:
+        # Numbers with too many digits, days that no month has, a mapping as a key.
+        raise PrincipalsFileError(f"{source}: a value in it cannot be read.") from error
     if not isinstance(loaded, dict | None):
         raise PrincipalsFileError(f"{source}: a file of principals has the key 'principals'.")
     try:
@@ -139,6 +145,8 @@ def principals_of(text: str, source: str) -> Principals:
     except ValidationError as error:
         sentences = [_sentence(source, each) for each in error.errors(include_url=False)]
         raise PrincipalsFileError("\n".join(dict.fromkeys(sentences))) from error
+    except RecursionError as error:
+        raise PrincipalsFileError(f"{source}: something in it is nested too deeply.") from error
 
 
 def _sentence(source: str, mistake: ErrorDetails) -> str:

@@ -9,12 +9,12 @@ from pydantic import BaseModel, ConfigDict, Field
 from server.access.principal import Caller
 from server.api.parts import DialogueId, HelperName, Limit, Offset, WithCaller, WithParts
 from server.api.problems import documented
-from server.api.strict_json import StrictJsonRoute
+from server.api.repeatable import RepeatableRoute
 from server.errors import InvalidError
 from server.journal.events import Answered, DeadlineExtended
 from server.runtime.views import DialogueView
 
-router = APIRouter(prefix="/api/dialogues", tags=["dialogues"], route_class=StrictJsonRoute)
+router = APIRouter(prefix="/api/dialogues", tags=["dialogues"], route_class=RepeatableRoute)
 
 PROMPT = "3f0c5b1e-8a55-4d7c-9d2b-6b1e8a554d7c"
 CHANGES = documented(400, 401, 403, 404, 409, 413, 421, 422)

@@ -9,6 +9,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 
 from server.api.parts import DocumentName, Limit, Offset, Parts, WithCaller, WithParts
 from server.api.problems import ProblemError, documented, validation_sentences
+from server.api.repeatable import RepeatableRoute
 from server.documents import (
     SPOKEN,
     DocumentCheck,
@@ -86,7 +87,7 @@ def _upload_body(doors: Doors) -> dict[str, Any]:
 
 def _router(doors: Doors) -> APIRouter:
     """The routes of one kind of document."""
-    router = APIRouter(prefix="/api", tags=[doors.path.lstrip("/")])
+    router = APIRouter(prefix="/api", tags=[doors.path.lstrip("/")], route_class=RepeatableRoute)
     _add_reading(router, doors)
     _add_writing(router, doors)
     return router

@@ -21,11 +21,13 @@ class Health(BaseModel):
 class Readiness(BaseModel):
     """`degraded`: it works, but some of what was kept is damaged; `damage` has a sentence for each.
 
-    `unreadable_runs` says how many runs cannot be read.
+    `unreadable_runs` says how many runs cannot be read, `unreadable_events` how many events that
+    belong to no run.
     """
 
     status: Literal["ok", "degraded"]
     unreadable_runs: int
+    unreadable_events: int
     damage: list[str]
 
 
@@ -43,9 +45,11 @@ async def readyz(parts: WithParts) -> Readiness:
         raise JournalWriteError(parts.journal.trouble.reason)
     await parts.journal.read_records(parts.journal.head, 1)
     unreadable = await parts.journal.index.count_unreadable()
+    events = len(parts.deeds.unreadable)
     damage = [each.sentence for each in parts.journal.damage]
     return Readiness(
-        status="degraded" if unreadable or damage else "ok",
+        status="degraded" if unreadable or events or damage else "ok",
         unreadable_runs=unreadable,
+        unreadable_events=events,
         damage=damage,
     )

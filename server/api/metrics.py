@@ -34,6 +34,11 @@ class ServiceCollector(Collector):
             value=self._run_counts.get(RunStatus.UNREADABLE, 0),
         )
         yield GaugeMetricFamily(
+            "mend_unreadable_events",
+            "Events that belong to no run and could not be read when the service started.",
+            value=len(self._parts.deeds.unreadable),
+        )
+        yield GaugeMetricFamily(
             "mend_open_dialogues", "Open dialogues.", value=self._open_dialogues
         )
         connected = sum(robot.connected for robot in self._parts.runs.robots())

@@ -1,7 +1,7 @@
 """What the routes work with: the parts of the service, and parameters that many of them take."""
 
 from dataclasses import dataclass, field
-from typing import Annotated, Protocol
+from typing import TYPE_CHECKING, Annotated, Protocol
 from uuid import UUID
 
 from fastapi import Depends, Path, Query
@@ -23,6 +23,10 @@ from server.runtime.service import RunService
 from server.runtime.views import WorldView
 from server.settings import Settings
 from server.speech.abilities import NO_SPEECH, SpeechAbilities
+
+if TYPE_CHECKING:
+    # It refuses with problem documents, which know the parts.
+    from server.api.repeats import Repeats
 
 MAX_SEQ = 2**63 - 1
 
@@ -60,6 +64,7 @@ class Parts:
     access: Access
     deeds: DeedLog
     editor: PrincipalsEditor
+    repeats: "Repeats"
     speech: SpeechAbilities = NO_SPEECH
     refusals: Refusals = field(default_factory=Refusals)
 

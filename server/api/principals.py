@@ -15,11 +15,13 @@ from server.access.principals_file import PrincipalName, RobotName
 from server.access.roles import Role
 from server.api.parts import After, Limit, Parts, WithCaller, WithParts
 from server.api.problems import ProblemError, documented
-from server.api.strict_json import StrictJsonRoute
+from server.api.repeatable import SecretRoute
 from server.errors import NotFoundError
-from server.journal.events import any_event
+from server.journal.journal import JournalReadError
+from server.journal.stored_event import read_event
+from server.journal.subscriptions import Record
 
-router = APIRouter(prefix="/api/access", tags=["access"], route_class=StrictJsonRoute)
+router = APIRouter(prefix="/api/access", tags=["access"], route_class=SecretRoute)
 
 SCANNED_AT_ONCE = 1000
 MOST_SCANNED = 20_000
@@ -167,15 +169,13 @@ async def list_deeds(
     deeds: list[Deed] = []
     last = after
     while last - after < MOST_SCANNED:
-        records = await parts.journal.read_records(last, SCANNED_AT_ONCE)
-        for record in records:
-            last = record.seq
-            deed = _deed(record.text)
+        page = await _page_of_deeds(parts, last)
+        for last, deed in page:
             if deed is not None and who in (None, deed.who):
                 deeds.append(deed)
             if len(deeds) == limit:
                 return DeedsPage(deeds=deeds, seq=last, more=last < parts.journal.head)
-        if not records:
+        if not page:
             break
     return DeedsPage(deeds=deeds, seq=last, more=last < parts.journal.head)
 
@@ -198,9 +198,20 @@ def _role(parts: Parts, name: str) -> Role:
     return found.role
 
 
-def _deed(text: str) -> Deed | None:
+async def _page_of_deeds(parts: Parts, after: int) -> list[tuple[int, Deed | None]]:
+    """The next events, each with the deed that it tells of."""
+    try:
+        records = await parts.journal.read_records(after, SCANNED_AT_ONCE)
+        return [(each.seq, _deed(each)) for each in records]
+    except JournalReadError:
+        # One that cannot be read is told in its place, and takes no other with it.
+        events = await parts.journal.read_readable(after, SCANNED_AT_ONCE)
+        return [(each.seq, deed_of(each)) for each in events]
+
+
+def _deed(record: Record) -> Deed | None:
     # Most events are no deeds, and their type is found without reading all of them.
-    kind = TYPE.search(text)
-    if kind is None or kind.group(1) not in DEEDS:
+    kind = TYPE.search(record.text)
+    if kind is not None and kind.group(1) not in DEEDS:
         return None
-    return deed_of(any_event.validate_json(text))
+    return deed_of(read_event(record.seq, record.text))

@@ -13,11 +13,11 @@ from server.api.admission import Admission
 from server.api.parts import Limit, Offset, WithParts
 from server.api.principals import edited
 from server.api.problems import ProblemError, documented
-from server.api.strict_json import StrictJsonRoute
+from server.api.repeatable import SecretRoute
 from server.journal.events import Author
 from server.runtime.views import RobotView
 
-router = APIRouter(prefix="/api/robots", tags=["robots"], route_class=StrictJsonRoute)
+router = APIRouter(prefix="/api/robots", tags=["robots"], route_class=SecretRoute)
 
 
 class EnrolmentRequest(BaseModel):

@@ -7,14 +7,14 @@ from fastapi import APIRouter, Body, Path, Query, Response
 
 from server.api.parts import After, Limit, Offset, RunId, WithCaller, WithParts
 from server.api.problems import documented
-from server.api.strict_json import StrictJsonRoute
+from server.api.repeatable import RepeatableRoute
 from server.journal.events import NO_RUN, AnyEvent
 from server.journal.run_index import RunPage
 from server.runtime.requests import RunRequest
 from server.runtime.views import RunStatus, RunSummary, RunView
 from tasks.intervention import Intervention
 
-router = APIRouter(prefix="/api/runs", tags=["runs"], route_class=StrictJsonRoute)
+router = APIRouter(prefix="/api/runs", tags=["runs"], route_class=RepeatableRoute)
 
 Statuses = Annotated[
     list[RunStatus] | None, Query(description="Only runs in one of these states; may be repeated.")

@@ -9,8 +9,9 @@ from server.access.sessions import SESSION_LIFETIME_S, TooManySessionsError
 from server.api.access import SESSION_COOKIE, address_of
 from server.api.parts import WithParts
 from server.api.problems import ProblemError, documented
+from server.api.repeatable import SecretRoute
 
-router = APIRouter(prefix="/api", tags=["session"])
+router = APIRouter(prefix="/api", tags=["session"], route_class=SecretRoute)
 
 
 class SignIn(BaseModel):

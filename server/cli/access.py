@@ -127,7 +127,7 @@ def audit(
             return
         rows: list[tuple[str, ...]] = [
             (
-                f"{each.when:%Y-%m-%d %H:%M:%S}",
+                "" if each.when is None else f"{each.when:%Y-%m-%d %H:%M:%S}",
                 each.who or "",
                 str(each.role or ""),
                 each.address or "",

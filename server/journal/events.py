@@ -516,7 +516,7 @@ class ServiceEvent(Event):
 
 
 class DocumentKept(ServiceEvent):
-    """A task tree, scene or scenario was uploaded; journaled before it is kept."""
+    """A task tree, scene or scenario was uploaded; journaled as it is kept."""
 
     type: Literal["document_kept"] = "document_kept"
     kind: Literal["tree", "scene", "scenario"]
@@ -526,7 +526,7 @@ class DocumentKept(ServiceEvent):
 
 
 class DocumentDeleted(ServiceEvent):
-    """An uploaded task tree, scene or scenario was deleted; journaled before it is."""
+    """An uploaded task tree, scene or scenario was deleted; journaled as it is."""
 
     type: Literal["document_deleted"] = "document_deleted"
     kind: Literal["tree", "scene", "scenario"]

@@ -83,8 +83,10 @@ class _Check:
                 self._find(f"a part of the journal cannot be read at all: {error}")
         return self._check
 
-    def _find(self, sentence: str, runs: Iterable[str] = ()) -> None:
-        finding = Finding(sentence, frozenset(runs))
+    def _find(self, sentence: str, runs: Iterable[str | None] = ()) -> None:
+        # A damaged row may have no text where its run should be.
+        named = frozenset(run for run in runs if isinstance(run, str))
+        finding = Finding(sentence, named)
         if finding not in self._check.findings:
             self._check.findings.append(finding)
 

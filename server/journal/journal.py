@@ -7,6 +7,7 @@ from uuid import UUID
 
 from server.journal.chain import Break
 from server.journal.events import Event
+from server.journal.keyed_request import FirstAnswer, KeptRequest, KeyedRequest
 from server.journal.run_index import RunIndex
 from server.journal.subscriptions import DEFAULT_CAPACITY, Record, Subscription
 from server.journal.trouble import Trouble
@@ -22,10 +23,20 @@ class Receipt:
 
 
 @dataclass(frozen=True, slots=True)
+class Document:
+    """An uploaded file; one of the same kind and name is replaced. `text` None: it is deleted."""
+
+    kind: str
+    name: str
+    text: str | None
+
+
+@dataclass(frozen=True, slots=True)
 class Entry:
     """What is committed together, all or nothing.
 
     `world` replaces the run's latest world state (`world_run` says whose); `pictures` are JPEGs.
+    With events whose author asked under an idempotency key that request is kept.
     """
 
     events: Sequence[Event] = ()
@@ -33,6 +44,16 @@ class Entry:
     world_run: UUID | None = None
     world: Mapping[str, Any] | None = None
     pictures: Mapping[UUID, bytes] = field(default_factory=dict)
+    document: Document | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class UnreadableEvent:
+    """An event that cannot be read, and the sentence that says why; `run` None: it is of none."""
+
+    seq: int
+    why: str
+    run: UUID | None = None
 
 
 Fold = Callable[[list[Event]], None]
@@ -77,6 +98,15 @@ class Journal(Protocol):
         """What `read` returns, as the JSON text of each event."""
         ...
 
+    async def read_readable(
+        self, after: int, limit: int, run: UUID | None = None
+    ) -> list[Event | UnreadableEvent]:
+        """What `read` returns; in the place of an event that cannot be read, which one and why.
+
+        Raises `JournalReadError` where not even the numbers of the events can be read.
+        """
+        ...
+
     def subscribe(self, after: int, capacity: int = DEFAULT_CAPACITY) -> Subscription:
         """Follow every event with `seq` > `after`; `capacity` may wait before it is cut off."""
         ...
@@ -117,11 +147,19 @@ class Journal(Protocol):
         """The highest `seq` that was pruned; 0 if none was. Before it events may be missing."""
         ...
 
-    async def save_document(self, kind: str, name: str, text: str) -> None:
-        """Keep an uploaded file; replaces one of the same kind and name."""
+    async def find_request(self, principal: str, key: str, since: float) -> KeptRequest | None:
+        """The request that somebody made under a key, if that was after `since` (s of 1970)."""
         ...
 
-    async def delete_document(self, kind: str, name: str) -> bool: ...
+    async def keep_answer(
+        self, request: KeyedRequest, answer: FirstAnswer | None, most: int, since: float
+    ) -> int:
+        """Add what a request was answered, and forget what need not be kept.
+
+        That is all requests from before `since`, and of this principal all but the latest `most`.
+        Returns how many of theirs went for being too many.
+        """
+        ...
 
     async def documents(self, kind: str) -> dict[str, str]:
         """The texts of uploaded files of a kind, by name."""

@@ -85,6 +85,23 @@ CREATE TABLE pruned (
 INSERT INTO pruned (only, through, runs) VALUES (1, 0, 0);
 """
 
+VERSION_4 = """
+CREATE TABLE requests (
+    principal TEXT NOT NULL,
+    key TEXT NOT NULL,
+    digest BLOB NOT NULL,
+    seq INTEGER NOT NULL,
+    run TEXT NOT NULL,
+    time REAL NOT NULL,
+    status INTEGER,
+    headers TEXT,
+    body BLOB,
+    PRIMARY KEY (principal, key)
+) STRICT;
+CREATE INDEX requests_in_order ON requests (time);
+CREATE INDEX requests_of_run ON requests (run);
+"""
+
 
 @dataclass(frozen=True, slots=True)
 class Migration:
@@ -94,7 +111,12 @@ class Migration:
     then: Callable[[sqlite3.Connection], None] | None = None
 
 
-MIGRATIONS = (Migration(VERSION_1), Migration(VERSION_2), Migration(VERSION_3, index_events))
+MIGRATIONS = (
+    Migration(VERSION_1),
+    Migration(VERSION_2),
+    Migration(VERSION_3, index_events),
+    Migration(VERSION_4),
+)
 
 
 class JournalSchemaError(Exception):

@@ -13,6 +13,7 @@ from server.journal.journal import JournalDamagedError, JournalOpenError
 from server.journal.migrations import migrate
 from server.journal.quick_check import DamagedPagesError, quick_check
 from server.journal.same_file import SameFile
+from server.journal.sqlite_errors import SQLITE_ERRORS
 
 IN_MEMORY = ":memory:"
 
@@ -62,7 +63,7 @@ def _open_file(path: Path, busy_timeout_s: float, check_s: float, lock: FileLock
     except (sqlite3.OperationalError, OSError) as error:
         why = error.strerror if isinstance(error, OSError) else str(error)
         raise _cannot_open(path, str(why)) from error
-    except (sqlite3.DatabaseError, DamagedPagesError) as error:
+    except (*SQLITE_ERRORS, DamagedPagesError) as error:
         raise _damaged(path, str(error)) from error
     return opened
 

@@ -18,6 +18,7 @@ from server.journal.chain import (
     digest_of,
     rows_of,
 )
+from server.journal.keyed_request import forget_requests_of_run
 
 EVENTS_AT_ONCE = 500
 RUNS_AT_ONCE = 20
@@ -114,6 +115,7 @@ def _let_go(connection: sqlite3.Connection, keep: Keep, now: datetime) -> list[s
         connection.execute("INSERT INTO pruning (run) VALUES (?)", (run,))
         connection.execute("DELETE FROM worlds WHERE run = ?", (run,))
         connection.execute("DELETE FROM dialogues WHERE run = ?", (run,))
+        forget_requests_of_run(connection, run)
         _delete_receipts(connection, run, world, robots)
         connection.execute("DELETE FROM runs WHERE run = ?", (run,))
     if runs:

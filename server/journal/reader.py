@@ -8,8 +8,10 @@ from typing import Any, Self
 from uuid import UUID
 
 from server.journal.events import Event
-from server.journal.journal import JournalReadError
+from server.journal.journal import JournalReadError, UnreadableEvent
 from server.journal.migrations import MIGRATIONS, JournalSchemaError
+from server.journal.readable import event_of
+from server.journal.sqlite_errors import SQLITE_ERRORS
 from server.journal.stored_event import read_event
 
 
@@ -34,24 +36,30 @@ class JournalReader:
     def _check_schema(self, path: Path) -> None:
         try:
             row = self._connection.execute("SELECT max(version) FROM schema_version").fetchone()
-        except sqlite3.DatabaseError as error:
+            version = int(row[0] or 0)
+        except (*SQLITE_ERRORS, ValueError, TypeError) as error:
             raise JournalSchemaError(f"'{path}' is not a journal ({error})") from error
-        if (row[0] or 0) > len(MIGRATIONS):
+        if version > len(MIGRATIONS):
             raise JournalSchemaError(
-                f"'{path}' has schema version {row[0]}, this Mend knows up to {len(MIGRATIONS)}: "
+                f"'{path}' has schema version {version}, this Mend knows up to {len(MIGRATIONS)}: "
                 "use the newer Mend that wrote it"
             )
 
     def _select(self, statement: str, parameters: Sequence[Any] = ()) -> list[Any]:
         try:
             return self._connection.execute(statement, parameters).fetchall()
-        except sqlite3.Error as error:
+        except SQLITE_ERRORS as error:
             raise JournalReadError(f"'{self._path}' could not be read: {error}") from error
 
     def runs(self) -> list[UUID]:
         """Every run, in the order in which they began. Raises `JournalReadError`."""
         rows = self._select("SELECT run FROM events WHERE type = 'run_started' ORDER BY seq")
-        return [UUID(run) for (run,) in rows]
+        try:
+            return [UUID(run) for (run,) in rows]
+        except (ValueError, TypeError, AttributeError) as error:
+            raise JournalReadError(
+                f"'{self._path}' could not be read: a run has no id any more"
+            ) from error
 
     def events(self, run: UUID) -> list[Event]:
         """Every event of a run, in order.
@@ -64,18 +72,17 @@ class JournalReader:
         where = f" of '{self._path}'"
         return [read_event(seq, body, version, where) for seq, body, version in rows]
 
-    def of_types(self, types: Sequence[str]) -> Iterator[Event]:
-        """Every event of some types, in order, also those of no run.
+    def of_types(self, types: Sequence[str]) -> Iterator[Event | UnreadableEvent]:
+        """Every event of some types, in order, also those of no run and those that are unreadable.
 
         Raises `JournalReadError`.
         """
         marks = ", ".join("?" * len(types))
         rows = self._select(
-            f"SELECT seq, body, version FROM events WHERE type IN ({marks}) ORDER BY seq",
+            f"SELECT seq, run, body, version FROM events WHERE type IN ({marks}) ORDER BY seq",
             tuple(types),
         )
-        where = f" of '{self._path}'"
-        return (read_event(seq, body, version, where) for seq, body, version in rows)
+        return (event_of(seq, run, body, version) for seq, run, body, version in rows)
 
     def pictures(self, pictures: Iterable[UUID]) -> dict[UUID, bytes]:
         """Those of the pictures (JPEG) that the journal has."""

@@ -17,6 +17,7 @@ from uuid import UUID
 from server.journal.chain import Break, Row, is_whole
 from server.journal.events import Event
 from server.journal.journal import (
+    Document,
     DuplicateReceiptError,
     Entry,
     Fold,
@@ -24,11 +25,23 @@ from server.journal.journal import (
     JournalReadError,
     JournalWriteError,
     Receipt,
+    UnreadableEvent,
+)
+from server.journal.keyed_request import (
+    FirstAnswer,
+    KeptRequest,
+    KeyedRequest,
+    find_request,
+    forget_requests,
+    keep_answer,
+    note_request,
 )
 from server.journal.opening import IN_MEMORY, open_journal
 from server.journal.pruning import Keep, Pruned, prune, pruned_through
+from server.journal.readable import read_readable
 from server.journal.run_index import RunIndex, note, note_readable, note_unreadable
 from server.journal.same_file import FileGoneError
+from server.journal.sqlite_errors import SQLITE_ERRORS
 from server.journal.stored_event import current_text, read_event
 from server.journal.subscriptions import DEFAULT_CAPACITY, Record, Subscribers, Subscription
 from server.journal.trouble import Sleep, Trouble
@@ -149,25 +162,15 @@ class SqliteJournal:
             else:
                 return committed.events
 
-    async def save_document(self, kind: str, name: str, text: str) -> None:
-        await self._writer.submit(
-            lambda connection: (
-                connection.execute(
-                    "INSERT OR REPLACE INTO documents (kind, name, text) VALUES (?, ?, ?)",
-                    (kind, name, text),
-                ).rowcount
-            )
-        )
+    async def keep_answer(
+        self, request: KeyedRequest, answer: FirstAnswer | None, most: int, since: float
+    ) -> int:
+        def work(connection: sqlite3.Connection) -> int:
+            if answer is not None:
+                keep_answer(connection, request, answer)
+            return forget_requests(connection, request.principal, most, since)
 
-    async def delete_document(self, kind: str, name: str) -> bool:
-        deleted: int = await self._writer.submit(
-            lambda connection: (
-                connection.execute(
-                    "DELETE FROM documents WHERE kind = ? AND name = ?", (kind, name)
-                ).rowcount
-            )
-        )
-        return deleted > 0
+        return int(await self._writer.submit(work))
 
     async def mark_unreadable(self, run: UUID, why: str) -> None:
         await self._writer.submit(lambda connection: note_unreadable(connection, run, why))
@@ -217,6 +220,9 @@ class SqliteJournal:
             "INSERT OR REPLACE INTO pictures (id, jpeg) VALUES (?, ?)",
             [(str(picture), jpeg) for picture, jpeg in entry.pictures.items()],
         )
+        if entry.document is not None:
+            _write_document(entry.document, connection)
+        note_request(connection, committed.events)
         self._chain.add(rows)
         self._next += len(committed.events)
         return committed
@@ -274,6 +280,12 @@ class SqliteJournal:
         )
         return [Record(seq, current_text(seq, body, version)) for seq, version, body in rows]
 
+    async def read_readable(
+        self, after: int, limit: int, run: UUID | None = None
+    ) -> list[Event | UnreadableEvent]:
+        query = partial(read_readable, after=after, limit=limit, run=run)
+        return await self._read(lambda: self._reading(query))
+
     async def received(self, robot: str, boot: str) -> int:
         rows = await self._select(
             "SELECT seq FROM receipts WHERE robot = ? AND boot = ?", (robot, boot)
@@ -294,6 +306,10 @@ class SqliteJournal:
     async def pruned_through(self) -> int:
         return int(await self._read(lambda: self._reading(pruned_through)))
 
+    async def find_request(self, principal: str, key: str, since: float) -> KeptRequest | None:
+        query = partial(find_request, principal=principal, key=key, since=since)
+        return await self._read(lambda: self._reading(query))
+
     async def documents(self, kind: str) -> dict[str, str]:
         statement = "SELECT name, text FROM documents WHERE kind = ? ORDER BY name"
         return dict(await self._select(statement, (kind,)))
@@ -310,7 +326,7 @@ class SqliteJournal:
         try:
             with self._read_lock:
                 return query(self._read_connection)
-        except sqlite3.Error as error:
+        except SQLITE_ERRORS as error:
             raise JournalReadError(f"the journal could not be read: {error}") from error
 
     async def _read(self, query: Callable[[], T]) -> T:
@@ -331,6 +347,18 @@ class SqliteJournal:
         self._write_connection.close()
         if self._lock is not None:
             self._lock.release()
+
+
+def _write_document(document: Document, connection: sqlite3.Connection) -> None:
+    if document.text is None:
+        connection.execute(
+            "DELETE FROM documents WHERE kind = ? AND name = ?", (document.kind, document.name)
+        )
+        return
+    connection.execute(
+        "INSERT OR REPLACE INTO documents (kind, name, text) VALUES (?, ?, ?)",
+        (document.kind, document.name, document.text),
+    )
 
 
 def _write_probe(connection: sqlite3.Connection) -> str:

@@ -116,6 +116,7 @@ class FakeRuns:
             if page.statuses is None or run.status in page.statuses
         ]
         if page.before is not None:
+            self.run_now(page.before)
             listed = listed[[run.id for run in listed].index(page.before) + 1 :]
         return listed[page.offset : page.offset + page.limit]
 

@@ -123,6 +123,16 @@ class ServiceProcess:
                 (each.seq for run in reader.runs() for each in reader.events(run)), default=0
             )
 
+    async def has_runs(self, count: int) -> None:
+        """Wait until so many runs are in the journal."""
+        async with asyncio.timeout(START_S):
+            while self._runs() < count:  # noqa: ASYNC110 - the file tells nobody
+                await asyncio.sleep(0.001)
+
+    def _runs(self) -> int:
+        with JournalReader(self.journal) as reader:
+            return len(reader.runs())
+
 
 @asynccontextmanager
 async def service_process(

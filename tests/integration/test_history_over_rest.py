@@ -1,5 +1,6 @@
 """A service with a past: over REST, damaged in places, and pruned as it is told to."""
 
+import json
 import sqlite3
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager, closing
@@ -9,7 +10,9 @@ from typing import Any
 import httpx
 import pytest
 from made_up_history import made_up_run, picture_id, run_id, write_history
+from typer.testing import CliRunner
 
+from server.cli import app
 from server.client import MendClient
 from server.composition import open_service
 from server.retention import KeepSettings
@@ -75,6 +78,30 @@ async def test_a_run_that_cannot_be_read_is_told_everywhere(folder: Path) -> Non
         assert "mend_unreadable_runs 1.0" in metrics
         assert "mend_journal_damage 1.0" in metrics
         assert (await client.get("/api/runs", params={"status": "finished"})).status_code == 200
+
+
+async def test_an_unreadable_event_of_no_run_is_told_and_hides_no_other(folder: Path) -> None:
+    tree = {"name": "first", "tree": {"behavior": "pick_and_place", "object": "a", "place": "b"}}
+    names = ["first", "second", "third"]
+    async with service(folder) as client:
+        for name in names:
+            body = {"name": name, "text": json.dumps(tree)}
+            assert (await client.post("/api/trees", json=body)).status_code == 201
+        deeds = (await client.get("/api/access/deeds")).json()["deeds"]
+    second = next(each["seq"] for each in deeds if "'second'" in each["what"])
+    alter(folder, "UPDATE events SET body = '{}' WHERE seq = ?", second)
+    async with service(folder) as client:
+        after = (await client.get("/api/access/deeds")).json()["deeds"]
+        assert [each["seq"] for each in after] == [each["seq"] for each in deeds]
+        (told,) = [each for each in after if each["deed"] == "unreadable"]
+        assert (told["seq"], told["when"], told["run"]) == (second, None, None)
+        assert f"event {second} cannot be read" in told["what"]
+        ready = (await client.get("/readyz")).json()
+        assert (ready["status"], ready["unreadable_events"]) == ("degraded", 1)
+        assert "mend_unreadable_events 1.0" in (await client.get("/metrics")).text
+    outcome = CliRunner().invoke(app, ["access", "audit", "--journal", str(folder / "journal.db")])
+    assert outcome.exit_code == 0
+    assert f"event {second} cannot be read" in " ".join(outcome.output.split())
 
 
 async def test_an_ended_run_that_turns_out_to_be_damaged_is_listed_so_from_then_on(

@@ -5,6 +5,7 @@ from collections.abc import AsyncIterator, Callable
 from pathlib import Path
 from uuid import UUID
 
+import httpx
 import pytest
 from kills import Ordeal
 from service_process import ServiceProcess, service_process
@@ -123,3 +124,29 @@ async def _answer_until_the_end(client: MendClient, run: UUID) -> RunStatus:
                     await client.answer(dialogue.dialogue, prompt, "yes", "ann")
             await asyncio.sleep(0.05)
     return view.status
+
+
+@pytest.mark.parametrize("committed", [True, False], ids=["committed", "at once"])
+async def test_a_run_that_is_asked_for_under_a_key_is_not_started_twice(
+    service: ServiceProcess, committed: bool
+) -> None:
+    """Killed as soon as the run is in the journal, or as soon as the request was sent."""
+    body = eket("tabletop", answers="none").model_dump(mode="json")
+    for number in range(1, 4):
+        sent = {"json": body, "headers": {"Idempotency-Key": f'"{number}"'}}
+        async with httpx.AsyncClient(base_url=service.url, timeout=60) as client:
+            lost = asyncio.create_task(client.post("/api/runs", **sent))
+            if committed:
+                await service.has_runs(number)
+            else:
+                await asyncio.sleep(0)
+            await service.kill()
+            await asyncio.gather(lost, return_exceptions=True)
+            await service.start()
+            answers = [await client.post("/api/runs", **sent) for _ in range(2)]
+            runs = (await client.get("/api/runs")).json()
+        assert [each.status_code for each in answers] == [201, 201]
+        (run,) = {each.json()["id"] for each in answers}
+        assert run == runs[0]["id"]
+        assert len(runs) == number
+    assert "Traceback" not in service.complaints

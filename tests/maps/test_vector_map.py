@@ -94,3 +94,10 @@ def test_both_published_formats_hold_the_same_map() -> None:
     json = read_vector_map(DATA / "maps/GHC7.vectormap.json")
     assert len(text) == 2171
     assert text.segments == pytest.approx(json.segments, abs=2e-4)
+
+
+def test_a_number_that_is_too_long_is_told(tmp_path: Path) -> None:
+    path = tmp_path / "map.json"
+    path.write_text('[{"p0": {"x": ' + "9" * 5000 + ', "y": 0}, "p1": {"x": 1, "y": 0}}]')
+    with pytest.raises(VectorMapError, match="a number in it is too long"):
+        read_vector_map(path)

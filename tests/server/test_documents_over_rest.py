@@ -9,6 +9,7 @@ from service_under_test import build
 from server.documents import DocumentKind
 from server.errors import ConflictError
 from server.fixed_documents import GivenFiles, fixed_documents
+from server.journal.journal import Document, Entry
 from server.journal.sqlite import SqliteJournal
 from server.library import Library, build_library
 from server.limits import Limits
@@ -315,10 +316,10 @@ async def test_a_tree_is_loaded_with_its_scene_or_another_one_that_it_fits() -> 
 
 async def test_documents_of_two_kinds_may_have_one_name() -> None:
     journal = SqliteJournal(":memory:")
-    await journal.save_document(DocumentKind.SCENE, "x", "a scene")
-    await journal.save_document(DocumentKind.TREE, "x", "a tree")
+    for kind, text in ((DocumentKind.SCENE, "a scene"), (DocumentKind.TREE, "a tree")):
+        await journal.append(Entry(document=Document(kind, "x", text)))
     assert await journal.documents("scene") == {"x": "a scene"}
-    assert await journal.delete_document("tree", "x")
+    await journal.append(Entry(document=Document(DocumentKind.TREE, "x", None)))
     assert await journal.documents("scene") == {"x": "a scene"}
     assert await journal.documents("tree") == {}
     journal.close()

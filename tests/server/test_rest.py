@@ -333,7 +333,7 @@ async def test_health_scenarios_robots_and_metrics(client: httpx.AsyncClient) ->
     await start(client)
     assert (await client.get("/healthz")).json() == {"status": "ok"}
     ready = (await client.get("/readyz")).json()
-    assert ready == {"status": "ok", "unreadable_runs": 0, "damage": []}
+    assert ready == {"status": "ok", "unreadable_runs": 0, "unreadable_events": 0, "damage": []}
     scenarios = (await client.get("/api/scenarios")).json()
     assert [each["name"] for each in scenarios] == SCENARIOS.names()
     assert all(each["built_in"] and each["tree"] == "eket" for each in scenarios)

@@ -187,3 +187,16 @@ def test_what_is_kept_is_set_by_days_number_and_size(monkeypatch: pytest.MonkeyP
         monkeypatch.setenv("MEND_KEEP__RUNS", wrong)
         with pytest.raises(WrongSettingsError, match=r"The setting 'keep\.runs' is wrong"):
             load_settings()
+
+
+@pytest.mark.parametrize(
+    "text", ["x = " + "[" * 100_000, "x" * 100_000 + " = 1", "x = {" + "a={" * 9000]
+)
+def test_a_file_that_is_no_sensible_one_is_told_in_a_short_sentence(
+    tmp_path: Path, text: str
+) -> None:
+    file = tmp_path / "mend.toml"
+    file.write_text(text)
+    with pytest.raises(WrongSettingsError) as wrong:
+        load_settings(file)
+    assert 0 < len(str(wrong.value)) < 1000

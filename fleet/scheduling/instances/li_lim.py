@@ -11,6 +11,9 @@ ROBOT_WEIGHT = 1e6
 
 COLUMNS = 9
 
+MOST_VEHICLES = 1000
+"""As many as a delivery file may have robots."""
+
 
 def read_li_lim(text: str, name: str = "li_lim") -> Problem:
     """An instance: the depot is every robot's start and end, its window their shift.
@@ -21,6 +24,8 @@ def read_li_lim(text: str, name: str = "li_lim") -> Problem:
     if not lines or len(lines[0][1]) < 2:
         raise InstanceError(1, "the first line must give the number of vehicles and their capacity")
     vehicles, capacity = lines[0][1][:2]
+    if not 0 <= vehicles <= MOST_VEHICLES:
+        raise InstanceError(1, f"there may be 0 to {MOST_VEHICLES} vehicles, but not {vehicles:g}")
     nodes = [_node(line, row, number) for number, (line, row) in enumerate(lines[1:])]
     if not nodes:
         raise InstanceError(2, "there is no depot")

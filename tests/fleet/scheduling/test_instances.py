@@ -59,6 +59,7 @@ def test_transfer_benchmark_has_ends_and_transfer_places() -> None:
         (LI_LIM.replace("-5", "-4"), "line 3: the loads of 1 and 2 do not match"),
         (LI_LIM.replace("\t9\t1\t0", "\t9\t1"), "line 4: a node has 9 numbers, but here are 8"),
         (LI_LIM.replace("1\t3", "7\t3"), "line 3: node 1 is expected here, not 7"),
+        ("1e19" + LI_LIM.lstrip("0123456789"), "line 1: there may be 0 to 1000 vehicles"),
     ],
 )
 def test_mistakes_in_a_li_lim_instance_are_told_with_their_line(text: str, words: str) -> None:

@@ -2,6 +2,7 @@
 
 from collections.abc import AsyncIterator
 from datetime import UTC, datetime, timedelta
+from pathlib import Path
 from uuid import uuid4
 
 import pytest
@@ -12,6 +13,7 @@ from server.access.principals_file import Change
 from server.access.roles import Role
 from server.access.sessions import Sessions
 from server.journal import events as ev
+from server.journal.journal import Entry, UnreadableEvent
 from server.journal.sqlite import SqliteJournal
 
 ANNA = Principal("anna", Role.HELPER, "key")
@@ -89,3 +91,47 @@ async def test_a_change_of_the_file_is_journaled_once_also_after_a_restart(
     (event,) = await journal.read(0, 10)
     assert isinstance(event, ev.AccessChanged)
     assert (event.what, event.principal, event.author.principal) == ("revoked", "anna", "root")
+
+
+async def test_what_cannot_be_read_takes_nothing_else_with_it(journal: SqliteJournal) -> None:
+    clock = Clock()
+    key, wall = b"k" * 32, clock.now.timestamp
+    session, cookie = Sessions(key, wall).new(ANNA)
+    deeds = DeedLog(journal, clock)
+    deeds.access_changed("added", "bert", Role.VIEWER, ev.Author(principal="root", role=Role.ADMIN))
+    await deeds.written()
+    deeds.signed_out(session, Caller(ANNA, "10.0.0.1", session.id))
+    await deeds.close()
+    journal._write_connection.execute("UPDATE events SET body = '{}' WHERE seq = 1")
+    again = Sessions(key, wall)
+    recovered = DeedLog(journal, clock)
+    await recovered.recover(again)
+    assert again.read(cookie) is None
+    (sentence,) = recovered.unreadable
+    assert sentence.startswith("event 1 cannot be read")
+
+
+async def test_a_row_on_a_damaged_page_is_passed_over(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A page of the table is overwritten; the index over the runs still has the numbers."""
+    path = tmp_path / "journal.db"
+    opened = SqliteJournal(path)
+    count = 400
+    for number in range(count):
+        change = ev.AccessChanged(
+            wall_time=Clock().now, what="added", principal=f"{number:0>60}", role=Role.VIEWER,
+            author=ev.Author(principal="root", role=Role.ADMIN),
+        )  # fmt: skip
+        await opened.append(Entry(events=[change]))
+    opened.close()
+    content = path.read_bytes()
+    page = content.index(f"{count // 2:0>60}".encode()) // 4096
+    path.write_bytes(content[: page * 4096] + b"\xff" * 4096 + content[(page + 1) * 4096 :])
+    monkeypatch.setattr("server.journal.opening.quick_check", lambda *_: [])
+    damaged = SqliteJournal(path)
+    found = await damaged.read_readable(0, 2 * count, ev.NO_RUN)
+    damaged.close()
+    unreadable = [each for each in found if isinstance(each, UnreadableEvent)]
+    assert len(found) == count
+    assert 0 < len(unreadable) < count // 10

@@ -138,6 +138,10 @@ ENTRY = f"role: helper, id: '01234567', sha256: '{HASH}', added: 2026-01-01T00:0
     ("text", "sentence"),
     [
         ("principals: [", "f.yaml, line 1: this is not YAML."),
+        ("[" * 30_000, "f.yaml: something in it is nested too deeply."),
+        (f"people: {'[' * 3000}{']' * 3000}", "f.yaml: something in it is nested too deeply."),
+        (f"people: {'9' * 5000}", "f.yaml: a value in it cannot be read."),
+        ("people: 2026-99-99", "f.yaml: a value in it cannot be read."),
         ("- anna", "f.yaml: a file of principals has the key 'principals'."),
         ("people: []", "f.yaml: people: is not known here."),
         ("principals: [{name: anna}]", "f.yaml: principals.0.role: is missing."),
@@ -163,3 +167,9 @@ def test_a_file_with_mistakes_is_not_overwritten(path: Path, editor: PrincipalsE
     with pytest.raises(PrincipalsFileError):
         editor.add("ben", Role.HELPER, NOW)
     assert path.read_text() == "principals: [{name: anna}]"
+
+
+def test_an_id_that_looks_like_a_number_is_none() -> None:
+    text = f"principals: [{{name: anna, {ENTRY}}}]".replace("'01234567'", "6798e113")
+    (anna,) = principals_of(text, "f.yaml").principals
+    assert anna.id == "6798e113"

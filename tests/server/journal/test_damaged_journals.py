@@ -23,6 +23,7 @@ from server.journal import events as ev
 from server.journal.file_lock import JournalLockedError
 from server.journal.journal import Entry, JournalDamagedError, JournalOpenError, JournalReadError
 from server.journal.migrations import JournalSchemaError
+from server.journal.reader import JournalReader
 from server.journal.run_index import RunPage
 from server.journal.sqlite import SqliteJournal
 
@@ -174,7 +175,14 @@ def scrambled(path: Path) -> None:
     path.write_bytes(content)
 
 
-@pytest.mark.parametrize("harm", [emptied, truncated, a_folder, a_text, scrambled])
+def renamed(path: Path) -> None:
+    """A table has a name in the schema that is no text."""
+    path.write_bytes(
+        path.read_bytes().replace(b"tablereceiptsreceipts", b"table\xc1eceipts\xc1eceipts")
+    )
+
+
+@pytest.mark.parametrize("harm", [emptied, truncated, a_folder, a_text, scrambled, renamed])
 def test_a_file_that_is_no_journal_any_more_is_told_in_a_sentence(
     journal: Path, harm: Callable[[Path], None], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -246,3 +254,25 @@ def test_a_damaged_file_tells_what_to_do(journal: Path) -> None:
     truncated(journal)
     with pytest.raises(JournalDamagedError, match=r"'mend journal check' tells more"):
         SqliteJournal(journal)
+
+
+def test_an_event_that_names_no_run_is_told_by_the_check(journal: Path) -> None:
+    content = journal.read_bytes()
+    with closing(sqlite3.connect(journal)) as connection, connection:
+        connection.execute("PRAGMA writable_schema = ON")
+        connection.execute(
+            "UPDATE sqlite_schema SET sql = replace(replace(sql, 'run TEXT NOT NULL', 'run TEXT'),"
+            " ') STRICT', ')') WHERE name = 'events'"
+        )
+    alter(journal, "UPDATE events SET run = NULL WHERE seq = 3")
+    assert journal.read_bytes() != content
+    outcome = CliRunner().invoke(app, ["journal", "check", str(journal)])
+    assert outcome.exit_code == 1
+    assert outcome.exception is None or isinstance(outcome.exception, SystemExit)
+    assert "event 3 is kept as the number, run, type or time of another" in outcome.output
+
+
+def test_a_run_without_an_id_is_told_to_whoever_reads(journal: Path) -> None:
+    alter(journal, "UPDATE events SET run = 'p' || run WHERE type = 'run_started' AND seq < 9")
+    with JournalReader(journal) as reader, pytest.raises(JournalReadError, match="no id any more"):
+        reader.runs()

@@ -15,7 +15,7 @@ from uuid import UUID
 from dialogue.script import CloseReason, Help
 from robots.link.messages import Detection
 from server.journal import events as ev
-from server.journal.journal import Entry, Receipt
+from server.journal.journal import Document, Entry, Receipt
 from server.journal.migrations import MIGRATIONS
 from server.journal.sqlite import SqliteJournal
 from tasks.intervention import Act, Intervention
@@ -181,9 +181,8 @@ async def record(path: Path) -> None:
             pictures={PICTURE: b"\xff\xd8\xff\xd9"} if isinstance(event, ev.IssueRaised) else {},
         )
         await journal.append(entry)
-    await journal.save_document(
-        "tree", "mine", "then:\n- {behavior: pick_and_place, object: pink_bar}\n"
-    )
+    text = "then:\n- {behavior: pick_and_place, object: pink_bar}\n"
+    await journal.append(Entry(document=Document("tree", "mine", text)))
     journal.close()
 
 

@@ -1,0 +1,25 @@
+"""The answers that any operation may give, for the OpenAPI: of the gate and of the journal."""
+
+from typing import Any
+
+from server.access.permissions import ENDPOINTS
+from server.api.problems import documented
+
+ANYWHERE = (413, 421, 500, 503)
+"""A body that is too large, an unknown Host; what cannot be read or written just now."""
+
+WITH_ROLE = (401, 403)
+"""Nobody who is known, or somebody who may not do that."""
+
+
+def document_answers(schema: dict[str, Any]) -> None:
+    """Add to each operation the refusals that it need not name itself."""
+    open_doors = {each.operation for each in ENDPOINTS if each.role is None}
+    for path in schema["paths"].values():
+        for operation in path.values():
+            is_open = operation["operationId"] in open_doors
+            more = documented(*ANYWHERE, *(() if is_open else WITH_ROLE))
+            answers = operation["responses"]
+            for status, answer in more.items():
+                answers.setdefault(str(status), answer)
+            operation["responses"] = dict(sorted(answers.items()))

@@ -1,0 +1,78 @@
+"""A seeded sample of what `benchmarks/fuzz.py` tries, and that it would find something."""
+
+from pathlib import Path
+
+import pytest
+from fuzz_files import Found, Reader, fuzz_reader, readers, wrong_with
+from fuzz_mutations import Mutator
+from fuzz_service import bench, fuzz_helper, fuzz_requests, fuzz_robot
+
+from server.cli.failures import CommandLineError
+
+FEW, MANY = 10, 80
+"""Of files that take long to read, and of others."""
+
+SLOW = ("task tree", "scene", "scenario", "delivery", "delivery of any format")
+
+
+@pytest.mark.slow
+def test_mutated_files_are_taken_or_refused_in_sentences(tmp_path: Path) -> None:
+    made, used = tmp_path / "made", tmp_path / "used"
+    made.mkdir()
+    used.mkdir()
+    for reader in readers(made):
+        mutations = FEW if reader.name in SLOW else MANY
+        found = fuzz_reader(reader, mutations, 7, used)
+        assert found.tried == mutations
+        assert found.findings == [], str(found.findings[0])
+
+
+@pytest.mark.slow
+async def test_mutated_requests_and_messages_do_no_harm() -> None:
+    async with bench() as made:
+        for fuzz, mutations in ((fuzz_requests, 100), (fuzz_helper, 150), (fuzz_robot, 150)):
+            found = await fuzz(made, mutations, 7)
+            assert found.tried > 0.9 * mutations
+            assert found.refused > mutations / 3
+            assert found.findings == [], str(found.findings[0])
+
+
+def test_the_same_seed_draws_the_same() -> None:
+    value = {"a": [1, {"b": "text"}], "c": None}
+    drawn = [[Mutator(seed).of_json(value) for _ in range(1)] for seed in (1, 1, 2)]
+    assert drawn[0] == drawn[1] != drawn[2]
+    changed = Mutator(3)
+    texts = {changed.of_json(value) for _ in range(200)}
+    assert len(texts) > 150
+
+
+@pytest.mark.parametrize(
+    ("failure", "sentence"),
+    [
+        (KeyError("x"), "KeyError"),
+        (MemoryError(), "there was not enough memory"),
+        (CommandLineError(" "), "without a sentence"),
+    ],
+)
+def test_what_must_not_be_is_found(tmp_path: Path, failure: Exception, sentence: str) -> None:
+    def read(_: Path) -> None:
+        raise failure
+
+    found = fuzz_reader(Reader("broken", "file", [b"text"], read), 3, 1, tmp_path)
+    assert [sentence in str(each) for each in found.findings] == [True] * 3
+
+
+def test_a_traceback_and_a_changed_file_are_found(tmp_path: Path) -> None:
+    path = tmp_path / "file"
+
+    def write(_: Path) -> None:
+        path.write_text("something else")
+
+    def tell(_: Path) -> None:
+        print("Traceback (most recent call last):")  # noqa: T201
+
+    changing = fuzz_reader(Reader("changing", "file", [b"text"], write), 1, 1, tmp_path)
+    assert "the file was changed" in str(changing.findings[0])
+    assert "a traceback was written" in str(
+        wrong_with(Reader("t", "file", [b""], tell), path, Found())
+    )

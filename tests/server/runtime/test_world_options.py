@@ -1,0 +1,34 @@
+"""Options that a world does not take refuse the run, before anything is journaled."""
+
+from typing import Any
+
+import pytest
+
+from server.errors import InvalidError
+from server.journal.sqlite import SqliteJournal
+from server.runtime.worlds import SimulatedWorlds
+from tasks.plugins import load_plugins
+
+
+async def _launch(*_: Any) -> Any:
+    raise AssertionError("nothing is to be started")
+
+
+@pytest.mark.parametrize("world", ["tabletop", "workcell"])
+@pytest.mark.parametrize(
+    ("options", "sentence"),
+    [
+        ({"a": 1.0}, "has no option 'a'; it has "),
+        ({"depth_noise": "x"}, "is wrong: 'depth_noise' must"),
+        ({"light": 2.0}, "is wrong: 'light' must"),
+    ],
+)
+def test_options_are_checked_beforehand(world: str, options: dict[str, Any], sentence: str) -> None:
+    if world == "workcell":
+        pytest.importorskip("pybullet")
+    journal = SqliteJournal(":memory:")
+    worlds = SimulatedWorlds(load_plugins("mend.worlds"), journal, _launch, lambda _: None)
+    worlds.check(world, {"depth_noise": 0.5})
+    with pytest.raises(InvalidError, match=sentence):
+        worlds.check(world, options)
+    journal.close()
