@@ -85,9 +85,14 @@ lint: types  ## Formatting, lint, types (of web/ too) and the floors
 bench: $(READY)  ## Every benchmark, one after the other (takes long)
 	@for each in $$(grep -l __main__ benchmarks/*.py); do echo "== $$each"; $(BIN)/python "$$each"; done
 
+LOCK := uv pip compile --quiet --universal --no-emit-index-url --no-annotate --generate-hashes \
+    --custom-compile-command 'make lock'
+
 lock: $(READY)  ## Pin the newest versions that pyproject.toml allows
-	$(BIN)/uv pip compile --quiet --universal --all-extras --no-emit-index-url --no-annotate \
-	    --generate-hashes --custom-compile-command 'make lock' --upgrade pyproject.toml requirements-build.in -o requirements.lock
+	$(BIN)/$(LOCK) --all-extras --upgrade pyproject.toml requirements-build.in -o requirements.lock
+	@# What goes into an image, and what only builds one: the same versions.
+	$(BIN)/$(LOCK) --extra workcell --extra speech -c requirements.lock pyproject.toml -o docker/service.lock
+	$(BIN)/$(LOCK) -c requirements.lock docker/tools.in -o docker/tools.lock
 
 sbom: $(READY)  ## Every package that Mend is made of and with, as CycloneDX, in out/mend.cdx.json
 	$(BIN)/python scripts/sbom.py out/mend.cdx.json
