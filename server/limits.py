@@ -22,6 +22,7 @@ LimitName = Literal[
     "body_s",
     "stuck_client_s",
     "wrong_tokens",
+    "robot_messages_per_s",
 ]
 """The limits by name: whoever refuses something says for which of them."""
 
@@ -59,3 +60,5 @@ class Limits(BaseModel):
     """How long a client may take nothing of what is sent to it."""
     wrong_tokens: AtLeastOne = 5
     """Different wrong tokens from one address before it has to wait for the next."""
+    robot_messages_per_s: AtLeastOne = 500
+    """Messages of one robot's connection that are read in a second, of 4096 characters each."""

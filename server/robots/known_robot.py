@@ -27,13 +27,21 @@ from robots.link.messages import (
 from server.errors import ConflictError, NotFoundError
 from server.journal.journal import DuplicateReceiptError, Entry, Journal, Receipt
 from server.plain_text import plain
-from server.robots.session import MissingReportError, PictureError, RobotSession
+from server.robots.session import (
+    MissingReportError,
+    PictureError,
+    RobotSession,
+    TooManyReportsError,
+)
 from server.robots.sink import RobotSink
 from server.robots.times import LinkTimes
 
 log = logging.getLogger(__name__)
 
 MOST_UNTAKEN_COMMANDS = 1000
+
+MOST_UNASKED_REPORTS = 10_000
+"""What a robot has to report of one command is far less, so that more fills the journal only."""
 
 MISSED_HEARTBEATS = 2
 """After so many nobody can say that the program of a robot still runs."""
@@ -56,6 +64,7 @@ class KnownRobot:
         self._received: dict[str, int] = {}
         self._heard_of: set[str] = set()
         self._refused: tuple[str, str] | None = None
+        self._unasked_reports = 0
         self._poses_hz = 0.0
         self._absence: asyncio.TimerHandle | None = None
         self._tasks: set[asyncio.Task[None]] = set()
@@ -107,25 +116,28 @@ class KnownRobot:
         self._refused = self.hello.boot, reason
         self.session.end_soon(reason)
 
-    def why_refused(self, hello: Hello) -> str | None:
-        """Why a start of its program is not let in; None if it is."""
+    def why_refused(self, hello: Hello, *, ours: bool = True) -> str | None:
+        """Why a start of its program is not let in; None if it is.
+
+        `ours`: it is a program of this service, or a channel within its process.
+        """
         boot, reason = self._refused or (None, "")
         if boot == hello.boot:
             return f"start the robot's program again: {reason}"
-        if self._is_another_program(hello):
+        if self._is_another_program(hello, ours=ours):
             return (
                 f"another program is connected as the robot '{self.name}': stop it first, or take "
                 "another name"
             )
         return None
 
-    def _is_another_program(self, hello: Hello) -> bool:
+    def _is_another_program(self, hello: Hello, *, ours: bool) -> bool:
         """Whether a hello is of a second program, while the first one is still there.
 
         A program that has ended and was started again leaves a connection on which nothing comes.
-        A simulated robot's programs are started and ended by this service.
+        The programs of this service's simulated robots are started and ended by it.
         """
-        if self.session is None or self.hello is None or hello.simulated:
+        if self.session is None or self.hello is None or (hello.simulated and ours):
             return False
         lively = self.session.silent_for_s() <= MISSED_HEARTBEATS * self._times.heartbeat_s
         return lively and self.hello.boot != hello.boot
@@ -205,6 +217,7 @@ class KnownRobot:
             raise ConflictError(
                 f"the robot '{self.name}' has not taken its last {MOST_UNTAKEN_COMMANDS} commands"
             )
+        self._unasked_reports = 0
         command = self._untaken[command_id] = Command(id=command_id, body=body)
         if self.session is not None:
             self.session.send(command)
@@ -264,7 +277,7 @@ class KnownRobot:
     async def receive_report(self, report: Report) -> Ack:
         """Commit a report unless it is known; returns what may be acknowledged.
 
-        Raises `MissingReportError` when the one before it was left out.
+        Raises `MissingReportError` when the one before it was left out, and `TooManyReportsError`.
         """
         assert self.hello is not None, "reports only come after a hello"
         boot = report.boot or self.hello.boot
@@ -273,6 +286,7 @@ class KnownRobot:
         last = self._received[boot]
         if report.seq > last:
             self._require_no_gap(boot, last, report.seq)
+            self._require_bound()
             await self._commit(report, Receipt(self.name, boot, report.seq))
             last = self._received[boot] = report.seq
         self._heard_of.add(boot)
@@ -286,6 +300,14 @@ class KnownRobot:
         if boot in self._heard_of and seq != last + 1:
             raise MissingReportError(
                 f"report {seq} came, but the last one was {last}; send {last + 1} first"
+            )
+
+    def _require_bound(self) -> None:
+        self._unasked_reports += 1
+        if self._unasked_reports > MOST_UNASKED_REPORTS:
+            raise TooManyReportsError(
+                f"the robot '{self.name}' has sent {MOST_UNASKED_REPORTS} reports since it was "
+                "last told something"
             )
 
     async def _commit(self, report: Report, receipt: Receipt) -> None:

@@ -196,5 +196,5 @@ async def test_a_stranger_is_not_the_simulated_robot_of_a_run(
         answer = await said_to(url, run.robots[0], token)
         assert isinstance(answer, LinkError)
         assert "has a credential of its own" in answer.detail
-        assert not service.runtime.run(run.id).status.ended
+        assert not (await service.runtime.run(run.id)).status.ended
         await service.runtime.abort(run.id)

@@ -28,7 +28,7 @@ def test_refusals_are_counted_by_limit() -> None:
 async def test_metrics_have_a_counter_for_each_limit(monkeypatch: pytest.MonkeyPatch) -> None:
     service = build()
 
-    async def refuse(_: Any) -> Any:
+    async def refuse(*_: Any) -> Any:
         raise ConflictError("two runs are enough", limit="running_runs")
 
     monkeypatch.setattr(service.runs, "start_run", refuse)

@@ -89,3 +89,16 @@ async def test_a_change_of_the_file_is_journaled_once_also_after_a_restart(
     (event,) = await journal.read(0, 10)
     assert isinstance(event, ev.AccessChanged)
     assert (event.what, event.principal, event.author.principal) == ("revoked", "anna", "root")
+
+
+async def test_a_clock_that_is_set_back_keeps_nothing_from_being_told(
+    journal: SqliteJournal,
+) -> None:
+    clock = Clock()
+    deeds = DeedLog(journal, clock)
+    deeds.failed("10.0.0.1")
+    clock.now -= timedelta(days=1)
+    deeds.failed("10.0.0.2")
+    await deeds.written()
+    told = await journal.read(0, 10, ev.NO_RUN)
+    assert [each.times for each in told if isinstance(each, ev.SignInFailed)] == [1, 1]
