@@ -5,8 +5,8 @@
 
 Full disks, writes that fail, kills and stops of processes, jumps of the clock, descriptors that run
 out, slow and hostile clients, hostile robots. At the end a reader of its own compares the journal
-with what clients saw: nothing may be lost, doubled or invented, and every run ends. Prints how often
-there was which fault, how long `/healthz` took throughout, and what the service's process takes.
+with what clients saw: nothing may be lost, doubled or invented, and every run ends. Prints how many
+there were of each fault, how long `/healthz` took throughout, and what the service's process takes.
 There is no peer: what is measured is that nothing is lost. Needs the right to mount a file system.
 """
 
@@ -15,6 +15,7 @@ import asyncio
 import sys
 import tempfile
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "doubles"))
@@ -42,7 +43,7 @@ async def measure(minutes: float, seed: int, runs: int, *, verbose: bool) -> Fin
             return await ordeal.go_through(lambda _: time.monotonic() < until)
 
 
-def _teller():  # type: ignore[no-untyped-def]
+def _teller() -> Callable[[str], None]:
     began = time.monotonic()
     return lambda what: print(f"{time.monotonic() - began:7.1f} s  {what}", flush=True)
 

@@ -11,6 +11,7 @@ from collections import Counter, defaultdict
 from collections.abc import Iterator
 from contextlib import closing
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -131,7 +132,7 @@ class Ledger:
                 yield f"run {run} has {len(ends)} ends, and its last event is {rows[-1].kind}"
             elif indexed.get(run) != (ends[0].kind.removeprefix("run_"), ends[0].seq):
                 yield f"run {run} ended with event {ends[0].seq}, and the index: {indexed.get(run)}"
-            if any(after.time < before.time for before, after in zip(rows, rows[1:], strict=False)):
+            if any(after.time < before.time for before, after in pairwise(rows)):
                 yield f"the clock of run {run} goes back"
             yield from _broken_leaves(run, rows)
 
@@ -171,7 +172,7 @@ class Ledger:
             yield f"nobody called {key[0]} answered prompt {key[1]}"
         for key, each in attempts.items():
             if each.outcome == "accepted" and kept.get(key) != each.answer:
-                yield f"the answer of {each.helper} was accepted, and the journal has {kept.get(key)}"
+                yield f"an answer of {each.helper} was accepted, the journal has {kept.get(key)}"
             if each.outcome == "refused" and key in kept:
                 yield f"the answer of {each.helper} was refused, and is in the journal"
 

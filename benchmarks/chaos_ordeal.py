@@ -14,7 +14,7 @@ from chaos_faults import FAULTS, Fault
 from chaos_ledger import Ledger, last_heard_by_all
 from chaos_place import Footprint, HangsError, Place
 
-END_S = 300.0
+END_S = 180.0
 """So long may runs take to end once nothing disturbs them any more."""
 SECOND_FAULT = 0.3
 MOST_PAUSE_S = 1.0
@@ -99,7 +99,7 @@ class Ordeal:
         clients, until = self._place.clients, time.monotonic() + END_S
         while await clients.running() != 0:
             if time.monotonic() > until:
-                raise HangsError(f"{await clients.running()} runs never end")
+                raise HangsError(f"runs never end: {await clients.last_words()}")
             await asyncio.sleep(0.2)
         while time.monotonic() < until:
             last = await asyncio.to_thread(last_heard_by_all, self._place.service.journal)

@@ -16,6 +16,7 @@ from websockets.exceptions import WebSocketException
 
 TRIES_AGAIN_S = 0.2
 REQUEST_S = 10.0
+ENDED = ("finished", "failed", "aborted")
 
 
 class Follower:
@@ -125,9 +126,18 @@ class Clients:
         with suppress(httpx.HTTPError, ValueError):
             response = await self._http.get("/api/runs?limit=100")
             if response.status_code == 200:
-                ended = ("finished", "failed", "aborted")
-                return sum(each["status"] not in ended for each in response.json())
+                return sum(each["status"] not in ENDED for each in response.json())
         return None
+
+    async def last_words(self) -> list[str]:
+        """Of each run that has not ended its last events."""
+        told = []
+        for run in await self._listed("/api/runs?limit=100"):
+            if run["status"] not in ENDED:
+                events = await self._listed(f"/api/runs/{run['id']}/events?limit=1000")
+                last = [f"{each['seq']} {each['type']}" for each in events[-5:]]
+                told.append(f"{run['id']} ({run['world']}, {run['status']}): {', '.join(last)}")
+        return told
 
     async def abort_one(self, which: int) -> None:
         """Abort one of the runs that go on."""

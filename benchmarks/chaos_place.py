@@ -32,6 +32,9 @@ SETTINGS = {
     "MEND_SPEECH_VOICE": "none",
     "MEND_SPEECH_RECOGNITION": "false",
     "MEND_ROBOT_LOST_TIMEOUT_S": "5",
+    # People who promise help and do not give it are not what is looked at here.
+    "MEND_HELP_WINDOW_S": "3",
+    "MEND_ASK_DEADLINE_S": "5",
     "MEND_LIMITS__RUNNING_RUNS": "100",
     # More than there are descriptors, so that these run out.
     "MEND_LIMITS__STRANGERS": "1000",

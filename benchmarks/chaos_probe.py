@@ -1,4 +1,4 @@
-"""Asks a service for `/healthz` all the time, in a thread of its own, and notes how long it took."""
+"""Asks for `/healthz` all the time, in a thread of its own, and notes how long that took."""
 
 import http.client
 import threading

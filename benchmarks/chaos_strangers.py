@@ -70,8 +70,8 @@ class Strangers:
                     writer = await stack.enter_async_context(self._connected())
                     writer.transport.pause_reading()  # type: ignore[attr-defined]
                     writer.write(
-                        f"GET /ws/helper?helper=stuck-{number}&after=0 HTTP/1.1\r\nHost: localhost\r\n"
-                        f"Upgrade: websocket\r\nConnection: Upgrade\r\n{key}"
+                        f"GET /ws/helper?helper=stuck-{number}&after=0 HTTP/1.1\r\n"
+                        f"Host: localhost\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n{key}"
                         f"Authorization: Bearer {self._token}\r\n\r\n".encode()
                     )
                 await asyncio.sleep(for_s)
@@ -113,7 +113,10 @@ class Strangers:
         headers = {"Authorization": f"Bearer {self._credentials[name]}"}
         url = f"ws://127.0.0.1:{self._port}/ws/robot"
         with suppress(OSError, WebSocketException, TimeoutError):
-            async with asyncio.timeout(for_s), connect(url, additional_headers=headers) as robot:
+            async with (
+                asyncio.timeout(for_s),
+                connect(url, additional_headers=headers, close_timeout=0.1) as robot,
+            ):
                 await robot.send(json.dumps(hello(name)))
                 await deed(robot)
 
@@ -122,7 +125,7 @@ class Strangers:
         url = f"ws://127.0.0.1:{self._port}/ws/robot"
         for token in self._credentials.values():
             headers = {"Authorization": f"Bearer {token}"}
-            async with connect(url, additional_headers=headers) as other:
+            async with connect(url, additional_headers=headers, close_timeout=0.1) as other:
                 await other.send(json.dumps(hello("arm-1")))
                 await other.recv()
 
@@ -146,11 +149,13 @@ async def _flood_of_reports(robot: Any) -> None:
         seq += 1
         body = {"type": "step_started", "execution": "none", "step": 1, "name": "above pick"}
         await robot.send(report(seq, body, time=float(seq)))
+        await asyncio.sleep(0)
 
 
 async def _flood_of_heartbeats(robot: Any) -> None:
     while True:
         await robot.send(json.dumps({"type": "heartbeat", "time": 1.0}))
+        await asyncio.sleep(0)
 
 
 async def _nonsense(robot: Any) -> None:
@@ -177,6 +182,7 @@ async def _many_boots(robot: Any) -> None:
     while True:
         body = {"type": "rejected", "command": "none", "reason": "no"}
         await robot.send(report(1, body, boot=secrets.token_hex(16)))
+        await asyncio.sleep(0)
 
 
 async def _huge(robot: Any) -> None:
