@@ -68,7 +68,7 @@ def report(found: Findings) -> str:
             + ", ".join(f"{n} {kind}" for kind, n in found.answers.items()),
             f"/healthz: p50 {p50:.1f} ms, p99 {p99:.1f} ms, max {most:.0f} ms over {ms.size} "
             f"requests; {found.unanswered} not answered",
-            _takes("at the start", found.start),
+            _takes("after the first run", found.start),
             _takes("at the end", found.end) + f"; at most {found.most_rss_mb:.0f} MB",
             f"{len(found.faults)} things are wrong",
             *found.faults,

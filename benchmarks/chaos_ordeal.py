@@ -52,13 +52,14 @@ class Ordeal:
     async def go_through(self, goes_on: Callable[[int], bool]) -> Findings:
         """`goes_on` is asked with how many faults there were."""
         place, findings = self._place, self._findings
-        findings.start = place.footprint()
         enough = asyncio.Event()
         starting = asyncio.create_task(
             place.clients.keep_running(self._many, place.request, enough)
         )
-        place.probe.start()
         try:
+            await self._warm_up()
+            findings.start = place.footprint()
+            place.probe.start()
             await self._disturb(goes_on)
             enough.set()
             await starting
@@ -68,10 +69,19 @@ class Ordeal:
         finally:
             starting.cancel()
             await asyncio.gather(starting, return_exceptions=True)
-            await asyncio.to_thread(place.probe.stop)
+            if findings.start is not None:
+                await asyncio.to_thread(place.probe.stop)
         findings.end = place.footprint()
         await self._look()
         return findings
+
+    async def _warm_up(self) -> None:
+        """Until a run has ended: by then the service has everything in memory that it uses."""
+        until = time.monotonic() + END_S
+        while not any(each.has_heard_an_end for each in self._place.followers):
+            if time.monotonic() > until:
+                raise HangsError(f"no run ends at all: {await self._place.clients.last_words()}")
+            await asyncio.sleep(0.2)
 
     async def _disturb(self, goes_on: Callable[[int], bool]) -> None:
         rng = self._place.rng

@@ -17,6 +17,7 @@ from websockets.exceptions import WebSocketException
 TRIES_AGAIN_S = 0.2
 REQUEST_S = 10.0
 ENDED = ("finished", "failed", "aborted")
+ENDS = tuple(f"run_{each}" for each in ENDED)
 
 
 class Follower:
@@ -38,6 +39,11 @@ class Follower:
     @property
     def seen(self) -> int:
         return int(self._heard[-1]["seq"]) if self._heard else 0
+
+    @property
+    def has_heard_an_end(self) -> bool:
+        """Whether a run has ended so far."""
+        return any(event["type"] in ENDS for event in self._heard)
 
     async def follow(self) -> None:
         """Until cancelled."""

@@ -15,16 +15,15 @@ find cmeel.prefix/lib -name '*.a' -delete
 find numba numpy pandas scipy -type d -name tests -prune -exec rm -r {} +
 find . -name '*.pyi' -delete
 
-# Of the C++ libraries those that Python's modules load, each once: a wheel has a copy for each of
-# its names.
+# Of the C++ libraries those that Python's modules load, under the one name that they are loaded by:
+# a wheel has a copy for each of a library's names.
 modules=$(find cmeel.prefix/lib/python3* -name '*_pywrap*.so')
-needed=$(ldd $modules | sed -n 's|.*=> \(.*/cmeel.prefix/lib/[^/ ]*\) .*|\1|p' | sort -u)
+[ -n "$modules" ]
+needed=$(ldd $modules | sed -n 's|^[[:space:]]*\([^ ]*\) => .*/cmeel\.prefix/.*|\1|p' | sort -u)
 [ -n "$needed" ]
-for library in "$PWD"/cmeel.prefix/lib/lib*.so*; do
-    echo "$needed" | grep -qxF "$(readlink -f "$library")" ||
-        echo "$needed" | grep -qF "/${library##*/} " || echo "$needed" | grep -qx ".*/${library##*/}" ||
-        rm "$library"
+for library in cmeel.prefix/lib/lib*.so*; do
+    echo "$needed" | grep -qxF "${library##*/}" || rm "$library"
 done
 
-# Debugging symbols.
-find . -name '*.so*' -type f -exec strip --strip-unneeded {} +
+# Debugging symbols; libraries whose paths a wheel's maker has patched do not survive losing them.
+find pybullet*.so cmeel.prefix llvmlite uvloop -name '*.so*' -type f -exec strip --strip-unneeded {} +
