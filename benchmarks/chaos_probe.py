@@ -42,23 +42,20 @@ class Probe:
             self._not_expected -= 1
 
     def _ask_on(self) -> None:
-        connection: http.client.HTTPConnection | None = None
+        connection = http.client.HTTPConnection("127.0.0.1", self._port, timeout=PATIENCE_S)
         while not self._stop.wait(EVERY_S):
             epoch, began = self._epoch, time.perf_counter()
             answered = False
             try:
-                connection = connection or http.client.HTTPConnection(
-                    "127.0.0.1", self._port, timeout=PATIENCE_S
-                )
+                # It connects by itself where there is no connection any more.
                 connection.request("GET", "/healthz", headers=self._headers)
                 answered = connection.getresponse().read() != b""
             except (OSError, http.client.HTTPException):
-                if connection is not None:
-                    connection.close()
-                connection = None
+                connection.close()
             if self._not_expected or epoch != self._epoch:
                 continue
             if answered:
                 self.latencies_s.append(time.perf_counter() - began)
             else:
                 self.failures += 1
+        connection.close()

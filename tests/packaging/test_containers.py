@@ -1,6 +1,7 @@
 """What the images and the compose file promise: few rights, known bytes, no known secret."""
 
 import re
+from fnmatch import fnmatch
 from pathlib import Path
 from typing import Any
 
@@ -86,6 +87,17 @@ def test_images_run_as_a_user_of_their_own_who_owns_nothing_of_the_program() -> 
     )
     assert not any("--chown" in line for line in service)
     assert not any(line.startswith("USER") for line in stages()["demo"])
+
+
+def test_the_image_is_relieved_of_what_no_service_needs() -> None:
+    script = ROOT / "docker/slim.sh"
+    assert script.stat().st_mode & 0o111
+    assert any("&& docker/slim.sh /opt/mend/" in line for line in stages()["build"])
+    allowed = (ROOT / ".dockerignore").read_text().splitlines()
+    copied = next(line for line in stages()["build"] if line.startswith("COPY docker/"))
+    for file in copied.split()[1:-1]:
+        assert (ROOT / file).is_file()
+        assert any(fnmatch(file, each.removeprefix("!")) for each in allowed if each[:1] == "!")
 
 
 def test_pip_installs_nothing_whose_hash_is_not_locked() -> None:
