@@ -12,9 +12,11 @@ from uuid import uuid4
 from robots.link.messages import (
     PROTOCOL_VERSION,
     Ack,
+    ClipTaken,
     Command,
     CommandBody,
     Hello,
+    IssueDetected,
     Picture,
     Poses,
     Rejected,
@@ -42,6 +44,9 @@ MOST_UNTAKEN_COMMANDS = 1000
 
 MOST_UNASKED_REPORTS = 10_000
 """What a robot has to report of one command is far less, so that more fills the journal only."""
+
+CHARS_OF_ONE = 4096
+"""Of a report with pictures each such part of them counts as a report."""
 
 MISSED_HEARTBEATS = 2
 """After so many nobody can say that the program of a robot still runs."""
@@ -286,7 +291,7 @@ class KnownRobot:
         last = self._received[boot]
         if report.seq > last:
             self._require_no_gap(boot, last, report.seq)
-            self._require_bound()
+            self._require_bound(report)
             await self._commit(report, Receipt(self.name, boot, report.seq))
             last = self._received[boot] = report.seq
         self._heard_of.add(boot)
@@ -302,8 +307,8 @@ class KnownRobot:
                 f"report {seq} came, but the last one was {last}; send {last + 1} first"
             )
 
-    def _require_bound(self) -> None:
-        self._unasked_reports += 1
+    def _require_bound(self, report: Report) -> None:
+        self._unasked_reports += 1 + _picture_chars(report) // CHARS_OF_ONE
         if self._unasked_reports > MOST_UNASKED_REPORTS:
             raise TooManyReportsError(
                 f"the robot '{self.name}' has sent {MOST_UNASKED_REPORTS} reports since it was "
@@ -318,3 +323,14 @@ class KnownRobot:
                 await self._sink.robot_reported(self.name, report, receipt)
         except DuplicateReceiptError:
             log.info("report %d of %s was received before", receipt.seq, self.name)
+
+
+def _picture_chars(report: Report) -> int:
+    """How much of a report are pictures, which are kept in the journal."""
+    match report.body:
+        case IssueDetected(jpeg=str(jpeg)):
+            return len(jpeg)
+        case ClipTaken(pictures=pictures):
+            return sum(len(each.jpeg) for each in pictures)
+        case _:
+            return 0

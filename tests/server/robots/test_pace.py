@@ -14,8 +14,10 @@ from websockets.exceptions import ConnectionClosed
 from robots.link.channel import Channel, ChannelClosedError, memory_channel
 from robots.link.messages import (
     Ack,
+    Detection,
     Held,
     Hello,
+    IssueDetected,
     LinkError,
     Look,
     ReachLimits,
@@ -155,6 +157,27 @@ async def test_who_reports_without_end_is_ended_and_let_in_no_more_until_started
     refused = service_message.validate_json(await ours.receive())
     assert isinstance(refused, LinkError)
     assert "start the robot's program again" in refused.detail
+    await serving
+    registry.close()
+
+
+async def test_pictures_count_by_their_size(
+    journal: SqliteJournal, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("server.robots.known_robot.MOST_UNASKED_REPORTS", 10)
+    registry = RobotRegistry(journal, lambda: 0.0, TIMES)
+    ours, theirs = memory_channel()
+    serving = asyncio.create_task(registry.serve(theirs))
+    await ours.send(hello())
+    for seq in (1, 2, 3):
+        issue = IssueDetected(
+            execution="e", issue="missed", step=1, interrupts=True,
+            detection=Detection(camera="head"), jpeg="x" * 4 * CHARS_OF_ONE,
+        )  # fmt: skip
+        await ours.send(Report(seq=seq, time=0.0, body=issue).model_dump_json())
+    *_, last = [service_message.validate_json(each) async for each in all_of(ours)]
+    assert isinstance(last, LinkError)
+    assert await journal.received("arm", "b1") == 2
     await serving
     registry.close()
 
