@@ -14,8 +14,8 @@ from chaos_faults import FAULTS, Fault
 from chaos_ledger import Ledger, last_heard_by_all
 from chaos_place import Footprint, HangsError, Place
 
-END_S = 180.0
-"""So long may runs take to end once nothing disturbs them any more."""
+PATIENCE_S = 60.0
+"""Runs of which nothing at all is heard for so long, with nothing that disturbs them, hang."""
 SECOND_FAULT = 0.3
 MOST_PAUSE_S = 1.0
 
@@ -77,11 +77,21 @@ class Ordeal:
 
     async def _warm_up(self) -> None:
         """Until a run has ended: by then the service has everything in memory that it uses."""
-        until = time.monotonic() + END_S
-        while not any(each.has_heard_an_end for each in self._place.followers):
-            if time.monotonic() > until:
-                raise HangsError(f"no run ends at all: {await self._place.clients.last_words()}")
+        followers = self._place.followers
+        await self._while_there_is_news(
+            lambda: any(each.has_heard_an_end for each in followers), "no run ends at all"
+        )
+
+    async def _while_there_is_news(self, until: Callable[[], bool], otherwise: str) -> None:
+        """Wait for something. Raises `HangsError` once nothing is heard any more before it."""
+        follower = self._place.followers[0]
+        seen, heard_at = follower.seen, time.monotonic()
+        while not until():
             await asyncio.sleep(0.2)
+            if follower.seen != seen:
+                seen, heard_at = follower.seen, time.monotonic()
+            elif time.monotonic() - heard_at > PATIENCE_S:
+                raise HangsError(f"{otherwise}: {await self._place.clients.last_words()}")
 
     async def _disturb(self, goes_on: Callable[[int], bool]) -> None:
         rng = self._place.rng
@@ -106,16 +116,20 @@ class Ordeal:
     async def _wait_for_the_ends(self) -> None:
         """Until no run goes on, and everybody has heard everything."""
         self._tell("waiting for the ends of runs")
-        clients, until = self._place.clients, time.monotonic() + END_S
-        while await clients.running() != 0:
-            if time.monotonic() > until:
-                raise HangsError(f"runs never end: {await clients.last_words()}")
-            await asyncio.sleep(0.2)
-        while time.monotonic() < until:
-            last = await asyncio.to_thread(last_heard_by_all, self._place.service.journal)
-            if all(each.seen >= last for each in self._place.followers):
-                return
-            await asyncio.sleep(0.2)
+        # First those that have only just begun.
+        await self._wait_for_the_news()
+        await self._while_there_is_news(
+            lambda: self._place.followers[0].runs_going_on == 0, "runs never end"
+        )
+        await self._wait_for_the_news()
+
+    async def _wait_for_the_news(self) -> None:
+        """Until all have heard what there is now."""
+        place = self._place
+        last = await asyncio.to_thread(last_heard_by_all, place.service.journal)
+        await self._while_there_is_news(
+            lambda: all(each.seen >= last for each in place.followers), "not all is heard by all"
+        )
 
     async def _look(self) -> None:
         """Stop the service, and read what it has left."""

@@ -2,6 +2,7 @@
 
 import asyncio
 import json
+from collections import Counter
 from collections.abc import Callable
 from contextlib import suppress
 from typing import Any
@@ -44,6 +45,12 @@ class Follower:
     def has_heard_an_end(self) -> bool:
         """Whether a run has ended so far."""
         return any(event["type"] in ENDS for event in self._heard)
+
+    @property
+    def runs_going_on(self) -> int:
+        """How many runs have begun and not ended, by what was heard."""
+        kinds = Counter(event["type"] for event in self._heard)
+        return kinds["run_started"] - sum(kinds[each] for each in ENDS)
 
     async def follow(self) -> None:
         """Until cancelled."""

@@ -2,6 +2,7 @@
 
 import asyncio
 import errno
+import os
 from collections.abc import Awaitable, Callable
 from typing import TypeVar
 
@@ -23,6 +24,22 @@ async def once_there_are_descriptors(
         try:
             return await make()
         except OSError as error:
-            if error.errno not in NO_DESCRIPTOR:
+            if not is_for_want_of_descriptors(error):
                 raise
         await sleep(TRY_AGAIN_S)
+
+
+def is_for_want_of_descriptors(error: BaseException) -> bool:
+    """Whether something failed only because this process had none left."""
+    return isinstance(error, OSError) and error.errno in NO_DESCRIPTOR
+
+
+async def until_there_are_descriptors(
+    sleep: Callable[[float], Awaitable[None]] = asyncio.sleep,
+) -> None:
+    """Wait until this process can open something again."""
+    os.close(await once_there_are_descriptors(_any_descriptor, sleep))
+
+
+async def _any_descriptor() -> int:
+    return os.open(os.devnull, os.O_RDONLY)

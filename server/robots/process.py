@@ -17,7 +17,11 @@ from robots.link.channel import Channel, memory_channel
 from robots.link.client import run_agent
 from robots.link.clock import LoopClock
 from robots.link.outbox import IN_MEMORY, Outbox
-from server.descriptors import once_there_are_descriptors
+from server.descriptors import (
+    is_for_want_of_descriptors,
+    once_there_are_descriptors,
+    until_there_are_descriptors,
+)
 from server.errors import InvalidError
 from server.plain_text import plain
 from server.robots.passes import OwnRobots
@@ -256,8 +260,13 @@ class InProcessRobot:
             )
             await run_agent(agent, self._connect, outbox, LoopClock(), random.Random(setup.seed))
         except Exception as error:
-            log.exception("the simulated robot %s failed", setup.robot)
             reason = f"its program failed: {error}"
+            if is_for_want_of_descriptors(error):
+                log.warning("the simulated robot %s begins anew: %s", setup.robot, error)
+                # Else it would only fail again, and that often is not tried.
+                await until_there_are_descriptors()
+            else:
+                log.exception("the simulated robot %s failed", setup.robot)
         finally:
             outbox.close()
         self._task = None
