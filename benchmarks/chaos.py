@@ -4,14 +4,18 @@
     python benchmarks/chaos.py --minutes 5 --seed 1
 
 Full disks, writes that fail, kills and stops of processes, jumps of the clock, descriptors that run
-out, slow and hostile clients, hostile robots. At the end a reader of its own compares the journal
-with what clients saw: nothing may be lost, doubled or invented, and every run ends. Prints how many
-there were of each fault, how long `/healthz` took throughout, and what the service's process takes.
-There is no peer: what is measured is that nothing is lost. Needs the right to mount a file system.
+out, slow and hostile clients, hostile robots. Writes fail by the kernel's limit on the size of
+files, which stands for a broken or read-only disk; the wall clock that jumps is the one that the
+service is given, as the kernel's is everybody's. At the end a reader of its own compares the
+journal with what clients saw: nothing may be lost, doubled or invented, and every run ends. Prints
+how many there were of each fault, how long `/healthz` took while the service was not stopped, and
+what its process takes. There is no peer: what is measured is that nothing is lost. Needs the right
+to mount a file system.
 """
 
 import argparse
 import asyncio
+import signal
 import sys
 import tempfile
 import time
@@ -83,6 +87,8 @@ def main() -> None:
     parser.add_argument("--runs", type=int, default=MANY_RUNS, help="that go on at a time")
     parser.add_argument("--verbose", action="store_true", help="tell each fault as it begins")
     told = parser.parse_args()
+    # Whoever ends it early leaves no service and no file system behind.
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
     found = asyncio.run(measure(told.minutes, told.seed, told.runs, verbose=told.verbose))
     print(report(found))
     sys.exit(1 if found.faults else 0)
