@@ -8,7 +8,7 @@ READY := $(VENV)/.ready
 # Much is done by processes that begin anew: each would compile every module once more.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help setup demo types console screenshots serve test console-tests arm-kernels fleet-kernels test-modules steady lint bench lock clean
+.PHONY: help setup demo types console screenshots serve test console-tests arm-kernels fleet-kernels test-modules steady lint bench lock sbom clean
 
 help:  ## Say what there is
 	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 10
@@ -85,9 +85,17 @@ lint: types  ## Formatting, lint, types (of web/ too) and the floors
 bench: $(READY)  ## Every benchmark, one after the other (takes long)
 	@for each in $$(grep -l __main__ benchmarks/*.py); do echo "== $$each"; $(BIN)/python "$$each"; done
 
+LOCK := uv pip compile --quiet --universal --no-emit-index-url --no-annotate --generate-hashes \
+    --custom-compile-command 'make lock'
+
 lock: $(READY)  ## Pin the newest versions that pyproject.toml allows
-	$(BIN)/uv pip compile --quiet --universal --all-extras --no-emit-index-url --no-annotate \
-	    --custom-compile-command 'make lock' --upgrade pyproject.toml requirements-build.in -o requirements.lock
+	$(BIN)/$(LOCK) --all-extras --upgrade pyproject.toml requirements-build.in -o requirements.lock
+	@# What goes into an image, and what only builds one: the same versions.
+	$(BIN)/$(LOCK) --extra workcell --extra speech -c requirements.lock pyproject.toml -o docker/service.lock
+	$(BIN)/$(LOCK) -c requirements.lock docker/tools.in -o docker/tools.lock
+
+sbom: $(READY)  ## Every package that Mend is made of and with, as CycloneDX, in out/mend.cdx.json
+	$(BIN)/python scripts/sbom.py out/mend.cdx.json
 
 clean:  ## Remove everything that was made
 	rm -rf $(VENV) web/node_modules server/api/console/built out build dist .mypy_cache .ruff_cache .pytest_cache .hypothesis

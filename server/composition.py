@@ -110,6 +110,9 @@ async def _open(
     config_socket = listen(settings)
     url = f"{'https' if tls else 'http'}://{reachable_host(settings.host)}:{config_socket.getsockname()[1]}"
     adapters = load_plugins("mend.worlds")
+    # What runs need later is loaded now: there may be no descriptor left to open it with then.
+    for group in ("mend.behaviors", "mend.monitors"):
+        load_plugins(group)
     library = build_library(
         journal, fixed_documents(given, settings.scenes), WorldChecks(adapters), settings.limits
     )

@@ -24,6 +24,7 @@ LimitName = Literal[
     "wrong_tokens",
     "idempotency_keys",
     "idempotency_s",
+    "robot_messages_per_s",
 ]
 """The limits by name: whoever refuses something says for which of them."""
 
@@ -65,3 +66,5 @@ class Limits(BaseModel):
     """Requests under an idempotency key that are kept of one principal, the latest ones."""
     idempotency_s: Seconds = 86_400.0
     """How long they are kept."""
+    robot_messages_per_s: AtLeastOne = 500
+    """Messages of one robot's connection that are read in a second, of 4096 characters each."""

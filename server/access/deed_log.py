@@ -92,7 +92,8 @@ class DeedLog:
 
     def _is_due(self, who: tuple[str, Role] | None) -> bool:
         told = self._told.get(who)
-        return told is None or self._utc_now() - told >= TOLD_EVERY
+        # A clock that was set back must keep nothing from being told.
+        return told is None or abs(self._utc_now() - told) >= TOLD_EVERY
 
     def _of_tally(self, tally: Tally, who: tuple[str, Role] | None) -> dict[str, object]:
         self._told[who] = now = self._utc_now()

@@ -1,6 +1,5 @@
 """Problem documents (RFC 9457): how every refusal looks on the wire."""
 
-import errno
 import json
 import logging
 from collections.abc import Mapping, Sequence
@@ -19,6 +18,7 @@ from server.access.principals_file import PrincipalsFileError
 from server.access.roles import Role, with_article
 from server.api.parts import parts_of
 from server.api.safe_headers import SAFE_HEADERS
+from server.descriptors import NO_DESCRIPTOR
 from server.errors import (
     ConflictError,
     InvalidError,
@@ -34,8 +34,6 @@ from tasks.validation import what_is_right
 log = logging.getLogger(__name__)
 
 MEDIA_TYPE = "application/problem+json"
-
-NO_DESCRIPTOR = (errno.EMFILE, errno.ENFILE)
 
 STATUSES: tuple[tuple[type[Exception], int], ...] = (
     (EnrolmentRefusedError, 403),

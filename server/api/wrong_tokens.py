@@ -43,9 +43,10 @@ class WrongTokens:
         found = self._addresses.get(address)
         if found is None:
             return 0.0
+        now = self._now()
         # A clock that was set back must make nobody wait longer.
-        waited_s = max(0.0, self._now() - found.last)
-        return max(0.0, found.wait_s - waited_s)
+        found.last = min(found.last, now)
+        return max(0.0, found.wait_s - (now - found.last))
 
     def is_known(self, address: str, token: bytes) -> bool:
         """Whether this address has lately shown this very token, and it was wrong."""

@@ -97,7 +97,7 @@ def add_robot_route(
         with access.watched(shown.caller) as gone:
             revoking = asyncio.create_task(_end_when(gone, channel))
             try:
-                await registry.serve(channel, shown.robot)
+                await registry.serve_stranger(channel, shown.robot)
             finally:
                 revoking.cancel()
 

@@ -12,9 +12,11 @@ from uuid import uuid4
 from robots.link.messages import (
     PROTOCOL_VERSION,
     Ack,
+    ClipTaken,
     Command,
     CommandBody,
     Hello,
+    IssueDetected,
     Picture,
     Poses,
     Rejected,
@@ -27,13 +29,24 @@ from robots.link.messages import (
 from server.errors import ConflictError, NotFoundError
 from server.journal.journal import DuplicateReceiptError, Entry, Journal, Receipt
 from server.plain_text import plain
-from server.robots.session import MissingReportError, PictureError, RobotSession
+from server.robots.session import (
+    MissingReportError,
+    PictureError,
+    RobotSession,
+    TooManyReportsError,
+)
 from server.robots.sink import RobotSink
 from server.robots.times import LinkTimes
 
 log = logging.getLogger(__name__)
 
 MOST_UNTAKEN_COMMANDS = 1000
+
+MOST_UNASKED_REPORTS = 10_000
+"""What a robot has to report of one command is far less, so that more fills the journal only."""
+
+CHARS_OF_ONE = 4096
+"""Of a report with pictures each such part of them counts as a report."""
 
 MISSED_HEARTBEATS = 2
 """After so many nobody can say that the program of a robot still runs."""
@@ -56,6 +69,7 @@ class KnownRobot:
         self._received: dict[str, int] = {}
         self._heard_of: set[str] = set()
         self._refused: tuple[str, str] | None = None
+        self._unasked_reports = 0
         self._poses_hz = 0.0
         self._absence: asyncio.TimerHandle | None = None
         self._tasks: set[asyncio.Task[None]] = set()
@@ -107,25 +121,28 @@ class KnownRobot:
         self._refused = self.hello.boot, reason
         self.session.end_soon(reason)
 
-    def why_refused(self, hello: Hello) -> str | None:
-        """Why a start of its program is not let in; None if it is."""
+    def why_refused(self, hello: Hello, *, ours: bool = True) -> str | None:
+        """Why a start of its program is not let in; None if it is.
+
+        `ours`: it is a program of this service, or a channel within its process.
+        """
         boot, reason = self._refused or (None, "")
         if boot == hello.boot:
             return f"start the robot's program again: {reason}"
-        if self._is_another_program(hello):
+        if self._is_another_program(hello, ours=ours):
             return (
                 f"another program is connected as the robot '{self.name}': stop it first, or take "
                 "another name"
             )
         return None
 
-    def _is_another_program(self, hello: Hello) -> bool:
+    def _is_another_program(self, hello: Hello, *, ours: bool) -> bool:
         """Whether a hello is of a second program, while the first one is still there.
 
         A program that has ended and was started again leaves a connection on which nothing comes.
-        A simulated robot's programs are started and ended by this service.
+        The programs of this service's simulated robots are started and ended by it.
         """
-        if self.session is None or self.hello is None or hello.simulated:
+        if self.session is None or self.hello is None or (hello.simulated and ours):
             return False
         lively = self.session.silent_for_s() <= MISSED_HEARTBEATS * self._times.heartbeat_s
         return lively and self.hello.boot != hello.boot
@@ -205,6 +222,7 @@ class KnownRobot:
             raise ConflictError(
                 f"the robot '{self.name}' has not taken its last {MOST_UNTAKEN_COMMANDS} commands"
             )
+        self._unasked_reports = 0
         command = self._untaken[command_id] = Command(id=command_id, body=body)
         if self.session is not None:
             self.session.send(command)
@@ -264,7 +282,7 @@ class KnownRobot:
     async def receive_report(self, report: Report) -> Ack:
         """Commit a report unless it is known; returns what may be acknowledged.
 
-        Raises `MissingReportError` when the one before it was left out.
+        Raises `MissingReportError` when the one before it was left out, and `TooManyReportsError`.
         """
         assert self.hello is not None, "reports only come after a hello"
         boot = report.boot or self.hello.boot
@@ -273,6 +291,7 @@ class KnownRobot:
         last = self._received[boot]
         if report.seq > last:
             self._require_no_gap(boot, last, report.seq)
+            self._require_bound(report)
             await self._commit(report, Receipt(self.name, boot, report.seq))
             last = self._received[boot] = report.seq
         self._heard_of.add(boot)
@@ -288,6 +307,14 @@ class KnownRobot:
                 f"report {seq} came, but the last one was {last}; send {last + 1} first"
             )
 
+    def _require_bound(self, report: Report) -> None:
+        self._unasked_reports += 1 + _picture_chars(report) // CHARS_OF_ONE
+        if self._unasked_reports > MOST_UNASKED_REPORTS:
+            raise TooManyReportsError(
+                f"the robot '{self.name}' has sent {MOST_UNASKED_REPORTS} reports since it was "
+                "last told something"
+            )
+
     async def _commit(self, report: Report, receipt: Receipt) -> None:
         try:
             if self._sink is None:
@@ -296,3 +323,14 @@ class KnownRobot:
                 await self._sink.robot_reported(self.name, report, receipt)
         except DuplicateReceiptError:
             log.info("report %d of %s was received before", receipt.seq, self.name)
+
+
+def _picture_chars(report: Report) -> int:
+    """How much of a report are pictures, which are kept in the journal."""
+    match report.body:
+        case IssueDetected(jpeg=str(jpeg)):
+            return len(jpeg)
+        case ClipTaken(pictures=pictures):
+            return sum(len(each.jpeg) for each in pictures)
+        case _:
+            return 0

@@ -17,6 +17,11 @@ from robots.link.channel import Channel, memory_channel
 from robots.link.client import run_agent
 from robots.link.clock import LoopClock
 from robots.link.outbox import IN_MEMORY, Outbox
+from server.descriptors import (
+    is_for_want_of_descriptors,
+    once_there_are_descriptors,
+    until_there_are_descriptors,
+)
 from server.errors import InvalidError
 from server.plain_text import plain
 from server.robots.passes import OwnRobots
@@ -128,15 +133,17 @@ class RobotProcess:
         """Start the process, after ending the one there may be."""
         await self.stop()
         self._token = self._own_robots.issue(setup.robot)
-        process = await asyncio.create_subprocess_exec(
-            sys.executable,
-            "-P",
-            "-m",
-            "sim.robot_process",
-            stdin=PIPE,
-            stdout=DEVNULL,
-            stderr=PIPE,
-            env=ONE_THREAD | os.environ,
+        process = await once_there_are_descriptors(
+            lambda: asyncio.create_subprocess_exec(
+                sys.executable,
+                "-P",
+                "-m",
+                "sim.robot_process",
+                stdin=PIPE,
+                stdout=DEVNULL,
+                stderr=PIPE,
+                env=ONE_THREAD | os.environ,
+            )
         )
         self._process = process
         self._watcher = asyncio.create_task(self._watch(process, setup.robot))
@@ -248,11 +255,18 @@ class InProcessRobot:
         reason = "it was shut down"
         try:
             # A world takes a while to build, for which nobody else should have to wait.
-            agent = await asyncio.to_thread(self._adapter.create_agent, setup)
+            agent = await once_there_are_descriptors(
+                lambda: asyncio.to_thread(self._adapter.create_agent, setup)
+            )
             await run_agent(agent, self._connect, outbox, LoopClock(), random.Random(setup.seed))
         except Exception as error:
-            log.exception("the simulated robot %s failed", setup.robot)
             reason = f"its program failed: {error}"
+            if is_for_want_of_descriptors(error):
+                log.warning("the simulated robot %s begins anew: %s", setup.robot, error)
+                # Else it would only fail again, and that often is not tried.
+                await until_there_are_descriptors()
+            else:
+                log.exception("the simulated robot %s failed", setup.robot)
         finally:
             outbox.close()
         self._task = None

@@ -5,6 +5,7 @@ import json
 import logging
 from collections.abc import Callable
 from contextlib import suppress
+from functools import partial
 
 from pydantic import ValidationError
 
@@ -15,6 +16,7 @@ from server.journal.journal import Journal, JournalClosedError
 from server.limits import Limits
 from server.refusals import Refusals
 from server.robots.known_robot import KnownRobot
+from server.robots.pace import Pace, PacedChannel
 from server.robots.passes import Anyone, Pass
 from server.robots.session import NoSenseError, RobotSession, read_message, sentence
 from server.robots.sink import RobotSink
@@ -139,22 +141,33 @@ class RobotRegistry:
 
         `shown` says as which robot it may say hello; None for a channel within this process.
         """
+        await self._serve(channel, shown or Anyone(), ours=True)
+
+    async def serve_stranger(self, channel: Channel, shown: Pass) -> None:
+        """Serve one connection of a robot that this service does not run, at a bounded pace."""
+        pace = Pace(self._limits.robot_messages_per_s, self._clock)
+        held_back = partial(self._refusals.note, "robot_messages_per_s")
+        await self._serve(PacedChannel(channel, pace, held_back), shown, ours=False)
+
+    async def _serve(self, channel: Channel, shown: Pass, *, ours: bool) -> None:
         try:
             hello = await self._greeted(channel)
             if hello is not None and not self._closed:
-                await self._serve_robot(channel, hello, shown or Anyone())
+                await self._serve_robot(channel, hello, shown, ours=ours)
         finally:
             with suppress(ChannelClosedError):
                 await channel.close()
 
-    async def _serve_robot(self, channel: Channel, hello: Hello, shown: Pass) -> None:
+    async def _serve_robot(
+        self, channel: Channel, hello: Hello, shown: Pass, *, ours: bool
+    ) -> None:
         # First: who may not be this robot is to leave no trace of it either.
         refusal = shown.why_not(hello.robot)
         if refusal is not None:
             await _complain(channel, refusal)
             return
         robot = self._known(hello.robot)
-        refusal = robot.why_refused(hello)
+        refusal = robot.why_refused(hello, ours=ours)
         if refusal is not None:
             await _complain(channel, refusal)
             return

@@ -37,6 +37,10 @@ class MissingReportError(Exception):
     """A report came without its predecessor; the message says which."""
 
 
+class TooManyReportsError(Exception):
+    """A robot reports without end; the message says how much."""
+
+
 class PictureError(Exception):
     """A picture that nobody can use; the message says why."""
 
@@ -45,7 +49,10 @@ class Receiver(Protocol):
     """Where a session takes what the robot sends."""
 
     async def receive_report(self, report: Report) -> Ack:
-        """Commit a report unless it is known. Raises `MissingReportError`."""
+        """Commit a report unless it is known.
+
+        Raises `MissingReportError` and `TooManyReportsError`.
+        """
         ...
 
     def receive_taken(self, taken: Taken) -> None: ...
@@ -247,6 +254,9 @@ class RobotSession:
             ack = await self._receiver.receive_report(report)
         except MissingReportError as error:
             self.send(LinkError(detail=str(error)))
+            return
+        except TooManyReportsError as error:
+            self._receiver.refuse(str(error))
             return
         if self._owed is not None and self._owed.boot != ack.boot:
             self._acknowledge()

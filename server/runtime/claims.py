@@ -11,6 +11,9 @@ from server.runtime.context import RunContext
 from server.runtime.dialogue_events import DialogueEvents
 from server.runtime.run_state import DialogueState
 
+MOST_CLAIMS = 10_000
+"""Of one dialogue, renewals included: who renews as the console does needs days for so many."""
+
 
 class Claims:
     """The claims on the open dialogues of one run."""
@@ -28,13 +31,17 @@ class Claims:
     ) -> None:
         """Claim a dialogue, or renew one's own claim; `take_over` takes it from another helper.
 
-        Raises `ConflictError` while another helper's lease lasts (unless it is taken over), or
-        once the dialogue is closed.
+        Raises `ConflictError` while another helper's lease lasts (unless it is taken over), once
+        the dialogue is closed, or when it was claimed too often.
         """
         now = self._context.utc_now()
         held = dialogue.claim
         if dialogue.closed is not None:
             raise ConflictError(f"this dialogue is closed ({dialogue.closed})")
+        if dialogue.claims >= MOST_CLAIMS:
+            raise ConflictError(
+                f"this dialogue was claimed {MOST_CLAIMS} times: it can be answered, not claimed"
+            )
         others = held is not None and held.helper != helper
         if held is not None and others and held.until > now and not take_over:
             seconds = (held.until - now).total_seconds()

@@ -201,7 +201,9 @@ class ReportEvents:
 
     def _rejected(self, side: RobotSide, body: Rejected) -> list[ev.Event]:
         execution = self._context.state.executions.get(side.robot)
-        log.warning("robot %s rejected a command: %s", side.robot, plain(body.reason))
+        if body.command == side.command:
+            # Once for each command: anybody can reject what was never told.
+            log.warning("robot %s rejected a command: %s", side.robot, plain(body.reason))
         if execution is None or side.doing is not Doing.WORKING or body.command != side.command:
             return []
         reason = f"the robot refused: {body.reason}"

@@ -62,6 +62,8 @@ class DialogueState:
     answers: dict[UUID, ev.Answered] = field(default_factory=dict)
     awaiting: ev.HelpAwaited | None = None
     claim: Claim | None = None
+    claims: int = 0
+    """How often it was claimed so far, renewals included."""
     resolved: ev.Resolved | None = None
     closed: CloseReason | None = None
     helps: int = 0
@@ -312,7 +314,9 @@ class RunState:
 
     @_apply.register
     def _(self, event: ev.Claimed) -> None:
-        self.dialogues[event.dialogue].claim = Claim(event.helper, event.lease_until)
+        dialogue = self.dialogues[event.dialogue]
+        dialogue.claim = Claim(event.helper, event.lease_until)
+        dialogue.claims += 1
 
     @_apply.register
     def _(self, event: ev.Released) -> None:

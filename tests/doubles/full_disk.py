@@ -30,7 +30,7 @@ class SmallDisk:
 
     def fill(self) -> None:
         with self._ballast.open("ab", buffering=0) as ballast:
-            for size in (1 << 16, 1 << 12, 1):
+            for size in (1 << 20, 1 << 16, 1 << 12, 1):
                 self._append_until_full(ballast, bytes(size))
 
     def _append_until_full(self, ballast: Any, block: bytes) -> None:
@@ -43,10 +43,10 @@ class SmallDisk:
 
 
 @contextmanager
-def small_disk(folder: Path) -> Iterator[SmallDisk]:
-    """A disk of 2 MB; the test is skipped where this user may not mount one."""
+def small_disk(folder: Path, size_mb: int = 2) -> Iterator[SmallDisk]:
+    """A small disk; the test is skipped where this user may not mount one."""
     folder.mkdir()
-    mount = ["mount", "-t", "tmpfs", "-o", "size=2m", "none", str(folder)]
+    mount = ["mount", "-t", "tmpfs", "-o", f"size={size_mb}m", "none", str(folder)]
     with contextlib.suppress(FileNotFoundError):
         if subprocess.run(mount, capture_output=True, check=False).returncode == 0:
             try:

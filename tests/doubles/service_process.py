@@ -7,7 +7,7 @@ import signal
 import socket
 import sys
 import time
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Sequence
 from contextlib import asynccontextmanager
 from pathlib import Path
 
@@ -20,12 +20,25 @@ START_S = 60.0
 """Patience with a start, on a machine that is busy."""
 
 
+MEND_SERVE = (str(Path(sys.executable).with_name("mend")), "serve")
+
+
 class ServiceProcess:
     """`mend serve` on a port and a journal that stay the same over its lives."""
 
-    def __init__(self, folder: Path, *, descriptors: int | None = None, **environment: str) -> None:
+    def __init__(
+        self,
+        folder: Path,
+        *,
+        descriptors: int | None = None,
+        program: Sequence[str] = MEND_SERVE,
+        token: str | None = None,
+        **environment: str,
+    ) -> None:
         self._folder = folder
         self._descriptors = descriptors
+        self._program = program
+        self._token = token
         self._environment = environment
         self._port = _free_port()
         self._process: asyncio.subprocess.Process | None = None
@@ -47,23 +60,34 @@ class ServiceProcess:
         """Everything that its lives wrote to stderr."""
         return (self._folder / "stderr").read_text()
 
+    @property
+    def process(self) -> asyncio.subprocess.Process:
+        """Its latest life."""
+        assert self._process is not None, "it was started"
+        return self._process
+
     async def start(self) -> None:
         """Start it; returns when it is ready."""
+        await self.spawn()
+        async with MendClient(self.url, token=self._token) as client:
+            await client.wait_until_ready(START_S)
+
+    async def spawn(self) -> None:
+        """Start it; returns at once."""
         environment = {
             **{name: value for name, value in os.environ.items() if not name.startswith("MEND_")},
             "MEND_DATA_DIR": str(self._folder),
             "MEND_PORT": str(self._port),
             "MEND_LOG_LEVEL": "warning",
+            **({} if self._token is None else {"MEND_TOKEN": self._token}),
             **self._environment,
         }
         with (self._folder / "stderr").open("a") as complaints:
             self._process = await asyncio.create_subprocess_exec(
-                str(Path(sys.executable).with_name("mend")), "serve",
+                *self._program,
                 env=environment, stdout=asyncio.subprocess.DEVNULL, stderr=complaints,
                 preexec_fn=self._bound,
             )  # fmt: skip
-        async with MendClient(self.url) as client:
-            await client.wait_until_ready(START_S)
 
     def _bound(self) -> None:
         """In the new process: it may have only so many descriptors."""

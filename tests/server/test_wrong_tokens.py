@@ -69,6 +69,8 @@ def test_a_clock_that_is_set_back_makes_nobody_wait_longer(jump_s: float) -> Non
     assert [guesser.guess() for _ in range(3)][-1] == 2
     guesser.now += jump_s
     assert guesser.wrong.wait_s("10.0.0.1") == 2
+    guesser.now += 2
+    assert guesser.wrong.wait_s("10.0.0.1") == 0
 
 
 def test_only_so_many_addresses_are_remembered() -> None:

@@ -135,3 +135,16 @@ async def test_a_row_on_a_damaged_page_is_passed_over(
     unreadable = [each for each in found if isinstance(each, UnreadableEvent)]
     assert len(found) == count
     assert 0 < len(unreadable) < count // 10
+
+
+async def test_a_clock_that_is_set_back_keeps_nothing_from_being_told(
+    journal: SqliteJournal,
+) -> None:
+    clock = Clock()
+    deeds = DeedLog(journal, clock)
+    deeds.failed("10.0.0.1")
+    clock.now -= timedelta(days=1)
+    deeds.failed("10.0.0.2")
+    await deeds.written()
+    told = await journal.read(0, 10, ev.NO_RUN)
+    assert [each.times for each in told if isinstance(each, ev.SignInFailed)] == [1, 1]

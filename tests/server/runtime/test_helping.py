@@ -77,6 +77,23 @@ async def test_a_claim_is_taken_over_from_another_helper(service: PretendService
     assert told == [(ev.Claimed, "ann"), (ev.Released, "ann"), (ev.Claimed, "bob")]
 
 
+async def test_nobody_fills_the_journal_with_claims(
+    service: PretendService, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("server.runtime.claims.MOST_CLAIMS", 5)
+    question = await open_question(service)
+    for _ in range(2):
+        for helper in ("ann", "bob"):
+            await service.runtime.claim(question.dialogue, helper, take_over=True)
+    await service.runtime.claim(question.dialogue, "bob")
+    head = service.journal.head
+    for take_over in (False, True):
+        with pytest.raises(ConflictError, match="can be answered, not claimed"):
+            await service.runtime.claim(question.dialogue, "bob", take_over=take_over)
+    assert service.journal.head == head
+    await service.runtime.answer(question.dialogue, prompt_in(question).prompt, "yes", "ann")
+
+
 async def test_taking_over_ones_own_or_nobodys_claim_only_renews_it(
     service: PretendService,
 ) -> None:

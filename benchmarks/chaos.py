@@ -1,0 +1,98 @@
+# ruff: noqa: T201
+"""A real service with 20 runs among faults of every kind, drawn at random.
+
+    python benchmarks/chaos.py --minutes 5 --seed 1
+
+Full disks, writes that fail, kills and stops of processes, jumps of the clock, descriptors that run
+out, slow and hostile clients, hostile robots. Writes fail by the kernel's limit on the size of
+files, which stands for a broken or read-only disk; the wall clock that jumps is the one that the
+service is given, as the kernel's is everybody's. At the end a reader of its own compares the
+journal with what clients saw: nothing may be lost, doubled or invented, and every run ends. Prints
+how many there were of each fault, how long `/healthz` took while the service was not stopped, and
+what its process takes. There is no peer: what is measured is that nothing is lost. Needs the right
+to mount a file system.
+"""
+
+import argparse
+import asyncio
+import signal
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "doubles"))
+
+import numpy as np
+from chaos_ordeal import Findings, Ordeal
+from chaos_place import DISK_MB, Footprint, chaos_place
+from full_disk import small_disk
+
+MANY_RUNS = 20
+LONGEST_STOP_S = 60.0
+
+
+async def measure(minutes: float, seed: int, runs: int, *, verbose: bool) -> Findings:
+    """A service that is disturbed for so long."""
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        small_disk(Path(folder) / "disk", DISK_MB) as disk,
+    ):
+        most_stop_s = min(LONGEST_STOP_S, minutes * 60 / 4)
+        async with chaos_place(Path(folder), disk, seed, most_stop_s) as place:
+            tell = _teller() if verbose else lambda _: None
+            until = time.monotonic() + minutes * 60
+            ordeal = Ordeal(place, runs, tell=tell)
+            return await ordeal.go_through(lambda _: time.monotonic() < until)
+
+
+def _teller() -> Callable[[str], None]:
+    began = time.monotonic()
+    return lambda what: print(f"{time.monotonic() - began:7.1f} s  {what}", flush=True)
+
+
+def _takes(when: str, footprint: Footprint | None) -> str:
+    if footprint is None:
+        return f"{when}: not known"
+    return (
+        f"{when}: {footprint.rss_mb:.0f} MB, {footprint.processes} process(es), "
+        f"{footprint.threads} threads, {footprint.descriptors} descriptors"
+    )
+
+
+def report(found: Findings) -> str:
+    ms = np.array(found.latencies_s or [np.nan]) * 1000
+    p50, p99, most = np.percentile(ms, 50), np.percentile(ms, 99), ms.max()
+    return "\n".join(
+        (
+            *(f"{times:5}  {name}" for name, times in sorted(found.counts.items())),
+            f"{found.runs} runs ended: " + ", ".join(f"{n} {k}" for k, n in found.endings.items()),
+            f"{found.events} events; answers: "
+            + ", ".join(f"{n} {kind}" for kind, n in found.answers.items()),
+            f"/healthz: p50 {p50:.1f} ms, p99 {p99:.1f} ms, max {most:.0f} ms over {ms.size} "
+            f"requests; {found.unanswered} not answered",
+            _takes("after the first run", found.start),
+            _takes("at the end", found.end) + f"; at most {found.most_rss_mb:.0f} MB",
+            f"{len(found.faults)} things are wrong",
+            *found.faults,
+        )
+    )
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--minutes", type=float, default=5.0)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--runs", type=int, default=MANY_RUNS, help="that go on at a time")
+    parser.add_argument("--verbose", action="store_true", help="tell each fault as it begins")
+    told = parser.parse_args()
+    # Whoever ends it early leaves no service and no file system behind.
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
+    found = asyncio.run(measure(told.minutes, told.seed, told.runs, verbose=told.verbose))
+    print(report(found))
+    sys.exit(1 if found.faults else 0)
+
+
+if __name__ == "__main__":
+    main()
