@@ -5,7 +5,7 @@ is robbed, one leaf needs a hand), lets helpers in and is answered. Of each call
 of the service and of the process that checks for it, seconds until it is answered, what the longest
 callback of the service's loop took of the processor, and how late a task in that loop was that
 wants to run every 5 ms, beside the same in a process with nothing to do. Of each helper: seconds
-until its first picture, and the bytes of it.
+until its first picture, and the bytes of it. The naive way in the same run is to check in the loop.
 
     python benchmarks/large_trees.py [--nodes 100000] [--helpers 5] [--shape wide|mixed] [--quick]
 """
@@ -28,11 +28,18 @@ import psutil
 from websockets.asyncio.client import ClientConnection, connect
 
 from server.composition import open_service
+from server.document_checks import TreeChecker
+from server.documents import DocumentView
+from server.fixed_documents import GivenFiles, fixed_documents
 from server.garbage import settle_garbage
+from server.rendered import Rendered
+from server.scene_checks import load_world_checks
 from server.settings import Settings
 
 PROBE_S = 0.005
 PATIENCE_S = 600.0
+ROBOT = "_RobotEnd"
+"""The tabletop's robot runs in the service's loop; what it takes to see is not that of trees."""
 STOP_S = 10.0
 
 T = TypeVar("T")
@@ -74,7 +81,7 @@ class LoopProbe:
     """What keeps a loop: a task in it that wants to run every 5 ms, and each of its callbacks.
 
     `longest_s` is how late that task was, and `longest_cpu_s` what one callback took of the
-    processor.
+    processor, those of the simulated robot left out.
     """
 
     def __init__(self) -> None:
@@ -101,8 +108,8 @@ class LoopProbe:
             began = time.thread_time()
             run(handle)
             taken_s = time.thread_time() - began
-            if taken_s > self.longest_cpu_s:
-                self.longest_cpu_s, self.longest_of = taken_s, _called(handle)
+            if taken_s > self.longest_cpu_s and not (called := _called(handle)).startswith(ROBOT):
+                self.longest_cpu_s, self.longest_of = taken_s, called
 
         setattr(asyncio.Handle, "_run", measured)  # noqa: B010
 
@@ -113,8 +120,8 @@ def _called(handle: asyncio.Handle) -> str:
     callback = callback.__get__(handle) if callback is not None else None
     task = getattr(callback, "__self__", None)
     if isinstance(task, asyncio.Task):
-        return task.get_name() if "Task-" not in task.get_name() else task.get_coro().__qualname__
-    return getattr(callback, "__qualname__", "")
+        callback = task.get_coro()
+    return str(getattr(callback, "__qualname__", ""))
 
 
 def probe_idle_loop(pipe: Connection) -> None:
@@ -308,6 +315,17 @@ async def _measure(url: str, watched: Watched, arguments: argparse.Namespace) ->
         await asyncio.gather(*tasks, return_exceptions=True)
 
 
+def check_at_once(text: str) -> float:
+    """The naive way: processor seconds for which a loop that checks a tree itself is held up."""
+    checker = TreeChecker(fixed_documents(GivenFiles(), None), load_world_checks())
+    began = time.thread_time()
+    checked = checker.try_in_worlds(text, {})
+    Rendered.of(
+        DocumentView(name="large", built_in=False, text=text, definition=checked.definition)
+    )
+    return time.thread_time() - began
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--nodes", type=int, default=100_000)
@@ -331,9 +349,16 @@ def main() -> None:
                 f"{'':<38}{'CPU s':>26}{'longest in the loop, ms':>31}\n{'call':<38}{'service':>8}"
                 f"{'checking':>10}{'wall s':>8}{'callback, CPU':>14}{'late':>9}{'idle one':>9}"
             )
-            asyncio.run(_measure(url, Watched(processes[0].pid or 0, pipe, idle), arguments))
+            watched = Watched(processes[0].pid or 0, pipe, idle)
+            asyncio.run(_measure(url, watched, arguments))
             for each in (pipe, idle):
                 each.send("stop")
+            if not arguments.quick:
+                naive_s = check_at_once(SHAPES[arguments.shape](arguments.nodes))
+                print(
+                    f"a loop that checks it itself: held up for {naive_s * 1e3:,.0f} ms, "
+                    f"{naive_s / watched.worst_cpu_s:.0f} x"
+                )
             processes[0].join(STOP_S)
         finally:
             for process in processes:
