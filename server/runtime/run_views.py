@@ -1,5 +1,6 @@
 """From a run's state to what clients see of it."""
 
+import asyncio
 from collections.abc import AsyncIterator, Sequence
 from typing import Literal, cast
 
@@ -118,6 +119,8 @@ class RunViewing:
         return [*written, tail.encode()]
 
     async def _pieces(self) -> AsyncIterator[list[NodeView]]:
+        # What had to be taken of the run at one moment is taken, which took a while itself.
+        await asyncio.sleep(0)
         turns = Turns()
         evaluation = self._tree.evaluation(self._leaf_potentials)
         for _ in evaluation.pieces():
