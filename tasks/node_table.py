@@ -57,7 +57,9 @@ class NodeTable:
             self._behavior_codes.append(NO_CODE)
             self._object_codes.append(NO_CODE)
             return
-        self._parameters.append(node.parameters)
+        # Made anew, item by item: the collector of garbage then never looks through a dict of plain
+        # values, but it does through one that a library has made, and its copies.
+        self._parameters.append({key: value for key, value in node.parameters.items()})  # noqa: C416
         code = self._known_behaviors.setdefault(node.behavior, len(self.behaviors))
         if code == len(self.behaviors):
             self.behaviors.append(node.behavior)
