@@ -4,6 +4,7 @@ The rules are those of the design's table, after Blankenburg et al. 2020, Sectio
 """
 
 import math
+from array import array
 from collections.abc import Iterator, Sequence
 
 from tasks.definition import NodeKind
@@ -50,8 +51,8 @@ class FullEvaluation:
         *,
         running: bool,
     ) -> None:
-        self.levels = [0.0] * len(shape)
-        self.potentials = [0.0] * len(shape)
+        self.levels = array("d", [0.0]) * len(shape)
+        self.potentials = array("d", [0.0]) * len(shape)
         self._shape = shape
         self._state = state
         self._running = running

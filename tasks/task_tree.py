@@ -141,12 +141,12 @@ class TaskTree:
 
     def levels(self) -> list[float]:
         """The activation level of every node."""
-        return _evaluated(self.evaluation([0.0] * len(self))).levels
+        return _evaluated(self.evaluation([0.0] * len(self))).levels.tolist()
 
     def potentials(self, leaf_potentials: Mapping[int, float]) -> list[float]:
         """The activation potential of every node, from those of the leaves (0 where not given)."""
         by_node = [leaf_potentials.get(node, 0.0) for node in range(len(self))]
-        return _evaluated(self.evaluation(by_node)).potentials
+        return _evaluated(self.evaluation(by_node)).potentials.tolist()
 
     def evaluation(self, leaf_potentials: Sequence[float]) -> FullEvaluation:
         """The full evaluation of a tree that does not change meanwhile, to be made in pieces.

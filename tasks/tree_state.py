@@ -33,9 +33,9 @@ class TreeState:
         """Meaningful for leaves only."""
         self.idle = bytearray(b"\x01" * size)
         """Whether a leaf is; meaningful for leaves only."""
-        self.active_leaves: list[int] = [0] * size
+        self.active_leaves = array("q", [0]) * size
         """How many leaves under a node (or the leaf itself) are active."""
-        self.done_leaves: list[int] = [0] * size
+        self.done_leaves = array("q", [0]) * size
         """How many leaves under a node (or the leaf itself) are done."""
         self.done_children = array("q", [0]) * size
         self.done = bytearray(size)

@@ -2,6 +2,7 @@
 
 import asyncio
 import logging
+from array import array
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from datetime import datetime
@@ -343,7 +344,7 @@ class Runtime:
             of_side = potentials_for(state, side, leaves)
             potentials[leaves] = np.maximum(potentials[leaves], of_side)
         trouble = self._journal.trouble.reason
-        return RunViewing(state, self._time(state), potentials.tolist(), trouble)
+        return RunViewing(state, self._time(state), array("d", potentials.tobytes()), trouble)
 
     def _summary(self, state: RunState) -> RunSummary:
         return summary(state, self._time(state), self._journal.trouble.reason)
