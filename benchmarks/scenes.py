@@ -42,7 +42,7 @@ from robots.link.messages import (
     Start,
 )
 from tasks.definition import BehaviorNode, TaskTreeDefinition
-from tasks.potential import leaf_potential
+from tasks.potential import leaf_potentials
 from tasks.scene import Scene
 from tasks.scene_problem import SceneProblem
 from tasks.task_tree import TaskTree
@@ -206,9 +206,7 @@ def _next_leaf(tree: TaskTree, cell: Cell, failed: set[int]) -> int | None:
     looked = cell.look()
     seen = {name: (each.x, each.y, each.z) for name, each in looked.objects.items()}
     hand = (looked.gripper.x, looked.gripper.y, looked.gripper.z)
-    potentials = np.array(
-        [leaf_potential(tree.leaf_definition(int(leaf)).object, seen, hand, 1.0) for leaf in leaves]
-    )
+    potentials = leaf_potentials(tree.nodes, leaves, seen, hand, np.ones(leaves.size))
     return tree.choose(leaves, potentials, able)
 
 

@@ -150,8 +150,8 @@ class MendClient:
 
     # --- runs ---------------------------------------------------------------------------------
 
-    async def start_run(self, request: RunRequest) -> RunView:
-        return await self._post("/api/runs", RunView, request.model_dump(mode="json"))
+    async def start_run(self, request: RunRequest) -> RunSummary:
+        return await self._post("/api/runs", RunSummary, request.model_dump(mode="json"))
 
     async def runs(
         self, *, limit: int = 100, offset: int = 0, before: UUID | None = None
@@ -165,14 +165,14 @@ class MendClient:
     async def run(self, run: UUID) -> RunView:
         return await self._get(f"/api/runs/{run}", RunView)
 
-    async def pause(self, run: UUID) -> RunView:
-        return await self._post(f"/api/runs/{run}/pause", RunView)
+    async def pause(self, run: UUID) -> RunSummary:
+        return await self._post(f"/api/runs/{run}/pause", RunSummary)
 
-    async def resume(self, run: UUID) -> RunView:
-        return await self._post(f"/api/runs/{run}/resume", RunView)
+    async def resume(self, run: UUID) -> RunSummary:
+        return await self._post(f"/api/runs/{run}/resume", RunSummary)
 
-    async def abort(self, run: UUID) -> RunView:
-        return await self._post(f"/api/runs/{run}/abort", RunView)
+    async def abort(self, run: UUID) -> RunSummary:
+        return await self._post(f"/api/runs/{run}/abort", RunSummary)
 
     async def events(self, run: UUID, *, after: int = 0, limit: int = 100) -> list[Event]:
         """A run's events with `seq` > `after`, in order."""

@@ -21,6 +21,7 @@ from server.journal.sqlite import IN_MEMORY, SqliteJournal
 from server.library import Library, build_library
 from server.listening import listen, reachable_host
 from server.models import RobotModels
+from server.off_loop import OffLoop
 from server.poses.feed import PoseFeed
 from server.poses.record import PoseRecords
 from server.refusals import Refusals
@@ -113,8 +114,13 @@ async def _open(
     # What runs need later is loaded now: there may be no descriptor left to open it with then.
     for group in ("mend.behaviors", "mend.monitors"):
         load_plugins(group)
+    off_loop = OffLoop()
     library = build_library(
-        journal, fixed_documents(given, settings.scenes), WorldChecks(adapters), settings.limits
+        journal,
+        fixed_documents(given, settings.scenes),
+        WorldChecks(adapters),
+        settings.limits,
+        off_loop,
     )
     models = RobotModels(adapters.values())
     poses = PoseFeed(registry.show_poses, models.address, _pose_records(settings))
@@ -137,8 +143,7 @@ async def _open(
         journal=journal,
         robots=registry,
         worlds=worlds,
-        trees=library,
-        scenarios=library,
+        preparation=library,
         scripts=load_scripts(),
         policy=_policy(settings),
         send_mail=mail.send_later,
@@ -210,6 +215,7 @@ async def _open(
             with suppress(asyncio.CancelledError):
                 await serving
         await deeds.close()
+        off_loop.close()
         config_socket.close()
 
 

@@ -7,6 +7,7 @@ from typing import Any, Literal, Protocol
 
 from server.errors import InvalidError
 from server.journal.events import Author
+from server.rendered import Rendered
 from server.runtime.views import View
 
 
@@ -93,13 +94,34 @@ class DocumentCheck(View):
     worlds: list[WorldFit]
 
 
+MOST_MISTAKES = 1000
+"""So many mistakes of one document are told."""
+
+
 class WrongDocumentError(InvalidError):
-    """A document has mistakes."""
+    """A document has mistakes; after the first 1000 only how many more there are is told."""
 
     def __init__(self, what: str, mistakes: Sequence[DocumentMistake]) -> None:
         count = "a mistake" if len(mistakes) == 1 else f"{len(mistakes)} mistakes"
-        super().__init__(f"the {what} file has {count}", [_sentence(each) for each in mistakes])
-        self.mistakes = list(mistakes)
+        told = list(mistakes[:MOST_MISTAKES])
+        if len(mistakes) > MOST_MISTAKES:
+            more = f"there are {len(mistakes) - MOST_MISTAKES} more mistakes"
+            told.append(DocumentMistake(line=None, column=None, node=None, message=more))
+        super().__init__(f"the {what} file has {count}", [_sentence(each) for each in told])
+        self.mistakes = told
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # It goes from one process to another; it is made of other things than it says.
+        return _as_it_was, (type(self), self.args, vars(self))
+
+
+def _as_it_was(
+    kind: type[WrongDocumentError], args: tuple[Any, ...], fields: dict[str, Any]
+) -> WrongDocumentError:
+    error = kind.__new__(kind)
+    error.args = args
+    vars(error).update(fields)
+    return error
 
 
 def _sentence(mistake: DocumentMistake) -> str:
@@ -122,6 +144,15 @@ class CheckedDocument:
     definition: dict[str, Any]
     uses: frozenset[tuple[DocumentKind, str]] = frozenset()
     worlds: Sequence[WorldFit] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Kept:
+    """A document that was kept; `new`: its name was not there before."""
+
+    name: str
+    new: bool
+    view: Rendered[KeptDocument]
 
 
 class DocumentChecker(Protocol):
@@ -154,18 +185,20 @@ class DocumentLibrary(Protocol):
 
     async def summaries(self, offset: int = 0, limit: int = 1000) -> Sequence[DocumentSummary]: ...
 
-    async def get(self, name: str) -> DocumentView:
+    async def get(self, name: str) -> Rendered[DocumentView]:
         """Raises `NotFoundError`, and `InvalidError` where it has mistakes by now."""
         ...
 
-    async def check(self, text: str) -> DocumentCheck:
-        """Check a document without keeping it."""
+    async def kept(self, name: str) -> Rendered[KeptDocument]:
+        """What `save` tells of a document that is kept. Raises what `get` does."""
         ...
 
-    async def save(
-        self, name: str | None, text: str, author: Author | None = None
-    ) -> tuple[KeptDocument, bool]:
-        """Check and keep a document; the second value says whether its name is new.
+    async def check(self, text: str, name: str | None = None) -> Rendered[DocumentCheck]:
+        """Check a document without keeping it; `name` wins over the file's own."""
+        ...
+
+    async def save(self, name: str | None, text: str, author: Author | None = None) -> Kept:
+        """Check and keep a document.
 
         `name` wins over the file's own. Raises `InvalidError`, and `ConflictError` (built in, or
         another uploaded document would no longer fit).

@@ -55,3 +55,7 @@ class ImpossibleError(InvalidError):
     def __init__(self, message: str, scene_problems: Sequence[SceneProblem]) -> None:
         super().__init__(message, [each.message for each in scene_problems])
         self.scene_problems = scene_problems
+
+    def __reduce__(self) -> tuple[type["ImpossibleError"], tuple[str, Sequence[SceneProblem]]]:
+        # It goes from one process to another.
+        return type(self), (str(self), self.scene_problems)

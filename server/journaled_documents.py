@@ -2,6 +2,7 @@
 
 import asyncio
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from typing import Any
 
@@ -13,6 +14,7 @@ from server.documents import (
     DocumentSummary,
     DocumentView,
     FixedDocuments,
+    Kept,
     KeptDocument,
     Uploaded,
     WrongDocumentError,
@@ -21,9 +23,103 @@ from server.errors import ConflictError, InvalidError, NotFoundError
 from server.journal.events import Author, DocumentDeleted, DocumentKept
 from server.journal.journal import Document, Entry, Journal
 from server.limits import Limits
+from server.off_loop import OffLoop
+from server.rendered import Rendered
 
 Summarize = Callable[[str, bool, Mapping[str, Any] | None], DocumentSummary]
 """Makes the line about a document of its name, whether it is built in, and its definition."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Reading:
+    """What is read of documents of one kind, wherever that is done; holds nothing of the journal.
+
+    `checker` and `summarize` are what the kind has of its own.
+    """
+
+    kind: DocumentKind
+    built_in: FixedDocuments
+    checker: DocumentChecker
+    summarize: Summarize | None
+
+    def summaries(self, names: Sequence[str], uploaded: Uploaded) -> list[DocumentSummary]:
+        fixed = set(self.built_in.names())
+        return [self._summary(name, name in fixed, uploaded) for name in names]
+
+    def _summary(self, name: str, built_in: bool, uploaded: Uploaded) -> DocumentSummary:
+        if self.summarize is None:
+            return DocumentSummary(name=name, built_in=built_in)
+        text = self.built_in.read(name) if built_in else uploaded[self.kind][name]
+        try:
+            definition = self.checker.check(text, uploaded).definition
+        except WrongDocumentError:
+            return self.summarize(name, built_in, None)
+        return self.summarize(name, built_in, definition)
+
+    def view(self, name: str, text: str, uploaded: Uploaded) -> Rendered[DocumentView]:
+        checked = self.checker.check(text, uploaded)
+        return Rendered.of(
+            DocumentView(
+                name=name,
+                built_in=name in self.built_in.names(),
+                text=text,
+                definition={**checked.definition, "name": name},
+            )
+        )
+
+    def check(self, name: str | None, text: str, uploaded: Uploaded) -> Rendered[DocumentCheck]:
+        try:
+            checked = self.checker.try_in_worlds(text, uploaded)
+        except WrongDocumentError as error:
+            return Rendered.of(
+                DocumentCheck(name=name, definition=None, errors=error.mistakes, worlds=[])
+            )
+        return Rendered.of(
+            DocumentCheck(
+                name=name or checked.name,
+                definition=checked.definition,
+                errors=[],
+                worlds=list(checked.worlds),
+            )
+        )
+
+    def to_keep(
+        self, name: str | None, text: str, uploaded: Uploaded
+    ) -> tuple[str, Rendered[KeptDocument]]:
+        """The name and view of a document that is to be kept. Raises `InvalidError`."""
+        checked = self.checker.try_in_worlds(text, uploaded)
+        name = name or checked.name
+        if name is None:
+            raise InvalidError(
+                f"the {SPOKEN[self.kind]} needs a name: send 'name' with it, or put it in the file"
+            )
+        view = KeptDocument(
+            name=name,
+            built_in=False,
+            text=text,
+            definition={**checked.definition, "name": name},
+            worlds=list(checked.worlds),
+        )
+        return name, Rendered.of(view)
+
+    def refuse_unfit(
+        self, used: tuple[DocumentKind, str], before: Uploaded, after: Uploaded
+    ) -> None:
+        """Raise `ConflictError` where a change spoils a document that uses what is changed."""
+        for name, text in before[self.kind].items():
+            try:
+                if used not in self.checker.check(text, before).uses:
+                    continue
+            except WrongDocumentError:
+                # It is spoilt already: nothing is lost.
+                continue
+            try:
+                self.checker.check(text, after)
+            except WrongDocumentError as error:
+                raise ConflictError(
+                    f"the {SPOKEN[self.kind]} '{name}' is for this {SPOKEN[used[0]]} and would no "
+                    f"longer fit ({error.mistakes[0].message}): change or delete it first"
+                ) from error
 
 
 class JournaledDocuments:
@@ -45,98 +141,71 @@ class JournaledDocuments:
         users: "Sequence[JournaledDocuments]" = (),
         summarize: Summarize | None = None,
         utc_now: Callable[[], datetime] = lambda: datetime.now(UTC),
+        off_loop: OffLoop | None = None,
     ) -> None:
         self.kind = kind
         self._journal = journal
         self._utc_now = utc_now
         self._built_in = built_in
-        self._checker = checker
+        self._reading = _Reading(kind, built_in, checker, summarize)
         self._most_chars = most_chars
         self._saving = asyncio.Lock()
-        self._needs = {kind, *needs}
+        self._needs = tuple(needs)
         self._users = users
-        self._summarize = summarize
+        self._off_loop = off_loop or OffLoop()
 
     async def summaries(self, offset: int = 0, limit: int = 1000) -> Sequence[DocumentSummary]:
-        uploaded = await self._uploaded()
+        uploaded = await self._uploaded(own=True)
         fixed = set(self._built_in.names())
         names = sorted({*fixed, *uploaded[self.kind]})[offset : offset + limit]
-        return await asyncio.to_thread(
-            lambda: [self._summary(name, name in fixed, uploaded) for name in names]
+        chars = 0 if self._reading.summarize is None else _chars(uploaded)
+        return await self._off_loop.run(chars, self._reading.summaries, names, uploaded)
+
+    async def get(self, name: str) -> Rendered[DocumentView]:
+        text, uploaded = await self._text(name), await self._uploaded()
+        return await self._off_loop.run(
+            len(text) + _chars(uploaded), self._reading.view, name, text, uploaded
         )
 
-    def _summary(self, name: str, built_in: bool, uploaded: Uploaded) -> DocumentSummary:
-        if self._summarize is None:
-            return DocumentSummary(name=name, built_in=built_in)
-        text = self._built_in.read(name) if built_in else uploaded[self.kind][name]
-        try:
-            definition = self._checker.check(text, uploaded).definition
-        except WrongDocumentError:
-            return self._summarize(name, built_in, None)
-        return self._summarize(name, built_in, definition)
-
-    async def get(self, name: str) -> DocumentView:
-        uploaded = await self._uploaded()
-        text = await self._text(name, uploaded)
-        checked = await asyncio.to_thread(self._checker.check, text, uploaded)
-        return DocumentView(
-            name=name,
-            built_in=name in self._built_in.names(),
-            text=text,
-            definition={**checked.definition, "name": name},
+    async def kept(self, name: str) -> Rendered[KeptDocument]:
+        text, uploaded = await self._text(name), await self._uploaded()
+        _, view = await self._off_loop.run(
+            len(text) + _chars(uploaded), self._reading.to_keep, name, text, uploaded
         )
+        return view
 
-    async def _text(self, name: str, uploaded: Uploaded) -> str:
+    async def _text(self, name: str) -> str:
         if name in self._built_in.names():
             return self._built_in.read(name)
-        if name not in uploaded[self.kind]:
+        uploaded = await self._journal.documents(self.kind)
+        if name not in uploaded:
             raise NotFoundError(f"there is no {SPOKEN[self.kind]} '{name}'")
-        return uploaded[self.kind][name]
+        return uploaded[name]
 
-    async def check(self, text: str) -> DocumentCheck:
+    async def check(self, text: str, name: str | None = None) -> Rendered[DocumentCheck]:
         uploaded = await self._uploaded()
-        try:
-            checked = await asyncio.to_thread(self._checker.try_in_worlds, text, uploaded)
-        except WrongDocumentError as error:
-            return DocumentCheck(name=None, definition=None, errors=error.mistakes, worlds=[])
-        return DocumentCheck(
-            name=checked.name,
-            definition=checked.definition,
-            errors=[],
-            worlds=list(checked.worlds),
+        return await self._off_loop.run(
+            len(text) + _chars(uploaded), self._reading.check, name, text, uploaded
         )
 
-    async def save(
-        self, name: str | None, text: str, author: Author | None = None
-    ) -> tuple[KeptDocument, bool]:
+    async def save(self, name: str | None, text: str, author: Author | None = None) -> Kept:
         uploaded = await self._uploaded()
-        checked = await asyncio.to_thread(self._checker.try_in_worlds, text, uploaded)
-        name = name or checked.name
-        if name is None:
-            raise InvalidError(
-                f"the {SPOKEN[self.kind]} needs a name: send 'name' with it, or put it in the file"
-            )
-        self._refuse_built_in(name)
-        new = name not in uploaded[self.kind]
+        called, view = await self._off_loop.run(
+            len(text) + _chars(uploaded), self._reading.to_keep, name, text, uploaded
+        )
+        self._refuse_built_in(called)
+        new = called not in await self._journal.documents(self.kind)
         for users in () if new else self._users:
-            await users.refuse_unfit(self.kind, name, text)
+            await users.refuse_unfit(self.kind, called, text)
         async with self._saving:
-            await self._refuse_too_much(name, text)
+            await self._refuse_too_much(called, text)
             await self._journal.append(
                 Entry(
-                    events=[self._kept(name, not new, author)],
-                    document=Document(self.kind, name, text),
+                    events=[self._kept(called, not new, author)],
+                    document=Document(self.kind, called, text),
                 )
             )
-        definition = {**checked.definition, "name": name}
-        kept = KeptDocument(
-            name=name,
-            built_in=False,
-            text=text,
-            definition=definition,
-            worlds=list(checked.worlds),
-        )
-        return kept, new
+        return Kept(called, new, view)
 
     async def _refuse_too_much(self, name: str, text: str) -> None:
         """Raises `ConflictError`."""
@@ -176,33 +245,29 @@ class JournaledDocuments:
 
         Raises `ConflictError`.
         """
-        uploaded = await self._uploaded()
+        uploaded = await self._uploaded(own=True)
         changed = {each: dict(texts) for each, texts in uploaded.items()}
         if text is None:
             changed[kind].pop(name, None)
         else:
             changed[kind][name] = text
-        await asyncio.to_thread(self._compare, (kind, name), uploaded, changed)
+        await self._off_loop.run(
+            _chars(uploaded) + len(text or ""),
+            self._reading.refuse_unfit,
+            (kind, name),
+            uploaded,
+            changed,
+        )
 
-    def _compare(self, used: tuple[DocumentKind, str], before: Uploaded, after: Uploaded) -> None:
-        for name, text in before[self.kind].items():
-            try:
-                if used not in self._checker.check(text, before).uses:
-                    continue
-            except WrongDocumentError:
-                # It is spoilt already: nothing is lost.
-                continue
-            try:
-                self._checker.check(text, after)
-            except WrongDocumentError as error:
-                raise ConflictError(
-                    f"the {SPOKEN[self.kind]} '{name}' is for this {SPOKEN[used[0]]} and would no "
-                    f"longer fit ({error.mistakes[0].message}): change or delete it first"
-                ) from error
-
-    async def _uploaded(self) -> dict[DocumentKind, dict[str, str]]:
-        return {kind: await self._journal.documents(kind) for kind in self._needs}
+    async def _uploaded(self, *, own: bool = False) -> dict[DocumentKind, dict[str, str]]:
+        """What a check looks up; with `own` also the documents of this kind."""
+        kinds = {self.kind, *self._needs} if own else self._needs
+        return {kind: await self._journal.documents(kind) for kind in kinds}
 
     def _refuse_built_in(self, name: str) -> None:
         if name in self._built_in.names():
             raise ConflictError(f"'{name}' is built in and can be neither replaced nor deleted")
+
+
+def _chars(uploaded: Uploaded) -> int:
+    return sum(len(text) for texts in uploaded.values() for text in texts.values())

@@ -1,64 +1,47 @@
 """Everything that runs name, by kind: for the API, and as the runtime takes it."""
 
-import asyncio
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from server.document_checks import Finder, ScenarioChecker, SceneFileChecker, TreeChecker
+from server.document_checks import ScenarioChecker, SceneFileChecker, TreeChecker
 from server.documents import (
-    SPOKEN,
     DocumentKind,
     DocumentSummary,
     FixedDocuments,
     ScenarioSummary,
     SceneSummary,
 )
-from server.errors import InvalidError, NotFoundError
 from server.journal.journal import Journal
 from server.journaled_documents import JournaledDocuments
 from server.limits import Limits
-from server.runtime.ports import LoadedTree
+from server.off_loop import OffLoop
+from server.run_preparation import RunPreparer
+from server.runtime.ports import PreparedRun
+from server.runtime.requests import RunRequest
 from server.scene_checks import WorldChecks
-from tasks.library import NotInLibraryError
-from tasks.problem import InvalidFileError
-from tasks.scenario import Scenario
 
 
 @dataclass(frozen=True, slots=True)
 class Library:
-    """The documents of a service.
-
-    Implements `TreeSource` and `ScenarioSource` of `server.runtime.ports`.
-    """
+    """The documents of a service. Implements `server.runtime.ports.Preparation`."""
 
     trees: JournaledDocuments
     scenes: JournaledDocuments
     scenarios: JournaledDocuments
-    fixed: Mapping[DocumentKind, FixedDocuments]
+    preparer: RunPreparer
     journal: Journal
+    off_loop: OffLoop
 
-    async def load(self, name: str, scene: str | None = None) -> LoadedTree:
-        """A tree and its scene; `scene` names another one that the tree fits.
-
-        Raises `NotFoundError` or `InvalidError`.
-        """
-        finder = await self._finder(DocumentKind.TREE, name)
-        return await asyncio.to_thread(_load_tree, finder, name, scene)
-
-    async def load_scenario(self, name: str) -> Scenario:
-        """Raises `NotFoundError` or `InvalidError`."""
-        finder = await self._finder(DocumentKind.SCENARIO, name)
-        try:
-            return finder.scenario(name)
-        except InvalidFileError as error:
-            raise _unusable(DocumentKind.SCENARIO, name, error) from error
-
-    async def _finder(self, kind: DocumentKind, name: str) -> Finder:
+    async def prepare(self, request: RunRequest) -> PreparedRun:
+        """Read and check what a request names. Raises `NotFoundError` or `InvalidError`."""
         uploaded = {each: await self.journal.documents(each) for each in DocumentKind}
-        if name not in self.fixed[kind].names() and name not in uploaded[kind]:
-            raise NotFoundError(f"there is no {SPOKEN[kind]} '{name}'")
-        return Finder(self.fixed, uploaded)
+        # What is not named is not looked for, and need not be handed over.
+        named = {DocumentKind.TREE: request.tree, DocumentKind.SCENARIO: request.scenario}
+        for kind, name in named.items():
+            uploaded[kind] = {each: text for each, text in uploaded[kind].items() if each == name}
+        chars = sum(len(text) for texts in uploaded.values() for text in texts.values())
+        return await self.off_loop.run(chars, self.preparer.prepare, request, uploaded)
 
 
 def build_library(
@@ -66,9 +49,11 @@ def build_library(
     fixed: Mapping[DocumentKind, FixedDocuments],
     worlds: WorldChecks,
     limits: Limits | None = None,
+    off_loop: OffLoop | None = None,
 ) -> Library:
     """The documents that are fixed, and those that a journal keeps."""
     most = (limits or Limits()).uploaded_chars
+    off_loop = off_loop or OffLoop()
     tree, scene, scenario = DocumentKind.TREE, DocumentKind.SCENE, DocumentKind.SCENARIO
     scenarios = JournaledDocuments(
         scenario,
@@ -78,6 +63,7 @@ def build_library(
         most,
         needs=(tree, scene),
         summarize=_about_scenario,
+        off_loop=off_loop,
     )
     trees = JournaledDocuments(
         tree,
@@ -87,6 +73,7 @@ def build_library(
         most,
         needs=(scene,),
         users=[scenarios],
+        off_loop=off_loop,
     )
     scenes = JournaledDocuments(
         scene,
@@ -96,30 +83,9 @@ def build_library(
         most,
         users=[trees, scenarios],
         summarize=_about_scene,
+        off_loop=off_loop,
     )
-    return Library(trees, scenes, scenarios, fixed, journal)
-
-
-def _load_tree(finder: Finder, name: str, scene: str | None) -> LoadedTree:
-    try:
-        chosen = finder.scene(scene) if scene else None
-    except NotInLibraryError as error:
-        raise NotFoundError(str(error)) from error
-    except InvalidFileError as error:
-        raise _unusable(DocumentKind.SCENE, scene or "", error) from error
-    try:
-        task = finder.task(name, chosen)
-    except InvalidFileError as error:
-        raise _unusable(DocumentKind.TREE, name, error) from error
-    definition = task.definition.model_copy(
-        update={"name": name, "scene": chosen.name if chosen else task.definition.scene}
-    )
-    return LoadedTree(name, definition, task.scene)
-
-
-def _unusable(kind: DocumentKind, name: str, error: InvalidFileError) -> InvalidError:
-    sentences = str(error).splitlines()
-    return InvalidError(f"the {SPOKEN[kind]} '{name}' cannot be used", sentences)
+    return Library(trees, scenes, scenarios, RunPreparer(fixed, worlds), journal, off_loop)
 
 
 def _about_scene(

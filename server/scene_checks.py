@@ -18,6 +18,10 @@ class WorldChecks:
     def __init__(self, adapters: Mapping[str, WorldAdapter]) -> None:
         self._adapters = adapters
 
+    def __reduce__(self) -> "tuple[Callable[[list[str]], WorldChecks], tuple[list[str]]]":
+        # Another process loads them itself: a world need not be picklable.
+        return _load_worlds, (list(self._adapters),)
+
     def only(self, world: str) -> "WorldChecks":
         """One of the worlds alone.
 
@@ -28,6 +32,10 @@ class WorldChecks:
             raise InvalidError(f"there is no world '{world}'; there are {known}")
         self._adapters[world].check_available()
         return WorldChecks({world: self._adapters[world]})
+
+    def adapter(self, world: str) -> WorldAdapter:
+        """A world by its name."""
+        return self._adapters[world]
 
     def check_of(self, world: str) -> WorldCheck | None:
         """How a world checks scenes; None where it does not."""
@@ -49,6 +57,12 @@ class WorldChecks:
             if check is not None:
                 found.append((name, check))
         return found
+
+
+def _load_worlds(names: list[str]) -> WorldChecks:
+    """The installed worlds of these names."""
+    installed = load_plugins("mend.worlds")
+    return WorldChecks({name: installed[name] for name in names})
 
 
 def load_world_checks() -> WorldChecks:

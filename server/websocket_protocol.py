@@ -9,8 +9,15 @@ STRANGER_MESSAGE_BYTES = 64 * 1024
 """Long enough for a token."""
 
 
+LATE_S = 1.0
+"""A timer that runs so much later than it should says that this process had no time."""
+
+
 class WebSocketProtocol(WebSocketsSansIOProtocol):
     """Uvicorn's own, but for clients that are just closing, or ping and read nothing."""
+
+    _pong_within_s = 0.0
+    """How long after the ping its answer is awaited."""
 
     @property
     def _visitor(self) -> Visitor | None:
@@ -37,6 +44,24 @@ class WebSocketProtocol(WebSocketsSansIOProtocol):
         else:
             # The pong that was made for it.
             self.conn.data_to_send()
+
+    def keepalive_timeout(self) -> None:
+        """End the connection to a client that does not answer; not while it is us who are late.
+
+        Its answer may have come while this process was stopped, and not be read yet.
+        """
+        assert self.ping_timeout is not None, "there is no time-out without it"
+        now = self.loop.time()
+        if now - self.ping_sent_at > self._pong_within_s + LATE_S:
+            self._pong_within_s = now - self.ping_sent_at + self.ping_timeout
+            self.pong_timer = self.loop.call_later(self.ping_timeout, self.keepalive_timeout)
+            return
+        super().keepalive_timeout()
+
+    def send_keepalive_ping(self) -> None:
+        """Send a ping, to be answered in time."""
+        self._pong_within_s = self.ping_timeout or 0.0
+        super().send_keepalive_ping()
 
     def shutdown(self) -> None:
         """End the connection because the server ends.

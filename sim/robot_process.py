@@ -84,7 +84,9 @@ async def _run(agent: AgentCore, told: RobotProcessSetup) -> None:
     tls = None if told.certificate is None else pinned_tls(Path(told.certificate))
     await run_agent(
         agent,
-        partial(websocket_channel, told.url, told.token, tls),
+        # Its parent is the service: it may stand still for as long as it likes, and be gone only by
+        # closing stdin.
+        partial(websocket_channel, told.url, told.token, tls, ping_s=None),
         Outbox(IN_MEMORY, told.setup.robot, uuid4().hex),
         LoopClock(),
         random.Random(told.setup.seed),

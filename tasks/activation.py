@@ -4,7 +4,8 @@ The rules are those of the design's table, after Blankenburg et al. 2020, Sectio
 """
 
 import math
-from collections.abc import Mapping
+from array import array
+from collections.abc import Iterator, Sequence
 
 from tasks.definition import NodeKind
 from tasks.tree_shape import NO_NODE, TreeShape
@@ -31,43 +32,71 @@ def level_of(shape: TreeShape, state: TreeState, node: int) -> float:
     return level
 
 
-def all_levels(shape: TreeShape, state: TreeState) -> list[float]:
-    """The activation level of every node of a running tree."""
-    levels = [0.0] * len(shape)
-    levels[0] = 0.0 if state.done[0] else 1.0
-    for node in range(1, len(shape)):
-        parent = shape.parents[node]
-        if levels[parent] > 0.0 and not state.done[node] and state.open_to(node):
-            levels[node] = levels[parent]
-            if shape.kinds[parent] is NodeKind.AND:
-                open_children = len(shape.children[parent]) - state.done_children[parent]
-                levels[node] = _share(levels[parent], open_children)
-    return levels
+PIECE = 1000
+"""So many nodes of a tree are evaluated at a time."""
 
 
-def all_potentials(
-    shape: TreeShape, state: TreeState, leaf_potentials: Mapping[int, float]
-) -> list[float]:
-    """The activation potential of every node; 0 where it is done or abandoned.
+class FullEvaluation:
+    """Level and potential of every node, evaluated in pieces.
 
-    `leaf_potentials` maps leaves to their potentials; a leaf that it does not hold has 0.
+    `state` must not change meanwhile. `leaf_potentials` has those of the leaves, by node. What is
+    done or abandoned has the potential 0.
     """
-    potentials = [0.0] * len(shape)
-    startable = bytearray(len(shape))
-    for node in range(len(shape) - 1, -1, -1):
-        if state.done[node] or state.abandoned[node]:
-            continue
-        kind = shape.kinds[node]
-        if kind is NodeKind.BEHAVIOR:
-            potentials[node] = leaf_potentials.get(node, 0.0)
-            startable[node] = state.leaf_status[node] is LeafStatus.IDLE
-            continue
-        children = _competing_children(shape, state, node)
-        startable[node] = any(startable[child] for child in children)
-        if kind is NodeKind.AND:
-            children = [child for child in children if startable[child]]
-        potentials[node] = max((potentials[child] for child in children), default=0.0)
-    return potentials
+
+    def __init__(
+        self,
+        shape: TreeShape,
+        state: TreeState,
+        leaf_potentials: Sequence[float],
+        *,
+        running: bool,
+    ) -> None:
+        self.levels = array("d", [0.0]) * len(shape)
+        self.potentials = array("d", [0.0]) * len(shape)
+        self._shape = shape
+        self._state = state
+        self._running = running
+        self._leaf_potentials = leaf_potentials
+        self._startable = bytearray(len(shape))
+
+    def pieces(self) -> Iterator[None]:
+        """Evaluate the next nodes each time; complete at its end."""
+        size = len(self._shape)
+        if self._running:
+            self.levels[0] = 0.0 if self._state.done[0] else 1.0
+            for begin in range(1, size, PIECE):
+                self._pass_down(range(begin, min(begin + PIECE, size)))
+                yield
+        for end in range(size, 0, -PIECE):
+            self._pass_up(range(end - 1, max(end - PIECE, 0) - 1, -1))
+            yield
+
+    def _pass_down(self, nodes: range) -> None:
+        shape, state, levels = self._shape, self._state, self.levels
+        for node in nodes:
+            parent = shape.parents[node]
+            if levels[parent] > 0.0 and not state.done[node] and state.open_to(node):
+                levels[node] = levels[parent]
+                if shape.kinds[parent] is NodeKind.AND:
+                    open_children = len(shape.children[parent]) - state.done_children[parent]
+                    levels[node] = _share(levels[parent], open_children)
+
+    def _pass_up(self, nodes: range) -> None:
+        shape, state, potentials = self._shape, self._state, self.potentials
+        startable = self._startable
+        for node in nodes:
+            if state.done[node] or state.abandoned[node]:
+                continue
+            kind = shape.kinds[node]
+            if kind is NodeKind.BEHAVIOR:
+                potentials[node] = self._leaf_potentials[node]
+                startable[node] = state.leaf_status[node] is LeafStatus.IDLE
+                continue
+            children = _competing_children(shape, state, node)
+            startable[node] = any(startable[child] for child in children)
+            if kind is NodeKind.AND:
+                children = [child for child in children if startable[child]]
+            potentials[node] = max((potentials[child] for child in children), default=0.0)
 
 
 def _competing_children(shape: TreeShape, state: TreeState, goal: int) -> list[int]:

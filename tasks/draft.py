@@ -9,6 +9,8 @@ from tasks.problem import Problem
 from tasks.validation import show_kind
 
 MAX_NODES = 200_000
+MAX_NODE_DEPTH = 250
+"""So many nodes may stand inside one another: each node's path names all of those above it."""
 MAX_NAME_CHARACTERS = 64
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_\-]{0,63}")
 
@@ -53,6 +55,18 @@ class Draft:
     def report(self, node: int, line: int, message: str) -> None:
         """Note a problem of a node."""
         self.problems.append(Problem(line, self.path_of(node), message))
+
+
+def find_depth_mistake(draft: Draft) -> Problem | None:
+    """The first node that stands inside too many others, if one does."""
+    depths: list[int] = []
+    for node in draft.nodes:
+        depth = 1 if node.parent is None else depths[node.parent] + 1
+        if depth > MAX_NODE_DEPTH:
+            message = f"nodes stand inside one another in more than {MAX_NODE_DEPTH} levels"
+            return Problem(node.source.line, None, message)
+        depths.append(depth)
+    return None
 
 
 def find_name_mistake(name: Any) -> str | None:

@@ -7,7 +7,7 @@ from typing import Any
 
 from tasks.definition import BehaviorNode, GoalNode, TaskTreeDefinition
 from tasks.document import DocumentError, LinedMapping, read_document, read_text
-from tasks.draft import Draft, find_name_mistake, name_nodes
+from tasks.draft import Draft, find_depth_mistake, find_name_mistake, name_nodes
 from tasks.flat_form import FLAT_KEYS, draft_flat_tree
 from tasks.leaf_check import Behaviors, check_leaf
 from tasks.library import TREES, NotInLibraryError
@@ -158,6 +158,10 @@ def _check_nodes(
     draft: Draft, behaviors: Behaviors, scene: Scene | None
 ) -> list[GoalNode | BehaviorNode]:
     """The nodes of the definition; useless where the draft has problems afterwards."""
+    if (too_deep := find_depth_mistake(draft)) is not None:
+        # Nothing more is said: the paths of what lies so deep are too long for sentences.
+        draft.problems[:] = [too_deep]
+        return []
     parameters = {
         index: check_leaf(draft, index, behaviors, scene)
         for index, node in enumerate(draft.nodes)

@@ -1,19 +1,20 @@
 """The task tree at run time: its state, its transitions and what may be started next."""
 
+from collections import deque
 from collections.abc import Mapping, Sequence
-from copy import deepcopy
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tasks.activation import all_levels, all_potentials, level_of
+from tasks.activation import FullEvaluation, level_of
 from tasks.choice import choose_leaf
 from tasks.definition import BehaviorNode, NodeKind, TaskTreeDefinition
 from tasks.eligible import EligibleLeaves
 from tasks.giving_up import GiveUp, find_active_leaves, find_give_up
+from tasks.node_table import NodeTable
 from tasks.resolution import Resolution
 from tasks.taking_back import TakeBack, find_begun_after, find_take_back
-from tasks.tree_shape import NO_NODE, TreeShape
+from tasks.tree_shape import NO_NODE
 from tasks.tree_state import LeafStatus, TreeState
 
 
@@ -35,11 +36,14 @@ class TaskTree:
     for a goal node.
     """
 
-    def __init__(self, definition: TaskTreeDefinition) -> None:
-        self.definition = definition
+    def __init__(self, definition: TaskTreeDefinition | NodeTable) -> None:
+        nodes = (
+            NodeTable.of(definition) if isinstance(definition, TaskTreeDefinition) else definition
+        )
+        self.nodes = nodes
         self.running = False
         """Whether the root's level is 1 (the run is running) or 0 (paused, or not begun)."""
-        self._shape = TreeShape(definition)
+        self._shape = nodes.shape
         self._state = TreeState(self._shape)
         self._eligible = EligibleLeaves(self._shape, self._state)
         self._owners: dict[int, str] = {}
@@ -47,8 +51,13 @@ class TaskTree:
 
     def copy(self) -> "TaskTree":
         """A tree in the same state, to try out what would follow from a transition."""
-        shared = {id(each): each for each in (self.definition, self._shape)}
-        return deepcopy(self, shared)
+        copied = type(self).__new__(type(self))
+        copied.nodes, copied.running, copied._shape = self.nodes, self.running, self._shape
+        copied._state = self._state.copy()
+        copied._eligible = self._eligible.of(copied._state)
+        copied._owners = self._owners.copy()
+        copied._attempts = self._attempts.copy()
+        return copied
 
     # What never changes
 
@@ -72,7 +81,7 @@ class TaskTree:
         return self._shape.kinds[node]
 
     def name_of(self, node: int) -> str:
-        return self.definition.nodes[node].name
+        return self.nodes.names[node]
 
     def children_of(self, node: int) -> Sequence[int]:
         return self._shape.children[node]
@@ -83,10 +92,10 @@ class TaskTree:
 
     def leaf_definition(self, leaf: int) -> BehaviorNode:
         """A leaf's behavior and its parameters."""
-        node = self.definition.nodes[leaf]
-        if not isinstance(node, BehaviorNode):
+        definition = self.nodes.leaf(leaf)
+        if definition is None:
             raise ValueError(f"{self._describe(leaf)} is a goal node, not a leaf")
-        return node
+        return definition
 
     # State, as derived from what became of the leaves
 
@@ -109,6 +118,10 @@ class TaskTree:
         """How many attempts of a leaf have failed."""
         return int(self._attempts[leaf])
 
+    def attempts_of(self, leaves: NDArray[np.int64]) -> NDArray[np.int64]:
+        """How many attempts of each of several leaves have failed."""
+        return self._attempts[leaves]
+
     def committed(self, or_node: int) -> int | None:
         """The child of an OR under which anything is active or done, if there is one."""
         child = self._state.committed[or_node]
@@ -118,17 +131,35 @@ class TaskTree:
         """The active leaves, in tree order."""
         return find_active_leaves(self._shape, self._state, 0)
 
+    def end_of(self, node: int) -> int:
+        """The index after the last node under a node: what is under it lies between the two."""
+        return self._shape.ends[node]
+
     def level(self, node: int) -> float:
         """The activation level of a node."""
         return level_of(self._shape, self._state, node) if self.running else 0.0
 
     def levels(self) -> list[float]:
         """The activation level of every node."""
-        return all_levels(self._shape, self._state) if self.running else [0.0] * len(self)
+        return _evaluated(self.evaluation([0.0] * len(self))).levels.tolist()
 
     def potentials(self, leaf_potentials: Mapping[int, float]) -> list[float]:
         """The activation potential of every node, from those of the leaves (0 where not given)."""
-        return all_potentials(self._shape, self._state, leaf_potentials)
+        by_node = [leaf_potentials.get(node, 0.0) for node in range(len(self))]
+        return _evaluated(self.evaluation(by_node)).potentials.tolist()
+
+    def evaluation(self, leaf_potentials: Sequence[float]) -> FullEvaluation:
+        """The full evaluation of a tree that does not change meanwhile, to be made in pieces.
+
+        `leaf_potentials` by node; those of goal nodes are not looked at.
+        """
+        return FullEvaluation(self._shape, self._state, leaf_potentials, running=self.running)
+
+    def finished_objects(self) -> set[str]:
+        """The objects of the leaves that are done."""
+        done = np.frombuffer(self._state.done, np.uint8) == 1
+        codes = np.unique(self.nodes.object_codes[done])
+        return {self.nodes.objects[code] for code in codes.tolist() if code >= 0}
 
     # What may be started
 
@@ -289,3 +320,8 @@ class TaskTree:
         if not self._reached(node):
             return "idle with level 0"
         return f"an idle {self.kind_of(node)} node"
+
+
+def _evaluated(evaluation: FullEvaluation) -> FullEvaluation:
+    deque(evaluation.pieces(), maxlen=0)
+    return evaluation

@@ -1,9 +1,10 @@
 """What cannot work in a task tree whatever the robot: things done twice, or in the wrong order."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
+from tasks.alternatives import MOST_COMPARED_LEAVES, distinct_alternatives
 from tasks.definition import BehaviorNode, GoalNode
 from tasks.footprint import Footprint
 from tasks.leaf_order import LeafOrder
@@ -22,11 +23,21 @@ class TreeProblem:
 
 
 def find_tree_problems(nodes: Nodes, scene: Scene | None) -> list[TreeProblem]:
-    """Every mistake of a tree; with a scene, also of the order in which parts are stacked."""
+    """Every mistake of a tree; with a scene, also of the order in which parts are stacked.
+
+    That order is looked at in trees of at most `MOST_COMPARED_LEAVES` leaves.
+    """
     found = [*_done_twice(nodes, "place"), *_done_twice(nodes, "object")]
     if scene is not None and not found:
-        found += _wrongly_stacked(nodes, scene)
+        found += _stacking_problems(nodes, scene)
     return found
+
+
+def _stacking_problems(nodes: Nodes, scene: Scene) -> Iterator[TreeProblem]:
+    distinct = distinct_alternatives(nodes)
+    if sum(node.kind == "behavior" for node in distinct.nodes) <= MOST_COMPARED_LEAVES:
+        for problem in _wrongly_stacked(distinct.nodes, scene):
+            yield replace(problem, leaf=distinct.originals[problem.leaf])
 
 
 # --- Two leaves for one thing ---------------------------------------------------------------------

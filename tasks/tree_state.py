@@ -4,7 +4,9 @@ Everything here is bookkeeping along one path to the root; whether a transition 
 task tree's concern.
 """
 
+from array import array
 from enum import StrEnum
+from typing import Self
 
 from tasks.definition import NodeKind
 from tasks.tree_shape import NO_NODE, TreeShape
@@ -29,16 +31,36 @@ class TreeState:
         self._shape = shape
         self.leaf_status: list[LeafStatus] = [LeafStatus.IDLE] * size
         """Meaningful for leaves only."""
-        self.active_leaves: list[int] = [0] * size
+        self.idle = bytearray(b"\x01" * size)
+        """Whether a leaf is; meaningful for leaves only."""
+        self.active_leaves = array("q", [0]) * size
         """How many leaves under a node (or the leaf itself) are active."""
-        self.done_leaves: list[int] = [0] * size
+        self.done_leaves = array("q", [0]) * size
         """How many leaves under a node (or the leaf itself) are done."""
-        self.done_children: list[int] = [0] * size
+        self.done_children = array("q", [0]) * size
         self.done = bytearray(size)
         self.abandoned = bytearray(size)
         """Set for an abandoned alternative and every node under it."""
-        self.committed: list[int] = [NO_NODE] * size
+        self.committed = array("q", [NO_NODE]) * size
         """The child to which an OR is committed, else NO_NODE."""
+
+    def copy(self) -> Self:
+        """The same state, which can be changed without changing this one."""
+        copied = type(self).__new__(type(self))
+        copied._shape = self._shape
+        copied.leaf_status = self.leaf_status[:]
+        copied.idle = self.idle[:]
+        copied.active_leaves = self.active_leaves[:]
+        copied.done_leaves = self.done_leaves[:]
+        copied.done_children = self.done_children[:]
+        copied.done = self.done[:]
+        copied.abandoned = self.abandoned[:]
+        copied.committed = self.committed[:]
+        return copied
+
+    def _become(self, leaf: int, status: LeafStatus) -> None:
+        self.leaf_status[leaf] = status
+        self.idle[leaf] = status is LeafStatus.IDLE
 
     def next_child(self, then: int) -> int:
         """A THEN's first child that is not done, NO_NODE if all are."""
@@ -65,7 +87,7 @@ class TreeState:
     def activate(self, leaf: int) -> int:
         """Make an idle leaf active; returns the topmost node whose eligible leaves changed."""
         parents, kinds, committed = self._shape.parents, self._shape.kinds, self.committed
-        self.leaf_status[leaf] = LeafStatus.ACTIVE
+        self._become(leaf, LeafStatus.ACTIVE)
         self.active_leaves[leaf] = 1
         changed = leaf
         child, node = leaf, parents[leaf]
@@ -80,7 +102,7 @@ class TreeState:
     def release(self, leaf: int) -> int:
         """Make an active leaf idle; returns the topmost node whose eligible leaves changed."""
         parents, kinds = self._shape.parents, self._shape.kinds
-        self.leaf_status[leaf] = LeafStatus.IDLE
+        self._become(leaf, LeafStatus.IDLE)
         self.active_leaves[leaf] = 0
         changed = leaf
         node = parents[leaf]
@@ -95,7 +117,7 @@ class TreeState:
     def complete(self, leaf: int) -> int:
         """Make an active leaf done; returns the node that this opened, NO_NODE if none."""
         parents, kinds, children = self._shape.parents, self._shape.kinds, self._shape.children
-        self.leaf_status[leaf] = LeafStatus.DONE
+        self._become(leaf, LeafStatus.DONE)
         self.active_leaves[leaf] = 0
         self.done_leaves[leaf] = 1
         self.done[leaf] = True
@@ -118,7 +140,7 @@ class TreeState:
     def take_back(self, leaf: int) -> int:
         """Make a done leaf idle; returns the topmost node whose eligible leaves changed."""
         parents, kinds = self._shape.parents, self._shape.kinds
-        self.leaf_status[leaf] = LeafStatus.IDLE
+        self._become(leaf, LeafStatus.IDLE)
         self.done_leaves[leaf] = 0
         self.done[leaf] = False
         changed = leaf

@@ -12,6 +12,7 @@ from robots.feasibility.sight import hidden, out_of_picture
 from robots.feasibility.standing import Standing, at_place, starts
 from robots.feasibility.support import cannot_stand
 from robots.vision.viewpoint import Viewpoint
+from tasks.alternatives import MOST_COMPARED_LEAVES, distinct_alternatives
 from tasks.definition import BehaviorNode, GoalNode
 from tasks.leaf_order import LeafOrder
 from tasks.scene import Scene
@@ -32,9 +33,13 @@ def check_scene(
 
     `head` is its head camera. Of a whole tree (with its goal nodes) the order and the alternatives
     are taken into account; of leaves alone all are done, in any order. Without any, what could be
-    taken away before a part does not count. Each part is told of once.
+    taken away before a part does not count. Each part is told of once. Trees of more than
+    `MOST_COMPARED_LEAVES` leaves are not checked.
     """
-    return _SceneCheck(scene, nodes, planner, head).problems()
+    distinct = distinct_alternatives(nodes).nodes
+    if sum(node.kind == "behavior" for node in distinct) > MOST_COMPARED_LEAVES:
+        return []
+    return _SceneCheck(scene, distinct, planner, head).problems()
 
 
 class _SceneCheck:

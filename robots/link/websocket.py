@@ -35,10 +35,16 @@ class WebSocketChannel:
 
 
 async def websocket_channel(
-    url: str, token: str | None, tls: ssl.SSLContext | None = None
+    url: str,
+    token: str | None,
+    tls: ssl.SSLContext | None = None,
+    *,
+    ping_s: float | None = 20.0,
 ) -> WebSocketChannel:
     """Connect to the service at `url` (`ws://` or `wss://`, path `/ws/robot`).
 
+    Every `ping_s` it is asked whether it is there, and given up if it does not say so within as
+    long again; never with None, as where the end of its process is noticed otherwise.
     `tls` says whom to trust instead of those whom this machine trusts. Raises `LinkRefusedError` if
     the service turns the robot away (a wrong token) and `ChannelClosedError` if there is none.
     """
@@ -51,6 +57,8 @@ async def websocket_channel(
             max_size=MAX_MESSAGE_BYTES,
             user_agent_header=None,
             proxy=None,
+            ping_interval=ping_s,
+            ping_timeout=ping_s,
             ssl=tls or (True if url.startswith("wss:") else None),
         )
     except InvalidStatus as error:

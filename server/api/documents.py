@@ -7,6 +7,7 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Query, Request, Response
 from pydantic import BaseModel, ConfigDict, ValidationError
 
+from server.api.json_answer import json_answer
 from server.api.parts import DocumentName, Limit, Offset, Parts, WithCaller, WithParts
 from server.api.problems import ProblemError, documented, validation_sentences
 from server.api.repeatable import RepeatableRoute
@@ -111,11 +112,12 @@ def _add_reading(router: APIRouter, doors: Doors) -> None:
     @router.get(
         f"{doors.path}/{{name}}",
         operation_id=f"get_{kind}",
+        response_model=DocumentView,
         description=f"One {what} with its file's text.",
         responses=documented(401, 404, 421, 422),
     )
-    async def get_document(name: DocumentName, parts: WithParts) -> DocumentView:
-        return await doors.library(parts).get(name)
+    async def get_document(name: DocumentName, parts: WithParts) -> Response:
+        return json_answer((await doors.library(parts).get(name)).json)
 
     @router.post(
         f"{doors.path}/check",
@@ -126,10 +128,9 @@ def _add_reading(router: APIRouter, doors: Doors) -> None:
         responses=documented(400, 401, 403, 413, 415, 421, 422),
         openapi_extra=_upload_body(doors),
     )
-    async def check_document(request: Request, parts: WithParts) -> DocumentCheck:
+    async def check_document(request: Request, parts: WithParts) -> Response:
         upload = await _read_upload(request, None)
-        checked = await doors.library(parts).check(upload.text)
-        return checked if upload.name is None else checked.model_copy(update={"name": upload.name})
+        return json_answer((await doors.library(parts).check(upload.text, upload.name)).json)
 
 
 def _add_writing(router: APIRouter, doors: Doors) -> None:
@@ -139,13 +140,10 @@ def _add_writing(router: APIRouter, doors: Doors) -> None:
         **documented(400, 401, 403, 409, 413, 415, 421, 422),
     }
 
-    async def keep(
-        upload: DocumentUpload, parts: Parts, author: Author, response: Response
-    ) -> KeptDocument:
-        document, new = await doors.library(parts).save(upload.name, upload.text, author)
-        response.status_code = 201 if new else 200
-        response.headers["Location"] = f"/api{doors.path}/{document.name}"
-        return document
+    async def keep(upload: DocumentUpload, parts: Parts, author: Author) -> Response:
+        kept = await doors.library(parts).save(upload.name, upload.text, author)
+        location = {"Location": f"/api{doors.path}/{kept.name}"}
+        return json_answer(kept.view.json, status=201 if kept.new else 200, headers=location)
 
     @router.post(
         doors.path,
@@ -158,12 +156,11 @@ def _add_writing(router: APIRouter, doors: Doors) -> None:
     )
     async def upload_document(
         request: Request,
-        response: Response,
         parts: WithParts,
         caller: WithCaller,
         name: Annotated[Name | None, Query(description="For a YAML body: its name.")] = None,
-    ) -> KeptDocument:
-        return await keep(await _read_upload(request, name), parts, caller.author, response)
+    ) -> Response:
+        return await keep(await _read_upload(request, name), parts, caller.author)
 
     @router.put(
         f"{doors.path}/{{name}}",
@@ -175,13 +172,9 @@ def _add_writing(router: APIRouter, doors: Doors) -> None:
         openapi_extra=_upload_body(doors),
     )
     async def put_document(
-        name: DocumentName,
-        request: Request,
-        response: Response,
-        parts: WithParts,
-        caller: WithCaller,
-    ) -> KeptDocument:
-        return await keep(await _read_upload(request, name), parts, caller.author, response)
+        name: DocumentName, request: Request, parts: WithParts, caller: WithCaller
+    ) -> Response:
+        return await keep(await _read_upload(request, name), parts, caller.author)
 
     @router.delete(
         f"{doors.path}/{{name}}",

@@ -6,7 +6,7 @@ That is for requests whose answer was not kept, as the service ended before it w
 from pydantic import BaseModel
 
 from server.api.parts import Parts
-from server.documents import DocumentKind, KeptDocument
+from server.documents import DocumentKind, DocumentLibrary
 from server.errors import ConflictError
 from server.journal import events as ev
 from server.journal.keyed_request import FirstAnswer
@@ -22,17 +22,25 @@ async def answer_of(seq: int, parts: Parts) -> FirstAnswer:
     events = await parts.journal.read(seq - 1, 1)
     if not events or events[0].seq != seq:
         raise _lost()
-    status, body, location = await _of_event(events[0], parts)
+    status, json, location = await _of_event(events[0], parts)
     headers = [("content-type", JSON), *([("location", location)] if location else [])]
-    return FirstAnswer(status, headers, body.model_dump_json().encode())
+    return FirstAnswer(status, headers, json)
 
 
-async def _of_event(event: ev.Event, parts: Parts) -> tuple[int, BaseModel, str | None]:
+async def _of_event(event: ev.Event, parts: Parts) -> tuple[int, bytes, str | None]:
+    if isinstance(event, ev.DocumentKept):
+        kept = await _library(DocumentKind(event.kind), parts).kept(event.name)
+        return 200 if event.replaced else 201, kept.json, f"/api/{event.kind}s/{event.name}"
+    status, view, location = await _view_of(event, parts)
+    return status, view.model_dump_json().encode(), location
+
+
+async def _view_of(event: ev.Event, parts: Parts) -> tuple[int, BaseModel, str | None]:
     match event:
         case ev.RunStarted(run=run):
-            return 201, await parts.runs.run(run), f"/api/runs/{run}"
+            return 201, await parts.runs.run_summary(run), f"/api/runs/{run}"
         case ev.RunPaused(run=run) | ev.RunResumed(run=run) | ev.RunAborted(run=run):
-            return 200, await parts.runs.run(run), None
+            return 200, await parts.runs.run_summary(run), None
         case ev.InterventionAccepted(intervention=intervention):
             return 201, intervention, None
         case ev.Answered():
@@ -41,21 +49,15 @@ async def _of_event(event: ev.Event, parts: Parts) -> tuple[int, BaseModel, str 
             return 200, event, None
         case ev.Claimed(dialogue=dialogue) | ev.Released(dialogue=dialogue):
             return 200, await parts.runs.dialogue(dialogue), None
-        case ev.DocumentKept(kind=kind, name=name, replaced=replaced):
-            kept = await _document(DocumentKind(kind), name, parts)
-            return 200 if replaced else 201, kept, f"/api/{kind}s/{name}"
     raise _lost()
 
 
-async def _document(kind: DocumentKind, name: str, parts: Parts) -> KeptDocument:
-    library = {
+def _library(kind: DocumentKind, parts: Parts) -> DocumentLibrary:
+    return {
         DocumentKind.TREE: parts.trees,
         DocumentKind.SCENE: parts.scenes,
         DocumentKind.SCENARIO: parts.scenarios,
     }[kind]
-    found = await library.get(name)
-    checked = await library.check(found.text)
-    return KeptDocument(**dict(found), worlds=checked.worlds)
 
 
 def _lost() -> ConflictError:

@@ -5,7 +5,7 @@ from uuid import UUID
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
 
-from server.runtime.views import DialogueView, RunView
+from server.runtime.views import DialogueView, RunSummary
 
 CommandId = Annotated[str, Field(max_length=128)] | Annotated[int, Field(ge=0, le=2**53 - 1)]
 
@@ -80,11 +80,14 @@ class ServerMessage(BaseModel):
 
 
 class SnapshotMessage(ServerMessage):
-    """The first message: the state after event `seq`; every later event follows."""
+    """The first message: the state after event `seq`; every later event follows.
+
+    What became of a run's nodes is at `GET /api/runs/{run}`.
+    """
 
     type: Literal["snapshot"] = "snapshot"
     seq: int
-    runs: list[RunView]
+    runs: list[RunSummary]
     dialogues: list[DialogueView]
 
 

@@ -35,6 +35,8 @@ from server.journal.subscriptions import PrunedEventsError, SubscriptionOverflow
 
 router = APIRouter()
 
+_RUN = '"run":"'
+
 HELPER_PATH = "/ws/helper"
 MAX_MESSAGE_CHARS = 64 * 1024
 
@@ -164,4 +166,4 @@ class HelperSocket(HelperConnection[EventsQuery]):
 
 def _is_of_no_run(event: str) -> bool:
     """Whether an event's JSON says that it belongs to no run; its `run` comes before all else."""
-    return event.partition('"run":"')[2].startswith(str(NO_RUN))
+    return event.startswith(str(NO_RUN), event.find(_RUN) + len(_RUN))

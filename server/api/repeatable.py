@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import Any, ClassVar
 
 from starlette.requests import Request
-from starlette.responses import Response
+from starlette.responses import Response, StreamingResponse
 from starlette.types import Message
 
 from server.access.principal import Caller
@@ -98,7 +98,10 @@ def _with_body(request: Request, keyed: KeyedRequest, body: bytes) -> Request:
     return Request(request.scope, receive)
 
 
-def _answer(response: Response) -> FirstAnswer:
+def _answer(response: Response) -> FirstAnswer | None:
+    """What a request was answered; None where that is sent in pieces, as too long to be kept."""
+    if isinstance(response, StreamingResponse):
+        return None
     headers = [
         (name.decode("latin-1"), value.decode("latin-1"))
         for name, value in response.raw_headers

@@ -85,15 +85,17 @@ class Repeats:
             refuse_other(found.digest, request)
         return found
 
-    async def keep(self, request: KeyedRequest, answer: FirstAnswer, *, secret: bool) -> None:
-        """Keep what a request was answered; a `secret` answer in memory alone."""
+    async def keep(
+        self, request: KeyedRequest, answer: FirstAnswer | None, *, secret: bool
+    ) -> None:
+        """Keep an answer, None if it is too long to be kept; a `secret` one in memory alone."""
         if secret or not await self._keep_in_journal(request, answer):
             self._remember(request, answer)
 
-    async def _keep_in_journal(self, request: KeyedRequest, answer: FirstAnswer) -> bool:
+    async def _keep_in_journal(self, request: KeyedRequest, answer: FirstAnswer | None) -> bool:
         """Whether the journal has the request. What was done stands, whether it has or not."""
         since = self._since()
-        fits = len(answer.body) <= MOST_KEPT_BYTES
+        fits = answer is not None and len(answer.body) <= MOST_KEPT_BYTES
         try:
             gone = await self._journal.keep_answer(
                 request, answer if fits else None, self._limits.idempotency_keys, since
@@ -105,8 +107,8 @@ class Repeats:
             return False
         return found is not None
 
-    def _remember(self, request: KeyedRequest, answer: FirstAnswer) -> None:
-        fits = len(answer.body) <= MOST_REMEMBERED_BYTES
+    def _remember(self, request: KeyedRequest, answer: FirstAnswer | None) -> None:
+        fits = answer is not None and len(answer.body) <= MOST_REMEMBERED_BYTES
         kept = KeptRequest(request.digest, 0, answer if fits else None)
         self._remembered[request.principal, request.key] = _Remembered(self._wall_time_s(), kept)
         since = self._since()

@@ -5,6 +5,7 @@ from uuid import UUID
 
 from fastapi import APIRouter, Body, Path, Query, Response
 
+from server.api.json_answer import json_answer
 from server.api.parts import After, Limit, Offset, RunId, WithCaller, WithParts
 from server.api.problems import documented
 from server.api.repeatable import RepeatableRoute
@@ -44,7 +45,7 @@ async def start_run(
     response: Response,
     parts: WithParts,
     caller: WithCaller,
-) -> RunView:
+) -> RunSummary:
     """Begin a run of a task tree in a world."""
     run = await parts.runs.start_run(request, caller.author)
     response.headers["Location"] = f"/api/runs/{run.id}"
@@ -67,20 +68,25 @@ async def list_runs(
     return await parts.runs.runs(RunPage(status, limit, offset, before))
 
 
-@router.get("/{run}", operation_id="get_run", responses=documented(401, 404, 421, 422, 500))
-async def get_run(run: RunId, parts: WithParts) -> RunView:
+@router.get(
+    "/{run}",
+    operation_id="get_run",
+    response_model=RunView,
+    responses=documented(401, 404, 421, 422, 500),
+)
+async def get_run(run: RunId, parts: WithParts) -> Response:
     """One run: status, every node's state, open dialogues, result."""
-    return await parts.runs.run(run)
+    return json_answer(*await parts.runs.run_json(run))
 
 
 @router.post("/{run}/pause", operation_id="pause_run", responses=CHANGES)
-async def pause_run(run: RunId, parts: WithParts, caller: WithCaller) -> RunView:
+async def pause_run(run: RunId, parts: WithParts, caller: WithCaller) -> RunSummary:
     """Stop the robots where they are, until the run is resumed."""
     return await parts.runs.pause(run, caller.author)
 
 
 @router.post("/{run}/resume", operation_id="resume_run", responses=CHANGES)
-async def resume_run(run: RunId, parts: WithParts, caller: WithCaller) -> RunView:
+async def resume_run(run: RunId, parts: WithParts, caller: WithCaller) -> RunSummary:
     """Go on with a paused run."""
     return await parts.runs.resume(run, caller.author)
 
@@ -89,13 +95,16 @@ async def resume_run(run: RunId, parts: WithParts, caller: WithCaller) -> RunVie
     "/{run}/abort",
     operation_id="abort_run",
     responses={
-        202: {"model": RunView, "description": "Its robots stop; it has ended once that is kept."},
+        202: {
+            "model": RunSummary,
+            "description": "Its robots stop; it has ended once that is kept.",
+        },
         **CHANGES,
     },
 )
 async def abort_run(
     run: RunId, parts: WithParts, caller: WithCaller, response: Response
-) -> RunView:
+) -> RunSummary:
     """End a run for good."""
     view = await parts.runs.abort(run, caller.author)
     if not view.status.ended:
@@ -119,7 +128,7 @@ async def list_events(
     records = await parts.journal.read_records(after, limit, run)
     # The journal holds the very JSON that clients get.
     body = "[" + ",".join(record.text for record in records) + "]"
-    return Response(body, media_type="application/json")
+    return json_answer(body.encode())
 
 
 @router.get(

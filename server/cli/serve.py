@@ -9,6 +9,7 @@ import typer
 
 from server.cli.failures import told_plainly
 from server.cli.live_run import OpenService
+from server.garbage import settle_garbage
 from server.settings import Settings, load_settings
 
 
@@ -37,6 +38,7 @@ async def _serve(open_service: OpenService, settings: Settings) -> None:
     stop = asyncio.Event()
     loop = asyncio.get_running_loop()
     async with open_service(settings, recover=True) as service:
+        settle_garbage()
         for number in (signal.SIGINT, signal.SIGTERM):
             loop.add_signal_handler(number, stop.set)
         others = f", others reach it at {settings.public_url}" if settings.public_url else ""

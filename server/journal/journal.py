@@ -36,10 +36,13 @@ class Entry:
     """What is committed together, all or nothing.
 
     `world` replaces the run's latest world state (`world_run` says whose); `pictures` are JPEGs.
+    `tree` is the JSON of the tree of its one event, `run_started`, in which that is left empty: a
+    large tree is never made of objects only to be written.
     With events whose author asked under an idempotency key that request is kept.
     """
 
     events: Sequence[Event] = ()
+    tree: str | None = None
     receipt: Receipt | None = None
     world_run: UUID | None = None
     world: Mapping[str, Any] | None = None

@@ -56,6 +56,9 @@ PROBE = "probe"
 PROBE_BYTES = 64 * 1024
 """Room for so much is room for most of what waits to be written."""
 
+EMPTY_TREE = '"tree":{}'
+"""How an event's JSON has a tree that was left empty, before any other object."""
+
 INSERT_EVENT = "INSERT INTO events (seq, run, type, time, version, body) VALUES (?, ?, ?, ?, ?, ?)"
 
 
@@ -198,7 +201,7 @@ class SqliteJournal:
     ) -> _Committed:
         if entry.receipt is not None:
             _refuse_duplicate(entry.receipt, connection)
-        committed = self._number(entry.events, fold)
+        committed = self._number(entry, fold)
         rows: list[Row] = []
         for event, record in zip(committed.events, committed.records, strict=True):
             rows.append(
@@ -227,13 +230,13 @@ class SqliteJournal:
         self._next += len(committed.events)
         return committed
 
-    def _number(self, events: Any, fold: Fold | None) -> _Committed:
+    def _number(self, entry: Entry, fold: Fold | None) -> _Committed:
         numbered = [
-            event.model_copy(update={"seq": seq}) for seq, event in enumerate(events, self._next)
+            event.model_copy(update={"seq": seq})
+            for seq, event in enumerate(entry.events, self._next)
         ]
-        return _Committed(
-            numbered, [Record(event.seq, _text_of(event)) for event in numbered], fold
-        )
+        records = [Record(event.seq, _text_of(event, entry.tree)) for event in numbered]
+        return _Committed(numbered, records, fold)
 
     def _begin(self) -> None:
         self._batch_start = self._next
@@ -378,13 +381,13 @@ def _type(event: Event) -> str:
     return str(vars(event)["type"])
 
 
-def _text_of(event: Event) -> str:
-    """An event as JSON. Raises `ValueError` for a number that JSON does not have."""
+def _text_of(event: Event, tree: str | None) -> str:
+    """An event as JSON, with its tree. Raises `ValueError` for a number that JSON does not have."""
     text = event.model_dump_json()
     # The words may also stand in a string, which is why they are looked for before it is read.
     if "NaN" in text or "Infinity" in text:
         json.loads(text, parse_constant=partial(_refuse_number, event))
-    return text
+    return text if tree is None else text.replace(EMPTY_TREE, f'"tree":{tree}', 1)
 
 
 def _refuse_number(event: Event, number: str) -> NoReturn:

@@ -6,6 +6,7 @@ import os
 import random
 import signal
 import sys
+import time
 from asyncio.subprocess import DEVNULL, PIPE, Process
 from collections.abc import Callable
 from contextlib import suppress
@@ -26,6 +27,7 @@ from server.errors import InvalidError
 from server.plain_text import plain
 from server.robots.passes import OwnRobots
 from server.robots.registry import RobotRegistry
+from server.robots.silence import Silence
 from sim.robot_process import RobotProcessSetup, find_world
 from sim.world import WorldAdapter, WorldSetup, WorldUnavailableError
 from tasks.plugins import PluginError
@@ -95,7 +97,9 @@ async def launch(
 class RobotProcess:
     """A robot in a child process; one that is silent for `hang_s` is killed.
 
-    Until it has connected for the first time it has `start_s` to load its world.
+    Until it has connected for the first time it has `start_s` to load its world. It is looked at
+    every `check_s`; `clock` is any monotonic clock. While this process itself is stopped, or has no
+    time to look, no robot is silent.
     """
 
     def __init__(
@@ -110,6 +114,8 @@ class RobotProcess:
         hang_s: float = 6.0,
         start_s: float = 120.0,
         stop_s: float = 2.0,
+        check_s: float = CHECK_S,
+        clock: Callable[[], float] = time.monotonic,
     ) -> None:
         self._world_name = world_name
         self._ended = ended
@@ -121,6 +127,8 @@ class RobotProcess:
         self._hang_s = hang_s
         self._start_s = start_s
         self._stop_s = stop_s
+        self._check_s = check_s
+        self._clock = clock
         self._process: Process | None = None
         self._watcher: asyncio.Task[None] | None = None
 
@@ -198,16 +206,18 @@ class RobotProcess:
         self, process: Process, ended: asyncio.Task[int], robot: str
     ) -> str | None:
         """Wait until the process has ended; says so if that was because it hung."""
-        now = asyncio.get_running_loop().time
-        last_heard, patience_s = now(), self._start_s
+        silence, patience_s = Silence(self._clock, self._check_s), self._start_s
+        last_heard: float | None = None
         hung: str | None = None
         while not ended.done():
-            await asyncio.wait([ended], timeout=CHECK_S)
-            silent_s = self._registry.silent_for_s(robot)
-            if silent_s is not None:
-                last_heard, patience_s = now() - silent_s, self._hang_s
-            if hung is None and not ended.done() and now() - last_heard > patience_s:
-                hung = f"its process hung: nothing was heard of it for {now() - last_heard:.1f} s"
+            await asyncio.wait([ended], timeout=self._check_s)
+            heard = self._registry.last_heard(robot)
+            if heard is not None and heard != last_heard:
+                last_heard, patience_s = heard, self._hang_s
+                silence.hear()
+            silent_s = silence.look()
+            if hung is None and not ended.done() and silent_s > patience_s:
+                hung = f"its process hung: nothing was heard of it for {silent_s:.1f} s"
                 _kill(process)
         return hung
 

@@ -97,10 +97,10 @@ class RobotRegistry:
         """Every robot that is or was connected, by name."""
         return sorted(name for name, robot in self._robots.items() if robot.hello is not None)
 
-    def silent_for_s(self, robot: str) -> float | None:
-        """How long ago something last came from a robot; None if it is not connected."""
+    def last_heard(self, robot: str) -> float | None:
+        """When something last came from a robot, by our clock; None if it is not connected."""
         session = self._robots[robot].session if robot in self._robots else None
-        return None if session is None else self._clock() - session.last_heard
+        return None if session is None else session.last_heard
 
     async def end_connection(self, robot: str, reason: str) -> None:
         """The robot's program has ended: wait for nothing more of it.

@@ -23,6 +23,7 @@ from robots.link.messages import (
 )
 from server.errors import ServiceError
 from server.journal.journal import JournalClosedError
+from server.robots.silence import Silence
 from server.robots.times import LinkTimes
 
 log = logging.getLogger(__name__)
@@ -117,6 +118,7 @@ class RobotSession:
         self._receiver = receiver
         self._clock = clock
         self._times = times
+        self._silence = Silence(clock, times.heartbeat_s)
         self._outgoing: asyncio.Queue[AnyServiceMessage] = asyncio.Queue(WAITING_MESSAGES)
         self._work: asyncio.Queue[Report | Callable[[], Awaitable[None]]] = asyncio.Queue()
         self._room = asyncio.Semaphore(WAITING_REPORTS)
@@ -203,6 +205,7 @@ class RobotSession:
             while True:
                 text = await self._channel.receive()
                 self.last_heard = self._clock()
+                self._silence.hear()
                 try:
                     await self._take(read_message(text))
                 except ValidationError as error:
@@ -233,7 +236,9 @@ class RobotSession:
         silent_s = 0.0
         while silent_s <= self._times.silence_s:
             await asyncio.sleep(self._times.heartbeat_s)
-            silent_s = 0.0 if self._room.locked() else self._clock() - self.last_heard
+            if self._room.locked():
+                self._silence.hear()
+            silent_s = self._silence.look()
         self.end_soon(f"nothing was heard of it for {silent_s:.1f} s")
 
     # --- Reports ------------------------------------------------------------------------------

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from server.journal.events import Candidate
 from server.runtime.robot_side import RobotSide
 from server.runtime.run_state import RunState
-from tasks.potential import leaf_potential
+from tasks.potential import leaf_potentials
 
 MAX_RECORDED_CANDIDATES = 100
 """More candidates than this are not journaled; the best are kept."""
@@ -22,36 +22,30 @@ class Choice:
     candidates: list[Candidate]
 
 
+def suitabilities(
+    state: RunState, side: RobotSide, leaves: NDArray[np.int64]
+) -> NDArray[np.float64]:
+    """How well a robot can do each leaf; 0 where it cannot."""
+    nodes = state.tree.nodes
+    by_code = np.array([side.suitability(each) for each in nodes.behaviors], dtype=np.float64)
+    return by_code[nodes.behavior_codes[leaves]]
+
+
 def potentials_for(
     state: RunState, side: RobotSide, leaves: NDArray[np.int64]
 ) -> NDArray[np.float64]:
     """The activation potential of each leaf for a robot, from where it last saw the objects."""
     last_seen = {name: (each.x, each.y, each.z) for name, each in side.seen.items()}
-    tree = state.tree
-    return np.array(
-        [
-            leaf_potential(
-                tree.leaf_definition(int(leaf)).object,
-                last_seen,
-                side.gripper,
-                side.suitability(tree.leaf_definition(int(leaf)).behavior),
-            )
-            for leaf in leaves
-        ],
-        dtype=np.float64,
-    )
+    suitable = suitabilities(state, side, leaves)
+    return leaf_potentials(state.tree.nodes, leaves, last_seen, side.gripper, suitable)
 
 
 def able_mask(state: RunState, side: RobotSide, leaves: NDArray[np.int64]) -> NDArray[np.bool_]:
     """Which of the leaves a robot can do at all and has not tried too often."""
-    return np.array(
-        [
-            int(leaf) not in state.exhausted
-            and side.suitability(state.tree.leaf_definition(int(leaf)).behavior) > 0
-            for leaf in leaves
-        ],
-        dtype=np.bool_,
-    )
+    able: NDArray[np.bool_] = suitabilities(state, side, leaves) > 0
+    if state.exhausted:
+        able &= ~np.isin(leaves, list(state.exhausted))
+    return able
 
 
 def choose(state: RunState, side: RobotSide) -> Choice | None:
@@ -71,17 +65,21 @@ def _candidates(
     state: RunState, leaves: NDArray[np.int64], potentials: NDArray[np.float64]
 ) -> list[Candidate]:
     tree = state.tree
-    order = sorted(
-        range(len(leaves)),
-        key=lambda i: (tree.attempts(int(leaves[i])), -potentials[i], int(leaves[i])),
-    )
+    attempts = tree.attempts_of(leaves)
+    # Sorting keeps the tree's order, in which the leaves come, where all else is equal.
+    order = np.lexsort((-potentials, attempts))[:MAX_RECORDED_CANDIDATES]
     return [
         Candidate(
-            node=tree.path_of(int(leaves[i])),
-            name=tree.name_of(int(leaves[i])),
-            level=tree.level(int(leaves[i])),
-            potential=float(potentials[i]),
-            attempts=tree.attempts(int(leaves[i])),
+            node=tree.path_of(leaf),
+            name=tree.name_of(leaf),
+            level=tree.level(leaf),
+            potential=potential,
+            attempts=failed,
         )
-        for i in order[:MAX_RECORDED_CANDIDATES]
+        for leaf, potential, failed in zip(
+            leaves[order].tolist(),
+            potentials[order].tolist(),
+            attempts[order].tolist(),
+            strict=True,
+        )
     ]

@@ -2,7 +2,10 @@
 
 from collections.abc import Mapping
 
+import numpy as np
+
 from server.journal import events as ev
+from server.runtime.choosing import suitabilities
 from server.runtime.context import RunContext
 from server.runtime.cutting_short import CuttingShort
 from server.runtime.failure import fail_run
@@ -53,14 +56,14 @@ class GivingUp:
 
     def _for_nobody(self) -> list[int]:
         """The first leaf that none of the robots can do, once all of them are known."""
-        tree, sides = self._context.state.tree, self._sides.values()
+        state, sides = self._context.state, self._sides.values()
         if not all(side.hello is not None or side.gone_for_good for side in sides):
             return []
-        return [
-            leaf
-            for leaf in (int(each) for each in tree.eligible_leaves())
-            if not any(side.suitability(tree.leaf_definition(leaf).behavior) > 0 for side in sides)
-        ][:1]
+        leaves = state.tree.eligible_leaves()
+        anybody = np.zeros(leaves.size, dtype=np.bool_)
+        for side in sides:
+            anybody |= suitabilities(state, side, leaves) > 0
+        return [int(leaf) for leaf in leaves[~anybody][:1]]
 
     async def _give_up(self, leaf: int, reason: str) -> None:
         """Abandon the nearest alternative that holds a leaf, or fail the run."""

@@ -8,7 +8,12 @@ from dialogue.script import Script
 from server.errors import UnreadableError
 from server.journal import events as ev
 from server.journal.journal import Journal, JournalReadError
+from server.journal.stored_event import read_event
+from server.journal.subscriptions import Record
+from server.runtime.journaled_tree import read_started
 from server.runtime.run_state import RunState
+from server.turns import Turns
+from tasks.node_table import NodeTable
 
 MOST_KEPT = 16
 PAGE = 1000
@@ -46,24 +51,43 @@ class History:
         while len(self._kept) > MOST_KEPT:
             self._kept.popitem(last=False)
 
-    async def at(self, run: UUID, until: int | None) -> RunState | None:
+    async def at(
+        self, run: UUID, until: int | None, now: RunState | None = None
+    ) -> RunState | None:
         """Fold a run's events again, up to `until`; None if it had not begun.
 
+        `now` is a later state of it, if there is one: what never changes need not be read again.
         Raises `UnreadableError`.
         """
         state: RunState | None = None
-        after = 0
-        while events := await self._page(run, after):
-            for event in events:
-                if until is not None and event.seq > until:
+        after, turns = 0, Turns()
+        if now is not None:
+            if until is not None and now.started.seq > until:
+                return None
+            state, after = now.begun_anew(), now.started.seq
+        while records := await self._page(run, after):
+            for record in records:
+                if until is not None and record.seq > until:
                     return state
-                state = fold_event(run, state, event, self._scripts)
-            after = events[-1].seq
+                state = await self._fold(run, state, record)
+                await turns.pass_on()
+            after = records[-1].seq
         return state
 
-    async def _page(self, run: UUID, after: int) -> list[ev.Event]:
+    async def _fold(self, run: UUID, state: RunState | None, record: Record) -> RunState:
         try:
-            return await self._journal.read(after, PAGE, run)
+            nodes = None
+            if state is None:
+                event, nodes = await read_started(record)
+            else:
+                event = read_event(record.seq, record.text)
+        except JournalReadError as error:
+            raise UnreadableError(f"run {run} cannot be read: {error}") from error
+        return fold_event(run, state, event, self._scripts, nodes)
+
+    async def _page(self, run: UUID, after: int) -> list[Record]:
+        try:
+            return await self._journal.read_records(after, PAGE, run)
         except JournalReadError as error:
             raise UnreadableError(f"run {run} cannot be read: {error}") from error
 
@@ -72,24 +96,29 @@ class History:
         seq = state.seq
         if seq > at:
             return False
-        newer = await self._journal.read(seq, 1, state.id)
+        newer = await self._journal.read_records(seq, 1, state.id)
         # A running run may have gone on meanwhile.
         return state.seq == seq and (not newer or newer[0].seq > at)
 
 
 def fold_event(
-    run: UUID, state: RunState | None, event: ev.Event, scripts: Mapping[str, Script]
+    run: UUID,
+    state: RunState | None,
+    event: ev.Event,
+    scripts: Mapping[str, Script],
+    nodes: NodeTable | None = None,
 ) -> RunState:
     """The state of a run after one more event; `state` is None before its first.
 
-    Raises `UnreadableError` for an event that no run can have there.
+    `nodes` are those of the first event's tree, if they were read already. Raises
+    `UnreadableError` for an event that no run can have there.
     """
     if state is None and not isinstance(event, ev.RunStarted):
         raise UnreadableError(f"run {run} cannot be read: its first event is not 'run_started'")
     try:
         if state is None:
             assert isinstance(event, ev.RunStarted), "looked at above"
-            return RunState(event, scripts)
+            return RunState(event, scripts, nodes)
         state.fold(event)
     except Exception as error:
         # Whatever a state trips over: the event does not fit what came before it.

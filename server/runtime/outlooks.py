@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from dialogue.evidence import has_moved
 from dialogue.outlook import Next, Outlook, Sequel
@@ -120,11 +121,9 @@ def _after_giving_up(tree: TaskTree, leaf: int) -> Sequel:
     tree.abandon(given_up.alternative)
     goal = tree.parent_of(given_up.alternative)
     assert goal is not None, "an alternative has an OR above it"
-    under = tree.path_of(goal).rstrip("/") + "/"
-    left = [int(each) for each in tree.eligible_leaves()]
-    return Sequel(
-        Next.INSTEAD, _names(tree, [e for e in left if tree.path_of(e).startswith(under)])
-    )
+    leaves = tree.eligible_leaves()
+    begin, end = leaves.searchsorted((goal, tree.end_of(goal)))
+    return Sequel(Next.INSTEAD, _names(tree, leaves[begin:end]))
 
 
 def _before_the_next_try(
@@ -135,42 +134,60 @@ def _before_the_next_try(
     Where as many have failed elsewhere, too, that may come first, and be the end of it.
     """
     leaves = tree.eligible_leaves()
-    able = leaves[able_mask(state, side, leaves)] if len(leaves) else np.empty(0, dtype=np.int64)
-    others = [int(each) for each in able if int(each) != leaf]
-    mine = tree.attempts(leaf)
-    rivals = [each for each in others if _excludes(tree, each, leaf)]
-    first = [each for each in others if tree.attempts(each) < mine and each not in rivals]
-    if sooner := [each for each in rivals if tree.attempts(each) < mine]:
+    able = leaves[able_mask(state, side, leaves)]
+    others = able[able != leaf]
+    attempts, mine = tree.attempts_of(others), tree.attempts(leaf)
+    parting = _Parting(tree, leaf, others)
+    rivals = parting.at_or
+    first = ~rivals & (attempts < mine)
+    sooner = rivals & (attempts < mine)
+    if sooner.any():
         # What else belongs to this alternative may be nearer, and decide for it.
-        open_still = any(_excludes(tree, each, rival) for each in first for rival in sooner)
-        return Sequel(Next.EITHER if open_still else Next.INSTEAD, _names(tree, sooner))
-    if as_soon := [each for each in rivals if tree.attempts(each) == mine]:
-        return Sequel(Next.EITHER, _names(tree, as_soon))
-    if first:
-        return Sequel(Next.OTHERS_FIRST, _names(tree, first))
-    as_near = [each for each in others if failed and tree.attempts(each) == mine]
-    return Sequel(Next.ANY_OF, _names(tree, as_near)) if as_near else Sequel()
+        open_still = first.any() and parting.height[first].min() < parting.height[sooner].max()
+        return Sequel(Next.EITHER if open_still else Next.INSTEAD, _names(tree, others[sooner]))
+    as_soon = rivals & (attempts == mine)
+    if as_soon.any():
+        return Sequel(Next.EITHER, _names(tree, others[as_soon]))
+    if first.any():
+        return Sequel(Next.OTHERS_FIRST, _names(tree, others[first]))
+    as_near = others[failed & (attempts == mine)]
+    return Sequel(Next.ANY_OF, _names(tree, as_near)) if as_near.size else Sequel()
 
 
-def _excludes(tree: TaskTree, one: int, other: int) -> bool:
-    """Whether two leaves lie under different alternatives of an OR."""
-    above_one = _ancestors(tree, one)
-    node = other
-    while node not in above_one:
-        parent = tree.parent_of(node)
-        assert parent is not None, "all nodes are under the root"
-        node = parent
-    return tree.kind_of(node) is NodeKind.OR
+class _Parting:
+    """Where the ways from the root to other leaves and to a certain one part.
+
+    `height`: how many nodes above that leaf; `at_or`: whether at an OR, so that the leaves lie
+    under different alternatives. Two others that part from it at different heights part from each
+    other at the upper one.
+    """
+
+    def __init__(self, tree: TaskTree, leaf: int, others: NDArray[np.int64]) -> None:
+        self.height = np.zeros(others.size, dtype=np.int64)
+        self.at_or = np.zeros(others.size, dtype=np.bool_)
+        way = [leaf, *_above(tree, leaf)]
+        begins = others.searchsorted(way)
+        ends = others.searchsorted([tree.end_of(node) for node in way])
+        # Where no other leaf is added to those under a node, none parts from it there.
+        for height in (np.flatnonzero((np.diff(begins) != 0) | (np.diff(ends) != 0)) + 1).tolist():
+            for part in (
+                slice(begins[height], begins[height - 1]),
+                slice(ends[height - 1], ends[height]),
+            ):
+                self.height[part] = height
+                self.at_or[part] = tree.kind_of(way[height]) is NodeKind.OR
 
 
-def _ancestors(tree: TaskTree, node: int) -> set[int]:
-    found: set[int] = set()
-    above: int | None = node
+def _above(tree: TaskTree, node: int) -> list[int]:
+    """The nodes on the way from a node's parent to the root."""
+    found: list[int] = []
+    above = tree.parent_of(node)
     while above is not None:
-        found.add(above)
+        found.append(above)
         above = tree.parent_of(above)
     return found
 
 
-def _names(tree: TaskTree, leaves: list[int]) -> tuple[str, ...]:
-    return tuple(tree.leaf_definition(each).object or tree.name_of(each) for each in leaves[:4])
+def _names(tree: TaskTree, leaves: NDArray[np.int64]) -> tuple[str, ...]:
+    first = leaves[:4].tolist()
+    return tuple(tree.leaf_definition(each).object or tree.name_of(each) for each in first)

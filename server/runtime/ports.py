@@ -1,4 +1,4 @@
-"""What the runtime needs of its surroundings, as it sees them: trees, robots and worlds."""
+"""What the runtime needs of its surroundings, as it sees them: documents, robots and worlds."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -8,9 +8,9 @@ from uuid import UUID
 from robots.link.messages import CommandBody, Hello
 from server.runtime.hardware import Hardware
 from server.runtime.pose_sink import PoseSink
+from server.runtime.requests import RunRequest
 from server.runtime.run import Run
 from server.runtime.run_state import RunState
-from tasks.definition import TaskTreeDefinition
 from tasks.scenario import Scenario
 from tasks.scene import Scene
 
@@ -19,30 +19,20 @@ LIVE = "live"
 
 
 @dataclass(frozen=True, slots=True)
-class LoadedTree:
-    """A checked task tree; `scene` None where the file names none."""
+class PreparedRun:
+    """What a run begins with, all of it checked; `tree` is the definition in JSON."""
 
-    name: str
-    definition: TaskTreeDefinition
-    scene: Scene | None
-
-
-class TreeSource(Protocol):
-    """Where task trees come from."""
-
-    async def load(self, name: str, scene: str | None = None) -> LoadedTree:
-        """A tree with its own scene, or with another one that it fits.
-
-        Raises `NotFoundError` or `InvalidError`.
-        """
-        ...
+    tree_name: str
+    tree: str
+    scene: Scene
+    script: Scenario | None = None
 
 
-class ScenarioSource(Protocol):
-    """Where scenarios come from."""
+class Preparation(Protocol):
+    """Where runs come from."""
 
-    async def load_scenario(self, name: str) -> Scenario:
-        """Raises `NotFoundError` or `InvalidError`."""
+    async def prepare(self, request: RunRequest) -> PreparedRun:
+        """Read and check what a request names. Raises `NotFoundError` or `InvalidError`."""
         ...
 
 
@@ -69,14 +59,6 @@ class Worlds(Protocol):
 
     def check(self, world: str, options: Mapping[str, Any]) -> None:
         """Raises `InvalidError` where there is no such world, or none with such options here."""
-        ...
-
-    def lay_out(self, world: str, tree: LoadedTree, seed: int) -> Scene:
-        """A scene for a tree that has none. Raises `InvalidError` where the world cannot."""
-        ...
-
-    def refuse_impossible(self, world: str, scene: Scene, tree: LoadedTree) -> None:
-        """Raise `ImpossibleError` where the world's robot cannot do the tree in the scene."""
         ...
 
     def open(self, state: RunState, run: Callable[[], Run]) -> Hardware:

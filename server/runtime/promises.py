@@ -35,11 +35,7 @@ class Promises:
         part = None if raised.detection is None else raised.detection.part
         in_the_way = part if part in state.scene.objects else None
         promise = Promise(str(awaiting.help), raised.object, raised.place, in_the_way)
-        finished = {
-            state.tree.leaf_definition(leaf).object
-            for leaf in state.tree.leaves
-            if state.tree.done(leaf)
-        }
+        finished = state.tree.finished_objects()
         # Nobody takes for the promised object what stands finished at its place.
         others = [name for name in state.scene.objects if name not in {raised.object, *finished}]
         done = deed(promise, self._person, state.scene, others, rng)

@@ -15,8 +15,14 @@ def results_of(state: RunState) -> dict[FinishedResult, int]:
     """What finished leaves left behind, and which leaf each is of.
 
     Where several leaves handle one object, in turn, the one that was started last says where it is
-    to be.
+    to be. Nobody may change it.
     """
+    if state.results is None:
+        state.results = _results_of(state)
+    return state.results
+
+
+def _results_of(state: RunState) -> dict[FinishedResult, int]:
     results = {}
     for handled, leaf in state.last_handled.items():
         place = state.tree.leaf_definition(leaf).place

@@ -11,13 +11,14 @@ from dialogue.conversation import Conversation
 from dialogue.evidence import Change, PutRight
 from dialogue.outlook import Outlook
 from dialogue.script import CloseReason, Expectation, Script, Turn
-from robots.link.messages import Detection
+from robots.link.messages import Detection, FinishedResult
 from server.journal import events as ev
 from server.runtime.requests import RunRequest
 from server.runtime.run_result import Ending, result_of
 from server.runtime.views import RunResult, RunStatus
 from tasks.definition import TaskTreeDefinition
 from tasks.issue import Issue, Sensed
+from tasks.node_table import NodeTable
 from tasks.resolution import Resolution
 from tasks.scenario import Scenario
 from tasks.scenario_file import built_in_scenario
@@ -174,13 +175,21 @@ RETRIES = (Resolution.ROBOT_RETRY, Resolution.ROBOT_FINISH)
 
 
 class RunState:
-    """Everything about a run that its events say."""
+    """Everything about a run that its events say.
 
-    def __init__(self, started: ev.RunStarted, scripts: Mapping[str, Script]) -> None:
+    `nodes` are those of the tree, where it was read already and left empty in `started`.
+    """
+
+    def __init__(
+        self,
+        started: ev.RunStarted,
+        scripts: Mapping[str, Script],
+        nodes: NodeTable | None = None,
+    ) -> None:
         self.started = started
         self.request = RunRequest.model_validate(started.options)
         self.scene = Scene.model_validate(started.scene, strict=False)
-        self.tree = TaskTree(TaskTreeDefinition.model_validate(started.tree))
+        self.tree = TaskTree(nodes or TaskTreeDefinition.model_validate(started.tree))
         self.tree.running = True
         self.status = RunStatus.RUNNING
         self.result: RunResult | None = None
@@ -201,6 +210,8 @@ class RunState:
         """Leaves that count as done though their object is missing, as a helper said."""
         self.last_handled: dict[str, int] = {}
         """Which leaf was started last for an object: the one that says where it is to be."""
+        self.results: dict[FinishedResult, int] | None = None
+        """What finished leaves left behind, where nothing has changed that since it was derived."""
         self.helped_retries: Counter[int] = Counter()
         self.issues: dict[int, list[ev.IssueRaised]] = {}
         """What was raised about each leaf, in order."""
@@ -212,6 +223,10 @@ class RunState:
         self.time = started.time
         self.scripts = scripts
         self._raised: ev.IssueRaised | None = None
+
+    def begun_anew(self) -> "RunState":
+        """The state right after the run's first event."""
+        return RunState(self.started, self.scripts, self.tree.nodes)
 
     @property
     def id(self) -> UUID:
@@ -251,6 +266,7 @@ class RunState:
     def _(self, event: ev.NodeStarted) -> None:
         leaf = self.tree.index_of(event.node)
         self.tree.start(leaf, event.robot)
+        self.results = None
         if (handled := self.tree.leaf_definition(leaf).object) is not None:
             self.last_handled[handled] = leaf
         self.executions[event.robot] = Execution(event.execution, leaf, event.robot, event.boot)
@@ -395,6 +411,7 @@ class RunState:
 
     def _finish(self, leaf: int) -> None:
         self.tree.finish(leaf)
+        self.results = None
         self.taken_back.pop(leaf, None)
         self.to_leave_out.pop(leaf, None)
         self._end_execution(leaf)
@@ -407,6 +424,7 @@ class RunState:
     def _(self, event: ev.NodeUndone) -> None:
         leaf = self.tree.index_of(event.node)
         self.tree.take_back(leaf)
+        self.results = None
         if leaf in self.left_out:
             self.to_leave_out[leaf] = self.left_out.pop(leaf)
         self.taken_back[leaf] = event

@@ -1,7 +1,10 @@
 """From a run's state to what clients see of it."""
 
-from collections.abc import Mapping
+import asyncio
+from collections.abc import AsyncIterator, Sequence
 from typing import Literal, cast
+
+from pydantic import TypeAdapter
 
 from robots.link.messages import Hello
 from server.journal.journal import JournalReadError
@@ -20,7 +23,8 @@ from server.runtime.views import (
     RunSummary,
     RunView,
 )
-from tasks.definition import NodeKind
+from server.turns import Turns
+from tasks.activation import FullEvaluation
 
 
 def summary(state: RunState, time: float, trouble: str | None) -> RunSummary:
@@ -72,46 +76,77 @@ def _result_of_indexed(run: IndexedRun) -> RunResult | None:
         return RunResult(reason=str(error))
 
 
-def view(
-    state: RunState, time: float, leaf_potentials: Mapping[int, float], trouble: str | None
-) -> RunView:
-    """Everything about a run; `leaf_potentials` by leaf (0 where not given)."""
-    return RunView(
-        **summary(state, time, trouble).model_dump(),
-        seq=state.seq,
-        nodes=node_views(state, leaf_potentials),
-        dialogues=[dialogue_view(each) for each in state.open_dialogues],
-        options=state.started.options,
-    )
+NODES = 500
+"""So many nodes are viewed at a time."""
+
+_nodes: TypeAdapter[list[NodeView]] = TypeAdapter(list[NodeView])
 
 
-def node_views(state: RunState, leaf_potentials: Mapping[int, float]) -> list[NodeView]:
-    """Every node in the tree's order, levels and potentials evaluated now."""
-    tree = state.tree
-    potentials = tree.potentials(leaf_potentials)
-    levels = tree.levels()
-    views = []
-    for node in range(len(tree)):
-        kind = tree.kind_of(node)
-        leaf = tree.leaf_definition(node) if kind is NodeKind.BEHAVIOR else None
-        views.append(
-            NodeView(
-                node=tree.path_of(node),
-                name=tree.name_of(node),
-                kind=kind.value,
-                behavior=leaf.behavior if leaf else None,
-                object=leaf.object if leaf else None,
-                place=leaf.place if leaf else None,
-                activation_level=levels[node],
-                activation_potential=potentials[node],
-                active=tree.active(node),
-                done=tree.done(node),
-                abandoned=tree.abandoned(node),
-                owner=tree.owner(node),
-                attempts=tree.attempts(node) if leaf else 0,
-            )
+class RunViewing:
+    """Everything about a run as it is now, viewed in pieces: the run may go on meanwhile.
+
+    `leaf_potentials` are those of the leaves, by node.
+    """
+
+    def __init__(
+        self, state: RunState, time: float, leaf_potentials: Sequence[float], trouble: str | None
+    ) -> None:
+        self._tree = state.tree.copy()
+        self._leaf_potentials = leaf_potentials
+        self._without_nodes = RunView(
+            **summary(state, time, trouble).model_dump(),
+            seq=state.seq,
+            nodes=[],
+            dialogues=[dialogue_view(each) for each in state.open_dialogues],
+            options=state.started.options,
         )
-    return views
+
+    async def view(self) -> RunView:
+        """The view as an object."""
+        nodes = [node async for piece in self._pieces() for node in piece]
+        return self._without_nodes.model_copy(update={"nodes": nodes})
+
+    async def json(self) -> list[bytes]:
+        """The view in JSON, in pieces; never is there an object for each of very many nodes."""
+        # Nothing that the other fields hold looks like it: in a string its quotes are escaped.
+        head, between, tail = self._without_nodes.model_dump_json().partition('"nodes":[')
+        written = [f"{head}{between}".encode()]
+        async for piece in self._pieces():
+            if len(written) > 1:
+                written.append(b",")
+            # Without the brackets around the list.
+            written.append(_nodes.dump_json(piece)[1:-1])
+        return [*written, tail.encode()]
+
+    async def _pieces(self) -> AsyncIterator[list[NodeView]]:
+        # What had to be taken of the run at one moment is taken, which took a while itself.
+        await asyncio.sleep(0)
+        turns = Turns()
+        evaluation = self._tree.evaluation(self._leaf_potentials)
+        for _ in evaluation.pieces():
+            await turns.pass_on()
+        for begin in range(0, len(self._tree), NODES):
+            end = min(begin + NODES, len(self._tree))
+            yield [self._node(node, evaluation) for node in range(begin, end)]
+            await turns.pass_on()
+
+    def _node(self, node: int, evaluation: FullEvaluation) -> NodeView:
+        tree = self._tree
+        return NodeView(
+            node=tree.path_of(node),
+            name=tree.name_of(node),
+            kind=tree.kind_of(node).value,
+            behavior=tree.nodes.behavior(node),
+            object=tree.nodes.text(node, "object"),
+            place=tree.nodes.text(node, "place"),
+            activation_level=evaluation.levels[node],
+            activation_potential=evaluation.potentials[node],
+            active=tree.active(node),
+            done=tree.done(node),
+            abandoned=tree.abandoned(node),
+            owner=tree.owner(node),
+            attempts=tree.attempts(node),
+        )
 
 
 def dialogue_view(dialogue: DialogueState) -> DialogueView:

@@ -2,6 +2,7 @@
 
 import asyncio
 import logging
+from array import array
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from datetime import datetime
@@ -30,18 +31,19 @@ from server.runtime.context import RunContext, RunSettings
 from server.runtime.dialogue_driver import DialogueDriver
 from server.runtime.failure import fail_run, why_it_stopped
 from server.runtime.history import History
-from server.runtime.new_run import NewRuns
-from server.runtime.ports import LIVE, Poses, RealRobots, Robots, ScenarioSource, TreeSource, Worlds
+from server.runtime.new_run import NewRun, NewRuns
+from server.runtime.past_states import PastStates
+from server.runtime.ports import LIVE, Poses, Preparation, RealRobots, Robots, Worlds
 from server.runtime.requests import RunRequest
 from server.runtime.robot_side import RobotSide
 from server.runtime.run import Run
 from server.runtime.run_state import DialogueState, RunState
 from server.runtime.run_views import (
+    RunViewing,
     dialogue_view,
     robot_view,
     summary,
     summary_of_indexed,
-    view,
 )
 from server.runtime.views import (
     DialogueView,
@@ -67,8 +69,7 @@ class Runtime:
         journal: Journal,
         robots: Robots,
         worlds: Worlds,
-        trees: TreeSource,
-        scenarios: ScenarioSource,
+        preparation: Preparation,
         scripts: Mapping[str, Script],
         policy: EscalationPolicy,
         send_mail: Callable[[RunState, ev.Escalated | ev.SuspectedFalseAlarm, DialogueState], None],
@@ -92,8 +93,9 @@ class Runtime:
         self._tasks: dict[UUID, asyncio.Task[None]] = {}
         self._promised: dict[str, UUID] = {}
         self._closing = False
-        self._new_runs = NewRuns(trees, scenarios, worlds, utc_now, settings.limits)
+        self._new_runs = NewRuns(preparation, worlds, utc_now, settings.limits)
         self._history = History(journal, scripts)
+        self._past = PastStates(self._history)
         journal.trouble.watch(self._journal_troubled)
 
     # --- Beginning and ending -----------------------------------------------------------------
@@ -168,18 +170,18 @@ class Runtime:
             await asyncio.wait([self._tasks[run]])
         return await self.run(run)
 
-    async def start_run(self, request: RunRequest, author: ev.Author | None = None) -> RunView:
+    async def start_run(self, request: RunRequest, author: ev.Author | None = None) -> RunSummary:
         """Begin a run. Raises `NotFoundError`, `InvalidError` or `ConflictError`."""
         self._refuse_one_too_many()
-        started = await self._new_runs.make(request, author)
+        new = await self._new_runs.make(request, author)
         if self._closing:
             raise ConflictError("the service is shutting down")
         # Others may have begun meanwhile.
         self._refuse_one_too_many()
         if request.world == LIVE:
             self._check_robots(request.robots)
-        with self._promise(started):
-            return await self._begin(started)
+        with self._promise(new.started):
+            return await self._begin(new)
 
     def _refuse_one_too_many(self) -> None:
         most = self._settings.limits.running_runs
@@ -202,17 +204,20 @@ class Runtime:
             for robot in promised:
                 del self._promised[robot]
 
-    async def _begin(self, started: ev.RunStarted) -> RunView:
-        def fold(numbered: list[ev.Event]) -> None:
-            self._states[started.run] = RunState(cast(ev.RunStarted, numbered[0]), self._scripts)
+    async def _begin(self, new: NewRun) -> RunSummary:
+        run = new.started.run
 
-        await self._journal.append(Entry(events=[started]), fold)
-        state = self._states[started.run]
+        def fold(numbered: list[ev.Event]) -> None:
+            started = cast(ev.RunStarted, numbered[0])
+            self._states[run] = RunState(started, self._scripts, new.nodes)
+
+        await self._journal.append(Entry(events=[new.started], tree=new.tree), fold)
+        state = self._states[run]
         # One that is journaled while the service stops is taken up at the next start.
         if not self._closing:
             await self._take_up_or_fail(state)
             self._let_go(state)
-        return self._view(state)
+        return self._summary(state)
 
     def _check_robots(self, robots: list[str]) -> None:
         if not robots:
@@ -325,36 +330,52 @@ class Runtime:
 
     async def run(self, run: UUID) -> RunView:
         """Everything about one run. Raises `NotFoundError` or `UnreadableError`."""
-        return self._view(await self._state(run))
+        return await self._viewing(await self._state(run)).view()
 
-    def _view(self, state: RunState) -> RunView:
+    async def run_summary(self, run: UUID) -> RunSummary:
+        """One run without its nodes. Raises `NotFoundError` or `UnreadableError`."""
+        return self._summary(await self._state(run))
+
+    async def run_json(self, run: UUID) -> list[bytes]:
+        """What `run` returns, in JSON, in pieces."""
+        return await self._viewing(await self._state(run)).json()
+
+    def _viewing(self, state: RunState) -> RunViewing:
         leaves = np.asarray(state.tree.leaves, dtype=np.int64)
-        potentials = np.zeros(len(leaves))
+        potentials = np.zeros(len(state.tree))
         run = self._runs.get(state.id)
         for side in run.sides.values() if run else ():
-            potentials = np.maximum(potentials, potentials_for(state, side, leaves))
-        by_leaf = dict(zip(leaves.tolist(), potentials.tolist(), strict=True))
-        return view(state, self._time(state), by_leaf, self._journal.trouble.reason)
+            of_side = potentials_for(state, side, leaves)
+            potentials[leaves] = np.maximum(potentials[leaves], of_side)
+        trouble = self._journal.trouble.reason
+        return RunViewing(state, self._time(state), array("d", potentials.tobytes()), trouble)
+
+    def _summary(self, state: RunState) -> RunSummary:
+        return summary(state, self._time(state), self._journal.trouble.reason)
 
     async def snapshot(self, seq: int | None) -> Snapshot:
         """The state after event `seq`, or after the last one without it."""
         head = self._journal.head
         at = head if seq is None else min(seq, head)
-        views = []
+        states = []
         for run in await self._journal.index.open_at(at):
             try:
                 state = await self._state_at(run, at)
             except UnreadableError:
                 continue  # It is listed as unreadable.
             if state is not None and not state.status.ended:
-                views.append(self._view(state))
-        return Snapshot(seq=at, runs=views, dialogues=[d for each in views for d in each.dialogues])
+                states.append(state)
+        return Snapshot(
+            seq=at,
+            runs=[self._summary(each) for each in states],
+            dialogues=[dialogue_view(d) for each in states for d in each.open_dialogues],
+        )
 
     async def _state_at(self, run: UUID, at: int) -> RunState | None:
         state = self._states.get(run)
         if state is not None and await self._history.is_at(state, at):
             return state
-        return await self._history.at(run, at)
+        return await self._past.at(run, at, state)
 
     # --- What people ask for ------------------------------------------------------------------
 
@@ -368,26 +389,26 @@ class Runtime:
             raise ConflictError(f"nobody works on this run just now, though it is {state.status}")
         return self._runs[state.id]
 
-    async def pause(self, run: UUID, author: ev.Author | None = None) -> RunView:
+    async def pause(self, run: UUID, author: ev.Author | None = None) -> RunSummary:
         """Stop a run where it is. Raises `ConflictError` unless it is running."""
         running = await self._running(run)
         await running.request(partial(running.pause, author))
-        return await self.run(run)
+        return self._summary(running.context.state)
 
-    async def resume(self, run: UUID, author: ev.Author | None = None) -> RunView:
+    async def resume(self, run: UUID, author: ev.Author | None = None) -> RunSummary:
         """Let a paused run go on. Raises `ConflictError` unless it is paused."""
         running = await self._running(run)
         await running.request(partial(running.resume, author))
-        return await self.run(run)
+        return self._summary(running.context.state)
 
-    async def abort(self, run: UUID, author: ev.Author | None = None) -> RunView:
+    async def abort(self, run: UUID, author: ev.Author | None = None) -> RunSummary:
         """End a run. Raises `ConflictError` if it has ended.
 
         While the journal cannot be written its robots stop at once, and it has ended only later.
         """
         running = await self._running(run)
         await running.abort_at_once(author)
-        return await self.run(run)
+        return self._summary(running.context.state)
 
     async def intervene(
         self, run: UUID, intervention: Intervention, author: ev.Author | None = None

@@ -160,8 +160,11 @@ class WorldView(View):
 
 
 class Snapshot(View):
-    """Every run that had not ended and every open dialogue, after the event `seq`."""
+    """Every run that had not ended and every open dialogue, after the event `seq`.
+
+    What became of a run's nodes is in its `RunView`.
+    """
 
     seq: int
-    runs: list[RunView]
+    runs: list[RunSummary]
     dialogues: list[DialogueView]

@@ -6,19 +6,16 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from server.errors import ImpossibleError, InvalidError
+from server.errors import InvalidError
 from server.journal.journal import Journal
-from server.runtime.ports import LIVE, LoadedTree
+from server.runtime.ports import LIVE
 from server.runtime.run import Run
 from server.runtime.run_state import RunState
 from server.runtime.views import WorldView
-from server.scene_checks import WorldChecks
 from sim.mischief import random_interventions
 from sim.world import WorldAdapter, WorldSetup, WorldUnavailableError
 from sim.world_options import WorldOptionError, read_options
-from tasks.definition import BehaviorNode
 from tasks.scenario import ScriptedIntervention
-from tasks.scene import Scene
 
 
 class RobotHandle(Protocol):
@@ -78,31 +75,6 @@ class SimulatedWorlds:
         except WorldOptionError as error:
             raise InvalidError(str(error)) from error
 
-    def lay_out(self, world: str, tree: LoadedTree, seed: int) -> Scene:
-        """A scene for a tree that has none. Raises `InvalidError` where the world cannot."""
-        adapter = self._adapters[world]
-        if not adapter.lays_out_anything:
-            raise InvalidError(
-                f"tree '{tree.name}' names no scene, and the world '{world}' needs one"
-            )
-        leaves = [each for each in tree.definition.nodes if isinstance(each, BehaviorNode)]
-        names = [(each.object, each.place) for each in leaves if each.object is not None]
-        try:
-            return adapter.lay_out(names, seed)
-        except ValueError as error:
-            raise InvalidError(f"tree '{tree.name}' cannot be laid out: {error}") from error
-
-    def refuse_impossible(self, world: str, scene: Scene, tree: LoadedTree) -> None:
-        """Raise `ImpossibleError` where the world's robot cannot do the tree in the scene."""
-        check = WorldChecks(self._adapters).check_of(world)
-        problems = check(scene, tree.definition.nodes) if check is not None else []
-        if problems:
-            raise ImpossibleError(
-                f"the robot of the world '{world}' cannot do the tree '{tree.name}' in the scene "
-                f"'{scene.name}'",
-                problems,
-            )
-
     def open(self, state: RunState, run: Callable[[], Run]) -> "SimulatedHardware":
         """The hardware of a run, which starts it; `run` is asked for only then.
 
@@ -117,8 +89,7 @@ class SimulatedWorlds:
         if state.scenario is not None:
             interventions += state.scenario.interventions
         if request.interventions == "random":
-            tree = state.tree
-            objects = [name for each in tree.leaves if (name := tree.leaf_definition(each).object)]
+            objects = state.tree.nodes.handled_objects()
             rng = np.random.default_rng([started.seed, len(objects)])
             interventions += random_interventions(objects, state.scene, rng)
         return WorldSetup(

@@ -21,12 +21,19 @@ async def find_prompt(
     if view.prompt is not None and view.prompt.prompt == prompt:
         return view.prompt
     after = 0
-    while events := await journal.read(after, PAGE, view.run):
-        for event in events:
-            if isinstance(event, Prompt) and (event.dialogue, event.prompt) == (dialogue, prompt):
+    while records := await journal.read_records(after, PAGE, view.run):
+        for record in records:
+            # Most events are not about it, and the first one may be very long.
+            event = _prompt_in(record.text) if str(prompt) in record.text else None
+            if event is not None and (event.dialogue, event.prompt) == (dialogue, prompt):
                 return event
-        after = events[-1].seq
+        after = records[-1].seq
     raise NotFoundError(f"there is no prompt {prompt} in the dialogue {dialogue}")
+
+
+def _prompt_in(text: str) -> Prompt | None:
+    event = any_event.validate_json(text)
+    return event if isinstance(event, Prompt) else None
 
 
 async def open_question(runs: RunService, dialogue: UUID, prompt: UUID) -> PromptView:

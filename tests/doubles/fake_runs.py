@@ -126,6 +126,12 @@ class FakeRuns:
     async def run(self, run: UUID) -> RunView:
         return self.run_now(run)
 
+    async def run_summary(self, run: UUID) -> RunSummary:
+        return RunSummary(**self.run_now(run).model_dump(include=set(RunSummary.model_fields)))
+
+    async def run_json(self, run: UUID) -> list[bytes]:
+        return [self.run_now(run).model_dump_json().encode()]
+
     def run_now(self, run: UUID) -> RunView:
         if run not in self._runs:
             raise NotFoundError(f"there is no run {run}")

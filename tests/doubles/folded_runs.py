@@ -25,7 +25,7 @@ from server.journal import events as ev
 from server.journal.sqlite import IN_MEMORY
 from server.runtime.requests import RunRequest
 from server.runtime.run_state import RunState
-from server.runtime.run_views import dialogue_view, node_views
+from server.runtime.run_views import RunViewing, dialogue_view
 from server.settings import Settings
 from tasks.random_task import random_task
 from tasks.scenario import Person
@@ -66,6 +66,12 @@ def _paused(events: Sequence[ev.Event]) -> list[ev.Event]:
     return [event.model_copy(update={"seq": seq}) for seq, event in enumerate(paused, start=1)]
 
 
+async def _nodes(state: RunState, potentials: dict[int, float]) -> list[dict[str, Any]]:
+    by_node = [potentials.get(node, 0.0) for node in range(len(state.tree))]
+    view = await RunViewing(state, state.time, by_node, None).view()
+    return [each.model_dump(mode="json") for each in view.nodes]
+
+
 def states(events: Sequence[ev.Event]) -> list[dict[str, Any]]:
     """What the service says after each event."""
     assert isinstance(events[0], ev.RunStarted)
@@ -82,7 +88,7 @@ def states(events: Sequence[ev.Event]) -> list[dict[str, Any]]:
             {
                 "status": state.status,
                 "result": state.result.model_dump(mode="json") if state.result else None,
-                "nodes": [each.model_dump(mode="json") for each in node_views(state, potentials)],
+                "nodes": asyncio.run(_nodes(state, potentials)),
                 "dialogues": [
                     dialogue_view(each).model_dump(
                         mode="json", include={"dialogue", "node", "awaiting", "claimed_by"}

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 
 from loopback import served
-from pretend_service import NoScenarios, PretendWorlds
+from pretend_service import OneTree, PretendWorlds
 
 from dialogue.registry import load_scripts
 from server.dialogues.escalation import EscalationPolicy
@@ -15,18 +15,7 @@ from server.journal.sqlite import SqliteJournal
 from server.poses.feed import PoseFeed
 from server.robots.registry import RobotRegistry
 from server.runtime.context import RunSettings
-from server.runtime.ports import LoadedTree
 from server.runtime.runtime import Runtime
-
-
-@dataclass(frozen=True)
-class OneTree:
-    """Implements `server.runtime.runtime.TreeSource`."""
-
-    tree: LoadedTree
-
-    async def load(self, name: str, scene: str | None = None) -> LoadedTree:  # noqa: ARG002
-        return self.tree
 
 
 @dataclass(frozen=True)
@@ -41,15 +30,14 @@ class LiveService:
 
 @asynccontextmanager
 async def live_service(
-    journal: SqliteJournal, tree: LoadedTree, *, token: str, port: int = 0
+    journal: SqliteJournal, tree: OneTree, *, token: str, port: int = 0
 ) -> AsyncIterator[LiveService]:
     registry = RobotRegistry(journal, time.monotonic)
     runtime = Runtime(
         journal=journal,
         robots=registry,
         worlds=PretendWorlds(),
-        trees=OneTree(tree),
-        scenarios=NoScenarios(),
+        preparation=tree,
         scripts=load_scripts(),
         policy=EscalationPolicy(),
         send_mail=lambda *_: None,

@@ -19,14 +19,13 @@ from server.journal.sqlite import SqliteJournal
 from server.journal.trouble import Sleep
 from server.poses.feed import PoseFeed
 from server.runtime.context import RunSettings
-from server.runtime.ports import LoadedTree
+from server.runtime.ports import PreparedRun
 from server.runtime.requests import RunRequest
 from server.runtime.run import Run
 from server.runtime.run_state import DialogueState, RunState
 from server.runtime.runtime import Runtime
 from server.runtime.views import RunView
 from tasks.definition import TaskTreeDefinition
-from tasks.scenario import Scenario
 from tasks.scene import Scene
 
 BARE = Scene(name="bare", objects={}, places={})
@@ -47,30 +46,22 @@ class NoHardware:
 @dataclass
 class PretendWorlds:
     restarted: list[str] = field(default_factory=list)
-    scene: Scene = BARE
 
     def check(self, world: str, options: Mapping[str, Any]) -> None: ...
-
-    def lay_out(self, world: str, tree: LoadedTree, seed: int) -> Scene:  # noqa: ARG002
-        return self.scene
-
-    def refuse_impossible(self, world: str, scene: Scene, tree: LoadedTree) -> None: ...
 
     def open(self, state: RunState, run: Any) -> NoHardware:  # noqa: ARG002
         return NoHardware(self.restarted)
 
 
 @dataclass
-class PretendTrees:
+class OneTree:
+    """Implements `server.runtime.ports.Preparation`: every run is of one tree, in one scene."""
+
     definition: TaskTreeDefinition
+    scene: Scene = BARE
 
-    async def load(self, name: str, scene: str | None = None) -> LoadedTree:  # noqa: ARG002
-        return LoadedTree(name, self.definition, None)
-
-
-class NoScenarios:
-    async def load_scenario(self, name: str) -> Scenario:
-        raise AssertionError(f"no test asks for the scenario {name}")
+    async def prepare(self, request: RunRequest) -> PreparedRun:
+        return PreparedRun(request.tree, self.definition.model_dump_json(), self.scene)
 
 
 @dataclass
@@ -120,13 +111,12 @@ async def pretend_service(
     ) -> None:
         mails.append(event)
 
-    worlds = PretendWorlds(scene=scene)
+    worlds = PretendWorlds()
     runtime = Runtime(
         journal=kept,
         robots=robots,
         worlds=worlds,
-        trees=PretendTrees(definition),
-        scenarios=NoScenarios(),
+        preparation=OneTree(definition, scene),
         scripts=scripts if scripts is not None else load_scripts(),
         policy=policy or EscalationPolicy(),
         send_mail=send_mail,

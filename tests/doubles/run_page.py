@@ -8,7 +8,7 @@ from playwright.async_api import Page
 
 from server.journal import events as ev
 from server.runtime.run_state import RunState
-from server.runtime.run_views import node_views
+from server.runtime.run_views import RunViewing
 from server.runtime.views import NodeView
 
 SHOWN = """() => JSON.stringify([...document.querySelectorAll('[role=treeitem]')].map((node) => ({
@@ -46,9 +46,10 @@ def told(views: Sequence[NodeView], talked_about: set[str]) -> list[dict[str, An
     ]
 
 
-def told_after(state: RunState) -> list[dict[str, Any]]:
+async def told_after(state: RunState) -> list[dict[str, Any]]:
     """What the page's tree must show after the events that `state` has folded."""
-    return told(node_views(state, {}), {each.opened.node for each in state.open_dialogues})
+    view = await RunViewing(state, state.time, [0.0] * len(state.tree), None).view()
+    return told(view.nodes, {each.opened.node for each in state.open_dialogues})
 
 
 async def wait_for_tree(page: Page, expected: list[dict[str, Any]]) -> None:

@@ -103,6 +103,11 @@ class ServiceProcess:
         orphans = await asyncio.to_thread(psutil.wait_procs, robots, timeout=10.0)
         assert orphans[1] == [], "a simulated robot outlived its service"
 
+    def send(self, number: signal.Signals) -> None:
+        """Send it a signal."""
+        assert self._process is not None, "it was started"
+        self._process.send_signal(number)
+
     async def stop(self) -> int | None:
         """Let it end by itself, if it still runs; its exit code."""
         if self._process is None:

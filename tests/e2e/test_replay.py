@@ -61,7 +61,7 @@ async def test_tree_is_right_after_every_event(service: Service, open_page: Open
     # Several events may share the first moment; from the first one on, one at a time.
     first = next(i for i, each in enumerate(shown.events) if each.time > shown.events[0].time)
     for count in range(first, len(shown.events) + 1):
-        await wait_for_tree(shown.page, told_after(folded(shown.events[:count])))
+        await wait_for_tree(shown.page, await told_after(folded(shown.events[:count])))
         if count < len(shown.events):
             await shown.page.get_by_role("button", name="One event on").click()
     await expect(shown.page.get_by_text("The end", exact=True)).to_be_visible()
@@ -77,10 +77,10 @@ async def test_scrubbing_shows_what_had_happened_by_then(
         await shown.slider.fill(str(time))
         await expect(shown.page.get_by_text("You are looking at")).to_be_visible()
         past = [each for each in shown.events if each.time <= time]
-        await wait_for_tree(shown.page, told_after(folded(past)))
+        await wait_for_tree(shown.page, await told_after(folded(past)))
     await shown.page.get_by_role("button", name="To the end").click()
     await expect(shown.page.get_by_text("You are looking at")).to_have_count(0)
-    await wait_for_tree(shown.page, told_after(folded(shown.events)))
+    await wait_for_tree(shown.page, await told_after(folded(shown.events)))
 
 
 async def test_a_click_on_a_fault_goes_to_its_moment(service: Service, open_page: OpenPage) -> None:
@@ -89,7 +89,7 @@ async def test_a_click_on_a_fault_goes_to_its_moment(service: Service, open_page
     await lane.get_by_role("button").first.click()
     fault = shown.first(ev.IssueRaised)
     past = [each for each in shown.events if each.seq <= fault.seq]
-    await wait_for_tree(shown.page, told_after(folded(past)))
+    await wait_for_tree(shown.page, await told_after(folded(past)))
     await expect(shown.page.locator(".line[aria-current]")).to_contain_text("dropped")
 
 
@@ -150,7 +150,7 @@ async def test_a_line_of_the_transcript_goes_to_its_moment(
     await line.get_by_role("button").click()
     await expect(line).to_have_attribute("aria-current", "time")
     past = [each for each in shown.events if each.seq <= answered.seq]
-    await wait_for_tree(shown.page, told_after(folded(past)))
+    await wait_for_tree(shown.page, await told_after(folded(past)))
 
 
 async def test_playing_comes_to_the_end(service: Service, open_page: OpenPage) -> None:
@@ -160,7 +160,7 @@ async def test_playing_comes_to_the_end(service: Service, open_page: OpenPage) -
     await shown.page.get_by_role("button", name="Play", exact=True).click()
     await expect(shown.page.get_by_text("The end", exact=True)).to_be_visible(timeout=WAIT_MS)
     await expect(shown.page.get_by_role("button", name="Play", exact=True)).to_be_visible()
-    await wait_for_tree(shown.page, told_after(folded(shown.events)))
+    await wait_for_tree(shown.page, await told_after(folded(shown.events)))
 
 
 async def test_everything_can_be_reached_with_the_keyboard(

@@ -13,6 +13,7 @@ import pytest
 import yaml
 from example_robot import TOKEN, example_robot
 from live_service import LiveService, live_service
+from pretend_service import OneTree
 from recording_sink import RecordingSink
 from task_documents import definition_of
 
@@ -20,9 +21,8 @@ import tasks
 from robots.link.channel import memory_channel
 from robots.link.messages import Hello, Holding, ReachLimits, Report
 from server.journal.sqlite import SqliteJournal
-from server.runtime.ports import LoadedTree
 from server.runtime.requests import RunRequest
-from server.runtime.views import RunStatus, RunView
+from server.runtime.views import RunStatus, RunSummary
 from tasks.scene import Scene
 
 pytestmark = pytest.mark.slow
@@ -34,12 +34,12 @@ def part(name: str, place: str | None = None) -> dict[str, str]:
     return {"behavior": "pick_and_place", "object": name, "place": place or f"{name}_place"}
 
 
-def eket() -> LoadedTree:
+def eket() -> OneTree:
     green, pink, yellow, blue = (part(name) for name in PARTS)
     tops = [part(name, "top_place") for name in ("purple_top", "orange_top")]
     tree = {"then": [green, {"and": [pink, yellow]}, blue, {"or": tops}]}
     scene = yaml.safe_load((Path(tasks.__file__).parent / "scenes" / "eket.yaml").read_text())
-    return LoadedTree("eket", definition_of(tree), Scene.model_validate_json(json.dumps(scene)))
+    return OneTree(definition_of(tree), Scene.model_validate_json(json.dumps(scene)))
 
 
 @pytest.fixture
@@ -49,7 +49,7 @@ async def journal() -> AsyncIterator[SqliteJournal]:
     journal.close()
 
 
-async def start_when_connected(service: LiveService, *robots: str) -> RunView:
+async def start_when_connected(service: LiveService, *robots: str) -> RunSummary:
     waiting = RecordingSink(service.journal)
     for robot in robots:
         service.registry.assign(robot, waiting)

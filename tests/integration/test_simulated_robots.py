@@ -13,6 +13,7 @@ import counting_world
 import pytest
 from loopback import served
 from recording_sink import RecordingSink
+from ticking_clock import TickingClock
 
 from robots.link.messages import Interrupt, Shutdown, Start
 from server.api.access import Access
@@ -98,6 +99,33 @@ async def test_a_process_that_hangs_is_killed(journal: SqliteJournal) -> None:
         await sink.wait_until(lambda: len(sink.hellos) == 1)
         registry.send("counter", "c1", Interrupt(retreat=False))
         assert "hung" in await ended.get()
+        assert robot.pid is None
+        await robot.stop()
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("_worlds")
+async def test_only_a_process_that_stands_still_itself_is_killed(journal: SqliteJournal) -> None:
+    clock = TickingClock()
+    registry = RobotRegistry(journal, clock)
+    ended: asyncio.Queue[str] = asyncio.Queue()
+    sink = RecordingSink(journal)
+    registry.assign("counter", sink)
+    async with served(registry) as url:
+        robot = RobotProcess(
+            "counting", ended.put_nowait, registry, OwnRobots(), url, check_s=0.01, clock=clock
+        )
+        await robot.start(SETUP)
+        await sink.wait_until(lambda: len(sink.hellos) == 1)
+        assert robot.pid is not None
+        # The service itself stood still for a minute.
+        clock.now_s += 60.0
+        await clock.looked_at(5)
+        assert robot.pid is not None
+        assert ended.empty()
+        os.kill(robot.pid, signal.SIGSTOP)
+        clock.step_s = 0.015
+        assert "hung: nothing was heard of it for 6" in await ended.get()
         assert robot.pid is None
         await robot.stop()
 

@@ -1,18 +1,22 @@
 """Scenes, scenarios and task trees over REST: checked, kept, replaced and deleted."""
 
+import contextlib
+import json
 from collections.abc import AsyncIterator
 
 import httpx
 import pytest
 from service_under_test import build
 
-from server.documents import DocumentKind
+from server.documents import MOST_MISTAKES, DocumentKind
 from server.errors import ConflictError
 from server.fixed_documents import GivenFiles, fixed_documents
 from server.journal.journal import Document, Entry
 from server.journal.sqlite import SqliteJournal
 from server.library import Library, build_library
 from server.limits import Limits
+from server.off_loop import MUCH_CHARS
+from server.runtime.requests import RunRequest
 from server.scene_checks import WorldChecks
 from tasks.library import SCENES
 from tasks.scene_problem import SceneProblem
@@ -76,18 +80,32 @@ def library(**worlds) -> Library:
     return build_library(SqliteJournal(":memory:"), fixed_documents(GivenFiles(), None), checks)
 
 
-@pytest.fixture
-async def client() -> AsyncIterator[httpx.AsyncClient]:
+@contextlib.asynccontextmanager
+async def client_of(own: Library) -> AsyncIterator[httpx.AsyncClient]:
     service = build()
-    own = library(timid=TimidWorld(), bold=BoldWorld(), idle=IdleWorld())
     parts = service.app.state.parts
     object.__setattr__(parts, "trees", own.trees)
     object.__setattr__(parts, "scenes", own.scenes)
     object.__setattr__(parts, "scenarios", own.scenarios)
     async with service.client() as client:
         yield client
+    own.off_loop.close()
     own.journal.close()
     service.journal.close()
+
+
+@pytest.fixture
+async def client() -> AsyncIterator[httpx.AsyncClient]:
+    worlds = {"timid": TimidWorld(), "bold": BoldWorld(), "idle": IdleWorld()}
+    async with client_of(library(**worlds)) as client:
+        yield client
+
+
+@pytest.fixture
+async def worldless() -> AsyncIterator[httpx.AsyncClient]:
+    """One whose worlds are known to any process: there are none."""
+    async with client_of(library()) as client:
+        yield client
 
 
 def names(response: httpx.Response) -> list[str]:
@@ -245,10 +263,10 @@ async def test_what_only_some_worlds_can_do_is_kept_and_said(client: httpx.Async
 
 
 async def test_what_no_world_can_do_is_refused() -> None:
-    checked = await library(timid=TimidWorld()).scenes.check(SCENE)
+    checked = (await library(timid=TimidWorld()).scenes.check(SCENE)).view()
     assert [each.message for each in checked.errors] == ["in the world 'timid': 'cup' is too high"]
     low = SCENE.replace("0.08]", "0.05]")
-    assert (await library(timid=TimidWorld()).scenes.check(low)).errors == []
+    assert (await library(timid=TimidWorld()).scenes.check(low)).view().errors == []
 
 
 async def test_a_scene_that_a_tree_needs_is_neither_deleted_nor_spoilt(
@@ -301,17 +319,19 @@ async def test_a_tree_is_loaded_with_its_scene_or_another_one_that_it_fits() -> 
     await own.trees.save(None, TREE)
     await own.scenes.save("high", SCENE.replace("0.08]", "0.11]"))
     await own.scenes.save("bare", SCENE.replace("  cup:", "  mug:"))
-    loaded = await own.load("serve")
-    assert loaded.scene is not None
+    loaded = await own.prepare(of_serve())
     assert loaded.scene.name == "bench"
-    other = await own.load("serve", "high")
-    assert other.scene is not None
+    other = await own.prepare(of_serve(scene="high"))
     assert (other.scene.name, other.scene.objects["cup"].size[2]) == ("high", 0.11)
-    assert other.definition.scene == "high"
+    assert json.loads(other.tree)["scene"] == "high"
     with pytest.raises(Exception, match="cannot be used"):
-        await own.load("serve", "bare")
+        await own.prepare(of_serve(scene="bare"))
     with pytest.raises(Exception, match="there is no scene 'nowhere'"):
-        await own.load("serve", "nowhere")
+        await own.prepare(of_serve(scene="nowhere"))
+
+
+def of_serve(**fields: str) -> RunRequest:
+    return RunRequest.model_validate({"tree": "serve", "world": "live", **fields})
 
 
 async def test_documents_of_two_kinds_may_have_one_name() -> None:
@@ -333,9 +353,41 @@ async def test_all_that_is_uploaded_of_one_kind_has_a_limit() -> None:
     await scenes.save("bench", SCENE)
     with pytest.raises(ConflictError, match="no room for the scene 'other'"):
         await scenes.save("other", SCENE)
-    _, new = await scenes.save("bench", SCENE + "# kept")
-    assert not new
-    assert (await scenes.get("bench")).text.endswith("# kept")
+    assert not (await scenes.save("bench", SCENE + "# kept")).new
+    assert (await scenes.get("bench")).view().text.endswith("# kept")
     await scenes.delete("bench")
     await scenes.save("other", SCENE)
     journal.close()
+
+
+def large_tree(leaves: int, behavior: str = "pick_and_place") -> str:
+    line = f"  - {{behavior: {behavior}, object: red_box, place: tray}}\n"
+    return "name: large\ntree:\n  or:\n" + line * leaves
+
+
+async def test_a_large_tree_is_checked_kept_and_given_out_as_a_small_one(
+    worldless: httpx.AsyncClient,
+) -> None:
+    text = large_tree(3000)
+    assert len(text) > MUCH_CHARS
+    yaml = {"content-type": "application/yaml"}
+    checked = await worldless.post("/api/trees/check", content=text, headers=yaml)
+    assert (checked.status_code, checked.json()["errors"]) == (200, [])
+    kept = await worldless.post("/api/trees", content=text, headers=yaml)
+    assert (kept.status_code, kept.headers["location"]) == (201, "/api/trees/large")
+    found = (await worldless.get("/api/trees/large")).json()
+    assert found["text"] == text
+    assert len(found["definition"]["nodes"]) == 3001
+    assert found["definition"] == checked.json()["definition"] == kept.json()["definition"]
+
+
+async def test_of_very_many_mistakes_the_first_are_told(worldless: httpx.AsyncClient) -> None:
+    text = large_tree(3000, behavior="fly")
+    refused = await worldless.post(
+        "/api/trees", content=text, headers={"content-type": "application/yaml"}
+    )
+    assert refused.status_code == 422
+    problem = refused.json()
+    assert problem["detail"] == "the task file has 3000 mistakes"
+    assert len(problem["errors"]) == MOST_MISTAKES + 1
+    assert problem["errors"][-1] == "there are 2000 more mistakes"

@@ -62,3 +62,37 @@ async def test_a_server_ends_while_a_client_closes_and_has_not_read_all(closing:
         client.transport.abort()
     await ending
     assert not server.server_state.connections
+
+
+class StubLoop:
+    """A loop of which only the time and the timers matter."""
+
+    def __init__(self) -> None:
+        self.now_s = 0.0
+        self.timers: list[float] = []
+
+    def time(self) -> float:
+        return self.now_s
+
+    def call_later(self, delay_s: float, _: object) -> None:
+        self.timers.append(delay_s)
+
+
+def test_a_pong_that_came_while_the_service_stood_still_is_waited_for(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    ended: list[float] = []
+    loop = StubLoop()
+    monkeypatch.setattr(
+        WebSocketProtocol.__mro__[1], "keepalive_timeout", lambda _: ended.append(loop.now_s)
+    )
+    protocol = WebSocketProtocol.__new__(WebSocketProtocol)
+    protocol.loop = loop
+    protocol.ping_timeout = protocol._pong_within_s = 20.0
+    protocol.ping_sent_at = 0.0
+    loop.now_s = 65.0
+    protocol.keepalive_timeout()
+    assert (loop.timers, ended) == ([20.0], [])
+    loop.now_s = 85.0
+    protocol.keepalive_timeout()
+    assert (loop.timers, ended) == ([20.0], [85.0])

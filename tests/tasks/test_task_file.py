@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from trees import BEHAVIORS
 
+from tasks.draft import MAX_NODE_DEPTH
 from tasks.library import SCENES, TREES, NotInLibraryError, Shelf
 from tasks.scene_file import built_in_scene
 from tasks.task_file import (
@@ -189,10 +190,16 @@ def test_of_a_scene_that_is_nowhere_it_is_told_which_file_was_looked_for(tmp_pat
     assert problem.message.endswith(f", nor is there a file '{beside}'")
 
 
-def test_a_deep_tree_is_read_without_recursion() -> None:
-    depth = 1_900
-    text = "{name: t, tree: " + "{then: [" * depth + LEAF + "]}" * depth + "}"
-    assert len(check(text).definition.nodes) == depth + 1
+def nested(depth: int) -> str:
+    return "{name: t, tree: " + "{then: [" * (depth - 1) + LEAF + "]}" * (depth - 1) + "}"
+
+
+def test_a_deep_tree_is_read_and_one_beyond_the_limit_refused_without_recursion() -> None:
+    assert len(check(nested(MAX_NODE_DEPTH)).definition.nodes) == MAX_NODE_DEPTH
+    for depth in (MAX_NODE_DEPTH + 1, 5_000):
+        [(_, path, message)] = problems(nested(depth))
+        assert path is None
+        assert message == f"nodes stand inside one another in more than {MAX_NODE_DEPTH} levels"
 
 
 @pytest.mark.slow

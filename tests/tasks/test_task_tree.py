@@ -265,3 +265,35 @@ def test_a_definition_refuses_an_empty_goal_node_and_a_name_given_twice() -> Non
         TaskTreeDefinition.model_validate({"name": "t", "nodes": [root]})
     with pytest.raises(ValueError, match="both called 'n0'"):
         TaskTreeDefinition.model_validate({"name": "t", "nodes": [root, leaf]})
+
+
+def test_a_copy_goes_its_own_way() -> None:
+    tree = running_tree(then(or_("a", "b"), "c"))
+    a, b, c = (node_called(tree, name) for name in "abc")
+    tree.start(a, "pr2")
+    copied = tree.copy()
+    copied.put_back(a, failed=True)
+    copied.abandon(a)
+    copied.start(b, "other")
+    copied.finish(b)
+    assert copied.eligible_leaves().tolist() == [c]
+    assert (copied.attempts(a), copied.abandoned(a), copied.done(b)) == (1, True, True)
+    assert (tree.attempts(a), tree.abandoned(a), tree.done(b)) == (0, False, False)
+    assert tree.active_leaves() == [a]
+    assert (tree.owner(a), tree.eligible_leaves().size) == ("pr2", 0)
+    tree.finish(a)
+    assert tree.eligible_leaves().tolist() == [c]
+
+
+def test_finished_objects_are_those_of_done_leaves_alone() -> None:
+    leaves = [
+        BehaviorNode(parent=0, name=f"n{i}", behavior="bring", parameters=parameters)
+        for i, parameters in enumerate(({"object": "cup"}, {"object": "pot"}, {}))
+    ]
+    root = GoalNode(kind="and", parent=None, name="all")
+    tree = TaskTree(TaskTreeDefinition(name="t", nodes=[root, *leaves]))
+    tree.running = True
+    for leaf in (1, 3):
+        tree.start(leaf, "pr2")
+        tree.finish(leaf)
+    assert tree.finished_objects() == {"cup"}

@@ -2,6 +2,7 @@
 
 from fractions import Fraction
 from typing import Any
+from unittest import mock
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, precondition, rule
 
+from tasks import eligible
 from tasks.resolution import Resolution
 from tasks.task_tree import IllegalTransitionError, TaskTree
 
@@ -213,6 +215,15 @@ class TreeAgainstFullEvaluation(RuleBasedStateMachine):
                 committed = node.committed()
                 expected = None if committed is None else self.plain.index(committed)
                 assert self.tree.committed(i) == expected
+
+    @invariant()
+    def many_nodes_at_a_time_are_derived_as_one_by_one(self) -> None:
+        shape, state = self.tree._shape, self.tree._state
+        derived = []
+        for many in (1, len(self.plain) + 1):
+            with mock.patch.object(eligible, "_MANY", many):
+                derived.append(eligible.derive_eligible(shape, state, 0).tolist())
+        assert derived[0] == derived[1]
 
     @invariant()
     def levels_equal_the_full_evaluation(self) -> None:

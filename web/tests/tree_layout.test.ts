@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { COMPACT, collapsedAtFirst, FULL, layoutTree, type PlacedNode } from "../src/tree/layout";
+import { COMPACT, collapsedAtFirst, FULL, growTree, layoutTree, MOST_CHILDREN, type PlacedNode } from "../src/tree/layout";
 import { nodesOfDefinition, parentOf, pathsAbove, type TreeNode } from "../src/tree/tree_node";
 
 function wide(goals: number, leaves: number): TreeNode[] {
@@ -74,5 +74,36 @@ describe("folding away at first", () => {
     const shown = layoutTree(nodes, collapsed, 1200, FULL).nodes.map((placed) => placed.node.path);
     expect(shown.length).toBeLessThanOrEqual(100);
     expect(shown).toContain("/29/7");
+  });
+});
+
+describe("a tree of 100,000 nodes", () => {
+  const nodes = wide(2, 50_000);
+  const focus = "/1/40000";
+  const collapsed = collapsedAtFirst(nodes, 120, focus);
+  const layout = layoutTree(nodes, collapsed, 1200, FULL, focus, growTree(nodes));
+
+  it("has few of them placed, those around the one that matters among them", () => {
+    expect(nodes).toHaveLength(100_003);
+    const paths = layout.nodes.map((placed) => placed.node.path);
+    expect(paths).toContain(focus);
+    expect(paths.length).toBeLessThanOrEqual(MOST_CHILDREN + 3);
+    expect(layout.nodes[0]?.leftOut).toBe(0);
+    expect(layout.nodes.find((placed) => placed.node.path === "/1")).toMatchObject({
+      hidden: 0,
+      leftOut: 50_000 - MOST_CHILDREN,
+    });
+    expect(layout.nodes.find((placed) => placed.node.path === "/0")).toMatchObject({ hidden: 50_000, leftOut: 0 });
+  });
+
+  it("says where among all children those stand that are drawn", () => {
+    const placed = layout.nodes.find((each) => each.node.path === focus);
+    expect(placed).toMatchObject({ position: 40_001, siblings: 50_000 });
+  });
+
+  it("begins with the first children where none of them matters", () => {
+    const first = layoutTree(nodes, new Set(["/1"]), 1200, FULL, null, growTree(nodes));
+    expect(first.nodes[2]?.node.path).toBe("/0/0");
+    expect(first.nodes).toHaveLength(MOST_CHILDREN + 3);
   });
 });

@@ -4,10 +4,12 @@ import asyncio
 import base64
 import math
 from collections.abc import AsyncIterator
+from dataclasses import replace
 
 import pytest
 from full_disk import FailingConnection
 from recording_sink import RecordingSink
+from ticking_clock import TickingClock
 
 from robots.link.channel import Channel, ChannelClosedError, memory_channel
 from robots.link.messages import (
@@ -82,14 +84,6 @@ class PlayedRobot:
         await self.serving
 
 
-class FakeClock:
-    def __init__(self) -> None:
-        self.time_s = 0.0
-
-    def __call__(self) -> float:
-        return self.time_s
-
-
 @pytest.fixture
 async def journal() -> AsyncIterator[SqliteJournal]:
     journal = SqliteJournal(":memory:")
@@ -98,12 +92,12 @@ async def journal() -> AsyncIterator[SqliteJournal]:
 
 
 @pytest.fixture
-def clock() -> FakeClock:
-    return FakeClock()
+def clock() -> TickingClock:
+    return TickingClock()
 
 
 @pytest.fixture
-async def registry(journal: SqliteJournal, clock: FakeClock) -> AsyncIterator[RobotRegistry]:
+async def registry(journal: SqliteJournal, clock: TickingClock) -> AsyncIterator[RobotRegistry]:
     registry = RobotRegistry(journal, clock, QUICK)
     yield registry
     registry.close()
@@ -279,7 +273,7 @@ async def test_a_newer_connection_replaces_the_older_one(
 
 
 async def test_a_second_program_with_a_robots_name_is_refused_while_the_first_is_there(
-    registry: RobotRegistry, sink: RecordingSink, clock: FakeClock
+    registry: RobotRegistry, sink: RecordingSink, clock: TickingClock
 ) -> None:
     first, second = PlayedRobot(registry), PlayedRobot(registry)
     await first.greet(hello(boot="b1"))
@@ -291,7 +285,7 @@ async def test_a_second_program_with_a_robots_name_is_refused_while_the_first_is
         await second.hear()
     assert (await first.deliver(report(1))).seq == 1
     # Nothing comes of the first one any more.
-    clock.time_s += 3 * QUICK.heartbeat_s
+    clock.now_s += 3 * QUICK.heartbeat_s
     await PlayedRobot(registry).greet(hello(boot="b2"))
     await sink.wait_until(lambda: len(sink.hellos) == 2)
 
@@ -336,23 +330,40 @@ async def test_a_robot_whose_connection_ended_is_lost_after_a_while_and_only_onc
 
 
 async def test_a_silent_robot_is_cut_off_and_lost(
-    registry: RobotRegistry, sink: RecordingSink, clock: FakeClock
+    journal: SqliteJournal, clock: TickingClock
+) -> None:
+    registry = RobotRegistry(journal, clock, replace(QUICK, silence_s=0.01))
+    sink = RecordingSink(journal)
+    registry.assign("arm", sink)
+    robot = PlayedRobot(registry)
+    await robot.greet(hello())
+    assert registry.last_heard("arm") == 0.0
+    # As much as passes from one look to the next.
+    clock.step_s = QUICK.heartbeat_s
+    await sink.wait_until(lambda: len(sink.lost) == 1)
+    assert sink.lost[0].startswith("nothing was heard of it for 0.0")
+    assert registry.last_heard("arm") is None
+    registry.close()
+
+
+async def test_a_service_that_stood_still_does_not_count_that_against_a_robot(
+    registry: RobotRegistry, sink: RecordingSink, clock: TickingClock
 ) -> None:
     robot = PlayedRobot(registry)
     await robot.greet(hello())
-    assert registry.silent_for_s("arm") == 0.0
-    clock.time_s = 10.5
-    await sink.wait_until(lambda: sink.lost == ["nothing was heard of it for 10.5 s"])
-    assert registry.silent_for_s("arm") is None
+    clock.now_s += 60.0
+    await clock.looked_at(5)
+    assert (await robot.deliver(report(1))).seq == 1
+    assert sink.lost == []
 
 
 async def test_a_robot_that_beats_is_not_cut_off(
-    registry: RobotRegistry, sink: RecordingSink, clock: FakeClock
+    registry: RobotRegistry, sink: RecordingSink, clock: TickingClock
 ) -> None:
     robot = PlayedRobot(registry)
     await robot.greet(hello())
     for _ in range(3):
-        clock.time_s += 9.0
+        clock.now_s += 9.0
         await robot.say(Heartbeat(time=0.0))
         await robot.deliver(report(len(sink.reports) + 1))
     assert sink.lost == []

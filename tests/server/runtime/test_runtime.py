@@ -420,11 +420,16 @@ async def test_a_refusal_that_nobody_waits_for_any_more_leaves_the_run_alone() -
 async def test_a_snapshot_of_the_past_is_the_state_of_then() -> None:
     async with pretend_service(TWO_PARTS, HELD) as service:
         _, events = await service.run_to_end(answers=["no", "yes"])
-        first_done = next(each for each in events if isinstance(each, ev.NodeDone))
-        snapshot = await service.runtime.snapshot(first_done.seq)
+        asked = next(e for e in events if isinstance(e, ev.Prompt) and e.kind == "ask")
+        snapshot = await service.runtime.snapshot(asked.seq)
+        before = await service.runtime.snapshot(asked.seq - 1)
         now = await service.runtime.snapshot(None)
     [run] = snapshot.runs
-    assert [node.done for node in run.nodes] == [False, True, False]
+    assert run.status is RunStatus.RUNNING
+    [dialogue] = snapshot.dialogues
+    assert dialogue.prompt is not None
+    assert (dialogue.prompt.prompt, dialogue.awaiting) == (asked.prompt, "answer")
+    assert [each.awaiting for each in before.dialogues] == [None]
     assert now.runs == []
     assert now.seq == events[-1].seq
 

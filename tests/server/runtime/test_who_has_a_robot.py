@@ -11,7 +11,7 @@ from task_documents import definition_of
 from server.errors import ConflictError, InvalidError
 from server.journal.run_index import RunPage
 from server.runtime.requests import RunRequest
-from server.runtime.views import RunStatus, RunView
+from server.runtime.views import RunStatus, RunSummary
 
 ONE_PART = definition_of({"behavior": "pick_and_place", "object": "part_1", "place": "spot_1"})
 
@@ -34,7 +34,7 @@ async def test_of_two_runs_that_want_one_robot_at_once_one_gets_it() -> None:
     async with pretend_service(ONE_PART) as service:
         connect(service, "duo")
         came_of_it = await outcomes(service, request_of("duo"), request_of("duo"))
-        (run,) = [each for each in came_of_it if isinstance(each, RunView)]
+        (run,) = [each for each in came_of_it if isinstance(each, RunSummary)]
         (refusal,) = [each for each in came_of_it if isinstance(each, ConflictError)]
         assert str(refusal) == f"the robot 'duo' is busy with run {run.id}"
         assert [each.id for each in await service.runtime.runs(RunPage())] == [run.id]
@@ -44,7 +44,7 @@ async def test_a_robot_is_free_again_after_two_runs_wanted_it_at_once() -> None:
     async with pretend_service(ONE_PART) as service:
         connect(service, "duo")
         came_of_it = await outcomes(service, request_of("duo"), request_of("duo"))
-        run = next(each for each in came_of_it if isinstance(each, RunView))
+        run = next(each for each in came_of_it if isinstance(each, RunSummary))
         await service.runtime.abort(run.id)
         await service.runtime.wait_for_end(run.id)
         again = await service.runtime.start_run(request_of("duo"))

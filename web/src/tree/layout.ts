@@ -16,6 +16,8 @@ export interface PlacedNode {
   siblings: number;
   /** How many nodes are folded away under it. */
   hidden: number;
+  /** How many of its children are left out, being too many to be looked through. */
+  leftOut: number;
   expandable: boolean;
 }
 
@@ -52,77 +54,100 @@ const SMALLEST_INDENT = 12;
 /** Smaller than this nobody could read it; the indented form is taken instead. */
 const SMALLEST_SCALE = 0.8;
 
+/** Of more children of one node only so many are drawn, those around the one that matters. */
+export const MOST_CHILDREN = 200;
+
 interface Branch {
-  node: TreeNode;
+  /** Among the nodes. */
+  index: number;
   position: number;
   children: Branch[];
 }
 
-/** Place the nodes; those under a path of `collapsed` are left out. */
+/** A tree's shape, from which it is laid out again and again. */
+export interface GrownTree {
+  root: Branch | null;
+  /** How many nodes there are under each node. */
+  sizes: readonly number[];
+}
+
+/** The shape of a tree, whatever became of its nodes. */
+export function growTree(nodes: readonly TreeNode[]): GrownTree {
+  const byPath = new Map<string, Branch>();
+  const parents: (Branch | undefined)[] = [];
+  for (const [index, { path }] of nodes.entries()) {
+    const parent = parentOf(path);
+    const above = parent === null ? undefined : byPath.get(parent);
+    const branch: Branch = { index, position: (above?.children.length ?? 0) + 1, children: [] };
+    byPath.set(path, branch);
+    parents.push(above);
+    above?.children.push(branch);
+  }
+  const sizes = new Array<number>(nodes.length).fill(0);
+  for (let i = nodes.length - 1; i > 0; i--) {
+    const above = parents[i];
+    if (above !== undefined) sizes[above.index] = (sizes[above.index] as number) + (sizes[i] as number) + 1;
+  }
+  return { root: byPath.get("/") ?? null, sizes };
+}
+
+/** Place the nodes; those under a path of `collapsed` are left out, and most of very many children. */
 export function layoutTree(
   nodes: readonly TreeNode[],
   collapsed: ReadonlySet<string>,
   width: number,
   measures: Measures,
+  focus: string | null = null,
+  grown: GrownTree = growTree(nodes),
 ): TreeLayout {
-  const root = branches(nodes);
-  if (root === null) return { direction: "across", nodes: [], edges: [], width: 0, height: 0 };
-  const shown = hierarchy(root, (branch) => (collapsed.has(branch.node.path) ? [] : branch.children));
-  const sizes = sizesUnder(nodes);
-  const across = acrossLayout(shown, sizes, measures);
-  return across.width * SMALLEST_SCALE <= width ? across : downLayout(shown, sizes, width, measures);
+  if (grown.root === null) return { direction: "across", nodes: [], edges: [], width: 0, height: 0 };
+  const drawn: Drawn = { nodes, sizes: grown.sizes };
+  const shown = hierarchy(grown.root, (branch) => {
+    const { path } = nodes[branch.index] as TreeNode;
+    return collapsed.has(path) ? [] : childrenAround(branch, path, focus);
+  });
+  const across = acrossLayout(shown, drawn, measures);
+  return across.width * SMALLEST_SCALE <= width ? across : downLayout(shown, drawn, width, measures);
 }
 
-function branches(nodes: readonly TreeNode[]): Branch | null {
-  const byPath = new Map<string, Branch>();
-  for (const node of nodes) {
-    const parent = parentOf(node.path);
-    const above = parent === null ? undefined : byPath.get(parent);
-    const branch: Branch = { node, position: (above?.children.length ?? 0) + 1, children: [] };
-    byPath.set(node.path, branch);
-    above?.children.push(branch);
-  }
-  return byPath.get("/") ?? null;
+interface Drawn {
+  nodes: readonly TreeNode[];
+  sizes: readonly number[];
 }
 
-/** How many nodes there are under each node. */
-function sizesUnder(nodes: readonly TreeNode[]): ReadonlyMap<string, number> {
-  const sizes = new Map<string, number>();
-  for (let i = nodes.length - 1; i > 0; i--) {
-    const { path } = nodes[i] as TreeNode;
-    const parent = parentOf(path) as string;
-    sizes.set(parent, (sizes.get(parent) ?? 0) + (sizes.get(path) ?? 0) + 1);
-  }
-  return sizes;
+/** The children of a node that are drawn: of very many those around the one that leads to `focus`. */
+function childrenAround({ children }: Branch, path: string, focus: string | null): Branch[] {
+  if (children.length <= MOST_CHILDREN) return children;
+  const under = path === "/" ? "/" : `${path}/`;
+  const onTheWay = focus?.startsWith(under) ? Number.parseInt(focus.slice(under.length), 10) || 0 : 0;
+  const last = children.length - MOST_CHILDREN;
+  const first = Math.min(Math.max(onTheWay - MOST_CHILDREN / 2, 0), last);
+  return children.slice(first, first + MOST_CHILDREN);
 }
 
-function acrossLayout(
-  root: HierarchyNode<Branch>,
-  sizes: ReadonlyMap<string, number>,
-  measures: Measures,
-): TreeLayout {
+function acrossLayout(root: HierarchyNode<Branch>, drawn: Drawn, measures: Measures): TreeLayout {
   const row = measures.height + measures.rowGap;
   const points = tidyTree<Branch>()
     .nodeSize([row, 1])
     .separation(() => 1)(root);
-  const columns = columnsOf(points, measures);
+  const columns = columnsOf(points, drawn, measures);
   let top = 0;
   points.eachBefore((point) => {
     top = Math.min(top, point.x);
   });
-  const placed = place(points, sizes, (point) => ({
+  const placed = place(points, drawn, (point, node) => ({
     x: columns[point.depth] as number,
     y: point.x - top + MARGIN,
-    width: widthOf(point.data.node, measures),
+    width: widthOf(node, measures),
     height: measures.height,
   }));
   return { direction: "across", ...placed };
 }
 
-function columnsOf(root: HierarchyNode<Branch>, measures: Measures): number[] {
+function columnsOf(root: HierarchyNode<Branch>, { nodes }: Drawn, measures: Measures): number[] {
   const widths: number[] = [];
   root.eachBefore(({ depth, data }) => {
-    widths[depth] = Math.max(widths[depth] ?? 0, widthOf(data.node, measures));
+    widths[depth] = Math.max(widths[depth] ?? 0, widthOf(nodes[data.index] as TreeNode, measures));
   });
   let x = MARGIN;
   return widths.map((width) => {
@@ -138,17 +163,17 @@ function widthOf(node: TreeNode, measures: Measures): number {
 
 function downLayout(
   root: HierarchyNode<Branch>,
-  sizes: ReadonlyMap<string, number>,
+  drawn: Drawn,
   width: number,
   measures: Measures,
 ): TreeLayout {
   const room = width - 2 * MARGIN - measures.leafWidth;
   const indent = Math.max(SMALLEST_INDENT, Math.min(INDENT, room / Math.max(root.height, 1)));
   let row = 0;
-  const placed = place(root, sizes, (point) => ({
+  const placed = place(root, drawn, (point, node) => ({
     x: MARGIN + point.depth * indent,
     y: MARGIN + row++ * (measures.height + measures.rowGap),
-    width: widthOf(point.data.node, measures),
+    width: widthOf(node, measures),
     height: measures.height,
   }));
   return { direction: "down", ...placed };
@@ -158,31 +183,34 @@ type Box = Pick<PlacedNode, "x" | "y" | "width" | "height">;
 
 function place<P extends HierarchyNode<Branch>>(
   root: P,
-  sizes: ReadonlyMap<string, number>,
-  box: (point: P) => Box,
+  drawn: Drawn,
+  box: (point: P, node: TreeNode) => Box,
 ): Omit<TreeLayout, "direction"> {
   const nodes: PlacedNode[] = [];
-  const byPath = new Map<string, PlacedNode>();
+  const byIndex = new Map<number, PlacedNode>();
   const edges: Edge[] = [];
   let width = 0;
   let height = 0;
   root.eachBefore((point) => {
-    const { node, children, position } = point.data;
+    const { index, children, position } = point.data;
+    const node = drawn.nodes[index] as TreeNode;
+    const shown = point.children?.length ?? 0;
     const placed: PlacedNode = {
       node,
-      ...box(point as P),
+      ...box(point as P, node),
       depth: point.depth + 1,
       position,
       siblings: point.parent?.data.children.length ?? 1,
-      hidden: point.children === undefined ? (sizes.get(node.path) ?? 0) : 0,
+      hidden: shown === 0 ? (drawn.sizes[index] as number) : 0,
+      leftOut: shown === 0 ? 0 : children.length - shown,
       expandable: children.length > 0,
     };
     nodes.push(placed);
-    byPath.set(node.path, placed);
+    byIndex.set(index, placed);
     width = Math.max(width, placed.x + placed.width + MARGIN);
     height = Math.max(height, placed.y + placed.height + MARGIN);
     if (point.parent !== null) {
-      edges.push({ from: byPath.get(point.parent.data.node.path) as PlacedNode, to: placed });
+      edges.push({ from: byIndex.get(point.parent.data.index) as PlacedNode, to: placed });
     }
   });
   return { nodes, edges, width, height };
@@ -203,9 +231,9 @@ export function collapsedAtFirst(
   if (nodes.length <= limit) return collapsed;
   const onTheWay = new Set(focus === null ? ["/"] : ["/", ...pathsAbove(focus)]);
   let shown = 1;
-  for (const path of onTheWay) shown += children.get(path) ?? 0;
-  const byDepth = nodes.map((node) => node.path).sort((a, b) => depthOf(a) - depthOf(b));
-  for (const path of byDepth) {
+  for (const path of onTheWay) shown += Math.min(children.get(path) ?? 0, MOST_CHILDREN);
+  const byDepth = nodes.map(({ path }) => ({ path, depth: depthOf(path) })).sort((a, b) => a.depth - b.depth);
+  for (const { path } of byDepth) {
     const under = children.get(path) ?? 0;
     if (under === 0 || onTheWay.has(path)) continue;
     if (!collapsed.has(parentOf(path) as string) && shown + under <= limit) shown += under;
@@ -215,5 +243,8 @@ export function collapsedAtFirst(
 }
 
 function depthOf(path: string): number {
-  return path === "/" ? 0 : path.split("/").length - 1;
+  if (path === "/") return 0;
+  let depth = 0;
+  for (let at = path.indexOf("/"); at >= 0; at = path.indexOf("/", at + 1)) depth++;
+  return depth;
 }

@@ -1,7 +1,7 @@
 // A task tree as a drawing that can be walked with the arrow keys, zoomed, and folded when large.
 import { useLayoutEffect, useMemo, useRef, useState } from "preact/hooks";
 import { Edges } from "./edges";
-import { COMPACT, collapsedAtFirst, FULL, layoutTree, type PlacedNode, type TreeLayout } from "./layout";
+import { COMPACT, collapsedAtFirst, FULL, growTree, layoutTree, type PlacedNode, type TreeLayout } from "./layout";
 import { NodeCard } from "./node_card";
 import { pathsAbove, type TreeNode } from "./tree_node";
 import { inSight, useIntoSight, useSight } from "./sight";
@@ -33,19 +33,21 @@ export function TreeDrawing(props: TreeDrawingProps) {
   const { nodes, label = "Task tree", selected = null, focus = null, onSelect, compact = false } = props;
   const scroll = useRef<HTMLDivElement>(null);
   const size = useSize(scroll);
-  const [collapsed, setCollapsed] = useCollapsed(nodes, focus, compact);
+  const shape = useShape(nodes);
+  const grown = useMemo(() => growTree(shape), [shape]);
+  const [collapsed, setCollapsed] = useCollapsed(shape, focus, compact);
   const [zoom, setZoom] = useState(1);
   const measures = compact ? COMPACT : FULL;
   const layout = useMemo(
-    () => layoutTree(nodes, collapsed, size.width, measures),
-    [nodes, collapsed, size.width, measures],
+    () => layoutTree(nodes, collapsed, size.width, measures, selected ?? focus, grown),
+    [nodes, collapsed, size.width, measures, selected, focus, grown],
   );
   const scale = Math.min(1, size.width / Math.max(layout.width, 1)) * zoom;
   const sight = useSight(scroll, scale);
   useIntoSight(scroll, layout, focus, scale);
   const toggle = (path: string) => setCollapsed(toggled(collapsed, path));
   const walk = useWalk(layout, selected ?? focus, toggle, onSelect);
-  const highest = useMemo(() => Math.max(0, ...nodes.map((node) => node.potential ?? 0)), [nodes]);
+  const highest = useMemo(() => nodes.reduce((most, node) => Math.max(most, node.potential ?? 0), 0), [nodes]);
   const drawn = inSight(layout, sight, walk.at);
   const foldable = nodes.length > 24 || collapsed.size > 0;
   return (
@@ -79,8 +81,9 @@ export function TreeDrawing(props: TreeDrawingProps) {
               onClick={() => walk.take(placed.node.path)}
             >
               {/* The name, in words; one of its own beside the visible text would contradict that. */}
-              <title>{described(placed.node, placed.hidden)}</title>
+              <title>{described(placed.node, placed.hidden, placed.leftOut)}</title>
               <NodeCard placed={placed} highest={highest} compact={compact} />
+              {placed.leftOut > 0 && <LeftOut placed={placed} />}
               {placed.expandable && (foldable || placed.hidden > 0) && (
                 <FoldButton placed={placed} layout={layout} onToggle={() => toggle(placed.node.path)} />
               )}
@@ -106,6 +109,15 @@ function ZoomButtons({ zoom, setZoom }: { zoom: number; setZoom: (zoom: number) 
         +
       </button>
     </div>
+  );
+}
+
+/** How many children of a node are not drawn. */
+function LeftOut({ placed }: { placed: PlacedNode }) {
+  return (
+    <text class="left-out" aria-hidden="true" x={placed.width + 24} y={placed.height - 4}>
+      {`${placed.leftOut.toLocaleString("en")} more not drawn`}
+    </text>
   );
 }
 
@@ -140,9 +152,8 @@ function toggled(collapsed: ReadonlySet<string>, path: string): Set<string> {
 }
 
 /** What is folded away: chosen anew for another tree, and never what leads to `focus`. */
-function useCollapsed(nodes: readonly TreeNode[], focus: string | null, compact: boolean) {
+function useCollapsed(shape: readonly TreeNode[], focus: string | null, compact: boolean) {
   const limit = compact ? SHOWN_AT_FIRST_COMPACT : SHOWN_AT_FIRST;
-  const shape = useShape(nodes);
   const [collapsed, setCollapsed] = useState<ReadonlySet<string>>(new Set());
   useLayoutEffect(() => setCollapsed(collapsedAtFirst(shape, limit, focus)), [shape, limit]);
   useLayoutEffect(() => {

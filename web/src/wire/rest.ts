@@ -96,10 +96,10 @@ export const runs = (limit = 100, offset = 0, statuses: readonly RunStatus[] = [
     `/api/runs?limit=${limit}&offset=${offset}${statuses.map((status) => `&status=${status}`).join("")}`,
   );
 export const run = (id: string) => call<RunView>("GET", `/api/runs/${segment(id)}`);
-export const startRun = (request: RunRequest) => call<RunView>("POST", "/api/runs", request);
-export const pauseRun = (id: string) => call<RunView>("POST", `/api/runs/${segment(id)}/pause`);
-export const resumeRun = (id: string) => call<RunView>("POST", `/api/runs/${segment(id)}/resume`);
-export const abortRun = (id: string) => call<RunView>("POST", `/api/runs/${segment(id)}/abort`);
+export const startRun = (request: RunRequest) => call<RunSummary>("POST", "/api/runs", request);
+export const pauseRun = (id: string) => call<RunSummary>("POST", `/api/runs/${segment(id)}/pause`);
+export const resumeRun = (id: string) => call<RunSummary>("POST", `/api/runs/${segment(id)}/resume`);
+export const abortRun = (id: string) => call<RunSummary>("POST", `/api/runs/${segment(id)}/abort`);
 export const intervene = (id: string, intervention: Intervention) =>
   call<Intervention>("POST", `/api/runs/${segment(id)}/interventions`, intervention);
 

@@ -1,0 +1,77 @@
+"""Work that would hold the event loop up: little of it in a thread, much in a process of its own.
+
+A thread does not help where one call into C holds the interpreter's lock for long, as reading or
+writing many megabytes of JSON does.
+"""
+
+import asyncio
+import ctypes
+import multiprocessing
+import os
+import signal
+import sys
+from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from typing import ParamSpec, TypeVar
+
+from server.errors import ConflictError
+
+P = ParamSpec("P")
+T = TypeVar("T")
+
+MUCH_CHARS = 128 * 1024
+"""From so many characters of text on, work is done in the process."""
+
+PR_SET_PDEATHSIG = 1
+NICE = 5
+"""So much less urgent than robots is what nobody's safety depends on."""
+
+
+class OffLoop:
+    """Does one piece of long work after the other in a process, which the first one starts."""
+
+    def __init__(self) -> None:
+        self._pool: ProcessPoolExecutor | None = None
+
+    async def run(self, chars: int, work: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
+        """Do what there is to do with so many characters of text.
+
+        `work` and what it is given have to be picklable, and so has what it returns or raises.
+        Raises what it raises, and `ConflictError` where its process has died.
+        """
+        if chars < MUCH_CHARS:
+            return await asyncio.to_thread(work, *args, **kwargs)
+        pool = self._pool or self._start()
+        try:
+            return await asyncio.wrap_future(pool.submit(work, *args, **kwargs))
+        except BrokenProcessPool:
+            if self._pool is pool:
+                self._pool = None
+            raise ConflictError(
+                "the process that does large pieces of work has died, as where there is too little "
+                "memory: try it again"
+            ) from None
+
+    def _start(self) -> ProcessPoolExecutor:
+        context = multiprocessing.get_context("spawn")
+        self._pool = ProcessPoolExecutor(1, mp_context=context, initializer=_prepare)
+        return self._pool
+
+    def close(self) -> None:
+        """End the process; what is under way in it is of no use any more."""
+        pool, self._pool = self._pool, None
+        if pool is None:
+            return
+        processes = list(pool._processes.values())
+        pool.shutdown(wait=False, cancel_futures=True)
+        for process in processes:
+            process.kill()
+
+
+def _prepare() -> None:
+    """In the process: leave Ctrl-C to the service, and end with it however that ends."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    os.nice(NICE)
+    if sys.platform == "linux":
+        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)

@@ -1,0 +1,116 @@
+"""What a run begins with, from the documents that a request names: read and checked as a whole."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from server.behaviors import behavior_step_counts
+from server.document_checks import Finder
+from server.documents import SPOKEN, DocumentKind, FixedDocuments, Uploaded
+from server.errors import ImpossibleError, InvalidError, NotFoundError
+from server.runtime.ports import LIVE, PreparedRun
+from server.runtime.requests import RunRequest
+from server.scene_checks import WorldChecks
+from tasks.definition import BehaviorNode, TaskTreeDefinition
+from tasks.library import NotInLibraryError
+from tasks.problem import InvalidFileError
+from tasks.scenario import Scenario
+from tasks.scenario_file import find_misfits, moved_scene
+from tasks.scene import Scene
+
+
+@dataclass(frozen=True, slots=True)
+class RunPreparer:
+    """Prepares runs wherever that is done; holds nothing of the journal."""
+
+    fixed: Mapping[DocumentKind, FixedDocuments]
+    worlds: WorldChecks
+
+    def prepare(self, request: RunRequest, uploaded: Uploaded) -> PreparedRun:
+        """Raises `NotFoundError` or `InvalidError`."""
+        finder = Finder(self.fixed, uploaded)
+        scenario = self._scenario(request, finder)
+        tree, scene = _load_tree(finder, request.tree, request.scene)
+        if request.world == LIVE:
+            scene = scene or Scene(name="live", objects={}, places={})
+        else:
+            scene = scene or self._lay_out(request, tree)
+            # Before the scenario has its way: out of reach is what it may put things to.
+            self._refuse_impossible(request.world, scene, tree)
+        if scenario is not None:
+            scene = _moved(scene, scenario, tree)
+        return PreparedRun(request.tree, tree.model_dump_json(), scene, scenario)
+
+    def _scenario(self, request: RunRequest, finder: Finder) -> Scenario | None:
+        if not request.scenario:
+            return None
+        try:
+            scenario = finder.scenario(request.scenario)
+        except NotInLibraryError as error:
+            raise NotFoundError(str(error)) from error
+        except InvalidFileError as error:
+            raise _unusable(DocumentKind.SCENARIO, request.scenario, error) from error
+        if scenario.tree != request.tree:
+            raise InvalidError(
+                f"scenario '{scenario.name}' is for the tree '{scenario.tree}', "
+                f"not '{request.tree}'"
+            )
+        return scenario
+
+    def _lay_out(self, request: RunRequest, tree: TaskTreeDefinition) -> Scene:
+        """A scene for a tree that has none. Raises `InvalidError` where the world cannot."""
+        adapter = self.worlds.adapter(request.world)
+        if not adapter.lays_out_anything:
+            raise InvalidError(
+                f"tree '{tree.name}' names no scene, and the world '{request.world}' needs one"
+            )
+        leaves = [each for each in tree.nodes if isinstance(each, BehaviorNode)]
+        names = [(each.object, each.place) for each in leaves if each.object is not None]
+        try:
+            return adapter.lay_out(names, request.seed)
+        except ValueError as error:
+            raise InvalidError(f"tree '{tree.name}' cannot be laid out: {error}") from error
+
+    def _refuse_impossible(self, world: str, scene: Scene, tree: TaskTreeDefinition) -> None:
+        """Raise `ImpossibleError` where the world's robot cannot do the tree in the scene."""
+        check = self.worlds.check_of(world)
+        problems = check(scene, tree.nodes) if check is not None else []
+        if problems:
+            raise ImpossibleError(
+                f"the robot of the world '{world}' cannot do the tree '{tree.name}' in the scene "
+                f"'{scene.name}'",
+                problems,
+            )
+
+
+def _load_tree(
+    finder: Finder, name: str, scene: str | None
+) -> tuple[TaskTreeDefinition, Scene | None]:
+    """A tree and its scene; `scene` names another one that the tree fits."""
+    try:
+        chosen = finder.scene(scene) if scene else None
+    except NotInLibraryError as error:
+        raise NotFoundError(str(error)) from error
+    except InvalidFileError as error:
+        raise _unusable(DocumentKind.SCENE, scene or "", error) from error
+    try:
+        task = finder.task(name, chosen)
+    except NotInLibraryError as error:
+        raise NotFoundError(f"there is no {SPOKEN[DocumentKind.TREE]} '{name}'") from error
+    except InvalidFileError as error:
+        raise _unusable(DocumentKind.TREE, name, error) from error
+    named = chosen.name if chosen else task.definition.scene
+    return task.definition.model_copy(update={"name": name, "scene": named}), task.scene
+
+
+def _moved(scene: Scene, scenario: Scenario, tree: TaskTreeDefinition) -> Scene:
+    """The scene as the scenario begins it. Raises `InvalidError` where the two do not fit."""
+    misfits = find_misfits(scenario, tree, scene, behavior_step_counts())
+    if misfits:
+        problems = [each.message for each in misfits]
+        raise InvalidError(f"scenario '{scenario.name}' does not fit this run", problems)
+    return moved_scene(scene, scenario)
+
+
+def _unusable(kind: DocumentKind, name: str, error: InvalidFileError) -> InvalidError:
+    sentences = str(error).splitlines()
+    return InvalidError(f"the {SPOKEN[kind]} '{name}' cannot be used", sentences)

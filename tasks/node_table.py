@@ -1,0 +1,122 @@
+"""The nodes of a task tree in columns, so that a large one consists of few objects.
+
+A hundred thousand objects each a node would make every collection of garbage a pause.
+"""
+
+from array import array
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import JsonValue
+
+from tasks.definition import BehaviorNode, GoalNode, NodeKind, TaskTreeDefinition
+from tasks.tree_shape import TreeShape
+
+NO_CODE = -1
+
+_NONE: Mapping[str, JsonValue] = {}
+
+
+class NodeTable:
+    """Names, shape and leaves of a tree. Nodes are added depth first; `close` completes it.
+
+    `behaviors` and `objects` are each listed once: a node has their index, its code.
+    """
+
+    def __init__(self) -> None:
+        self.shape = TreeShape()
+        self.names: list[str] = []
+        self.behaviors: list[str] = []
+        self.objects: list[str] = []
+        self._parameters: list[Mapping[str, JsonValue]] = []
+        self._behavior_codes = array("q")
+        self._object_codes = array("q")
+        self._known_names: set[str] = set()
+        self._known_behaviors: dict[str, int] = {}
+        self._known_objects: dict[str, int] = {}
+
+    @classmethod
+    def of(cls, definition: TaskTreeDefinition) -> "NodeTable":
+        """The table of a definition."""
+        table = cls()
+        for node in definition.nodes:
+            table.add(node)
+        table.close()
+        return table
+
+    def add(self, node: GoalNode | BehaviorNode) -> None:
+        """Add the next node. Raises `ValueError`: out of order, or its name occurs already."""
+        if node.name in self._known_names:
+            raise ValueError(f"two nodes are called '{node.name}'")
+        self._known_names.add(node.name)
+        self.shape.add(NodeKind(node.kind), node.parent)
+        self.names.append(node.name)
+        if isinstance(node, GoalNode):
+            self._parameters.append(_NONE)
+            self._behavior_codes.append(NO_CODE)
+            self._object_codes.append(NO_CODE)
+            return
+        # Made anew, item by item: the collector of garbage then never looks through a dict of plain
+        # values, but it does through one that a library has made, and its copies.
+        self._parameters.append({key: value for key, value in node.parameters.items()})  # noqa: C416
+        code = self._known_behaviors.setdefault(node.behavior, len(self.behaviors))
+        if code == len(self.behaviors):
+            self.behaviors.append(node.behavior)
+        self._behavior_codes.append(code)
+        self._object_codes.append(NO_CODE if node.object is None else self._add_object(node.object))
+
+    def _add_object(self, name: str) -> int:
+        code = self._known_objects.setdefault(name, len(self.objects))
+        if code == len(self.objects):
+            self.objects.append(name)
+        return code
+
+    def object_code(self, name: str) -> int:
+        """The code of an object; `NO_CODE` for one that no leaf handles."""
+        return self._known_objects.get(name, NO_CODE)
+
+    def close(self) -> None:
+        """There are no more nodes. Raises `ValueError`: a goal node has no child."""
+        self.shape.close()
+        self._known_names.clear()
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+    def handled_objects(self) -> list[str]:
+        """The object of each leaf that handles one, in tree order."""
+        codes = self.object_codes
+        return [self.objects[code] for code in codes[codes != NO_CODE].tolist()]
+
+    def behavior(self, node: int) -> str | None:
+        """A leaf's behavior; None for a goal node."""
+        code = self._behavior_codes[node]
+        return None if code == NO_CODE else self.behaviors[code]
+
+    def text(self, node: int, parameter: str) -> str | None:
+        """A leaf's parameter, if it has it and it is text; None for a goal node."""
+        value = self._parameters[node].get(parameter)
+        return value if isinstance(value, str) else None
+
+    def leaf(self, node: int) -> BehaviorNode | None:
+        """A leaf's definition; None for a goal node."""
+        code = self._behavior_codes[node]
+        if code == NO_CODE:
+            return None
+        return BehaviorNode(
+            parent=self.shape.parents[node] if node else None,
+            name=self.names[node],
+            behavior=self.behaviors[code],
+            parameters=dict(self._parameters[node]),
+        )
+
+    @property
+    def behavior_codes(self) -> NDArray[np.int64]:
+        """Of every node; `NO_CODE` for goal nodes."""
+        return np.frombuffer(self._behavior_codes, dtype=np.int64)
+
+    @property
+    def object_codes(self) -> NDArray[np.int64]:
+        """Of every node; `NO_CODE` for goal nodes and for leaves without an object."""
+        return np.frombuffer(self._object_codes, dtype=np.int64)
