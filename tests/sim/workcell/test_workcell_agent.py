@@ -184,7 +184,9 @@ def test_the_robot_declares_the_range_that_it_grasps_in(scene: Scene) -> None:
 
 def test_a_wrong_option_stops_the_robot_from_being_made(scene: Scene) -> None:
     setup = WorldSetup(robot="r1", scene=scene, seed=0, speed=None, options={"renderer": "laser"})
-    with pytest.raises(ValueError, match="world option 'renderer' of the workcell"):
+    with pytest.raises(
+        ValueError, match="an option of the world 'workcell' is wrong: 'renderer' must"
+    ):
         adapter.create_agent(setup)
 
 
