@@ -64,11 +64,11 @@ class ServiceUnderTest:
 
     async def refused(self, limit: LimitName) -> None:
         """Wait until something was refused for this limit."""
-        await _until(lambda: self.refusals.counts[limit] > 0)
+        await until(lambda: self.refusals.counts[limit] > 0)
 
     async def left_alone(self) -> None:
         """Wait until no connection is left."""
-        await _until(lambda: len(self.server.visitors) == 0)
+        await until(lambda: len(self.server.visitors) == 0)
 
     @property
     def ws(self) -> str:
@@ -80,7 +80,7 @@ class ServiceUnderTest:
         return httpx.AsyncClient(transport=transport, base_url=self.url, **arguments)
 
 
-async def _until(true: Callable[[], bool]) -> None:
+async def until(true: Callable[[], bool]) -> None:
     async with asyncio.timeout(60):
         while not true():  # noqa: ASYNC110 - the service has no events for its tests
             await asyncio.sleep(0.01)
