@@ -12,11 +12,17 @@ STEP_S = 0.05
 
 
 class RobotKeeper:
-    """Keeps one program of the robot `name` running; what it reports is kept in an outbox."""
+    """Keeps one program of the robot `name` running; what it reports is kept in an outbox.
 
-    def __init__(self, name: str, url: str, folder: Path, credential: str) -> None:
+    Where no credential is needed, an empty one will do.
+    """
+
+    def __init__(
+        self, name: str, url: str, folder: Path, credential: str, step_s: float = STEP_S
+    ) -> None:
         self.name = name
         self.starts = 0
+        self._step_s = step_s
         self._url = url.replace("http", "ws", 1) + "/ws/robot"
         self._outbox = folder / f"{name}.outbox"
         self._credential = folder / f"{name}.credential"
@@ -32,7 +38,7 @@ class RobotKeeper:
                 self._process = await asyncio.create_subprocess_exec(
                     sys.executable, str(ROBOT), "--url", self._url, "--robot", self.name,
                     "--credential", str(self._credential), "--outbox", str(self._outbox),
-                    "--step-s", str(STEP_S),
+                    "--step-s", str(self._step_s),
                     env=dict(os.environ), stderr=asyncio.subprocess.DEVNULL,
                 )  # fmt: skip
                 await self._process.wait()

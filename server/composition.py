@@ -30,6 +30,7 @@ from server.robots.endpoint import ROBOT_PATH, add_robot_route
 from server.robots.passes import OwnRobots
 from server.robots.process import launch
 from server.robots.registry import RobotRegistry
+from server.robots.simulation_thread import SimulationThread
 from server.robots.times import LinkTimes
 from server.runtime.context import RunSettings
 from server.runtime.operator_mail import OperatorMail
@@ -115,6 +116,7 @@ async def _open(
     for group in ("mend.behaviors", "mend.monitors"):
         load_plugins(group)
     off_loop = OffLoop()
+    simulation_thread = SimulationThread()
     library = build_library(
         journal,
         fixed_documents(given, settings.scenes),
@@ -132,6 +134,7 @@ async def _open(
             registry=registry,
             url=f"ws{url.removeprefix('http')}{ROBOT_PATH}",
             own_robots=own_robots,
+            aside=simulation_thread,
             certificate=settings.tls_certificate,
             hang_s=settings.robot_hang_timeout_s,
         ),
@@ -216,6 +219,7 @@ async def _open(
                 await serving
         await deeds.close()
         off_loop.close()
+        simulation_thread.close()
         config_socket.close()
 
 

@@ -7,7 +7,8 @@ from collections import deque
 from collections.abc import Awaitable, Callable
 from contextlib import suppress
 from dataclasses import dataclass
-from typing import Any
+from functools import partial
+from typing import Any, TypeVar
 
 from robots.agent import AgentCore
 from robots.link.backoff import Backoff
@@ -23,8 +24,13 @@ from robots.showing import ShowsPoses
 
 log = logging.getLogger(__name__)
 
+T = TypeVar("T")
+
 Connect = Callable[[], Awaitable[Channel]]
 """Opens a channel. Raises `ChannelClosedError` (try again) or `LinkRefusedError` (give up)."""
+
+Aside = Callable[[Callable[[], Any]], Awaitable[Any]]
+"""Does something that takes a while where it keeps nobody waiting; one thing after the other."""
 
 TURNS_OF_THE_LOOP = 5
 """So many turns of the event loop bring a frame from the socket to the agent."""
@@ -46,12 +52,19 @@ async def run_agent(
     clock: Clock,
     generator: random.Random,
     settings: LinkSettings | None = None,
+    aside: Aside | None = None,
 ) -> None:
     """Run a robot until it is told to shut down.
 
-    Raises `LinkRefusedError` if the service does not want it.
+    With `aside` that has the agent at work, in a thread of its own for example, so that others in
+    this event loop are not kept waiting. Raises `LinkRefusedError` if the service does not want it.
     """
-    await _RobotEnd(agent, connect, outbox, clock, generator, settings or LinkSettings()).run()
+    settings = settings or LinkSettings()
+    await _RobotEnd(agent, connect, outbox, clock, generator, settings, aside or _at_once).run()
+
+
+async def _at_once(work: Callable[[], Any]) -> Any:
+    return work()
 
 
 class _RobotEnd:
@@ -63,8 +76,11 @@ class _RobotEnd:
         clock: Clock,
         generator: random.Random,
         settings: LinkSettings,
+        aside: Aside,
     ) -> None:
         self._agent = agent
+        self._aside = aside
+        self._emitted: list[Callable[[], None]] = []
         self._connect = connect
         self._outbox = outbox
         self._clock = clock
@@ -104,12 +120,28 @@ class _RobotEnd:
 
     # --- What the agent emits -----------------------------------------------------------------
 
+    async def _have_agent(self, work: Callable[[], T]) -> T:
+        """Have the agent at work, and pass on what it emitted meanwhile."""
+        try:
+            result: T = await self._aside(work)
+        finally:
+            emitted, self._emitted = self._emitted, []
+            for pass_on in emitted:
+                pass_on()
+        return result
+
     def _emit(self, body: ReportBody, time_s: float, world: dict[str, Any] | None) -> None:
+        self._emitted.append(partial(self._report, body, time_s, world))
+
+    def _report(self, body: ReportBody, time_s: float, world: dict[str, Any] | None) -> None:
         self._outbox.add(body, time_s, world)
         if self._connection is not None:
             self._connection.wake()
 
     def _emit_picture(self, picture: Picture) -> None:
+        self._emitted.append(partial(self._show_picture, picture))
+
+    def _show_picture(self, picture: Picture) -> None:
         if self._connection is not None:
             self._connection.send(picture)
 
@@ -176,7 +208,7 @@ class _RobotEnd:
         agent = self._agent
         while True:
             self._wake.clear()
-            self._carry_out_commands()
+            await self._carry_out_commands()
             if agent.shut_down:
                 await self._say_goodbye()
                 return
@@ -187,7 +219,7 @@ class _RobotEnd:
             delay_s = self._pacer.delay_s(agent.pace, self._clock.now(), agent.time_s())
             if delay_s > 0.0:
                 await self._clock.wait(self._wake, delay_s)
-            elif self._advance():
+            elif await self._advance():
                 self._show_if_due()
                 await self._let_commands_in()
             else:
@@ -203,24 +235,29 @@ class _RobotEnd:
         """
         return len(self._outbox) > 0 if self._simulated else self._outbox.crowded
 
-    def _advance(self) -> bool:
+    async def _advance(self) -> bool:
         """Let a slice of time pass; False when there is nothing to do."""
         agent = self._agent
-        began, robot_began = self._clock.now(), agent.time_s()
-        slice_s = min(self._pacer.slice_s(agent.pace), self._sampling.longest_slice_s(began))
-        busy = agent.advance(slice_s)
-        self._pacer.took(self._clock.now() - began, agent.time_s() - robot_began)
-        return busy
+        longest_s = self._sampling.longest_slice_s(self._clock.now())
+        slice_s = min(self._pacer.slice_s(agent.pace), longest_s)
 
-    def _carry_out_commands(self) -> None:
+        def advance() -> bool:
+            began, robot_began = self._clock.now(), agent.time_s()
+            busy = agent.advance(slice_s)
+            self._pacer.took(self._clock.now() - began, agent.time_s() - robot_began)
+            return busy
+
+        return await self._have_agent(advance)
+
+    async def _carry_out_commands(self) -> None:
         while self._commands:
             command = self._commands.popleft()
             if self._memory.is_new(command.id):
                 if isinstance(command, UnknownCommand):
                     rejected = Rejected(command=command.id, reason=command.reason)
-                    self._emit(rejected, self._agent.time_s(), None)
+                    self._report(rejected, self._agent.time_s(), None)
                 else:
-                    self._agent.handle(command.id, command.body)
+                    await self._have_agent(partial(self._agent.handle, command.id, command.body))
                     self._sampling.change()
             if self._connection is not None:
                 self._connection.send(Taken(command=command.id))

@@ -15,7 +15,7 @@ from typing import Protocol
 from uuid import uuid4
 
 from robots.link.channel import Channel, memory_channel
-from robots.link.client import run_agent
+from robots.link.client import Aside, run_agent
 from robots.link.clock import LoopClock
 from robots.link.outbox import IN_MEMORY, Outbox
 from server.descriptors import (
@@ -69,12 +69,14 @@ async def launch(
     registry: RobotRegistry,
     own_robots: OwnRobots,
     url: str,
+    aside: Aside,
     certificate: Path | None = None,
     hang_s: float = 6.0,
 ) -> SimulatedRobot:
     """Start a simulated robot in a world of the entry points.
 
-    A robot in a process of its own that is silent for `hang_s` is killed. `url` is this service's
+    A robot in a process of its own that is silent for `hang_s` is killed; one in this process works
+    `aside` of the event loop. `url` is this service's
     `/ws/robot`, as seen from this machine, and `certificate` the service's own, if it speaks TLS;
     the process gets a credential for its time. Raises `InvalidError` if there is no such world or
     it cannot run here.
@@ -89,7 +91,7 @@ async def launch(
             world_name, ended, registry, own_robots, url, certificate=certificate, hang_s=hang_s
         )
     else:
-        robot = InProcessRobot(adapter, ended, registry, own_robots)
+        robot = InProcessRobot(adapter, ended, registry, own_robots, aside)
     await robot.start(setup)
     return robot
 
@@ -223,7 +225,7 @@ class RobotProcess:
 
 
 class InProcessRobot:
-    """A robot that runs in this event loop; for worlds that neither block nor crash."""
+    """A robot in the service's own process; for worlds that neither block for long nor crash."""
 
     def __init__(
         self,
@@ -231,7 +233,9 @@ class InProcessRobot:
         ended: Ended,
         registry: RobotRegistry,
         own_robots: OwnRobots,
+        aside: Aside,
     ) -> None:
+        self._aside = aside
         self._adapter = adapter
         self._ended = ended
         self._registry = registry
@@ -268,7 +272,10 @@ class InProcessRobot:
             agent = await once_there_are_descriptors(
                 lambda: asyncio.to_thread(self._adapter.create_agent, setup)
             )
-            await run_agent(agent, self._connect, outbox, LoopClock(), random.Random(setup.seed))
+            await run_agent(
+                agent, self._connect, outbox, LoopClock(), random.Random(setup.seed),
+                aside=self._aside,
+            )  # fmt: skip
         except Exception as error:
             reason = f"its program failed: {error}"
             if is_for_want_of_descriptors(error):

@@ -160,9 +160,10 @@ class Runtime:
         if not self._closing:
             self._closing = True
             self._journal.trouble.unwatch(self._journal_troubled)
-        for task in self._tasks.values():
+        tasks = tuple(self._tasks.values())
+        for task in tasks:
             task.cancel()
-        await asyncio.gather(*self._tasks.values(), return_exceptions=True)
+        await asyncio.gather(*tasks, return_exceptions=True)
 
     async def wait_for_end(self, run: UUID) -> RunView:
         """Wait until a run has ended."""
@@ -284,6 +285,7 @@ class Runtime:
         for robot in state.started.robots:
             self._robots.unassign(robot)
         self._runs.pop(state.id, None)
+        self._tasks.pop(state.id, None)
         self._poses.close(state.id)
         self._let_go(state)
         if not task.cancelled() and (error := task.exception()) is not None:

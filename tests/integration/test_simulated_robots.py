@@ -7,6 +7,7 @@ import signal
 import sys
 import time
 from collections.abc import AsyncIterator
+from functools import partial
 from pathlib import Path
 
 import counting_world
@@ -22,6 +23,7 @@ from server.journal.sqlite import SqliteJournal
 from server.robots.passes import OwnRobots
 from server.robots.process import RobotProcess, launch
 from server.robots.registry import RobotRegistry
+from server.robots.simulation_thread import SimulationThread
 from sim.world import WorldSetup
 from tasks.plugins import load_plugins
 from tasks.scene import Scene
@@ -30,6 +32,7 @@ DOUBLES = Path(counting_world.__file__).parent
 SETUP = WorldSetup(
     robot="counter", scene=Scene(name="empty", objects={}, places={}), seed=1, speed=None
 )
+launched = partial(launch, aside=SimulationThread())
 START = Start(execution="e1", node="/0", behavior="count", parameters={})
 
 
@@ -62,7 +65,7 @@ async def test_a_killed_process_is_reported_once_and_can_be_started_again(
     own = OwnRobots()
     access = Access("secret", own_robots=own, wall_time_s=time.time)
     async with served(registry, access=access) as url:
-        robot = await launch(
+        robot = await launched(
             "counting", SETUP, ended.put_nowait, registry=registry, own_robots=own, url=url
         )
         await sink.wait_until(lambda: len(sink.hellos) == 1)
@@ -138,7 +141,7 @@ async def test_a_shut_down_process_says_that_it_ended(journal: SqliteJournal) ->
     sink = RecordingSink(journal)
     registry.assign("counter", sink)
     async with served(registry) as url:
-        await launch(
+        await launched(
             "counting", SETUP, ended.put_nowait, registry=registry, own_robots=OwnRobots(), url=url
         )
         await sink.wait_until(lambda: len(sink.hellos) == 1)
@@ -152,7 +155,7 @@ async def test_a_robot_within_the_service_runs_without_a_socket(journal: SqliteJ
     ended: asyncio.Queue[str] = asyncio.Queue()
     sink = RecordingSink(journal)
     registry.assign("counter", sink)
-    robot = await launch(
+    robot = await launched(
         "embedded",
         SETUP,
         ended.put_nowait,
@@ -175,7 +178,7 @@ async def test_a_world_that_cannot_run_here_is_refused_with_its_reason(
     registry = RobotRegistry(journal, time.monotonic)
     ended: asyncio.Queue[str] = asyncio.Queue()
     with pytest.raises(InvalidError, match="needs a package that is not installed"):
-        await launch(
+        await launched(
             "absent",
             SETUP,
             ended.put_nowait,
@@ -184,7 +187,7 @@ async def test_a_world_that_cannot_run_here_is_refused_with_its_reason(
             url="ws://unused",
         )
     with pytest.raises(InvalidError, match="there is no world 'nowhere'"):
-        await launch(
+        await launched(
             "nowhere",
             SETUP,
             ended.put_nowait,

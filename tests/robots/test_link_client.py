@@ -2,14 +2,17 @@
 
 import asyncio
 import random
+import threading
 from collections.abc import AsyncIterator
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from typing import TypeVar
 
 import pytest
 from counting_agent import CountingAgent
 
 from robots.link.channel import Channel, ChannelClosedError, LinkRefusedError, memory_channel
-from robots.link.client import LinkSettings, run_agent
+from robots.link.client import Aside, LinkSettings, run_agent
 from robots.link.clock import LoopClock
 from robots.link.messages import (
     Ack,
@@ -86,13 +89,21 @@ class PlayedService:
 class Robot:
     """A counting robot that runs against a played service."""
 
-    def __init__(self, agent: CountingAgent, outbox: Outbox | None = None) -> None:
+    def __init__(
+        self, agent: CountingAgent, outbox: Outbox | None = None, aside: Aside | None = None
+    ) -> None:
         self.agent = agent
         self.service = PlayedService()
         self.outbox = outbox or Outbox(IN_MEMORY, agent.robot, "b1")
         self.task = asyncio.create_task(
             run_agent(
-                agent, self.service.connect, self.outbox, LoopClock(), random.Random(0), IMPATIENT
+                agent,
+                self.service.connect,
+                self.outbox,
+                LoopClock(),
+                random.Random(0),
+                IMPATIENT,
+                aside,
             )
         )
 
@@ -123,6 +134,28 @@ async def test_a_command_is_carried_out_taken_and_reported_on(robot: Robot) -> N
     reports = await acknowledge_until_finished(robot.service)
     assert [report.seq for report in reports] == [1, 2, 3, 4]
     assert all(report.boot == "b1" for report in reports)
+
+
+async def test_an_agent_works_in_a_thread_of_its_own_and_its_reports_are_passed_on() -> None:
+    threads: set[int] = set()
+
+    class Agent(CountingAgent):
+        def advance(self, duration_s: float) -> bool:
+            threads.add(threading.get_ident())
+            return super().advance(duration_s)
+
+    executor = ThreadPoolExecutor(1)
+    robot = Robot(Agent(), aside=partial(asyncio.get_running_loop().run_in_executor, executor))
+    await robot.service.accept()
+    await robot.service.command("c1", START)
+    reports = await acknowledge_until_finished(robot.service)
+    assert [report.seq for report in reports] == [1, 2, 3, 4]
+    assert len(threads) == 1
+    assert threading.get_ident() not in threads
+    robot.task.cancel()
+    await asyncio.gather(robot.task, return_exceptions=True)
+    robot.outbox.close()
+    executor.shutdown()
 
 
 async def test_a_command_that_comes_twice_is_carried_out_once_and_taken_twice(

@@ -1,5 +1,7 @@
 """A long history: only runs that go on are folded at the start; ended ones when asked for."""
 
+import asyncio
+import gc
 import sqlite3
 from contextlib import closing
 from pathlib import Path
@@ -44,9 +46,9 @@ def folded(monkeypatch: pytest.MonkeyPatch) -> list[UUID]:
     runs: list[UUID] = []
     fold = History.at
 
-    async def at(history: History, run: UUID, until: int | None) -> Any:
+    async def at(history: History, run: UUID, *until: Any) -> Any:
         runs.append(run)
-        return await fold(history, run, until)
+        return await fold(history, run, *until)
 
     monkeypatch.setattr(History, "at", at)
     return runs
@@ -203,3 +205,18 @@ async def test_an_older_journal_is_indexed_as_it_is_opened(path: Path, interrupt
         await service.runtime.wait_for_end(interrupted)
         ended = await service.journal.read(0, 10_000, interrupted)
     assert isinstance(ended[-1], ev.RunFinished)
+
+
+async def test_nothing_is_kept_of_the_tasks_of_runs_that_ended(path: Path) -> None:
+    async with pretend_service(TWO_PARTS, journal=path) as service:
+        for _ in range(3):
+            started = await service.runtime.start_run(REQUEST)
+            await service.runtime.wait_for_end(started.id)
+            del started
+        gc.collect()
+        left = [
+            each
+            for each in gc.get_objects()
+            if isinstance(each, asyncio.Task) and each.get_name().startswith("run ")
+        ]
+        assert left == []
