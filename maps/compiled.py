@@ -1,4 +1,4 @@
-"""How numeric kernels are compiled that may make arrays of their own."""
+"""How numeric kernels are compiled."""
 
 from collections.abc import Callable
 from typing import Any, TypeVar, cast
@@ -8,10 +8,15 @@ import numba
 Kernel = TypeVar("Kernel", bound=Callable[..., Any])
 
 
-def compiled(function: Kernel) -> Kernel:
-    """Compile on the first call, keeping the result where some cache folder can be written."""
+def compiled(function: Kernel, **options: Any) -> Kernel:
+    """Compile on the first call, keeping the result where some cache folder can be written.
+
+    Without one (a read-only install and no home folder) numba refuses to keep anything. `options`
+    of numba's own; a division by zero gives what NumPy gives unless they say otherwise.
+    """
+    options = {"error_model": "numpy", **options}
     njit = cast(Any, numba.njit)
     try:
-        return cast(Kernel, njit(cache=True, error_model="numpy")(function))
+        return cast(Kernel, njit(cache=True, **options)(function))
     except RuntimeError:
-        return cast(Kernel, njit(error_model="numpy")(function))
+        return cast(Kernel, njit(**options)(function))

@@ -46,6 +46,7 @@ from robots.showing import PoseDisplay
 from robots.understanding import CommandError, Understanding
 from robots.vision.color_model import ColorModel
 from robots.vision.drawing import encode_jpeg
+from robots.vision.warming_up import warm_up
 
 _SEEN_AT_ONCE = (IssueDetected, Finished, Looked, Rejected)
 """Reports that the service must see before more time passes."""
@@ -101,6 +102,7 @@ class Robot:
         """`films`: the forearm camera also takes pictures that only a clip before a fault needs."""
         if not monitors.keys() >= _EXPLAINING:
             raise ValueError(f"expected monitors for {sorted(_EXPLAINING)}, got {sorted(monitors)}")
+        warm_up()
         self._name = name
         self._body = body
         self._behaviors = dict(behaviors)

@@ -10,10 +10,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
+from maps.compiled import compiled
 from robots.body import Matrix4
 
 Triangles = NDArray[np.float64]
@@ -154,18 +154,12 @@ def _bounding_sphere(triangles: Triangles) -> tuple[float, float, float, float]:
     return float(center[0]), float(center[1]), float(center[2]), radius
 
 
-def _compiled(function: Callable[..., Any]) -> Any:
-    """Compile, keeping the result on disk where some cache folder can be written.
-
-    Without one (a read-only install and no home folder) numba refuses to compile at all.
-    """
-    try:
-        return numba.njit(fastmath=True, cache=True, nogil=True)(function)
-    except RuntimeError:
-        return numba.njit(fastmath=True, nogil=True)(function)
+def _drawing(function: Callable[..., Any]) -> Any:
+    """Compile what draws: others may work meanwhile."""
+    return compiled(function, fastmath=True, nogil=True)
 
 
-@_compiled
+@_drawing
 def _draw_meshes(  # type: ignore[no-untyped-def]
     corners,
     normals,
@@ -263,7 +257,7 @@ def _draw_meshes(  # type: ignore[no-untyped-def]
                 )
 
 
-@_compiled
+@_drawing
 def _clip_near(triangle, near, polygon):  # type: ignore[no-untyped-def]
     """Cut off what is nearer than the near plane; the number of corners left."""
     count = 0
@@ -284,7 +278,7 @@ def _clip_near(triangle, near, polygon):  # type: ignore[no-untyped-def]
     return count
 
 
-@_compiled
+@_drawing
 def _fill(  # type: ignore[no-untyped-def]
     polygon, last, focal, center_u, center_v, blue, green, red, mesh, bgr, nearness, ids
 ):

@@ -1,9 +1,9 @@
 """How the kernels of the search are compiled."""
 
 from collections.abc import Callable
-from typing import Any, TypeVar, cast
+from typing import Any, TypeVar
 
-import numba
+import maps.compiled
 
 Kernel = TypeVar("Kernel", bound=Callable[..., Any])
 
@@ -20,9 +20,4 @@ def compiled(function: Kernel) -> Kernel:
     arrays of a problem, takes longer to compile than most kernels.
     """
     private = function.__name__.startswith("_")
-    options = {**PLAIN, "no_cpython_wrapper": private}
-    njit = cast(Any, numba.njit)
-    try:
-        return cast(Kernel, njit(cache=True, **options)(function))
-    except RuntimeError:
-        return cast(Kernel, njit(**options)(function))
+    return maps.compiled.compiled(function, **PLAIN, no_cpython_wrapper=private)

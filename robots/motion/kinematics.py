@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
+from maps.compiled import compiled
 from robots.body import Matrix4
 
 Joints = NDArray[np.float64]
@@ -175,15 +175,12 @@ def rotation_from_rpy(roll: float, pitch: float, yaw: float) -> NDArray[np.float
     )
 
 
-def _compiled(function: Callable[..., Any]) -> Any:
-    """Compile, keeping the result on disk where some cache folder can be written."""
-    try:
-        return numba.njit(cache=True)(function)
-    except RuntimeError:
-        return numba.njit(function)
+def _kernel(function: Callable[..., Any]) -> Any:
+    """Compile it; kernels call each other, and take whatever types they are given."""
+    return compiled(function)
 
 
-@_compiled
+@_kernel
 def _turn(pose, axis, angle):  # type: ignore[no-untyped-def]
     """Rotate a pose about an axis of its own frame, in place (Rodrigues)."""
     c, s = math.cos(angle), math.sin(angle)
@@ -204,7 +201,7 @@ def _turn(pose, axis, angle):  # type: ignore[no-untyped-def]
     pose[:3, :3] = turned
 
 
-@_compiled
+@_kernel
 def _product(a, b):  # type: ignore[no-untyped-def]
     """The product of two homogeneous transforms."""
     result = np.zeros((4, 4))
@@ -217,7 +214,7 @@ def _product(a, b):  # type: ignore[no-untyped-def]
     return result
 
 
-@_compiled
+@_kernel
 def _pose_and_jacobian(offsets, axes, tail, joints):  # type: ignore[no-untyped-def]
     count = len(joints)
     pose = np.eye(4)
@@ -242,7 +239,7 @@ def _pose_and_jacobian(offsets, axes, tail, joints):  # type: ignore[no-untyped-
     return pose, jacobian
 
 
-@_compiled
+@_kernel
 def _rotation_vector(target, current):  # type: ignore[no-untyped-def]
     """The rotation vector that turns `current` into `target`, in the root's frame."""
     r = np.zeros((3, 3))
@@ -268,7 +265,7 @@ def _rotation_vector(target, current):  # type: ignore[no-untyped-def]
     return vector * (angle / (2.0 * math.sin(angle)))
 
 
-@_compiled
+@_kernel
 def _solve(  # type: ignore[no-untyped-def]
     offsets, axes, tail, lower, upper, target, seed, preferred, preference, iterations
 ):

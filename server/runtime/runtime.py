@@ -180,6 +180,7 @@ class Runtime:
         # Others may have begun meanwhile.
         self._refuse_one_too_many()
         if request.world == LIVE:
+            await self._wait_until_given_back(request.robots)
             self._check_robots(request.robots)
         with self._promise(new.started):
             return await self._begin(new)
@@ -219,6 +220,16 @@ class Runtime:
             await self._take_up_or_fail(state)
             self._let_go(state)
         return self._summary(state)
+
+    async def _wait_until_given_back(self, robots: list[str]) -> None:
+        """A run that everybody knows to have ended may not have parted from its robots yet."""
+        parting = [
+            self._tasks[run]
+            for run, each in self._runs.items()
+            if each.context.state.status.ended and not each.sides.keys().isdisjoint(robots)
+        ]
+        if parting:
+            await asyncio.wait(parting)
 
     def _check_robots(self, robots: list[str]) -> None:
         if not robots:

@@ -10,6 +10,7 @@ from task_documents import definition_of
 
 from server.errors import ConflictError, InvalidError
 from server.journal.run_index import RunPage
+from server.runtime.ports import RealRobots
 from server.runtime.requests import RunRequest
 from server.runtime.views import RunStatus, RunSummary
 
@@ -103,3 +104,24 @@ async def test_a_run_that_is_asked_for_while_the_service_stops_does_not_begin() 
         with pytest.raises(ConflictError, match="shutting down"):
             await starting
         assert service.journal.head == 0
+
+
+async def test_a_robot_can_be_had_as_soon_as_its_run_is_known_to_have_ended(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    parted = asyncio.Event()
+
+    async def part(_: RealRobots) -> None:
+        await parted.wait()
+
+    monkeypatch.setattr(RealRobots, "release", part)
+    async with pretend_service(ONE_PART) as service:
+        service.robots.robots["duo"] = PretendRobot("duo")
+        run = (await service.runtime.start_run(request_of("duo"))).id
+        while not (await service.runtime.run(run)).status.ended:  # noqa: ASYNC110
+            await asyncio.sleep(0)
+        again = asyncio.create_task(service.runtime.start_run(request_of("duo")))
+        # Long enough for everything but the parting.
+        await asyncio.wait([again], timeout=0.2)
+        parted.set()
+        assert (await again).id != run
