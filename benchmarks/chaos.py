@@ -7,10 +7,11 @@ Full disks, writes that fail, kills and stops of processes, jumps of the clock, 
 out, slow and hostile clients, hostile robots. Writes fail by the kernel's limit on the size of
 files, which stands for a broken or read-only disk; the wall clock that jumps is the one that the
 service is given, as the kernel's is everybody's. At the end a reader of its own compares the
-journal with what clients saw: nothing may be lost, doubled or invented, and every run ends. Prints
-how many there were of each fault, how long `/healthz` took while the service was not stopped, and
-what its process takes. There is no peer: what is measured is that nothing is lost. Needs the right
-to mount a file system.
+journal with what clients saw: nothing may be lost, doubled or invented, and every run ends; what a
+client asked for and got no answer to it asks for again under the same key. Prints how many there
+were of each fault, how long `/healthz` took while the service was not stopped, and what its process
+takes; fails also where that is more than is wanted. There is no peer: what is measured is that
+nothing is lost. Needs the right to mount a file system.
 """
 
 import argparse
@@ -30,6 +31,9 @@ from chaos_place import DISK_MB, Footprint, chaos_place
 from full_disk import small_disk
 
 MANY_RUNS = 20
+WANTED_P99_MS = 250.0
+WANTED_GROWTH_MB = 300.0
+"""What the worlds of as many runs take that go on at a time."""
 LONGEST_STOP_S = 60.0
 
 
@@ -61,21 +65,42 @@ def _takes(when: str, footprint: Footprint | None) -> str:
     )
 
 
+def _latencies_ms(found: Findings) -> "np.typing.NDArray[np.float64]":
+    return np.array(found.latencies_s or [np.nan]) * 1000
+
+
+def misses(found: Findings) -> list[str]:
+    """One sentence for each figure that is worse than wanted."""
+    told = []
+    p99 = np.percentile(_latencies_ms(found), 99)
+    if not p99 < WANTED_P99_MS:
+        told.append(f"the p99 of /healthz is {p99:.0f} ms, {WANTED_P99_MS:.0f} are wanted")
+    if found.unanswered:
+        told.append(f"{found.unanswered} requests of /healthz were not answered")
+    if found.start is not None and found.end is not None:
+        grown = found.end.rss_mb - found.start.rss_mb
+        if grown > WANTED_GROWTH_MB:
+            told.append(f"the process grew by {grown:.0f} MB, {WANTED_GROWTH_MB:.0f} are allowed")
+    return told
+
+
 def report(found: Findings) -> str:
-    ms = np.array(found.latencies_s or [np.nan]) * 1000
+    ms = _latencies_ms(found)
     p50, p99, most = np.percentile(ms, 50), np.percentile(ms, 99), ms.max()
     return "\n".join(
         (
             *(f"{times:5}  {name}" for name, times in sorted(found.counts.items())),
             f"{found.runs} runs ended: " + ", ".join(f"{n} {k}" for k, n in found.endings.items()),
             f"{found.events} events; answers: "
-            + ", ".join(f"{n} {kind}" for kind, n in found.answers.items()),
+            + ", ".join(f"{n} {kind}" for kind, n in found.answers.items())
+            + f"; {found.repeated} requests were answered when they came again",
             f"/healthz: p50 {p50:.1f} ms, p99 {p99:.1f} ms, max {most:.0f} ms over {ms.size} "
             f"requests; {found.unanswered} not answered",
             _takes("after the first run", found.start),
             _takes("at the end", found.end) + f"; at most {found.most_rss_mb:.0f} MB",
             f"{len(found.faults)} things are wrong",
             *found.faults,
+            *misses(found),
         )
     )
 
@@ -91,7 +116,7 @@ def main() -> None:
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
     found = asyncio.run(measure(told.minutes, told.seed, told.runs, verbose=told.verbose))
     print(report(found))
-    sys.exit(1 if found.faults else 0)
+    sys.exit(1 if found.faults or misses(found) else 0)
 
 
 if __name__ == "__main__":

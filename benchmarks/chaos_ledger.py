@@ -203,8 +203,9 @@ def _broken_leaves(run: str, rows: list[Row]) -> Iterator[str]:
                 yield f"run {run} starts {node} at event {row.seq}, which is active"
             active.add(node or "")
         elif row.kind in ("node_done", "node_reset"):
-            if row.kind == "node_reset" and node not in active:
-                yield f"run {run} puts back {node} at event {row.seq}, which is not active"
+            if node not in active:
+                does = "puts back" if row.kind == "node_reset" else "is done with"
+                yield f"run {run} {does} {node} at event {row.seq}, which is not active"
             active.discard(node or "")
 
 

@@ -32,6 +32,7 @@ class Findings:
     endings: Counter[str] = field(default_factory=Counter)
     latencies_s: list[float] = field(default_factory=list)
     unanswered: int = 0
+    repeated: int = 0
     start: Footprint | None = None
     end: Footprint | None = None
     most_rss_mb: float = 0.0
@@ -148,6 +149,7 @@ class Ordeal:
         findings.endings = ledger.endings
         findings.runs = sum(findings.endings.values())
         findings.answers = Counter(each.outcome for each in place.witness.answers)
+        findings.repeated = place.witness.repeated
         findings.latencies_s = place.probe.latencies_s
         findings.unanswered = place.probe.failures
 

@@ -17,6 +17,9 @@ from websockets.exceptions import WebSocketException
 
 TRIES_AGAIN_S = 0.2
 REQUEST_S = 10.0
+MOST_TRIES = 300
+LATER = 500
+"""Statuses from here on say that it is to be tried again."""
 ENDED = ("finished", "failed", "aborted")
 ENDS = tuple(f"run_{each}" for each in ENDED)
 
@@ -168,12 +171,21 @@ class Clients:
         return []
 
     async def _post(self, path: str, body: Any) -> tuple[Outcome, dict[str, Any]]:
-        try:
-            response = await self._http.post(path, json=body)
-        except httpx.ConnectError:
-            return "refused", {}
-        except httpx.HTTPError:
-            return "unknown", {}
-        if response.is_success:
-            return "accepted", response.json()
-        return "refused", {}
+        """Ask once, and again under the same key for as long as nobody knows what came of it."""
+        key, asked = {"Idempotency-Key": str(uuid4())}, False
+        for _ in range(MOST_TRIES):
+            try:
+                response = await self._http.post(path, json=body, headers=key)
+            except httpx.HTTPError as error:
+                if isinstance(error, httpx.ConnectError) and not asked:
+                    return "refused", {}
+                asked = True
+            else:
+                if response.is_success:
+                    self._witness.repeated += asked
+                    return "accepted", response.json()
+                # What was asked before may have been done, and nobody can look it up for now.
+                if not asked or response.status_code < LATER:
+                    return "refused", {}
+            await asyncio.sleep(TRIES_AGAIN_S)
+        return "unknown", {}

@@ -28,8 +28,13 @@ class RunAttempt:
 
 @dataclass(slots=True)
 class Witness:
-    """Everything that was seen. `heard`: the events that came to each follower, in their order."""
+    """Everything that was seen.
+
+    `heard`: the events that came to each follower, in their order. `repeated`: how many requests
+    were answered only when they came again under the same key.
+    """
 
     heard: dict[str, list[dict[str, Any]]] = field(default_factory=dict)
     answers: list[AnswerAttempt] = field(default_factory=list)
     runs: list[RunAttempt] = field(default_factory=list)
+    repeated: int = 0

@@ -9,10 +9,13 @@ find cmeel.prefix/share/example-robot-data/robots -mindepth 1 -maxdepth 1 \
     ! -name pr2_description -exec rm -r {} +
 rm -r pybullet_data pybullet_envs eglRenderer*.so pocketsphinx/model/en-us/*.lm.bin
 
+# Of SciPy, what neither Mend nor the rest of SciPy that it loads imports.
+(cd scipy && rm -r cluster datasets differentiate fftpack integrate io misc odr signal stats)
+
 # What only compilers and tests read.
 rm -r cmeel.prefix/include cmeel.prefix/bin cmeel.prefix/share/cmake cmeel.prefix/share/doc
 find cmeel.prefix/lib -name '*.a' -delete
-find numba numpy pandas scipy -type d -name tests -prune -exec rm -r {} +
+find numba numpy scipy -type d -name tests -prune -exec rm -r {} +
 find . -name '*.pyi' -delete
 
 # Of the C++ libraries those that Python's modules load, under the one name that they are loaded by:

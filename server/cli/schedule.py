@@ -1,5 +1,6 @@
 """`mend schedule`: plan the deliveries of a file."""
 
+import importlib.util
 from pathlib import Path
 from typing import Annotated
 
@@ -36,6 +37,10 @@ def schedule(
 
     The exit code is 0 only if there is a schedule.
     """
+    if importlib.util.find_spec("ortools") is None:
+        raise CommandLineError(
+            "planning deliveries needs OR-Tools: install Mend as 'mend[scheduling]'"
+        )
     # Imported only here: solvers would make every other command wait.
     from fleet.scheduling.drawing.picture import picture
     from fleet.scheduling.methods import METHODS

@@ -1,6 +1,7 @@
 """`mend schedule`: what it prints, what it draws, and with which exit code."""
 
 import json
+import subprocess
 import sys
 import xml.etree.ElementTree as ET
 from pathlib import Path
@@ -223,3 +224,20 @@ def test_schema_of_delivery_files_is_json(mend: Any) -> None:
     code, out, _ = mend("schema", "delivery")
     assert code == 0
     assert json.loads(out)["title"] == "DeliveryDocument"
+
+
+def test_without_or_tools_it_says_what_to_install(
+    mend: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("importlib.util.find_spec", lambda _: None)
+    code, _, err = mend("schedule", CORRIDOR)
+    assert code == 2
+    assert "planning deliveries needs OR-Tools: install Mend as 'mend[scheduling]'" in err
+
+
+def test_what_serves_and_checks_delivery_files_does_without_or_tools() -> None:
+    program = (
+        "import sys; sys.modules['ortools'] = None; import server.composition; "
+        "from server.cli import main; sys.argv = ['mend', 'check', sys.argv[1]]; main()"
+    )
+    subprocess.run([sys.executable, "-c", program, CORRIDOR], check=True, capture_output=True)
