@@ -2,11 +2,11 @@
 
 Valid examples are mutated: what they say, and their bytes. Each part runs in a process of its own
 with 512 MB of memory beyond what it has once it is ready. Nothing may end in a 5xx, a traceback or
-a crash; what is refused must change nothing, and a robot with a valid credential nothing but
-its own run. The same seed draws the same mutations; ids and tokens in the examples are new each
-time.
+a crash; what is refused must change nothing, and a robot with a valid credential nothing but its
+own run; no request may take more than a second of the processor. The same seed draws the same
+mutations; ids and tokens in the examples are new each time.
 
-    python benchmarks/fuzz.py [--mutations 10000] [--seed 1] [--only files rest helper robot]
+    python benchmarks/fuzz.py [--mutations 10000] [--seed 1] [--only files rest strangers]
 
 The exit code is 1 if there are findings. There is no peer: what is counted is what must not be.
 """
@@ -21,20 +21,28 @@ import sys
 import tempfile
 import time
 from collections.abc import Awaitable, Callable
+from functools import partial
 from multiprocessing.connection import Connection
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "doubles"))
 
 import psutil
+from fuzz_bench import Bench, bench
 from fuzz_files import Found, fuzz_reader, readers
-from fuzz_service import Bench, bench, fuzz_helper, fuzz_requests, fuzz_robot
+from fuzz_helpers import fuzz_helper
+from fuzz_requests import fuzz_requests, fuzz_strangers
+from fuzz_robots import fuzz_robot
 
 MEMORY_BYTES = 512 * 1024**2
 """So much more than at the start a process may have."""
 
+MOST_S = 1.0
+"""So much of the processor the answer to one request may take."""
+
 SERVICE_PARTS: dict[str, Callable[[Bench, int, int], Awaitable[Found]]] = {
-    "rest": fuzz_requests,
+    "rest": partial(fuzz_requests, most_s=MOST_S),
+    "strangers": partial(fuzz_strangers, most_s=MOST_S),
     "helper": fuzz_helper,
     "robot": fuzz_robot,
 }

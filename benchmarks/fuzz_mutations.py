@@ -25,6 +25,12 @@ TEXTS = (
     "a" * 65, "A" * 129, "-", "1", "2026-01-01", "<script>", "${HOME}", "\\", '"', "/0/0/0", "/0",
 )  # fmt: skip
 
+CROWDS = (
+    "{" + ",".join(f'"key{number}":0' for number in range(50_000)) + "}",
+    "[" + ",".join(["{}"] * 50_000) + "]",
+)
+"""So many things at once that a sentence about each would be too much."""
+
 DEPTHS = (50, 1000, 100_000)
 
 NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?")
@@ -121,6 +127,8 @@ class Mutator:
                 holder.insert(at, holder[at])
             case 2 if isinstance(holder, Keys):
                 holder[at] = (self.random.choice((*TEXTS, holder[at][0] + "x")), holder[at][1])
+            case 3 if isinstance(holder, Keys) and self.random.random() < 0.1:
+                holder += [(f"key{number}", Raw("0")) for number in range(50_000)]
             case 3 if isinstance(holder, Keys):
                 holder.append((self.random.choice(TEXTS), self._stranger(None)))
             case 4:
@@ -142,6 +150,8 @@ class Mutator:
                 return self.random.choice(TEXTS)
             case 4:
                 return self.random.choice((None, True, False, [], Keys(), [None], [value] * 3))
+        if self.random.random() < 0.3:
+            return Raw(self.random.choice(CROWDS))
         depth = self.random.choice(DEPTHS)
         opening, closing = self.random.choice((("[", "]"), ('{"a":', "}")))
         return Raw(opening * depth + "1" + closing * depth)

@@ -3,9 +3,12 @@
 from pathlib import Path
 
 import pytest
+from fuzz_bench import bench
 from fuzz_files import Found, Reader, fuzz_reader, readers, wrong_with
+from fuzz_helpers import fuzz_helper
 from fuzz_mutations import Mutator
-from fuzz_service import bench, fuzz_helper, fuzz_requests, fuzz_robot
+from fuzz_requests import fuzz_requests, fuzz_strangers
+from fuzz_robots import fuzz_robot
 
 from server.cli.failures import CommandLineError
 
@@ -30,7 +33,9 @@ def test_mutated_files_are_taken_or_refused_in_sentences(tmp_path: Path) -> None
 @pytest.mark.slow
 async def test_mutated_requests_and_messages_do_no_harm() -> None:
     async with bench() as made:
-        for fuzz, mutations in ((fuzz_requests, 100), (fuzz_helper, 150), (fuzz_robot, 150)):
+        for fuzz, mutations in (
+            (fuzz_requests, 100), (fuzz_strangers, 100), (fuzz_helper, 150), (fuzz_robot, 150),
+        ):  # fmt: skip
             found = await fuzz(made, mutations, 7)
             assert found.tried > 0.9 * mutations
             assert found.refused > mutations / 3
