@@ -2,6 +2,7 @@
 
 import asyncio
 import json
+import logging
 import sqlite3
 import threading
 from collections.abc import Callable, Sequence
@@ -49,6 +50,8 @@ from server.journal.upgrades import current_version
 from server.journal.writer import CommitStatistics, Done, GroupCommitWriter
 
 __all__ = ["IN_MEMORY", "SqliteJournal"]
+
+log = logging.getLogger(__name__)
 
 T = TypeVar("T")
 
@@ -138,13 +141,17 @@ class SqliteJournal:
     def damage(self) -> Sequence[Break]:
         return self._damage
 
-    def look_for_file(self) -> None:
-        """Notice now, rather than at the next commit, that the journal's file is gone."""
+    def look(self) -> None:
+        """Notice now, rather than at the next commit, that nothing can be written any more."""
         try:
             if self._file is not None:
                 self._file.check()
         except FileGoneError as error:
             self._trouble.began(f"the journal could not be written: {error}")
+        if not (self._writer.lives or self._closed):
+            self._trouble.began(
+                "the journal could not be written: its thread has ended; start the service again"
+            )
 
     def commit_statistics(self) -> CommitStatistics:
         return self._writer.statistics()
@@ -253,14 +260,17 @@ class SqliteJournal:
 
     def _committed(self, done: list[Done]) -> None:
         self._publish(done)
-        self._trouble.ended(probed=all(each.result == PROBE for each in done))
+        # A commit of nothing succeeds also where there is no room for anything.
+        wrote = [each.result for each in done if each.wrote]
+        if wrote:
+            self._trouble.ended(probed=all(result == PROBE for result in wrote))
 
     def _publish(self, done: list[Done]) -> None:
-        entries = [each.result for each in done if isinstance(each.result, _Committed)]
-        for entry in entries:
-            if entry.fold is not None:
-                entry.fold(entry.events)
-        records = [record for entry in entries for record in entry.records]
+        records: list[Record] = []
+        for each in done:
+            if isinstance(each.result, _Committed):
+                _fold(each.result, each.future)
+                records += each.result.records
         if records:
             self._head = records[-1].seq
             self._subscribers.publish(records)
@@ -350,6 +360,19 @@ class SqliteJournal:
         self._write_connection.close()
         if self._lock is not None:
             self._lock.release()
+
+
+def _fold(committed: _Committed, waiting: "asyncio.Future[Any]") -> None:
+    """Fold an entry. What that raises is its owner's alone: the others wait for their answers."""
+    if committed.fold is None:
+        return
+    try:
+        committed.fold(committed.events)
+    except Exception as error:
+        if waiting.done():
+            log.exception("events that nobody waits for any more could not be folded")
+        else:
+            waiting.set_exception(error)
 
 
 def _write_document(document: Document, connection: sqlite3.Connection) -> None:
