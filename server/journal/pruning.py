@@ -72,18 +72,27 @@ async def prune(
     pruned = Pruned()
     runs: list[str] = await execute(_left_by_a_kill)
     while True:
-        for run in runs:
-            forget(UUID(run))
+        for run in _ids(runs):
+            forget(run)
         while gone := await execute(_delete_some):
             pruned.events += gone.events
             pruned.pictures += gone.pictures
         runs = await execute(lambda connection: _let_go(connection, keep, now))
         if not runs:
             break
-        pruned.runs += [UUID(run) for run in runs]
+        pruned.runs += _ids(runs)
     if keep.picture_bytes is not None:
         pruned.pictures += await _prune_pictures(execute, keep.picture_bytes)
     return pruned
+
+
+def _ids(runs: Iterable[str]) -> list[UUID]:
+    """The ids of runs: what is damaged names nothing that would be kept elsewhere."""
+    found = []
+    for run in runs:
+        with suppress(ValueError):
+            found.append(UUID(run))
+    return found
 
 
 async def _prune_pictures(execute: Execute, most_bytes: int) -> int:
@@ -226,7 +235,12 @@ def _pictures(bodies: Iterable[str]) -> list[str]:
     named = []
     for event in _read(bodies):
         named.append(event.get("picture"))
-        named += [each.get("picture") for each in event.get("pictures", [])]
+        clip = event.get("pictures")
+        named += [
+            each.get("picture")
+            for each in (clip if isinstance(clip, list) else ())
+            if isinstance(each, dict)
+        ]
     return [each for each in named if isinstance(each, str)]
 
 

@@ -298,3 +298,19 @@ async def test_room_is_given_back_only_while_no_service_has_the_journal(path: Pa
     await prune_file(path, Keep(ended_runs=1), NOW, compact=True)
     assert size_of(path) < before / 4
     assert checked(path).findings == []
+
+
+async def test_a_damaged_id_or_clip_keeps_nothing_else_from_being_pruned(path: Path) -> None:
+    with closing(sqlite3.connect(path)) as connection, connection:
+        connection.execute("UPDATE runs SET run = 'damaged' WHERE run = ?", (str(run_id(0)),))
+        for run, clip in ((1, '"nothing"'), (2, '["nothing"]'), (3, "null")):
+            body = '{"type": "clip_recorded", "pictures": ' + clip + "}"
+            connection.execute(
+                "UPDATE events SET type = 'clip_recorded', body = ? WHERE seq ="
+                " (SELECT max(seq) - 1 FROM events WHERE run = ?)",
+                (body, str(run_id(run))),
+            )
+    forgotten: list[UUID] = []
+    pruned = await prune_file(path, Keep(ended_runs=2), NOW, forgotten.append)
+    assert pruned.runs == forgotten == [run_id(run) for run in range(1, 6)]
+    assert kept_runs(path) == [6, 7]
