@@ -6,13 +6,12 @@ import logging
 import sqlite3
 import threading
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import dataclass
 from datetime import datetime
 from functools import partial
 from pathlib import Path
-from typing import Any, NoReturn, TypeVar
+from typing import Any, NoReturn
 from uuid import UUID
 
 from server.journal.chain import Break, Row, is_whole
@@ -23,7 +22,6 @@ from server.journal.journal import (
     Entry,
     Fold,
     JournalClosedError,
-    JournalReadError,
     JournalWriteError,
     Receipt,
     UnreadableEvent,
@@ -40,9 +38,9 @@ from server.journal.keyed_request import (
 from server.journal.opening import IN_MEMORY, open_journal
 from server.journal.pruning import Keep, Pruned, prune, pruned_through
 from server.journal.readable import read_readable
+from server.journal.reading import ReadingThread
 from server.journal.run_index import RunIndex, note, note_readable, note_unreadable
 from server.journal.same_file import FileGoneError
-from server.journal.sqlite_errors import SQLITE_ERRORS
 from server.journal.stored_event import current_text, read_event
 from server.journal.subscriptions import DEFAULT_CAPACITY, Record, Subscribers, Subscription
 from server.journal.trouble import Sleep, Trouble
@@ -52,8 +50,6 @@ from server.journal.writer import CommitStatistics, Done, GroupCommitWriter
 __all__ = ["IN_MEMORY", "SqliteJournal"]
 
 log = logging.getLogger(__name__)
-
-T = TypeVar("T")
 
 PROBE = "probe"
 PROBE_BYTES = 64 * 1024
@@ -98,17 +94,17 @@ class SqliteJournal:
         self._file = opened.file
         self._write_connection = opened.write
         self._write_lock = threading.Lock()
-        self._read_connection = opened.read
-        self._read_lock = self._write_lock if opened.read is opened.write else threading.Lock()
+        self._pages = self._reading(opened.read, "journal-reader")
+        # A robot's hello must not wait for somebody who reads a whole run.
+        self._look_ups = self._reading(opened.look_up, "journal-look-ups")
         self._damage = opened.damage
         self._head = opened.head
         self._next = self._batch_start = opened.head + 1
         self._chain = opened.chain
-        self._index = RunIndex(self._select)
+        self._index = RunIndex(self._pages.select, self._look_ups.select)
         self._subscribers = Subscribers()
         self._version = current_version()
         self._closed = False
-        self._readers = ThreadPoolExecutor(max_workers=1, thread_name_prefix="journal-reader")
         self._writer = GroupCommitWriter(
             self._write_connection,
             self._write_lock,
@@ -119,6 +115,10 @@ class SqliteJournal:
             on_failure=lambda reason: self._trouble.began(reason),
         )
         self._trouble = Trouble(self._probe, sleep)
+
+    def _reading(self, connection: sqlite3.Connection, name: str) -> ReadingThread:
+        shared = connection is self._write_connection
+        return ReadingThread(connection, self._write_lock if shared else threading.Lock(), name)
 
     @property
     def head(self) -> int:
@@ -286,7 +286,7 @@ class SqliteJournal:
 
     async def read_records(self, after: int, limit: int, run: UUID | None = None) -> list[Record]:
         of_run = "" if run is None else "run = :run AND "
-        rows = await self._select(
+        rows = await self._pages.select(
             f"SELECT seq, version, body FROM events WHERE {of_run}seq > :after"
             " ORDER BY seq LIMIT :limit",
             {"run": str(run), "after": after, "limit": limit},
@@ -297,55 +297,37 @@ class SqliteJournal:
         self, after: int, limit: int, run: UUID | None = None
     ) -> list[Event | UnreadableEvent]:
         query = partial(read_readable, after=after, limit=limit, run=run)
-        return await self._read(lambda: self._reading(query))
+        return await self._pages.query(query)
 
     async def received(self, robot: str, boot: str) -> int:
-        rows = await self._select(
+        rows = await self._look_ups.select(
             "SELECT seq FROM receipts WHERE robot = ? AND boot = ?", (robot, boot)
         )
         return int(rows[0][0]) if rows else 0
 
     async def world(self, run: UUID) -> dict[str, Any] | None:
-        rows = await self._select("SELECT state FROM worlds WHERE run = ?", (str(run),))
+        rows = await self._look_ups.select("SELECT state FROM worlds WHERE run = ?", (str(run),))
         return json.loads(rows[0][0]) if rows else None
 
     async def picture(self, picture: UUID) -> bytes | None:
-        rows = await self._select("SELECT jpeg FROM pictures WHERE id = ?", (str(picture),))
+        rows = await self._look_ups.select(
+            "SELECT jpeg FROM pictures WHERE id = ?", (str(picture),)
+        )
         return rows[0][0] if rows else None
 
     async def is_whole(self, run: UUID) -> bool:
-        return await self._read(lambda: self._reading(partial(is_whole, run=str(run))))
+        return await self._pages.query(partial(is_whole, run=str(run)))
 
     async def pruned_through(self) -> int:
-        return int(await self._read(lambda: self._reading(pruned_through)))
+        return await self._look_ups.query(pruned_through)
 
     async def find_request(self, principal: str, key: str, since: float) -> KeptRequest | None:
         query = partial(find_request, principal=principal, key=key, since=since)
-        return await self._read(lambda: self._reading(query))
+        return await self._look_ups.query(query)
 
     async def documents(self, kind: str) -> dict[str, str]:
         statement = "SELECT name, text FROM documents WHERE kind = ? ORDER BY name"
-        return dict(await self._select(statement, (kind,)))
-
-    async def _select(self, statement: str, parameters: Any) -> list[Any]:
-        return await self._read(
-            lambda: self._reading(
-                lambda connection: connection.execute(statement, parameters).fetchall()
-            )
-        )
-
-    def _reading(self, query: Callable[[sqlite3.Connection], T]) -> T:
-        """Query in the reader's thread. Raises `JournalReadError`."""
-        try:
-            with self._read_lock:
-                return query(self._read_connection)
-        except SQLITE_ERRORS as error:
-            raise JournalReadError(f"the journal could not be read: {error}") from error
-
-    async def _read(self, query: Callable[[], T]) -> T:
-        if self._closed:
-            raise JournalClosedError("the journal is closed")
-        return await asyncio.get_running_loop().run_in_executor(self._readers, query)
+        return dict(await self._pages.select(statement, (kind,)))
 
     def close(self) -> None:
         """Write what is waiting, end every subscription and free the file."""
@@ -355,8 +337,8 @@ class SqliteJournal:
         self._trouble.close()
         self._writer.close()
         self._subscribers.close()
-        self._readers.shutdown()
-        self._read_connection.close()
+        self._pages.close()
+        self._look_ups.close()
         self._write_connection.close()
         if self._lock is not None:
             self._lock.release()
