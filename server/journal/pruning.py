@@ -81,6 +81,8 @@ async def prune(
         if not runs:
             break
         pruned.runs += _ids(runs)
+    if keep.ended_within is not None or keep.ended_runs is not None:
+        await execute(lambda connection: _forget_boots(connection, keep, now))
     if keep.picture_bytes is not None:
         pruned.pictures += await _prune_pictures(execute, keep.picture_bytes)
     return pruned
@@ -178,6 +180,21 @@ def _earlier_boots(connection: sqlite3.Connection, run: str) -> Iterator[tuple[s
     for robot, of_robot in boots.items():
         for boot in list(of_robot)[:-1]:
             yield robot, boot
+
+
+def _forget_boots(connection: sqlite3.Connection, keep: Keep, now: datetime) -> None:
+    """Delete the receipts of earlier starts of robots, also of those that no run names.
+
+    What an earlier start left behind a robot sends before anything of its own: so it is
+    enough that a later one was last heard of before what is kept.
+    """
+    since = None if keep.ended_within is None else (now - keep.ended_within).timestamp()
+    connection.execute(
+        "DELETE FROM receipts WHERE EXISTS (SELECT 1 FROM receipts AS later"
+        " WHERE later.robot = receipts.robot AND later.time > receipts.time"
+        " AND later.time < coalesce(:since, (SELECT min(started) FROM runs)))",
+        {"since": since},
+    )
 
 
 def _bodies(connection: sqlite3.Connection, run: str, types: Sequence[str]) -> Iterator[str]:

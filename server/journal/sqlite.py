@@ -5,6 +5,7 @@ import json
 import logging
 import sqlite3
 import threading
+import time
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
@@ -78,7 +79,8 @@ class SqliteJournal:
     `JournalDamagedError` when it is one no longer, `JournalOpenError` when the file cannot be
     opened or written. Only its owner can read the file. Belongs to one event loop at a time.
     `sleep` is what passes between two tries to write where that is not possible; the look at the
-    pages on opening takes at most `check_s`.
+    pages on opening takes at most `check_s`. `wall_time_s` says when a receipt was given, in
+    seconds of 1970.
     """
 
     def __init__(
@@ -88,7 +90,9 @@ class SqliteJournal:
         busy_timeout_s: float = 5.0,
         check_s: float = 1.0,
         sleep: Sleep = asyncio.sleep,
+        wall_time_s: Callable[[], float] = time.time,
     ) -> None:
+        self._wall_time_s = wall_time_s
         opened = open_journal(path, busy_timeout_s, check_s)
         self._lock = opened.lock
         self._file = opened.file
@@ -218,9 +222,12 @@ class SqliteJournal:
         connection.executemany(INSERT_EVENT, rows)
         if entry.receipt is not None:
             connection.execute(
-                "INSERT OR REPLACE INTO receipts (robot, boot, seq) VALUES (?, ?, ?)",
-                (entry.receipt.robot, entry.receipt.boot, entry.receipt.seq),
-            )
+                "INSERT OR REPLACE INTO receipts (robot, boot, seq, time) VALUES (?, ?, ?, ?)",
+                (
+                    entry.receipt.robot, entry.receipt.boot, entry.receipt.seq,
+                    self._wall_time_s(),
+                ),
+            )  # fmt: skip
         if entry.world is not None:
             connection.execute(
                 "INSERT OR REPLACE INTO worlds (run, state) VALUES (?, ?)",
