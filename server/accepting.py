@@ -10,16 +10,17 @@ from contextlib import suppress
 from functools import partial
 from http import HTTPStatus
 
+from server.background import Endless
+from server.descriptors import NO_DESCRIPTOR, TRY_AGAIN_S
 from server.rare_log import RareLog
 from server.raw_answers import raw_problem
 from server.visitors import Beyond, Visitor, Visitors
 
 log = logging.getLogger(__name__)
 
-NO_ROOM = (errno.EMFILE, errno.ENFILE, errno.ENOBUFS, errno.ENOMEM)
+NO_ROOM = (*NO_DESCRIPTOR, errno.ENOBUFS, errno.ENOMEM)
 """The process or the machine has no descriptor or memory left for one more connection."""
 
-TRY_AGAIN_S = 0.5
 LOOK_EVERY_S = 0.25
 """How often connections are looked at for one that is overdue."""
 
@@ -70,21 +71,32 @@ class Acceptor:
         await asyncio.gather(*self._work, *self._connecting, return_exceptions=True)
 
     async def _end_overdue(self) -> None:
+        ending = Endless("ending overdue connections")
         while True:
             await asyncio.sleep(LOOK_EVERY_S)
-            self._visitors.end_overdue()
+            with ending.one_pass():
+                self._visitors.end_overdue()
 
     async def _accept(self) -> None:
-        loop = asyncio.get_running_loop()
+        accepting = Endless("accepting connections")
         while True:
-            try:
-                connection, address = await loop.sock_accept(self._listening)
-            except OSError as error:
-                await self._not_accepted(error)
-            else:
-                self._welcome(connection, address[0])
-                # A connection that waits already is accepted without waiting.
-                await asyncio.sleep(0)
+            with accepting.one_pass():
+                await self._accept_one()
+            # A connection that waits already is accepted without waiting.
+            await asyncio.sleep(0)
+
+    async def _accept_one(self) -> None:
+        loop = asyncio.get_running_loop()
+        try:
+            connection, address = await loop.sock_accept(self._listening)
+        except OSError as error:
+            await self._not_accepted(error)
+            return
+        try:
+            self._welcome(connection, address[0])
+        except Exception:
+            connection.close()
+            raise
 
     async def _not_accepted(self, error: OSError) -> None:
         """What is no fault of one connection would come again at once, and for ever."""
@@ -93,8 +105,6 @@ class Acceptor:
                 "no room", f"no more connections can be taken just now: {error.strerror}"
             )
             await asyncio.sleep(TRY_AGAIN_S)
-        else:
-            await asyncio.sleep(0)
 
     def _welcome(self, connection: socket.socket, address: str) -> None:
         connection.setblocking(False)

@@ -4,7 +4,7 @@ import asyncio
 import logging
 import ssl
 import time
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager, suppress
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -14,6 +14,7 @@ from dialogue.registry import load_scripts
 from server.access.deed_log import DeedLog
 from server.api.access import Access
 from server.app import build_access, create_app
+from server.background import Endless
 from server.dialogues.escalation import EscalationPolicy
 from server.dialogues.mail import Mailer
 from server.fixed_documents import GivenFiles, fixed_documents
@@ -225,12 +226,14 @@ async def _open(
 
 async def _watch_access(access: Access, deeds: DeedLog, *, journal_changes: bool) -> None:
     """Let go of those who may come in no longer, also where nobody asks for anything."""
+    looks: list[Callable[[], None]] = [access.look, access.let_go, deeds.tell_due]
+    if journal_changes:
+        looks.append(lambda: deeds.take_changes(access.principals.changes))
+    watching = Endless("watching who may come in")
     while True:
-        access.look()
-        access.let_go()
-        deeds.tell_due()
-        if journal_changes:
-            deeds.take_changes(access.principals.changes)
+        for look in looks:
+            with watching.one_pass():
+                look()
         await asyncio.sleep(LOOK_EVERY_S)
 
 

@@ -3,7 +3,12 @@
 import logging
 import re
 
-SECRETS = re.compile(r'(?i)((?:authorization|cookie): |"token": ?")[^"\r\n]*')
+BLANKS = r"(?:\s|\\[tnr])*"
+"""As JSON has them around a colon, and as they are logged where a text is quoted."""
+
+SECRETS = re.compile(
+    rf'(?i)((?:authorization|cookie): |"token"{BLANKS}:{BLANKS}")(?:\\.|[^"\\\r\n])*'
+)
 
 
 class HideSecrets(logging.Filter):

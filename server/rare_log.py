@@ -21,9 +21,10 @@ class RareLog:
         self._monotonic = monotonic
         self._told: dict[str, _Told] = {}
 
-    def warn(self, subject: str, sentence: str) -> None:
+    def warn(self, subject: str, sentence: str, error: Exception | None = None) -> None:
         """Log the sentence, unless one about this subject was logged within the last minute.
 
+        With an `error` it is logged where that came from, too.
         `subject` is one of few: each is remembered.
         """
         now = self._monotonic()
@@ -33,4 +34,5 @@ class RareLog:
             return
         more = f" ({told.times_since} times more since last told)" if told else ""
         self._told[subject] = _Told(now)
-        self._log.warning("%s%s", sentence, more if told and told.times_since else "")
+        rest = more if told and told.times_since else ""
+        self._log.warning("%s%s", sentence, rest, exc_info=error)

@@ -9,6 +9,7 @@ from uuid import UUID
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from server.background import Endless
 from server.journal.journal import JournalClosedError, JournalWriteError
 from server.journal.pruning import Keep, Pruned
 
@@ -47,16 +48,18 @@ async def prune_regularly(
     utc_now: Callable[[], datetime],
     sleep: Callable[[float], Awaitable[None]] = asyncio.sleep,
 ) -> None:
-    """Prune at once and every ten minutes, until the journal is closed."""
+    """Prune at once and every ten minutes, whatever fails, until the journal is closed."""
+    pruning = Endless("pruning")
     while not keep.all:
-        try:
-            pruned = await prune(keep, utc_now(), forget_poses)
-        except JournalWriteError as error:
-            log.warning("what is not kept was not pruned: %s", error)
-        except JournalClosedError:
-            return
-        else:
-            if pruned.runs or pruned.pictures:
-                log.info("pruned %d runs, %d events and %d pictures", len(pruned.runs),
-                         pruned.events, pruned.pictures)  # fmt: skip
+        with pruning.one_pass():
+            try:
+                pruned = await prune(keep, utc_now(), forget_poses)
+            except JournalWriteError as error:
+                log.warning("what is not kept was not pruned: %s", error)
+            except JournalClosedError:
+                return
+            else:
+                if pruned.runs or pruned.pictures:
+                    log.info("pruned %d runs, %d events and %d pictures", len(pruned.runs),
+                             pruned.events, pruned.pictures)  # fmt: skip
         await sleep(EVERY_S)

@@ -9,6 +9,7 @@ from typing import Protocol
 
 from starlette.types import Scope
 
+from server.background import Endless
 from server.household import household_of
 from server.limits import LimitName, Limits
 from server.rare_log import RareLog
@@ -109,6 +110,7 @@ class Visitors:
         self._refusals = refusals
         self._proxies = proxies
         self._rare_log = RareLog(log, now)
+        self._ending = Endless("ending a connection", now)
         # Both in the order in which they came.
         self._here: dict[Visitor, None] = {}
         self._strangers: dict[Visitor, None] = {}
@@ -197,7 +199,9 @@ class Visitors:
         # So that it is ended once.
         visitor.enter(Phase.SERVICE)
         self.no_stranger(visitor)
-        visitor.end(beyond)
+        # One that cannot be ended must cost no other its end, or its place.
+        with self._ending.one_pass():
+            visitor.end(beyond)
 
     def _note(self, beyond: Beyond) -> None:
         self._refusals.note(beyond.limit)

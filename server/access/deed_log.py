@@ -2,13 +2,13 @@
 
 import asyncio
 import logging
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence, Set
 from contextlib import suppress
 from datetime import datetime, timedelta
 from uuid import UUID
 
 from server.access.principal import Caller, Principal
-from server.access.principals_file import Change, What
+from server.access.principals_file import KEPT_CHANGES, Change, What
 from server.access.roles import Role
 from server.access.sessions import Session, Sessions
 from server.access.tally import Tally
@@ -41,7 +41,7 @@ class DeedLog:
         self._sign_ins: dict[tuple[str, Role], Tally] = {}
         self._failed = Tally()
         self._told: dict[tuple[str, Role] | None, datetime] = {}
-        self._journaled: set[UUID] = set()
+        self._journaled: dict[UUID, None] = {}
         self._writing: set[asyncio.Task[None]] = set()
         self._unreadable: list[str] = []
 
@@ -81,19 +81,17 @@ class DeedLog:
 
     def tell_due(self) -> None:
         """Journal what was counted, where the last event about it is long enough ago."""
-        for who in [each for each in self._sign_ins if self._is_due(each)]:
+        now = self._utc_now()
+        # A clock that was set back must keep nothing from being told.
+        self._told = {who: at for who, at in self._told.items() if abs(now - at) < TOLD_EVERY}
+        for who in [each for each in self._sign_ins if each not in self._told]:
             tally = self._sign_ins.pop(who)
             self._add_later(
                 ev.SignedIn(principal=who[0], role=who[1], **self._of_tally(tally, who))
             )
-        if self._failed.times and self._is_due(None):
+        if self._failed.times and None not in self._told:
             tally, self._failed = self._failed, Tally()
             self._add_later(ev.SignInFailed(**self._of_tally(tally, None)))
-
-    def _is_due(self, who: tuple[str, Role] | None) -> bool:
-        told = self._told.get(who)
-        # A clock that was set back must keep nothing from being told.
-        return told is None or abs(self._utc_now() - told) >= TOLD_EVERY
 
     def _of_tally(self, tally: Tally, who: tuple[str, Role] | None) -> dict[str, object]:
         self._told[who] = now = self._utc_now()
@@ -127,7 +125,7 @@ class DeedLog:
             case ev.SignedOut(session=number, expires=expires):
                 sessions.end(number, expires)
             case ev.AccessChanged(change=UUID() as change):
-                self._journaled.add(change)
+                self._journaled[change] = None
 
     def _cannot_read(self, why: str) -> None:
         log.error("%s", why)
@@ -138,11 +136,11 @@ class DeedLog:
         """A sentence for each event that belongs to no run and could not be read."""
         return tuple(self._unreadable)
 
-    def take_changes(self, changes: Iterable[Change]) -> None:
+    def take_changes(self, changes: Sequence[Change]) -> None:
         """Journal what was done to the file on this machine, each change once."""
         for change in changes:
             if change.id not in self._journaled:
-                self._journaled.add(change.id)
+                self._journaled[change.id] = None
                 self._add_later(
                     ev.AccessChanged(
                         wall_time=change.when,
@@ -153,6 +151,14 @@ class DeedLog:
                         change=change.id,
                     )
                 )
+        if len(self._journaled) > 2 * KEPT_CHANGES:
+            self._forget_old({each.id for each in changes})
+
+    def _forget_old(self, there: Set[UUID]) -> None:
+        """Of what the file has no longer the latest is remembered: an older file may come back."""
+        gone = [each for each in self._journaled if each not in there]
+        for change in gone[:-KEPT_CHANGES]:
+            del self._journaled[change]
 
     # --- Writing ------------------------------------------------------------------------------
 

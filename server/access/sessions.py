@@ -12,6 +12,7 @@ from server.access.principal import Principal
 
 SESSION_LIFETIME_S = 12 * 3600
 KEY_BYTES = 32
+HOUR_S = 3600
 SESSIONS_AN_HOUR = 600
 """So many may be begun with one credential: each that is signed out leaves an event."""
 
@@ -90,13 +91,15 @@ class Sessions:
 
     def _count(self, principal: Principal) -> None:
         now = self._wall_time_s()
-        begun = self._begun.setdefault(principal.key, deque(maxlen=SESSIONS_AN_HOUR))
-        if len(begun) == SESSIONS_AN_HOUR and now - begun[0] < 3600:
+        self._begun = {key: each for key, each in self._begun.items() if now - each[-1] < HOUR_S}
+        begun = self._begun.get(principal.key, deque(maxlen=SESSIONS_AN_HOUR))
+        if len(begun) == SESSIONS_AN_HOUR and now - begun[0] < HOUR_S:
             raise TooManySessionsError(
                 f"'{principal.name}' has signed in {SESSIONS_AN_HOUR} times within an hour: wait, "
                 "or show the token with each request"
             )
         begun.append(now)
+        self._begun[principal.key] = begun
 
     def _sign(self, number: str, principal: Principal, expires: int) -> str:
         signed = "\n".join((str(expires), number, principal.key, principal.name))

@@ -43,6 +43,11 @@ class ServiceCollector(Collector):
         )
         connected = sum(robot.connected for robot in self._parts.runs.robots())
         yield GaugeMetricFamily("mend_robots_connected", "Robots connected.", value=connected)
+        yield CounterMetricFamily(
+            "mend_pose_frames_lost",
+            "Frames of poses that were not recorded, as the disk was too slow for them.",
+            value=self._parts.poses.lost,
+        )
         yield self._refused()
         yield from self._journal()
 

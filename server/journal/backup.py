@@ -2,12 +2,15 @@
 
 import os
 import sqlite3
-from contextlib import closing, suppress
+from contextlib import closing
 from pathlib import Path
 
 from server.journal.file_lock import FileLock
 from server.journal.file_mode import OWNERS_FOLDER, keep_to_owner
 from server.journal.reader import JournalReader
+from server.journal.sqlite_errors import SQLITE_ERRORS
+
+BUSY_TIMEOUT_S = 5.0
 
 
 class BackupError(Exception):
@@ -18,12 +21,19 @@ def back_up(journal: Path, target: Path, *, force: bool = False) -> None:
     """Copy a journal as it is at one moment, also while a service writes to it.
 
     A target that is there is replaced only by `force`, and only once the copy is whole. Raises
-    `BackupError`, `JournalSchemaError` or `OSError`.
+    `JournalLockedError` while a service has the target, `BackupError`, `JournalSchemaError` or
+    `OSError`.
     """
     with JournalReader(journal):
         _refuse_same(journal, target)
         _refuse_existing(target, force)
-        _copy(journal, target)
+        # What is to be replaced may be somebody's journal.
+        lock = FileLock(target) if target.exists() else None
+        try:
+            _copy(journal, target)
+        finally:
+            if lock is not None:
+                lock.release()
 
 
 def restore(backup: Path, journal: Path, *, force: bool = False) -> None:
@@ -100,9 +110,23 @@ def _put_in_place(draft: Path, target: Path) -> None:
 
 
 def _empty_log(target: Path) -> None:
-    """Whatever happens before the new journal is in place, the old one is whole."""
-    with suppress(sqlite3.Error), closing(sqlite3.connect(target)) as old:
-        old.execute("PRAGMA wal_checkpoint(TRUNCATE)")
+    """Whatever happens before the new journal is in place, the old one is whole.
+
+    Raises `BackupError` where its log has to stay.
+    """
+    try:
+        with closing(sqlite3.connect(target, timeout=BUSY_TIMEOUT_S)) as old:
+            (busy, _, _) = old.execute("PRAGMA wal_checkpoint(TRUNCATE)").fetchone()
+            why = "somebody else is reading or writing it" if busy else None
+    except sqlite3.OperationalError as error:
+        why = str(error)
+    except SQLITE_ERRORS:
+        # It is no journal, or one no longer: there is nothing to keep whole.
+        why = None
+    if why is not None:
+        raise BackupError(
+            f"the log of '{target}' could not be emptied ({why}): nothing was replaced; try again"
+        )
 
 
 def _logs(path: Path) -> tuple[Path, Path]:

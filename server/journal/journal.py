@@ -82,7 +82,8 @@ class Journal(Protocol):
         """Commit an entry and return its events with their numbers, which have no gaps.
 
         `fold` is called with them once they are committed, in the same step in which they are
-        published: whoever hears of an event finds the state already changed. It must not raise.
+        published: whoever hears of an event finds the state already changed. What it raises this
+        raises, though the entry is committed.
         Published to subscribers in the order of `seq`, after the commit. Raises
         `JournalClosedError` after `close`, `DuplicateReceiptError` if the receipt is there already
         (nothing of the entry is then committed), `JournalWriteError` if it could not be written;

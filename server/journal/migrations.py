@@ -102,6 +102,10 @@ CREATE INDEX requests_in_order ON requests (time);
 CREATE INDEX requests_of_run ON requests (run);
 """
 
+VERSION_5 = """
+ALTER TABLE receipts ADD COLUMN time REAL NOT NULL DEFAULT 0.0;
+"""
+
 
 @dataclass(frozen=True, slots=True)
 class Migration:
@@ -116,6 +120,7 @@ MIGRATIONS = (
     Migration(VERSION_2),
     Migration(VERSION_3, index_events),
     Migration(VERSION_4),
+    Migration(VERSION_5),
 )
 
 

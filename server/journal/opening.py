@@ -20,13 +20,14 @@ IN_MEMORY = ":memory:"
 
 @dataclass(frozen=True, slots=True)
 class OpenJournal:
-    """Two connections to a journal (the same one in memory), and what was found on opening.
+    """Three connections to a journal (the same one in memory), and what was found on opening.
 
     `head` is the last `seq` ever given, also where its event was pruned.
     """
 
     write: sqlite3.Connection
     read: sqlite3.Connection
+    look_up: sqlite3.Connection
     head: int
     chain: Chain
     damage: Sequence[Break]
@@ -106,8 +107,8 @@ def _connected(
             " (SELECT coalesce(max(last), 0) FROM batches),"
             " (SELECT coalesce(max(through), 0) FROM pruned))"
         ).fetchone()
-        read = write if path == IN_MEMORY else connect()
+        read, look_up = (write, write) if path == IN_MEMORY else (connect(), connect())
     except BaseException:
         write.close()
         raise
-    return OpenJournal(write, read, int(head), chain, damage, file, lock)
+    return OpenJournal(write, read, look_up, int(head), chain, damage, file, lock)

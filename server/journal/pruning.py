@@ -72,18 +72,29 @@ async def prune(
     pruned = Pruned()
     runs: list[str] = await execute(_left_by_a_kill)
     while True:
-        for run in runs:
-            forget(UUID(run))
+        for run in _ids(runs):
+            forget(run)
         while gone := await execute(_delete_some):
             pruned.events += gone.events
             pruned.pictures += gone.pictures
         runs = await execute(lambda connection: _let_go(connection, keep, now))
         if not runs:
             break
-        pruned.runs += [UUID(run) for run in runs]
+        pruned.runs += _ids(runs)
+    if keep.ended_within is not None or keep.ended_runs is not None:
+        await execute(lambda connection: _forget_boots(connection, keep, now))
     if keep.picture_bytes is not None:
         pruned.pictures += await _prune_pictures(execute, keep.picture_bytes)
     return pruned
+
+
+def _ids(runs: Iterable[str]) -> list[UUID]:
+    """The ids of runs: what is damaged names nothing that would be kept elsewhere."""
+    found = []
+    for run in runs:
+        with suppress(ValueError):
+            found.append(UUID(run))
+    return found
 
 
 async def _prune_pictures(execute: Execute, most_bytes: int) -> int:
@@ -171,6 +182,21 @@ def _earlier_boots(connection: sqlite3.Connection, run: str) -> Iterator[tuple[s
             yield robot, boot
 
 
+def _forget_boots(connection: sqlite3.Connection, keep: Keep, now: datetime) -> None:
+    """Delete the receipts of earlier starts of robots, also of those that no run names.
+
+    What an earlier start left behind a robot sends before anything of its own: so it is
+    enough that a later one was last heard of before what is kept.
+    """
+    since = None if keep.ended_within is None else (now - keep.ended_within).timestamp()
+    connection.execute(
+        "DELETE FROM receipts WHERE EXISTS (SELECT 1 FROM receipts AS later"
+        " WHERE later.robot = receipts.robot AND later.time > receipts.time"
+        " AND later.time < coalesce(:since, (SELECT min(started) FROM runs)))",
+        {"since": since},
+    )
+
+
 def _bodies(connection: sqlite3.Connection, run: str, types: Sequence[str]) -> Iterator[str]:
     rows = connection.execute(
         "SELECT body FROM events WHERE run = ?"
@@ -226,7 +252,12 @@ def _pictures(bodies: Iterable[str]) -> list[str]:
     named = []
     for event in _read(bodies):
         named.append(event.get("picture"))
-        named += [each.get("picture") for each in event.get("pictures", [])]
+        clip = event.get("pictures")
+        named += [
+            each.get("picture")
+            for each in (clip if isinstance(clip, list) else ())
+            if isinstance(each, dict)
+        ]
     return [each for each in named if isinstance(each, str)]
 
 

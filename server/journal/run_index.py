@@ -66,10 +66,11 @@ Select = Callable[[str, Any], Awaitable[list[Any]]]
 
 
 class RunIndex:
-    """Reads the index."""
+    """Reads the index: pages of it with `select`, one row with `look_up`."""
 
-    def __init__(self, select: Select) -> None:
+    def __init__(self, select: Select, look_up: Select) -> None:
         self._select = select
+        self._look_up = look_up
 
     async def page(self, page: RunPage) -> list[IndexedRun]:
         """A page of runs, newest first."""
@@ -87,8 +88,8 @@ class RunIndex:
 
     async def find(self, run: UUID) -> IndexedRun | None:
         """A run; None if there is none."""
-        found = await self._runs(" WHERE run = ?", (str(run),))
-        return found[0] if found else None
+        rows = await self._look_up(f"SELECT {COLUMNS} FROM runs WHERE run = ?", (str(run),))
+        return _indexed(rows[0]) if rows else None
 
     async def going_on(self) -> list[IndexedRun]:
         """The runs that have not ended, in the order in which they began."""
@@ -117,7 +118,7 @@ class RunIndex:
 
     async def run_of(self, dialogue: UUID) -> UUID | None:
         """The run of a dialogue."""
-        rows = await self._select("SELECT run FROM dialogues WHERE dialogue = ?", (str(dialogue),))
+        rows = await self._look_up("SELECT run FROM dialogues WHERE dialogue = ?", (str(dialogue),))
         return _id(rows[0][0]) if rows else None
 
     async def dialogues(

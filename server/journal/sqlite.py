@@ -2,16 +2,17 @@
 
 import asyncio
 import json
+import logging
 import sqlite3
 import threading
+import time
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import dataclass
 from datetime import datetime
 from functools import partial
 from pathlib import Path
-from typing import Any, NoReturn, TypeVar
+from typing import Any, NoReturn
 from uuid import UUID
 
 from server.journal.chain import Break, Row, is_whole
@@ -22,7 +23,6 @@ from server.journal.journal import (
     Entry,
     Fold,
     JournalClosedError,
-    JournalReadError,
     JournalWriteError,
     Receipt,
     UnreadableEvent,
@@ -39,9 +39,9 @@ from server.journal.keyed_request import (
 from server.journal.opening import IN_MEMORY, open_journal
 from server.journal.pruning import Keep, Pruned, prune, pruned_through
 from server.journal.readable import read_readable
+from server.journal.reading import ReadingThread
 from server.journal.run_index import RunIndex, note, note_readable, note_unreadable
 from server.journal.same_file import FileGoneError
-from server.journal.sqlite_errors import SQLITE_ERRORS
 from server.journal.stored_event import current_text, read_event
 from server.journal.subscriptions import DEFAULT_CAPACITY, Record, Subscribers, Subscription
 from server.journal.trouble import Sleep, Trouble
@@ -50,7 +50,7 @@ from server.journal.writer import CommitStatistics, Done, GroupCommitWriter
 
 __all__ = ["IN_MEMORY", "SqliteJournal"]
 
-T = TypeVar("T")
+log = logging.getLogger(__name__)
 
 PROBE = "probe"
 PROBE_BYTES = 64 * 1024
@@ -79,7 +79,8 @@ class SqliteJournal:
     `JournalDamagedError` when it is one no longer, `JournalOpenError` when the file cannot be
     opened or written. Only its owner can read the file. Belongs to one event loop at a time.
     `sleep` is what passes between two tries to write where that is not possible; the look at the
-    pages on opening takes at most `check_s`.
+    pages on opening takes at most `check_s`. `wall_time_s` says when a receipt was given, in
+    seconds of 1970.
     """
 
     def __init__(
@@ -89,23 +90,25 @@ class SqliteJournal:
         busy_timeout_s: float = 5.0,
         check_s: float = 1.0,
         sleep: Sleep = asyncio.sleep,
+        wall_time_s: Callable[[], float] = time.time,
     ) -> None:
+        self._wall_time_s = wall_time_s
         opened = open_journal(path, busy_timeout_s, check_s)
         self._lock = opened.lock
         self._file = opened.file
         self._write_connection = opened.write
         self._write_lock = threading.Lock()
-        self._read_connection = opened.read
-        self._read_lock = self._write_lock if opened.read is opened.write else threading.Lock()
+        self._pages = self._reading(opened.read, "journal-reader")
+        # A robot's hello must not wait for somebody who reads a whole run.
+        self._look_ups = self._reading(opened.look_up, "journal-look-ups")
         self._damage = opened.damage
         self._head = opened.head
         self._next = self._batch_start = opened.head + 1
         self._chain = opened.chain
-        self._index = RunIndex(self._select)
+        self._index = RunIndex(self._pages.select, self._look_ups.select)
         self._subscribers = Subscribers()
         self._version = current_version()
         self._closed = False
-        self._readers = ThreadPoolExecutor(max_workers=1, thread_name_prefix="journal-reader")
         self._writer = GroupCommitWriter(
             self._write_connection,
             self._write_lock,
@@ -116,6 +119,10 @@ class SqliteJournal:
             on_failure=lambda reason: self._trouble.began(reason),
         )
         self._trouble = Trouble(self._probe, sleep)
+
+    def _reading(self, connection: sqlite3.Connection, name: str) -> ReadingThread:
+        shared = connection is self._write_connection
+        return ReadingThread(connection, self._write_lock if shared else threading.Lock(), name)
 
     @property
     def head(self) -> int:
@@ -138,13 +145,17 @@ class SqliteJournal:
     def damage(self) -> Sequence[Break]:
         return self._damage
 
-    def look_for_file(self) -> None:
-        """Notice now, rather than at the next commit, that the journal's file is gone."""
+    def look(self) -> None:
+        """Notice now, rather than at the next commit, that nothing can be written any more."""
         try:
             if self._file is not None:
                 self._file.check()
         except FileGoneError as error:
             self._trouble.began(f"the journal could not be written: {error}")
+        if not (self._writer.lives or self._closed):
+            self._trouble.began(
+                "the journal could not be written: its thread has ended; start the service again"
+            )
 
     def commit_statistics(self) -> CommitStatistics:
         return self._writer.statistics()
@@ -211,9 +222,12 @@ class SqliteJournal:
         connection.executemany(INSERT_EVENT, rows)
         if entry.receipt is not None:
             connection.execute(
-                "INSERT OR REPLACE INTO receipts (robot, boot, seq) VALUES (?, ?, ?)",
-                (entry.receipt.robot, entry.receipt.boot, entry.receipt.seq),
-            )
+                "INSERT OR REPLACE INTO receipts (robot, boot, seq, time) VALUES (?, ?, ?, ?)",
+                (
+                    entry.receipt.robot, entry.receipt.boot, entry.receipt.seq,
+                    self._wall_time_s(),
+                ),
+            )  # fmt: skip
         if entry.world is not None:
             connection.execute(
                 "INSERT OR REPLACE INTO worlds (run, state) VALUES (?, ?)",
@@ -253,14 +267,17 @@ class SqliteJournal:
 
     def _committed(self, done: list[Done]) -> None:
         self._publish(done)
-        self._trouble.ended(probed=all(each.result == PROBE for each in done))
+        # A commit of nothing succeeds also where there is no room for anything.
+        wrote = [each.result for each in done if each.wrote]
+        if wrote:
+            self._trouble.ended(probed=all(result == PROBE for result in wrote))
 
     def _publish(self, done: list[Done]) -> None:
-        entries = [each.result for each in done if isinstance(each.result, _Committed)]
-        for entry in entries:
-            if entry.fold is not None:
-                entry.fold(entry.events)
-        records = [record for entry in entries for record in entry.records]
+        records: list[Record] = []
+        for each in done:
+            if isinstance(each.result, _Committed):
+                _fold(each.result, each.future)
+                records += each.result.records
         if records:
             self._head = records[-1].seq
             self._subscribers.publish(records)
@@ -276,7 +293,7 @@ class SqliteJournal:
 
     async def read_records(self, after: int, limit: int, run: UUID | None = None) -> list[Record]:
         of_run = "" if run is None else "run = :run AND "
-        rows = await self._select(
+        rows = await self._pages.select(
             f"SELECT seq, version, body FROM events WHERE {of_run}seq > :after"
             " ORDER BY seq LIMIT :limit",
             {"run": str(run), "after": after, "limit": limit},
@@ -287,55 +304,37 @@ class SqliteJournal:
         self, after: int, limit: int, run: UUID | None = None
     ) -> list[Event | UnreadableEvent]:
         query = partial(read_readable, after=after, limit=limit, run=run)
-        return await self._read(lambda: self._reading(query))
+        return await self._pages.query(query)
 
     async def received(self, robot: str, boot: str) -> int:
-        rows = await self._select(
+        rows = await self._look_ups.select(
             "SELECT seq FROM receipts WHERE robot = ? AND boot = ?", (robot, boot)
         )
         return int(rows[0][0]) if rows else 0
 
     async def world(self, run: UUID) -> dict[str, Any] | None:
-        rows = await self._select("SELECT state FROM worlds WHERE run = ?", (str(run),))
+        rows = await self._look_ups.select("SELECT state FROM worlds WHERE run = ?", (str(run),))
         return json.loads(rows[0][0]) if rows else None
 
     async def picture(self, picture: UUID) -> bytes | None:
-        rows = await self._select("SELECT jpeg FROM pictures WHERE id = ?", (str(picture),))
+        rows = await self._look_ups.select(
+            "SELECT jpeg FROM pictures WHERE id = ?", (str(picture),)
+        )
         return rows[0][0] if rows else None
 
     async def is_whole(self, run: UUID) -> bool:
-        return await self._read(lambda: self._reading(partial(is_whole, run=str(run))))
+        return await self._pages.query(partial(is_whole, run=str(run)))
 
     async def pruned_through(self) -> int:
-        return int(await self._read(lambda: self._reading(pruned_through)))
+        return await self._look_ups.query(pruned_through)
 
     async def find_request(self, principal: str, key: str, since: float) -> KeptRequest | None:
         query = partial(find_request, principal=principal, key=key, since=since)
-        return await self._read(lambda: self._reading(query))
+        return await self._look_ups.query(query)
 
     async def documents(self, kind: str) -> dict[str, str]:
         statement = "SELECT name, text FROM documents WHERE kind = ? ORDER BY name"
-        return dict(await self._select(statement, (kind,)))
-
-    async def _select(self, statement: str, parameters: Any) -> list[Any]:
-        return await self._read(
-            lambda: self._reading(
-                lambda connection: connection.execute(statement, parameters).fetchall()
-            )
-        )
-
-    def _reading(self, query: Callable[[sqlite3.Connection], T]) -> T:
-        """Query in the reader's thread. Raises `JournalReadError`."""
-        try:
-            with self._read_lock:
-                return query(self._read_connection)
-        except SQLITE_ERRORS as error:
-            raise JournalReadError(f"the journal could not be read: {error}") from error
-
-    async def _read(self, query: Callable[[], T]) -> T:
-        if self._closed:
-            raise JournalClosedError("the journal is closed")
-        return await asyncio.get_running_loop().run_in_executor(self._readers, query)
+        return dict(await self._pages.select(statement, (kind,)))
 
     def close(self) -> None:
         """Write what is waiting, end every subscription and free the file."""
@@ -345,11 +344,24 @@ class SqliteJournal:
         self._trouble.close()
         self._writer.close()
         self._subscribers.close()
-        self._readers.shutdown()
-        self._read_connection.close()
+        self._pages.close()
+        self._look_ups.close()
         self._write_connection.close()
         if self._lock is not None:
             self._lock.release()
+
+
+def _fold(committed: _Committed, waiting: "asyncio.Future[Any]") -> None:
+    """Fold an entry. What that raises is its owner's alone: the others wait for their answers."""
+    if committed.fold is None:
+        return
+    try:
+        committed.fold(committed.events)
+    except Exception as error:
+        if waiting.done():
+            log.exception("events that nobody waits for any more could not be folded")
+        else:
+            waiting.set_exception(error)
 
 
 def _write_document(document: Document, connection: sqlite3.Connection) -> None:

@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from typing import Any
 
 from server.journal.journal import JournalClosedError, JournalWriteError
-from server.journal.same_file import FileGoneError
 
 MAX_BATCH = 1000
 
@@ -20,13 +19,25 @@ COMMIT_BUCKETS_S = (0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0
 Work = Callable[[sqlite3.Connection], Any]
 """Writes something within the transaction; if it raises, nothing of it remains."""
 
+OF_WHAT_IS_WRITTEN = (
+    sqlite3.IntegrityError,
+    sqlite3.DataError,
+    sqlite3.InterfaceError,
+    sqlite3.ProgrammingError,
+)
+"""What SQLite has against a row or a value. Whatever else it raises is the file's fault."""
+
 
 @dataclass(frozen=True, slots=True)
 class Done:
-    """What a committed piece of work returned, for whoever waits for it."""
+    """What a committed piece of work returned, for whoever waits for it.
+
+    `wrote`: whether it has changed any row.
+    """
 
     future: "asyncio.Future[Any]"
     result: Any
+    wrote: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,9 +54,9 @@ class GroupCommitWriter:
     """Runs work in one thread on one connection, as many pieces per transaction as are waiting.
 
     `on_begin`, `before_commit` and `on_rollback` are called in the writer's thread; nothing is
-    committed if `before_commit` raises `FileGoneError`. In the event loop of those who
-    wait, in the order of the commits, `on_commit` is called with what was committed, and
-    `on_failure` with why nothing could be.
+    committed if one of the first two raises. In the event loop of those who wait, in the order of
+    the commits, `on_commit` is called with what was committed, and `on_failure` with why nothing
+    could be.
     """
 
     def __init__(
@@ -84,6 +95,11 @@ class GroupCommitWriter:
         future: asyncio.Future[Any] = asyncio.get_running_loop().create_future()
         self._waiting.put((work, future))
         return future
+
+    @property
+    def lives(self) -> bool:
+        """Whether anything can still be written; False also once it is closed."""
+        return self._thread.is_alive()
 
     def statistics(self) -> CommitStatistics:
         return CommitStatistics(
@@ -130,37 +146,41 @@ class GroupCommitWriter:
                 self._connection.execute("BEGIN IMMEDIATE")
                 for work, future in batch:
                     try:
-                        done.append(Done(future, self._do(work)))
-                    except sqlite3.OperationalError:
-                        raise
+                        done.append(self._do(work, future))
                     except Exception as error:
+                        if not _is_of_the_piece(error):
+                            raise
                         refused.append((future, error))
                 self._before_commit(self._connection)
                 self._connection.execute("COMMIT")
-        except (sqlite3.Error, FileGoneError) as error:
+        except Exception as error:
+            # Whatever it is: this thread is the only one that writes, and everybody waits for it.
             self._roll_back()
             self._failures += 1
-            failure = JournalWriteError(f"the journal could not be written: {error}")
+            failure = JournalWriteError(f"the journal could not be written: {_why(error)}")
             refused = [(future, failure) for _, future in batch]
             done = []
         else:
             self._measure(time.perf_counter() - began)
         self._deliver(batch[0][1].get_loop(), done, refused, failure)
 
-    def _do(self, work: Work) -> Any:
+    def _do(self, work: Work, future: "asyncio.Future[Any]") -> Done:
         """Do one piece; the others of the batch stand if it is refused."""
         self._connection.execute("SAVEPOINT piece")
+        before = self._connection.total_changes
         try:
             result = work(self._connection)
-        except Exception:
-            self._connection.execute("ROLLBACK TO piece")
+        except Exception as error:
+            # SQLite itself may have rolled back everything where the fault is not the piece's.
+            if _is_of_the_piece(error):
+                self._connection.execute("ROLLBACK TO piece")
+                self._connection.execute("RELEASE piece")
             raise
-        finally:
-            self._connection.execute("RELEASE piece")
-        return result
+        self._connection.execute("RELEASE piece")
+        return Done(future, result, self._connection.total_changes > before)
 
     def _roll_back(self) -> None:
-        with self._lock, contextlib.suppress(sqlite3.Error):
+        with self._lock, contextlib.suppress(Exception):
             if self._connection.in_transaction:
                 self._connection.execute("ROLLBACK")
         self._on_rollback()
@@ -179,17 +199,30 @@ class GroupCommitWriter:
         failure: JournalWriteError | None,
     ) -> None:
         def settle() -> None:
-            if failure is None:
-                self._on_commit(done)
-            else:
-                self._on_failure(str(failure))
-            for each in done:
-                if not each.future.done():
-                    each.future.set_result(each.result)
-            for future, error in refused:
-                if not future.done():
-                    future.set_exception(error)
+            try:
+                if failure is None:
+                    self._on_commit(done)
+                else:
+                    self._on_failure(str(failure))
+            finally:
+                for each in done:
+                    if not each.future.done():
+                        each.future.set_result(each.result)
+                for future, error in refused:
+                    if not future.done():
+                        future.set_exception(error)
 
         # A loop that has ended has nobody left who waits.
         with contextlib.suppress(RuntimeError):
             loop.call_soon_threadsafe(settle)
+
+
+def _is_of_the_piece(error: Exception) -> bool:
+    """Whether a piece of work failed for what it is, so that others can still be written."""
+    if isinstance(error, sqlite3.Error):
+        return isinstance(error, OF_WHAT_IS_WRITTEN)
+    return not isinstance(error, MemoryError)
+
+
+def _why(error: Exception) -> str:
+    return str(error) or ("out of memory" if isinstance(error, MemoryError) else repr(error))

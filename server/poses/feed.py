@@ -131,6 +131,11 @@ class RunPoses:
 class PoseSource(Protocol):
     """Where the API finds the poses of runs."""
 
+    @property
+    def lost(self) -> int:
+        """Frames that were not recorded, as the disk was too slow for them."""
+        ...
+
     def of(self, run: UUID) -> RunPoses | None:
         """Those of a run that goes on."""
         ...
@@ -154,6 +159,10 @@ class PoseFeed:
         self._model = model
         self._records = records
         self._runs: dict[UUID, RunPoses] = {}
+
+    @property
+    def lost(self) -> int:
+        return 0 if self._records is None else self._records.lost
 
     def open(self, state: RunState) -> RunPoses:
         """A run is taken up."""

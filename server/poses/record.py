@@ -20,12 +20,15 @@ log = logging.getLogger(__name__)
 
 T = TypeVar("T")
 
+WriteLater = Callable[[Callable[[], None], Callable[[], None]], None]
+"""Has the records' thread do the first, and then the second, whatever became of the first."""
+
 MOST_BYTES = 32 * 1024 * 1024
 SHORTEST_INTERVAL_S = 0.049
 """Of the run's clock: no more than 20 frames per second are kept."""
 FLUSH_S = 1.0
 MOST_WAITING = 4096
-"""So many frames may wait to be written; a disk that is slower than that loses some."""
+"""So many frames of a run may wait to be written; a disk that is slower than that loses some."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,13 +40,20 @@ class RecordedPoses:
 
 
 class PoseRecord:
-    """The record of one run that goes on. Its file is touched by the records' thread alone."""
+    """The record of one run that goes on. Its file is touched by the records' thread alone.
 
-    def __init__(self, path: Path, write: Callable[[Callable[[], None]], None], most: int) -> None:
+    `lost` is how many frames did not get there, as so many were waiting for the disk.
+    """
+
+    def __init__(self, path: Path, write: WriteLater, most: int) -> None:
+        self.lost = 0
         self._path = path
         self._write = write
         self._most_bytes = most
         self._waiting: list[Frame] = []
+        # The first is counted in the loop, the second in the thread: neither needs a lock.
+        self._handed_over = 0
+        self._dealt_with = 0
         self._timer: asyncio.TimerHandle | None = None
         self._last_s: float | None = None
         self._interval_s = SHORTEST_INTERVAL_S
@@ -55,8 +65,10 @@ class PoseRecord:
         if self._last_s is not None and 0.0 <= time_s - self._last_s < self._interval_s:
             return
         self._last_s = time_s
-        if len(self._waiting) < MOST_WAITING:
-            self._waiting.append(frame)
+        if len(self._waiting) + self._handed_over - self._dealt_with >= MOST_WAITING:
+            self.lost += 1
+            return
+        self._waiting.append(frame)
         if self._timer is None:
             self._timer = asyncio.get_running_loop().call_later(FLUSH_S, self.flush)
 
@@ -67,7 +79,11 @@ class PoseRecord:
             self._timer = None
         if self._waiting:
             waiting, self._waiting = self._waiting, []
-            self._write(lambda: self._append(waiting))
+            self._handed_over += len(waiting)
+            self._write(partial(self._append, waiting), partial(self._dealt, len(waiting)))
+
+    def _dealt(self, frames: int) -> None:
+        self._dealt_with += frames
 
     def _append(self, frames: Sequence[Frame]) -> None:
         if self._size is None:
@@ -93,8 +109,14 @@ class PoseRecords:
         self._folder = folder
         self._most_bytes = most_bytes
         self._records: dict[UUID, PoseRecord] = {}
+        self._lost = 0
         self._shut = False
         self._thread = ThreadPoolExecutor(max_workers=1, thread_name_prefix="poses")
+
+    @property
+    def lost(self) -> int:
+        """Frames that were not recorded, as the disk was too slow for them."""
+        return self._lost + sum(record.lost for record in self._records.values())
 
     def open(self, run: UUID) -> PoseRecord:
         """The record to which a run's frames are added; it goes on where an earlier one ended."""
@@ -107,6 +129,7 @@ class PoseRecords:
         """A run is over."""
         record = self._records.pop(run, None)
         if record is not None:
+            self._lost += record.lost
             record.flush()
 
     def keep_layout(self, layout: Layout) -> None:
@@ -172,15 +195,17 @@ class PoseRecords:
     def _layout_path(self, run: UUID) -> Path:
         return self._folder / f"{run}.layout.json"
 
-    def _do_later(self, work: Callable[[], None]) -> None:
+    def _do_later(self, work: Callable[[], None], then: Callable[[], None] = lambda: None) -> None:
         if not self._shut:
-            self._thread.submit(self._try, work)
+            self._thread.submit(self._try, work, then)
 
-    def _try(self, work: Callable[[], None]) -> None:
+    def _try(self, work: Callable[[], None], then: Callable[[], None]) -> None:
         try:
             self._in_folder(work)
         except OSError as error:
             log.warning("some poses could not be recorded: %s", error)
+        finally:
+            then()
 
     def _in_folder(self, work: Callable[[], T]) -> T:
         self._folder.mkdir(parents=True, exist_ok=True)

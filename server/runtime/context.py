@@ -84,19 +84,12 @@ class RunContext:
             world=world,
             pictures=pictures or {},
         )
-        failures: list[Exception] = []
 
         def fold(numbered: list[Event]) -> None:
-            try:
-                for event in numbered:
-                    self.state.fold(event)
-            except Exception as error:
-                failures.append(error)
+            for event in numbered:
+                self.state.fold(event)
 
-        committed = await self._journal.append(entry, fold, patient=self.patient)
-        if failures:
-            raise failures[0]
-        return committed
+        return await self._journal.append(entry, fold, patient=self.patient)
 
     def note(self, receipt: Receipt) -> None:
         """Commit the receipt of a report that says nothing new, beside what follows from it."""

@@ -205,9 +205,9 @@ class RunState:
         self.times_gone: Counter[int] = Counter()
         """How often a leaf was done and its object then gone."""
         self.left_out: dict[int, ev.NodeLeftOut] = {}
+        """Leaves that count as done though their object is missing, as a helper said."""
         self.to_leave_out: dict[int, ev.NodeLeftOut] = {}
         """Leaves that were left out and taken back since: nobody is asked about them again."""
-        """Leaves that count as done though their object is missing, as a helper said."""
         self.last_handled: dict[str, int] = {}
         """Which leaf was started last for an object: the one that says where it is to be."""
         self.results: dict[FinishedResult, int] | None = None

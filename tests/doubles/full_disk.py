@@ -1,14 +1,17 @@
 """Disks that are full, and connections that cannot write."""
 
+import asyncio
 import contextlib
 import sqlite3
 import subprocess
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import pytest
+
+from server.journal.sqlite import SqliteJournal
 
 
 class Passing:
@@ -19,6 +22,13 @@ class Passing:
 
     async def __call__(self, delay: float, /) -> None:
         self.pauses.append(delay)
+
+
+class Never:
+    """A pause that does not end."""
+
+    async def __call__(self, _: float, /) -> None:
+        await asyncio.Event().wait()
 
 
 class SmallDisk:
@@ -58,16 +68,34 @@ def small_disk(folder: Path, size_mb: int = 2) -> Iterator[SmallDisk]:
 
 
 class FailingConnection:
-    """A connection whose commits fail while `error` is set."""
+    """A connection on which a statement that begins with `at` fails while `error` is set."""
 
-    def __init__(self, connection: sqlite3.Connection) -> None:
+    def __init__(self, connection: sqlite3.Connection, at: str = "COMMIT") -> None:
         self._connection = connection
-        self.error: str | None = None
+        self._at = at
+        self.error: str | Exception | None = None
 
     def execute(self, statement: str, *parameters: Any) -> Any:
-        if statement == "COMMIT" and self.error is not None:
-            raise sqlite3.OperationalError(self.error)
+        self._may_fail(statement)
         return self._connection.execute(statement, *parameters)
+
+    def executemany(self, statement: str, parameters: Iterable[Any]) -> Any:
+        rows = list(parameters)
+        if rows:
+            self._may_fail(statement)
+        return self._connection.executemany(statement, rows)
+
+    def _may_fail(self, statement: str) -> None:
+        if self.error is not None and statement.startswith(self._at):
+            error = self.error
+            raise sqlite3.OperationalError(error) if isinstance(error, str) else error
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._connection, name)
+
+
+def failing(journal: SqliteJournal, at: str = "COMMIT") -> FailingConnection:
+    """The connection on which the journal writes from now on."""
+    connection = FailingConnection(journal._write_connection, at)
+    journal._writer._connection = connection  # type: ignore[assignment]
+    return connection

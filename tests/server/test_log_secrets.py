@@ -22,6 +22,10 @@ from server.settings import Settings
             """< TEXT '{"type": "auth", "token": "***"}' [33 bytes]""",
         ),
         ("""'{"token":"abc","type":"auth"}'""", """'{"token":"***","type":"auth"}'"""),
+        ("""'{"token" : "abc"}'""", """'{"token" : "***"}'"""),
+        ("""'{"token":  "abc"}'""", """'{"token":  "***"}'"""),
+        (repr('{"token"\n:\t"abc"}'), r"""'{"token"\n:\t"***"}'"""),
+        (r"""'{"token": "abc\"def"}'""", """'{"token": "***"}'"""),
         ("< host: localhost", "< host: localhost"),
     ],
 )

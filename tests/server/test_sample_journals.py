@@ -41,6 +41,7 @@ ADDED_SINCE: dict[str, set[str]] = {
     "v2": {*OF_NO_RUN, "first_look", "looked_anew", "suspected_false_alarm"},
     "v3": {*OF_NO_RUN, "looked_anew"},
     "v4": {*OF_NO_RUN, "looked_anew"},
+    "v5": {*OF_NO_RUN, "looked_anew"},
 }
 """The types of events that came after a sample was written."""
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from uuid import UUID, uuid4
 
 import pytest
-from full_disk import FailingConnection, Passing
+from full_disk import FailingConnection, Passing, failing
 from sample_events import RUN, paused, started
 
 from server.journal.file_lock import JournalLockedError
@@ -256,12 +256,6 @@ async def test_the_names_of_such_numbers_may_stand_in_a_text(journal: SqliteJour
 
 
 # --- A journal that cannot be written -----------------------------------------------------------
-
-
-def failing(journal: SqliteJournal) -> FailingConnection:
-    connection = FailingConnection(journal._write_connection)
-    journal._writer._connection = connection  # type: ignore[assignment]
-    return connection
 
 
 class PassingUntilGood(Passing):

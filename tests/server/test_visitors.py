@@ -120,6 +120,20 @@ def test_there_are_only_so_many_connections_admitted_or_not() -> None:
     assert house.why_not("10.0.0.6") == "connections"
 
 
+def cannot_end(_: Beyond) -> None:
+    raise RuntimeError("it cannot be ended")
+
+
+def test_a_connection_that_cannot_be_ended_costs_no_other_its_end_or_its_place(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    house = House()
+    house.visitors.come("10.0.0.1", cannot_end)
+    others = [house.come("10.0.0.2"), house.come("10.0.0.3"), house.come("10.0.0.4")]
+    assert "ending a connection has failed and goes on (RuntimeError: it cannot" in caplog.text
+    assert [visitor for visitor, _ in house.after(10)] == others
+
+
 def test_a_head_has_its_time_from_the_connection_on() -> None:
     house = House()
     visitor = house.come("10.0.0.1")

@@ -9,7 +9,7 @@ import pytest
 
 from server.access.deed_log import DeedLog
 from server.access.principal import Caller, Principal
-from server.access.principals_file import Change
+from server.access.principals_file import KEPT_CHANGES, Change
 from server.access.roles import Role
 from server.access.sessions import Sessions
 from server.journal import events as ev
@@ -91,6 +91,42 @@ async def test_a_change_of_the_file_is_journaled_once_also_after_a_restart(
     (event,) = await journal.read(0, 10)
     assert isinstance(event, ev.AccessChanged)
     assert (event.what, event.principal, event.author.principal) == ("revoked", "anna", "root")
+
+
+def revoked(clock: Clock) -> Change:
+    return Change(
+        id=uuid4(), when=clock.now, by="root", what="revoked", name="anna", role=Role.HELPER
+    )
+
+
+async def test_only_so_many_changes_are_remembered_but_all_that_the_file_has_or_may_get_back(
+    journal: SqliteJournal,
+) -> None:
+    clock = Clock()
+    deeds = DeedLog(journal, clock)
+    first = revoked(clock)
+    made = [revoked(clock) for _ in range(2 * KEPT_CHANGES)]
+    for change in made:
+        deeds.take_changes([first, change])
+    assert len(deeds._journaled) <= KEPT_CHANGES + 2
+    await deeds.written()
+    journaled = journal.head
+    deeds.take_changes([])
+    deeds.take_changes([first, *made[-KEPT_CHANGES + 1 :]])
+    await deeds.close()
+    assert journal.head == journaled == 2 * KEPT_CHANGES + 1
+
+
+async def test_who_signed_in_more_than_a_minute_ago_is_not_remembered(
+    journal: SqliteJournal,
+) -> None:
+    clock = Clock()
+    deeds = DeedLog(journal, clock)
+    for number in range(20):
+        deeds.signed_in(Principal(f"helper {number}", Role.HELPER, "key"), "10.0.0.1")
+        clock.now += timedelta(seconds=30)
+    assert len(deeds._told) == 2
+    await deeds.close()
 
 
 async def test_what_cannot_be_read_takes_nothing_else_with_it(journal: SqliteJournal) -> None:

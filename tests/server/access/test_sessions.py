@@ -66,3 +66,12 @@ def test_nobody_signs_in_without_end() -> None:
     sessions.new(Principal("ben", Role.HELPER, "key-of-ben"))
     clock.now += 3600
     sessions.new(ANNA)
+
+
+def test_who_has_not_signed_in_for_an_hour_is_not_remembered() -> None:
+    clock = Clock()
+    sessions = Sessions(b"k" * 32, clock)
+    for number in range(100):
+        sessions.new(Principal(f"robot {number}", Role.HELPER, f"key-{number}"))
+        clock.now += 360
+    assert len(sessions._begun) == 10

@@ -3,7 +3,7 @@
 import asyncio
 import json
 import sqlite3
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Callable
 from contextlib import closing
 from pathlib import Path
 
@@ -124,6 +124,51 @@ def test_a_journal_in_use_is_not_replaced(tmp_path: Path) -> None:
     with pytest.raises(JournalLockedError):
         restore(target, path, force=True)
     journal.close()
+
+
+def test_a_backup_does_not_replace_the_journal_of_another_service(tmp_path: Path) -> None:
+    path, other = tmp_path / "journal.db", tmp_path / "other.db"
+    write_history(path, 1)
+    journal = SqliteJournal(other)
+    with pytest.raises(JournalLockedError, match="in use by another process"):
+        back_up(path, other, force=True)
+    journal.close()
+    back_up(path, other, force=True)
+    assert contents(other) == contents(path)
+
+
+@pytest.mark.parametrize("put", [restore, back_up])
+async def test_a_journal_whose_log_cannot_be_emptied_is_not_replaced(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, put: Callable[..., None]
+) -> None:
+    monkeypatch.setattr("server.journal.backup.BUSY_TIMEOUT_S", 0.0)
+    path, source = tmp_path / "journal.db", tmp_path / "source.db"
+    write_history(source, 1)
+    write_history(path, 1)
+    with closing(sqlite3.connect(path, isolation_level=None)) as reader:
+        # Whose log holds what the file does not, as long as somebody reads from before that.
+        reader.execute("BEGIN")
+        reader.execute("SELECT count(*) FROM events").fetchone()
+        journal = SqliteJournal(path)
+        await journal.append(Entry(events=[paused(7.0)]))
+        journal.close()
+        with pytest.raises(BackupError, match=r"log of .* could not be emptied"):
+            put(source, path, force=True)
+        reader.execute("ROLLBACK")
+        (last,) = reader.execute("SELECT max(time) FROM events WHERE type = 'run_paused'")
+        assert last == (7.0,)
+    put(source, path, force=True)
+    assert contents(path) == contents(source)
+
+
+def test_a_journal_that_is_none_any_more_is_replaced_all_the_same(tmp_path: Path) -> None:
+    path, target = tmp_path / "journal.db", tmp_path / "copy.db"
+    write_history(path, 1)
+    back_up(path, target)
+    path.write_bytes(b"nothing that makes sense" * 1000)
+    path.with_name("journal.db-wal").write_bytes(b"nor this")
+    restore(target, path, force=True)
+    assert contents(path) == contents(target)
 
 
 async def aislice(stream: EventStream, count: int) -> AsyncIterator[Snapshot | Event]:

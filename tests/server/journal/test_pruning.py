@@ -131,6 +131,36 @@ async def test_of_a_real_robot_the_receipt_of_the_last_boot_stays(tmp_path: Path
     journal.close()
 
 
+@pytest.mark.parametrize(
+    ("keep", "left"),
+    [
+        (Keep(ended_within=timedelta(days=10)), [6, 7, 8, 9]),
+        (Keep(ended_runs=1), [3, 4, 5, 6, 7, 8, 9]),
+        (Keep(picture_bytes=10**9), [0, 1, 2, 3, 4, 5, 6, 7, 8, 9]),
+    ],
+)
+async def test_of_earlier_starts_that_no_run_names_no_receipt_is_kept_for_ever(
+    tmp_path: Path, keep: Keep, left: list[int]
+) -> None:
+    now = BEGUN
+    journal = SqliteJournal(tmp_path / "journal.db", wall_time_s=lambda: now.timestamp())
+    for boot in range(10):
+        # A robot starts anew every three days; in between a run begins and ends without it.
+        await journal.append(Entry(receipt=Receipt("arm", f"boot {boot}", 3)))
+        now += timedelta(days=3)
+        if boot in (1, 3):
+            run = uuid4()
+            begin = started(run).model_copy(update={"wall_time": now})
+            end = ev.RunFinished(time=2.0, wall_time=now, run=run, missing=[])
+            await journal.append(Entry(events=[begin, end]))
+    await journal.append(Entry(receipt=Receipt("quiet", "only", 7)))
+    await journal.prune(keep, now)
+    boots = [each for each in range(10) if await journal.received("arm", f"boot {each}")]
+    assert boots == left
+    assert await journal.received("quiet", "only") == 7
+    journal.close()
+
+
 async def test_numbers_are_never_given_again(path: Path) -> None:
     journal = SqliteJournal(path)
     head = journal.head
@@ -298,3 +328,19 @@ async def test_room_is_given_back_only_while_no_service_has_the_journal(path: Pa
     await prune_file(path, Keep(ended_runs=1), NOW, compact=True)
     assert size_of(path) < before / 4
     assert checked(path).findings == []
+
+
+async def test_a_damaged_id_or_clip_keeps_nothing_else_from_being_pruned(path: Path) -> None:
+    with closing(sqlite3.connect(path)) as connection, connection:
+        connection.execute("UPDATE runs SET run = 'damaged' WHERE run = ?", (str(run_id(0)),))
+        for run, clip in ((1, '"nothing"'), (2, '["nothing"]'), (3, "null")):
+            body = '{"type": "clip_recorded", "pictures": ' + clip + "}"
+            connection.execute(
+                "UPDATE events SET type = 'clip_recorded', body = ? WHERE seq ="
+                " (SELECT max(seq) - 1 FROM events WHERE run = ?)",
+                (body, str(run_id(run))),
+            )
+    forgotten: list[UUID] = []
+    pruned = await prune_file(path, Keep(ended_runs=2), NOW, forgotten.append)
+    assert pruned.runs == forgotten == [run_id(run) for run in range(1, 6)]
+    assert kept_runs(path) == [6, 7]

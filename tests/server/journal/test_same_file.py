@@ -5,7 +5,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from full_disk import Passing
+from full_disk import Never, Passing
 from sample_events import paused
 
 from server.journal.journal import Entry, JournalWriteError
@@ -32,13 +32,6 @@ def delete_log(path: Path) -> None:
 
 def put_back(path: Path) -> None:
     path.with_name("elsewhere.db").rename(path)
-
-
-class Never:
-    """A pause that does not end."""
-
-    async def __call__(self, _: float, /) -> None:
-        await asyncio.Event().wait()
 
 
 @pytest.mark.parametrize(
@@ -84,9 +77,9 @@ async def test_a_file_that_is_put_back_is_written_again(tmp_path: Path) -> None:
 async def test_it_is_noticed_before_anything_is_to_be_written(tmp_path: Path) -> None:
     path = tmp_path / "journal.db"
     journal = SqliteJournal(path, sleep=Never())
-    journal.look_for_file()
+    journal.look()
     assert journal.trouble.reason is None
     delete(path)
-    journal.look_for_file()
+    journal.look()
     assert "was deleted or moved" in str(journal.trouble.reason)
     journal.close()

@@ -27,6 +27,8 @@ DIALOGUE = UUID("c4e1b2a3-77aa-4b1e-9d2f-2a7f5b6c8d02")
 PROMPT = UUID("9a3b1c2d-1f2e-4d3c-8b4a-6e5f7a8b9c03")
 PICTURE = UUID("3e2d1c0b-9a8f-4e7d-8c6b-5a4f3e2d1c04")
 
+WALL_TIME = datetime(2026, 1, 2, 3, 4, tzinfo=UTC)
+
 _ticks = count(1)
 
 
@@ -171,7 +173,7 @@ def every_event() -> list[ev.Event]:
 
 
 async def record(path: Path) -> None:
-    journal = SqliteJournal(path)
+    journal = SqliteJournal(path, wall_time_s=WALL_TIME.timestamp)
     for number, event in enumerate(every_event(), 1):
         entry = Entry(
             events=[event],

@@ -1,6 +1,7 @@
 """Recorded poses: thinned to twenty a second and to a bounded size, whole again after a kill."""
 
 import asyncio
+import threading
 from collections.abc import AsyncIterator
 from pathlib import Path
 
@@ -10,7 +11,7 @@ from shown_run import hello, poses, run_state
 
 from server.poses.frame import Frame, encode, time_of
 from server.poses.layout import lay_out
-from server.poses.record import PoseRecords
+from server.poses.record import MOST_WAITING, PoseRecords
 
 ALL = (0.0, 1e9, 100_000)
 
@@ -123,6 +124,47 @@ async def test_a_layout_of_another_version_is_as_good_as_none(
     assert await records.layout(RUN) is None
     (tmp_path / "poses" / f"{RUN}.layout.json").write_text('{"type": "layout", "shape": "round"}')
     assert await records.layout(RUN) is None
+
+
+async def test_of_what_a_slow_disk_does_not_take_only_so_much_waits_and_the_rest_is_counted(
+    records: PoseRecords,
+) -> None:
+    record = records.open(RUN)
+    slow = threading.Event()
+    records._do_later(lambda: waited_for(slow))
+    for step in range(MOST_WAITING + 100):
+        record.add(frame(step / 10))
+        if step % 20 == 0:
+            record.flush()
+    assert records.lost == 100
+    slow.set()
+    assert len((await records.read(RUN, *ALL)).frames) == MOST_WAITING
+    record.add(frame(1000.0))
+    records.close(RUN)
+    assert time_of(await records.last(RUN) or b"") == 1000.0
+    assert records.lost == 100
+
+
+async def test_frames_that_a_disk_did_not_take_wait_no_longer(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("server.poses.record.MOST_WAITING", 2)
+    (tmp_path / "poses").write_text("a file where the folder is to be")
+    records = PoseRecords(tmp_path / "poses")
+    record = records.open(RUN)
+    for time_s in (1.0, 2.0):
+        record.add(frame(time_s))
+    with pytest.raises(FileExistsError):
+        await records.read(RUN, *ALL)
+    (tmp_path / "poses").unlink()
+    record.add(frame(3.0))
+    assert len((await records.read(RUN, *ALL)).frames) == 1
+    assert records.lost == 0
+    records.shut()
+
+
+def waited_for(event: threading.Event) -> None:
+    event.wait(60)
 
 
 async def test_a_disk_that_takes_nothing_costs_the_poses_and_nothing_else(
