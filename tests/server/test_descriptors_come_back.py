@@ -21,6 +21,7 @@ from server.journal.sqlite import SqliteJournal
 from server.robots.passes import OwnRobots
 from server.robots.process import InProcessRobot
 from server.robots.registry import RobotRegistry
+from server.robots.simulation_thread import SimulationThread
 from sim.tabletop.adapter import adapter
 from sim.tabletop.layout import lay_out
 from sim.world import WorldSetup
@@ -81,7 +82,7 @@ async def test_a_robot_within_the_service_starts_once_there_are_descriptors(
     registry.assign("arm", sink)
     world = ShortOfDescriptors()
     ended: list[str] = []
-    robot = InProcessRobot(world, ended.append, registry, OwnRobots())  # type: ignore[arg-type]
+    robot = InProcessRobot(world, ended.append, registry, OwnRobots(), SimulationThread())  # type: ignore[arg-type]
     scene = lay_out([("part", "spot")], 1)
     await robot.start(WorldSetup(robot="arm", scene=scene, seed=1, speed=None))
     async with asyncio.timeout(60):
@@ -124,7 +125,7 @@ async def test_a_robot_that_fails_for_that_says_so_without_a_traceback(
         ended.append(reason)
         news.set()
 
-    robot = InProcessRobot(FailsOnTheWay(), end, registry, OwnRobots())  # type: ignore[arg-type]
+    robot = InProcessRobot(FailsOnTheWay(), end, registry, OwnRobots(), SimulationThread())  # type: ignore[arg-type]
     scene = lay_out([("part", "spot")], 1)
     await robot.start(WorldSetup(robot="arm", scene=scene, seed=1, speed=None))
     registry.send("arm", "c1", Look())
