@@ -97,7 +97,7 @@ def read_document(text: str) -> tuple[Any, list[Problem]]:
         for event in yaml.parse(text, Loader=_LOADER):
             builder.take(event)
     except yaml.YAMLError as error:
-        raise _translate(error) from error
+        raise _translate(error, text) from error
     return builder.root, builder.problems
 
 
@@ -141,6 +141,8 @@ class _Builder:
         self._add(value, line, 1)
 
     def _take_key(self, mapping: LinedMapping, key: str, line: int) -> None:
+        if key == "<<":
+            raise DocumentError(line, "'<<' merges nothing here: write out the keys it stands for")
         if key in mapping:
             first = mapping.key_lines[key]
             message = f"the key '{key}' is given twice, first in line {first}"
@@ -229,8 +231,12 @@ def _line(event: Any) -> int:
     return int(event.start_mark.line) + 1
 
 
-def _translate(error: yaml.YAMLError) -> DocumentError:
+def _translate(error: yaml.YAMLError, text: str) -> DocumentError:
     mark = getattr(error, "problem_mark", None)
+    lines = text.split("\n")
+    if mark is not None and mark.line < len(lines) and lines[mark.line][mark.column :][:1] == "\t":
+        message = "YAML is indented with spaces, and here is a tab"
+        return DocumentError(mark.line + 1, message, mark.column + 1)
     reason = getattr(error, "problem", None) or getattr(error, "reason", None) or "cannot be read"
     message = f"the text is not valid YAML or JSON: {reason}"
     if mark is None:

@@ -1,5 +1,6 @@
 """The nested form of a task file: `then`, `and`, `or` with a list of nodes, and leaves."""
 
+from difflib import get_close_matches
 from typing import Any
 
 from tasks.document import LinedMapping, LinedSequence
@@ -45,7 +46,7 @@ def _draft_node(
         several = " and ".join(f"'{key}'" for key in found)
         message = f"a node may have only one of {_show_kind_keys()}, but this one has {several}"
     else:
-        message = f"a node needs one of {_show_kind_keys()}"
+        message = f"a node needs one of {_show_kind_keys()}" + _meant(value)
     draft.problems.append(Problem(line, draft.path_of_child(parent, position), message))
     return None
 
@@ -96,6 +97,14 @@ def _read_leaf(draft: Draft, index: int) -> None:
         if key not in ("behavior", "name"):
             node.parameters[key] = value
             node.parameters.key_lines[key] = node.source.line_of(key)
+
+
+def _meant(value: LinedMapping) -> str:
+    """What a key that is none was probably meant to be."""
+    for key in value:
+        if close := get_close_matches(str(key), _KIND_KEYS, 1, 0.7):
+            return f"; is '{key}' meant to be '{close[0]}'?"
+    return ""
 
 
 def _show_kind_keys() -> str:

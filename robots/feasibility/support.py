@@ -74,7 +74,7 @@ def _in_the_air(standing: Standing, others: Sequence[Standing], table: Table) ->
             f"table at z {table.height:.3f}; leave z out to put it there"
         )
     return (
-        f"{name} at z {z:.3f} rests on nothing: the top of {near.name} below it is at z "
+        f"{name} at z {z:.3f} rests on nothing: the nearest top there is that of {near.name}, at z "
         f"{near.deck_z:.3f}"
     )
 

@@ -111,7 +111,7 @@ IMPOSSIBLE = [
         "not on the box's top",
         changed(at_cup__pose={"x": 0.58, "y": 0.05, "z": 0.78}),
         {"then": [BOX, CUP, LID]},
-        "the top of box below it is at z 0.750",
+        "the nearest top there is that of box, at z 0.750",
     ),
     (
         "tips off the box",

@@ -143,6 +143,9 @@ def test_one_mistake_is_one_sentence(tree: str, message: str) -> None:
         ("a: b: c", "the text is not valid YAML or JSON"),
         ('{"name": ', "the text is not valid YAML or JSON"),
         ("\x00", "the text is not valid YAML or JSON"),
+        ("name: t\ntree:\n\tand: []", "YAML is indented with spaces, and here is a tab"),
+        ("x: &x {a: 1}\nname: t\ntree: {<<: *x}", "'<<' merges nothing here"),
+        ("name: t\ntree: {behaviour: go}", "is 'behaviour' meant to be 'behavior'?"),
     ],
 )
 def test_a_file_without_a_tree_is_told_so(text: str, message: str) -> None:

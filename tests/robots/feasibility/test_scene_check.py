@@ -128,7 +128,7 @@ def test_a_part_that_cannot_be_taken_is_told_of_where_it_is(
         (Pose(x=0.5, y=0.05, z=0.80), "is in the air"),
         (Pose(x=0.8, y=0.1), "the arm does not reach"),
         (Pose(x=0.5, y=-0.25), "the place of part is where other stands"),
-        (Pose(x=0.5, y=-0.25, z=0.77), "the top of other below it is at z 0.750"),
+        (Pose(x=0.5, y=-0.25, z=0.77), "the nearest top there is that of other, at z 0.750"),
         (Pose(x=0.5, y=-0.215, z=0.75), "would tip off other"),
     ],
 )
