@@ -6,7 +6,7 @@ The text of such an event has the tree after fields that hold no other object.
 import json
 from typing import Any
 
-from pydantic import TypeAdapter, ValidationError
+from pydantic import TypeAdapter
 
 from server.journal import events as ev
 from server.journal.stored_event import UnreadableEventError, read_event
@@ -38,7 +38,7 @@ async def read_started(record: Record) -> tuple[ev.Event, NodeTable | None]:
     begin += len(_BEGIN)
     try:
         nodes, end = await _read_tree(record.text, begin)
-    except (ValueError, ValidationError) as error:
+    except (ValueError, RecursionError) as error:
         first = str(error).splitlines()[0]
         raise UnreadableEventError(
             f"event {record.seq} cannot be read: its tree is none: {first}"

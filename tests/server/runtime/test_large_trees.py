@@ -145,6 +145,7 @@ async def test_a_tree_that_was_given_as_text_is_journaled_as_any_other() -> None
         (('"name":"red_1"', '"name":"red_0"'), "two nodes are called 'red_0'"),
         (('"nodes":[', '"notes":['), "it has no 'nodes'"),
         (('"nodes":[{', '"nodes":[{{'), "its tree is none"),
+        (('"nodes":[', '"nodes":' + "[" * 100_000), "its tree is none"),
     ],
 )
 async def test_a_damaged_tree_is_told_of(change: tuple[str, str], what: str) -> None:
