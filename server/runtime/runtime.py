@@ -29,15 +29,17 @@ from server.runtime.choosing import potentials_for
 from server.runtime.clock import RunClock, SimulatedClock, WallClock
 from server.runtime.context import RunContext, RunSettings
 from server.runtime.dialogue_driver import DialogueDriver
+from server.runtime.dialogue_state import DialogueState
 from server.runtime.failure import fail_run, why_it_stopped
 from server.runtime.history import History
 from server.runtime.new_run import NewRun, NewRuns
+from server.runtime.past_dialogues import PastDialogues
 from server.runtime.past_states import PastStates
 from server.runtime.ports import LIVE, Poses, Preparation, RealRobots, Robots, Worlds
 from server.runtime.requests import RunRequest
 from server.runtime.robot_side import RobotSide
 from server.runtime.run import Run
-from server.runtime.run_state import DialogueState, RunState
+from server.runtime.run_state import RunState
 from server.runtime.run_views import (
     RunViewing,
     dialogue_view,
@@ -96,6 +98,7 @@ class Runtime:
         self._new_runs = NewRuns(preparation, worlds, utc_now, settings.limits)
         self._history = History(journal, scripts)
         self._past = PastStates(self._history)
+        self._past_dialogues = PastDialogues(journal.index, scripts)
         journal.trouble.watch(self._journal_troubled)
 
     # --- Beginning and ending -----------------------------------------------------------------
@@ -440,14 +443,11 @@ class Runtime:
         if status == "open":
             # Whoever hears of an event finds it here already; the index is a moment ahead of that.
             return self._open_dialogues()[offset : offset + limit]
-        views = []
-        for dialogue, run in await self._journal.index.dialogues(status, limit, offset):
-            try:
-                state = await self._state(run)
-            except (NotFoundError, UnreadableError):
-                continue
-            if dialogue in state.dialogues:
-                views.append(dialogue_view(state.dialogues[dialogue]))
+        found = await self._journal.index.dialogues(status, limit, offset)
+        now = {each: known[1] for each in found if (known := self._known_dialogue(each.dialogue))}
+        past = await self._past_dialogues.read([each for each in found if each not in now])
+        read = [now.get(each) or past.get(each.dialogue) for each in found]
+        views = [dialogue_view(each) for each in read if each is not None]
         return [each for each in views if status is None or each.status == status]
 
     def _open_dialogues(self) -> list[DialogueView]:
@@ -455,9 +455,9 @@ class Runtime:
 
     async def _dialogue(self, dialogue: UUID) -> tuple[RunState, DialogueState]:
         """Raises `NotFoundError` or `UnreadableError`."""
-        for state in self._states.values():
-            if dialogue in state.dialogues:
-                return state, state.dialogues[dialogue]
+        known = self._known_dialogue(dialogue)
+        if known is not None:
+            return known
         run = await self._journal.index.run_of(dialogue)
         if run is not None:
             state = await self._state(run)
@@ -465,8 +465,20 @@ class Runtime:
                 return state, state.dialogues[dialogue]
         raise NotFoundError(f"there is no dialogue {dialogue}")
 
+    def _known_dialogue(self, dialogue: UUID) -> tuple[RunState, DialogueState] | None:
+        """A dialogue of a run that goes on."""
+        for state in self._states.values():
+            if dialogue in state.dialogues:
+                return state, state.dialogues[dialogue]
+        return None
+
     async def dialogue(self, dialogue: UUID) -> DialogueView:
         """One dialogue. Raises `NotFoundError` or `UnreadableError`."""
+        if self._known_dialogue(dialogue) is None:
+            found = await self._journal.index.dialogue(dialogue)
+            past = {} if found is None else await self._past_dialogues.read([found])
+            if dialogue in past:
+                return dialogue_view(past[dialogue])
         return dialogue_view((await self._dialogue(dialogue))[1])
 
     async def answer(

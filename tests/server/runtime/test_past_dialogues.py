@@ -1,0 +1,99 @@
+"""Dialogues of runs that have ended are read from their own events, and no run is folded for it."""
+
+from pathlib import Path
+from typing import Any
+from uuid import UUID
+
+import pytest
+from made_up_history import run_id, write_history
+from pretend_service import PretendService, pretend_service
+from task_documents import definition_of
+
+from server.errors import NotFoundError
+from server.journal import events as ev
+from server.runtime.history import MOST_KEPT, History
+from server.runtime.run_views import dialogue_view
+
+RUNS = MOST_KEPT + 4
+TREE = definition_of(
+    {"then": [{"behavior": "pick_and_place", "object": name} for name in ("red", "blue")]}
+)
+FAULTS = {"red": [("dropped", 5)], "blue": [("missed", 3), ("dropped", 5)]}
+
+
+@pytest.fixture
+def path(tmp_path: Path) -> Path:
+    path = tmp_path / "journal.db"
+    write_history(path, RUNS)
+    return path
+
+
+@pytest.fixture
+def folded(monkeypatch: pytest.MonkeyPatch) -> list[UUID]:
+    """Every run that is folded from the journal."""
+    runs: list[UUID] = []
+    fold = History.at
+
+    async def at(history: History, run: UUID, *until: Any) -> Any:
+        runs.append(run)
+        return await fold(history, run, *until)
+
+    monkeypatch.setattr(History, "at", at)
+    return runs
+
+
+async def folded_views(service: PretendService, run: UUID) -> dict[UUID, Any]:
+    """The run's dialogues as a fold of all its events has them."""
+    state = await service.runtime._history.read(run)
+    return {each.id: dialogue_view(each) for each in state.dialogues.values()}
+
+
+@pytest.mark.parametrize("status", [None, "closed"])
+async def test_a_page_of_dialogues_folds_no_run(
+    path: Path, folded: list[UUID], status: Any
+) -> None:
+    async with pretend_service(TREE, journal=path) as service:
+        page = await service.runtime.dialogues(status, 1000, 0)
+        one = await service.runtime.dialogue(page[3].dialogue)
+    assert folded == []
+    assert [each.run for each in page] == [run_id(number) for number in range(RUNS)]
+    assert one == page[3]
+
+
+async def test_a_past_dialogue_is_seen_as_a_fold_of_its_whole_run_has_it() -> None:
+    async with pretend_service(TREE, FAULTS) as service:
+        first, _ = await service.run_to_end(answers=["yes"] * 9)
+        second, _ = await service.run_to_end(answers=["no"] * 9)
+        page = await service.runtime.dialogues("closed", 100, 0)
+        whole = await folded_views(service, first.id) | await folded_views(service, second.id)
+    assert len(page) > 3
+    assert {each.dialogue: each for each in page} == whole
+
+
+async def test_a_dialogue_that_cannot_be_read_is_left_out_and_takes_no_other_with_it(
+    path: Path,
+) -> None:
+    async with pretend_service(TREE, journal=path) as service:
+        bad = (await service.runtime.dialogues("closed", 1, 2))[0]
+        connection = service.journal._write_connection
+        connection.execute(
+            "UPDATE events SET body = replace(body, '\"answer\":', '\"answered\":')"
+            " WHERE type = 'answered' AND run = ?",
+            (str(bad.run),),
+        )
+        connection.commit()
+        page = await service.runtime.dialogues("closed", 1000, 0)
+    assert [each.run for each in page] == [run_id(n) for n in range(RUNS) if n != 2]
+
+
+async def test_dialogues_of_runs_that_cannot_be_read_are_not_listed(path: Path) -> None:
+    async with pretend_service(TREE, journal=path) as service:
+        await service.journal.mark_unreadable(run_id(2), "it is damaged")
+        page = await service.runtime.dialogues("closed", 3, 0)
+    assert [each.run for each in page] == [run_id(0), run_id(1), run_id(3)]
+
+
+async def test_a_dialogue_that_there_never_was_is_not_found(path: Path) -> None:
+    async with pretend_service(TREE, journal=path) as service:
+        with pytest.raises(NotFoundError, match="there is no dialogue"):
+            await service.runtime.dialogue(ev.NO_RUN)
