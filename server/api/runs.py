@@ -121,7 +121,7 @@ async def abort_run(
 async def list_events(
     run: RunId, parts: WithParts, after: After = 0, limit: Limit = 100
 ) -> Response:
-    """A run's events in order; go on with the last `seq` as `after`."""
+    """A run's events in order; go on with the last `seq` as `after`, until a page is empty."""
     # What belongs to no run is for admins, at another door.
     if run == NO_RUN or await parts.journal.index.find(run) is None:
         await parts.runs.run(run)
