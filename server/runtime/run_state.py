@@ -64,6 +64,9 @@ class RunState:
         self.lost: set[str] = set()
         self.accepted: dict[str, ev.InterventionAccepted] = {}
         self.intervened: set[str] = set()
+        """Commands that were carried out, but for those that had been accepted: of these there may
+        be any number, and they are asked for once.
+        """
         self.exhausted: set[int] = set()
         self.taken_back: dict[int, ev.NodeUndone] = {}
         """Leaves that were done, until a robot sets about them anew or they are done again."""
@@ -203,8 +206,7 @@ class RunState:
 
     @_apply.register
     def _(self, event: ev.InterventionDone) -> None:
-        if event.command is not None:
-            self.accepted.pop(event.command, None)
+        if event.command is not None and self.accepted.pop(event.command, None) is None:
             self.intervened.add(event.command)
 
     @_apply.register
