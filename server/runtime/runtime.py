@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from datetime import datetime
 from functools import partial
+from itertools import islice
 from typing import Any, Literal, cast
 from uuid import UUID
 
@@ -339,6 +340,10 @@ class Runtime:
 
     async def run_summary(self, run: UUID) -> RunSummary:
         """One run without its nodes. Raises `NotFoundError` or `UnreadableError`."""
+        if run not in self._states:
+            indexed = await self._journal.index.find(run)
+            if indexed is not None and RunStatus(indexed.status).ended:
+                return summary_of_indexed(indexed)
         return self._summary(await self._state(run))
 
     async def run_json(self, run: UUID) -> list[bytes]:
@@ -442,7 +447,7 @@ class Runtime:
         """A page of dialogues, oldest first; without those of runs that cannot be read."""
         if status == "open":
             # Whoever hears of an event finds it here already; the index is a moment ahead of that.
-            return self._open_dialogues()[offset : offset + limit]
+            return [dialogue_view(e) for e in islice(self._open(), offset, offset + limit)]
         found = await self._journal.index.dialogues(status, limit, offset)
         now = {each: known[1] for each in found if (known := self._known_dialogue(each.dialogue))}
         past = await self._past_dialogues.read([each for each in found if each not in now])
@@ -450,8 +455,12 @@ class Runtime:
         views = [dialogue_view(each) for each in read if each is not None]
         return [each for each in views if status is None or each.status == status]
 
-    def _open_dialogues(self) -> list[DialogueView]:
-        return [dialogue_view(e) for state in self._states.values() for e in state.open_dialogues]
+    def _open(self) -> Iterator[DialogueState]:
+        return (each for state in self._states.values() for each in state.open_dialogues)
+
+    def count_open_dialogues(self) -> int:
+        """How many dialogues are open."""
+        return sum(1 for _ in self._open())
 
     async def _dialogue(self, dialogue: UUID) -> tuple[RunState, DialogueState]:
         """Raises `NotFoundError` or `UnreadableError`."""

@@ -1,4 +1,4 @@
-"""Dialogues of runs that have ended are read from their own events, and no run is folded for it."""
+"""What is asked about past runs and dialogues folds no run, and views no more than is asked for."""
 
 from pathlib import Path
 from typing import Any
@@ -11,8 +11,11 @@ from task_documents import definition_of
 
 from server.errors import NotFoundError
 from server.journal import events as ev
+from server.runtime.dialogue_state import DialogueState
 from server.runtime.history import MOST_KEPT, History
+from server.runtime.requests import RunRequest
 from server.runtime.run_views import dialogue_view
+from server.runtime.views import DialogueView
 
 RUNS = MOST_KEPT + 4
 TREE = definition_of(
@@ -97,3 +100,38 @@ async def test_a_dialogue_that_there_never_was_is_not_found(path: Path) -> None:
     async with pretend_service(TREE, journal=path) as service:
         with pytest.raises(NotFoundError, match="there is no dialogue"):
             await service.runtime.dialogue(ev.NO_RUN)
+
+
+async def test_an_ended_run_is_summed_up_without_being_folded(
+    path: Path, folded: list[UUID]
+) -> None:
+    async with pretend_service(TREE, journal=path) as service:
+        line = await service.runtime.run_summary(run_id(3))
+        assert folded == []
+        view = await service.runtime.run(run_id(3))
+    assert line.model_dump() == view.model_dump(include=set(type(line).model_fields))
+
+
+async def test_only_the_open_dialogues_of_a_page_are_viewed_and_none_to_be_counted(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    viewed: list[UUID] = []
+
+    def view(dialogue: DialogueState) -> DialogueView:
+        viewed.append(dialogue.id)
+        return dialogue_view(dialogue)
+
+    monkeypatch.setattr("server.runtime.runtime.dialogue_view", view)
+    slow = {"tree": "tree", "world": "tabletop", "speed": 1.0, "answers": "none"}
+    async with pretend_service(TREE, FAULTS) as service:
+        for _ in range(3):
+            await service.runtime.start_run(RunRequest.model_validate(slow))
+        with service.journal.subscribe(0) as subscription:
+            async for record in subscription:
+                if service.runtime.count_open_dialogues() == 3:
+                    break
+                assert record.seq < 1000
+        assert viewed == []
+        page = await service.runtime.dialogues("open", 1, 1)
+    assert [each.dialogue for each in page] == viewed
+    assert len(page) == 1
