@@ -124,7 +124,7 @@ async def list_events(
     """A run's events in order; go on with the last `seq` as `after`, until a page is empty."""
     # What belongs to no run is for admins, at another door.
     if run == NO_RUN or await parts.journal.index.find(run) is None:
-        await parts.runs.run(run)
+        await parts.runs.run_summary(run)
     records = await parts.journal.read_records(after, limit, run)
     # The journal holds the very JSON that clients get.
     body = "[" + ",".join(record.text for record in records) + "]"
