@@ -8,7 +8,7 @@ from contextlib import contextmanager, suppress
 from datetime import datetime
 from functools import partial
 from itertools import islice
-from typing import Any, Literal, cast
+from typing import Literal, cast
 from uuid import UUID
 
 import numpy as np
@@ -255,7 +255,7 @@ class Runtime:
 
     def _take_up(self, context: RunContext, *, live: bool) -> None:
         state = context.state
-        sides = {robot: RobotSide(robot, cast(Any, self._robots)) for robot in state.started.robots}
+        sides = {robot: RobotSide(robot, self._robots) for robot in state.started.robots}
         scenario = state.scenario
         dialogues = DialogueDriver(
             context,
