@@ -42,12 +42,12 @@ class PastStates:
         moment = self._moments.get(seq)
         if moment is None:
             moment = self._moments[seq] = SharedWork(keep=True)
-            self._later(KEPT_S, partial(self._forget, seq, moment))
+            self._later(KEPT_S, partial(self._forget, seq))
             while len(self._moments) > MOST_KEPT:
                 self._moments.popitem(last=False)
         self._moments.move_to_end(seq)
         return moment
 
-    def _forget(self, seq: int, moment: SharedWork[UUID, RunState | None]) -> None:
-        if self._moments.get(seq) is moment:
-            del self._moments[seq]
+    def _forget(self, seq: int) -> None:
+        # One that had to make room and has come back since only goes early.
+        self._moments.pop(seq, None)
