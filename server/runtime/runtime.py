@@ -390,14 +390,13 @@ class Runtime:
     # --- What people ask for ------------------------------------------------------------------
 
     async def _running(self, run: UUID) -> Run:
-        return self._running_of(await self._state(run))
-
-    def _running_of(self, state: RunState) -> Run:
-        if state.status.ended:
-            raise ConflictError(f"the run has ended ({state.status})")
-        if state.id not in self._runs:
-            raise ConflictError(f"nobody works on this run just now, though it is {state.status}")
-        return self._runs[state.id]
+        """Raises `NotFoundError`, `UnreadableError`, or `ConflictError` unless it goes on."""
+        line = await self.run_summary(run)
+        if line.status.ended:
+            raise ConflictError(f"the run has ended ({line.status})")
+        if run not in self._runs:
+            raise ConflictError(f"nobody works on this run just now, though it is {line.status}")
+        return self._runs[run]
 
     async def pause(self, run: UUID, author: ev.Author | None = None) -> RunSummary:
         """Stop a run where it is. Raises `ConflictError` unless it is running."""
@@ -449,9 +448,9 @@ class Runtime:
             # Whoever hears of an event finds it here already; the index is a moment ahead of that.
             return [dialogue_view(e) for e in islice(self._open(), offset, offset + limit)]
         found = await self._journal.index.dialogues(status, limit, offset)
-        now = {each: known[1] for each in found if (known := self._known_dialogue(each.dialogue))}
-        past = await self._past_dialogues.read([each for each in found if each not in now])
-        read = [now.get(each) or past.get(each.dialogue) for each in found]
+        now = {each: self._known_dialogue(each.dialogue) for each in found}
+        past = await self._past_dialogues.read([each for each in found if now[each] is None])
+        read = [now[each] or past.get(each.dialogue) for each in found]
         views = [dialogue_view(each) for each in read if each is not None]
         return [each for each in views if status is None or each.status == status]
 
@@ -462,33 +461,33 @@ class Runtime:
         """How many dialogues are open."""
         return sum(1 for _ in self._open())
 
-    async def _dialogue(self, dialogue: UUID) -> tuple[RunState, DialogueState]:
+    async def _dialogue(self, dialogue: UUID) -> DialogueState:
         """Raises `NotFoundError` or `UnreadableError`."""
         known = self._known_dialogue(dialogue)
         if known is not None:
             return known
+        found = await self._journal.index.dialogue(dialogue)
+        past = {} if found is None else await self._past_dialogues.read([found])
+        if dialogue in past:
+            return past[dialogue]
         run = await self._journal.index.run_of(dialogue)
         if run is not None:
+            # That says what is wrong with it, or that nothing is any more.
             state = await self._state(run)
             if dialogue in state.dialogues:
-                return state, state.dialogues[dialogue]
+                return state.dialogues[dialogue]
         raise NotFoundError(f"there is no dialogue {dialogue}")
 
-    def _known_dialogue(self, dialogue: UUID) -> tuple[RunState, DialogueState] | None:
+    def _known_dialogue(self, dialogue: UUID) -> DialogueState | None:
         """A dialogue of a run that goes on."""
         for state in self._states.values():
             if dialogue in state.dialogues:
-                return state, state.dialogues[dialogue]
+                return state.dialogues[dialogue]
         return None
 
     async def dialogue(self, dialogue: UUID) -> DialogueView:
         """One dialogue. Raises `NotFoundError` or `UnreadableError`."""
-        if self._known_dialogue(dialogue) is None:
-            found = await self._journal.index.dialogue(dialogue)
-            past = {} if found is None else await self._past_dialogues.read([found])
-            if dialogue in past:
-                return dialogue_view(past[dialogue])
-        return dialogue_view((await self._dialogue(dialogue))[1])
+        return dialogue_view(await self._dialogue(dialogue))
 
     async def answer(
         self,
@@ -502,9 +501,9 @@ class Runtime:
 
         Raises `NotFoundError`, `LostRaceError` or `ConflictError`.
         """
-        state, found = await self._dialogue(dialogue)
+        found = await self._dialogue(dialogue)
         try:
-            run = self._running_of(state)
+            run = await self._running(found.opened.run)
             side = run.sides[found.opened.robot]
             answered = await run.request(
                 lambda: run.dialogues.answer(found, prompt, answer, helper, side, author)
@@ -520,8 +519,8 @@ class Runtime:
         self, dialogue: UUID, prompt: UUID, helper: str, author: ev.Author | None = None
     ) -> ev.DeadlineExtended:
         """Give the open question more time. Raises `NotFoundError` or `ConflictError`."""
-        state, found = await self._dialogue(dialogue)
-        run = self._running_of(state)
+        found = await self._dialogue(dialogue)
+        run = await self._running(found.opened.run)
         extended = await run.request(lambda: run.dialogues.extend(found, prompt, helper, author))
         return cast(ev.DeadlineExtended, extended)
 
@@ -537,8 +536,8 @@ class Runtime:
 
         Raises `ConflictError` while another is, unless it is taken over from them.
         """
-        state, found = await self._dialogue(dialogue)
-        run = self._running_of(state)
+        found = await self._dialogue(dialogue)
+        run = await self._running(found.opened.run)
         await run.request(
             lambda: run.claims.claim(found, helper, take_over=take_over, author=author)
         )
@@ -548,8 +547,8 @@ class Runtime:
         self, dialogue: UUID, helper: str, author: ev.Author | None = None
     ) -> DialogueView:
         """Give up a claim. Raises `ConflictError` without one."""
-        state, found = await self._dialogue(dialogue)
-        run = self._running_of(state)
+        found = await self._dialogue(dialogue)
+        run = await self._running(found.opened.run)
         await run.request(lambda: run.claims.release(found, helper, author))
         return dialogue_view(found)
 

@@ -9,7 +9,7 @@ from made_up_history import run_id, write_history
 from pretend_service import PretendService, pretend_service
 from task_documents import definition_of
 
-from server.errors import NotFoundError
+from server.errors import ConflictError, LostRaceError, NotFoundError
 from server.journal import events as ev
 from server.runtime.dialogue_state import DialogueState
 from server.runtime.history import MOST_KEPT, History
@@ -71,6 +71,24 @@ async def test_a_past_dialogue_is_seen_as_a_fold_of_its_whole_run_has_it() -> No
         whole = await folded_views(service, first.id) | await folded_views(service, second.id)
     assert len(page) > 3
     assert {each.dialogue: each for each in page} == whole
+
+
+async def test_who_comes_too_late_is_told_so_without_folding_the_run(
+    path: Path, folded: list[UUID]
+) -> None:
+    async with pretend_service(TREE, journal=path) as service:
+        runtime = service.runtime
+        late = (await runtime.dialogues("closed", 1, 3))[0]
+        assert late.prompt is not None
+        with pytest.raises(LostRaceError, match="already answered by anna"):
+            await runtime.answer(late.dialogue, late.prompt.prompt, "yes", "bert")
+        with pytest.raises(ConflictError, match="the run has ended"):
+            await runtime.answer(late.dialogue, ev.NO_RUN, "yes", "bert")
+        with pytest.raises(ConflictError, match="the run has ended"):
+            await runtime.claim(late.dialogue, "bert")
+        with pytest.raises(ConflictError, match="the run has ended"):
+            await runtime.abort(late.run)
+    assert folded == []
 
 
 async def test_a_dialogue_that_cannot_be_read_is_left_out_and_takes_no_other_with_it(
