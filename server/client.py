@@ -175,7 +175,7 @@ class MendClient:
         return await self._post(f"/api/runs/{run}/abort", RunSummary)
 
     async def events(self, run: UUID, *, after: int = 0, limit: int = 100) -> list[Event]:
-        """A run's events with `seq` > `after`, in order."""
+        """A page of a run's events with `seq` > `after`, in order; only the last one is empty."""
         response = await self._request(
             "GET", f"/api/runs/{run}/events", params={"after": after, "limit": limit}
         )

@@ -9,6 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from server.access.principal import Principal
+from server.access.tokens import bytes_of
 
 SESSION_LIFETIME_S = 12 * 3600
 KEY_BYTES = 32
@@ -76,7 +77,7 @@ class Sessions:
     def fits(self, session: Session, principal: Principal) -> bool:
         """Whether a session was begun here, with the credential that the principal has now."""
         right = self._sign(session.id, principal, session.expires)
-        return secrets.compare_digest(_bytes(session.signature), _bytes(right))
+        return secrets.compare_digest(bytes_of(session.signature), bytes_of(right))
 
     def lasts(self, number: str) -> bool:
         """Whether a session was not signed out."""
@@ -103,13 +104,9 @@ class Sessions:
 
     def _sign(self, number: str, principal: Principal, expires: int) -> str:
         signed = "\n".join((str(expires), number, principal.key, principal.name))
-        return hmac.new(self._key, _bytes(signed), hashlib.sha256).hexdigest()
+        return hmac.new(self._key, bytes_of(signed), hashlib.sha256).hexdigest()
 
 
 def new_session_key() -> bytes:
     """A key for a service whose sessions need not survive it."""
     return secrets.token_bytes(KEY_BYTES)
-
-
-def _bytes(text: str) -> bytes:
-    return text.encode("utf-8", "surrogatepass")

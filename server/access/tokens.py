@@ -36,9 +36,14 @@ def id_in(token: str) -> str | None:
     return parts[1] if len(parts) == 3 and parts[0] == MARK else None
 
 
+def bytes_of(shown: str) -> bytes:
+    """What somebody shows as bytes, whatever characters they put into it."""
+    return shown.encode("utf-8", "surrogatepass")
+
+
 def fingerprint(text: str) -> str:
     """What is kept of a token or a code."""
-    return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()
+    return hashlib.sha256(bytes_of(text)).hexdigest()
 
 
 def fits(text: str, sha256: str) -> bool:

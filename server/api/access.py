@@ -14,7 +14,7 @@ from server.access.known_principals import KnownPrincipals
 from server.access.principal import ANYBODY, TOKEN_NAME, Caller, Principal
 from server.access.roles import Role
 from server.access.sessions import Session, Sessions, new_session_key
-from server.access.tokens import fingerprint, fits
+from server.access.tokens import bytes_of, fingerprint, fits
 from server.api.admission import REFUSED, Admission
 from server.api.wrong_tokens import WrongTokens
 from server.household import household_of
@@ -132,8 +132,8 @@ class Access:
         What was wrong before is no other guess, and may be read again: the file of principals can
         have changed since.
         """
-        household = _household(connection)
-        if _is_in(connection) or self._wrong.is_known(household, _bytes(shown)):
+        household = household_of(address_of(connection))
+        if _is_in(connection) or self._wrong.is_known(household, bytes_of(shown)):
             return 0
         wait_s = math.ceil(self._wrong.wait_s(household))
         if wait_s > 0:
@@ -142,7 +142,7 @@ class Access:
 
     def wrong(self, shown: str, connection: HTTPConnection) -> None:
         """Somebody has shown a wrong token or code."""
-        self._wrong.add(_household(connection), _bytes(shown))
+        self._wrong.add(household_of(address_of(connection)), bytes_of(shown))
         self._failed(address_of(connection))
 
     def session(self, connection: HTTPConnection) -> Session | None:
@@ -286,14 +286,6 @@ def _is_in(connection: HTTPConnection) -> bool:
     """Whether the connection was admitted before, and is one client's alone."""
     visitor = visitor_of(connection.scope)
     return visitor is not None and visitor.is_admitted and visitor.household is not None
-
-
-def _household(connection: HTTPConnection) -> str:
-    return household_of(connection.client.host) if connection.client else ""
-
-
-def _bytes(text: str) -> bytes:
-    return text.encode("utf-8", "surrogatepass")
 
 
 def _is_ip(name: str) -> bool:

@@ -5,13 +5,13 @@ That is for requests whose answer was not kept, as the service ended before it w
 
 from pydantic import BaseModel
 
+from server.api.json_answer import JSON
 from server.api.parts import Parts
 from server.documents import DocumentKind, DocumentLibrary
 from server.errors import ConflictError
 from server.journal import events as ev
 from server.journal.keyed_request import FirstAnswer
-
-JSON = "application/json"
+from server.runtime.journaled_tree import read_without_tree
 
 
 async def answer_of(seq: int, parts: Parts) -> FirstAnswer:
@@ -19,10 +19,10 @@ async def answer_of(seq: int, parts: Parts) -> FirstAnswer:
 
     Raises `ConflictError` where that cannot be told any more.
     """
-    events = await parts.journal.read(seq - 1, 1)
-    if not events or events[0].seq != seq:
+    records = await parts.journal.read_records(seq - 1, 1)
+    if not records or records[0].seq != seq:
         raise _lost()
-    status, json, location = await _of_event(events[0], parts)
+    status, json, location = await _of_event(await read_without_tree(records[0]), parts)
     headers = [("content-type", JSON), *([("location", location)] if location else [])]
     return FirstAnswer(status, headers, json)
 

@@ -199,12 +199,18 @@ class HelperConnection(ABC, Generic[Query]):
 
 
 async def until_one_ends(*works: Coroutine[Any, Any, None]) -> None:
-    """Run what sends and what receives; raises what either of them raised."""
+    """Run what sends and what receives; raises what either of them raised.
+
+    When it returns, raises or is cancelled, none of them goes on.
+    """
     tasks = [asyncio.create_task(work) for work in works]
-    await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
-    for task in tasks:
-        task.cancel()
-    for outcome in await asyncio.gather(*tasks, return_exceptions=True):
+    try:
+        await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+    finally:
+        for task in tasks:
+            task.cancel()
+        outcomes = await asyncio.gather(*tasks, return_exceptions=True)
+    for outcome in outcomes:
         if isinstance(outcome, Exception):
             raise outcome
 

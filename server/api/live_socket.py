@@ -44,7 +44,7 @@ class LiveSocket(HelperConnection[LiveQuery]):
     async def _serve(self, query: LiveQuery, helper: str) -> None:  # noqa: ARG002
         """Send what there is to see, until one of the two ends."""
         try:
-            await self._parts.runs.run(query.run)
+            await self._parts.runs.run_summary(query.run)
         except (NotFoundError, UnreadableError) as error:
             await self._turn_away(problem_of(error) or problem(500, str(error)))
         else:
@@ -56,7 +56,7 @@ class LiveSocket(HelperConnection[LiveQuery]):
             await self._show_last(run)
         else:
             await self._follow(poses)
-        if (await self._parts.runs.run(run)).status.ended:
+        if (await self._parts.runs.run_summary(run)).status.ended:
             await self._websocket.close(THE_END, "the run has ended")
         else:
             await self._websocket.close(GOING_AWAY, "the service stops")

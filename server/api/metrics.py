@@ -8,7 +8,7 @@ from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily, Histo
 from prometheus_client.metrics_core import Metric
 from prometheus_client.registry import Collector
 
-from server.api.parts import MAX_SEQ, Parts, WithParts
+from server.api.parts import Parts, WithParts
 from server.api.problems import documented
 from server.runtime.views import RunStatus
 
@@ -18,10 +18,9 @@ router = APIRouter(tags=["health"])
 class ServiceCollector(Collector):
     """Reads the figures where they are, when they are asked for."""
 
-    def __init__(self, parts: Parts, runs: Mapping[RunStatus, int], open_dialogues: int) -> None:
+    def __init__(self, parts: Parts, runs: Mapping[RunStatus, int]) -> None:
         self._parts = parts
         self._run_counts = runs
-        self._open_dialogues = open_dialogues
 
     def collect(self) -> Iterator[Metric]:
         runs = GaugeMetricFamily("mend_runs", "Runs by status.", labels=["status"])
@@ -39,7 +38,9 @@ class ServiceCollector(Collector):
             value=len(self._parts.deeds.unreadable),
         )
         yield GaugeMetricFamily(
-            "mend_open_dialogues", "Open dialogues.", value=self._open_dialogues
+            "mend_open_dialogues",
+            "Open dialogues.",
+            value=self._parts.runs.count_open_dialogues(),
         )
         connected = sum(robot.connected for robot in self._parts.runs.robots())
         yield GaugeMetricFamily("mend_robots_connected", "Robots connected.", value=connected)
@@ -109,6 +110,5 @@ async def metrics(parts: WithParts) -> Response:
     """The service's figures for Prometheus."""
     registry = CollectorRegistry(auto_describe=False)
     runs = await parts.runs.count_runs()
-    open_dialogues = len(await parts.runs.dialogues("open", MAX_SEQ, 0))
-    registry.register(ServiceCollector(parts, runs, open_dialogues))
+    registry.register(ServiceCollector(parts, runs))
     return Response(generate_latest(registry), media_type=CONTENT_TYPE_LATEST)

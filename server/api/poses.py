@@ -24,7 +24,7 @@ Seconds = Annotated[float, Query(ge=0.0, le=1e9, allow_inf_nan=False)]
 )
 async def get_layout(run: RunId, parts: WithParts) -> Layout:
     """What the frames of a run hold, in order, and what does not move in it."""
-    await parts.runs.run(run)
+    await parts.runs.run_summary(run)
     layout = await parts.poses.layout(run)
     if layout is None:
         raise NotFoundError(f"the robot of run {run} has not shown where anything is")
@@ -57,7 +57,7 @@ async def get_poses(
     limit: Annotated[int, Query(ge=1, le=MOST_FRAMES)] = MOST_FRAMES,
 ) -> Response:
     """The recorded frames of a span of the run's clock, evenly thinned out to `limit`."""
-    await parts.runs.run(run)
+    await parts.runs.run_summary(run)
     until_s = math.inf if to_s is None else to_s
     recorded = await parts.poses.recorded(run, from_s, until_s, limit)
     headers = {"Cache-Control": "no-store"}

@@ -18,8 +18,8 @@ from server.api.problems import ProblemError, documented
 from server.api.repeatable import SecretRoute
 from server.errors import NotFoundError
 from server.journal.journal import JournalReadError
-from server.journal.stored_event import read_event
 from server.journal.subscriptions import Record
+from server.runtime.journaled_tree import read_without_tree
 
 router = APIRouter(prefix="/api/access", tags=["access"], route_class=SecretRoute)
 
@@ -202,16 +202,16 @@ async def _page_of_deeds(parts: Parts, after: int) -> list[tuple[int, Deed | Non
     """The next events, each with the deed that it tells of."""
     try:
         records = await parts.journal.read_records(after, SCANNED_AT_ONCE)
-        return [(each.seq, _deed(each)) for each in records]
+        return [(each.seq, await _deed(each)) for each in records]
     except JournalReadError:
         # One that cannot be read is told in its place, and takes no other with it.
         events = await parts.journal.read_readable(after, SCANNED_AT_ONCE)
         return [(each.seq, deed_of(each)) for each in events]
 
 
-def _deed(record: Record) -> Deed | None:
+async def _deed(record: Record) -> Deed | None:
     # Most events are no deeds, and their type is found without reading all of them.
     kind = TYPE.search(record.text)
     if kind is not None and kind.group(1) not in DEEDS:
         return None
-    return deed_of(read_event(record.seq, record.text))
+    return deed_of(await read_without_tree(record))

@@ -10,6 +10,8 @@ from starlette.responses import Response, StreamingResponse
 from starlette.types import Message
 
 from server.access.principal import Caller
+from server.access.tokens import bytes_of
+from server.api.access import address_of
 from server.api.first_answers import answer_of
 from server.api.idempotency_key import REPLAYED, key_in
 from server.api.parts import parts_of
@@ -73,7 +75,7 @@ def _keyed(request: Request, key: str, body: bytes) -> KeyedRequest:
         request.url.query,
         request.headers.get("content-type", ""),
     )
-    head = "\0".join(said).encode("utf-8", "surrogatepass")
+    head = bytes_of("\0".join(said))
     return KeyedRequest(_who(request), key, hashlib.sha256(head + b"\0" + body).digest())
 
 
@@ -83,7 +85,7 @@ def _who(request: Request) -> str:
     if caller is not None:
         return caller.principal.name
     # No principal's name has such a character.
-    return "\0" + (household_of(request.client.host) if request.client else "")
+    return "\0" + household_of(address_of(request))
 
 
 def _with_body(request: Request, keyed: KeyedRequest, body: bytes) -> Request:

@@ -110,7 +110,10 @@ class Repeats:
     def _remember(self, request: KeyedRequest, answer: FirstAnswer | None) -> None:
         fits = answer is not None and len(answer.body) <= MOST_REMEMBERED_BYTES
         kept = KeptRequest(request.digest, 0, answer if fits else None)
-        self._remembered[request.principal, request.key] = _Remembered(self._wall_time_s(), kept)
+        who = request.principal, request.key
+        self._remembered[who] = _Remembered(self._wall_time_s(), kept)
+        # One whose time was over has its old place else.
+        self._remembered.move_to_end(who)
         since = self._since()
         while self._remembered:
             oldest, remembered = next(iter(self._remembered.items()))

@@ -99,13 +99,16 @@ class Journal(Protocol):
         ...
 
     async def read_records(self, after: int, limit: int, run: UUID | None = None) -> list[Record]:
-        """What `read` returns, as the JSON text of each event."""
+        """A page of what `read` returns, as the JSON text of each event; empty only at the end.
+
+        It has fewer than `limit` where they are long.
+        """
         ...
 
     async def read_readable(
         self, after: int, limit: int, run: UUID | None = None
     ) -> list[Event | UnreadableEvent]:
-        """What `read` returns; in the place of an event that cannot be read, which one and why.
+        """Such a page of events; in the place of one that cannot be read, which one and why.
 
         Raises `JournalReadError` where not even the numbers of the events can be read.
         """

@@ -7,6 +7,7 @@ from uuid import UUID
 
 from server.journal.events import NO_RUN, Event
 from server.journal.journal import UnreadableEvent
+from server.journal.pages import page_of
 from server.journal.sqlite_errors import SQLITE_ERRORS
 from server.journal.stored_event import UnreadableEventError, read_event
 
@@ -16,7 +17,7 @@ COLUMNS = "SELECT seq, run, body, version FROM events"
 def read_readable(
     connection: sqlite3.Connection, after: int, limit: int, run: UUID | None = None
 ) -> list[Event | UnreadableEvent]:
-    """Up to `limit` events with `seq` > `after`; in the place of one that cannot be read, why.
+    """A page of events with `seq` > `after`; in the place of one that cannot be read, why.
 
     Raises `sqlite3.Error` where not even the numbers of the events can be read.
     """
@@ -24,7 +25,7 @@ def read_readable(
     wanted = f"WHERE {where}seq > :after ORDER BY seq LIMIT :limit"
     values = {"run": str(run), "after": after, "limit": limit}
     try:
-        rows = connection.execute(f"{COLUMNS} {wanted}", values).fetchall()
+        rows = page_of(connection.execute(f"{COLUMNS} {wanted}", values), body=2)
     except SQLITE_ERRORS:
         # The numbers stand in the index over the runs, which may be whole where a row is not.
         seqs = connection.execute(f"SELECT seq FROM events {wanted}", values).fetchall()

@@ -52,6 +52,15 @@ class IndexedRun:
 
 
 @dataclass(frozen=True, slots=True)
+class IndexedDialogue:
+    """A dialogue as the index has it; `opened` is the `seq` of its first event."""
+
+    dialogue: UUID
+    run: UUID
+    opened: int
+
+
+@dataclass(frozen=True, slots=True)
 class RunPage:
     """Which runs are wanted, newest first: those of some statuses that began before another."""
 
@@ -123,15 +132,50 @@ class RunIndex:
 
     async def dialogues(
         self, status: Literal["closed"] | None, limit: int, offset: int
-    ) -> list[tuple[UUID, UUID]]:
-        """Dialogues, oldest first, each with its run."""
-        where = "" if status is None else " WHERE closed IS NOT NULL"
+    ) -> list[IndexedDialogue]:
+        """Dialogues, oldest first, without those of runs that cannot be read."""
+        closed = "" if status is None else " AND closed IS NOT NULL"
+        return await self._dialogues(f"{closed} ORDER BY opened LIMIT ? OFFSET ?", (limit, offset))
+
+    async def dialogue(self, dialogue: UUID) -> IndexedDialogue | None:
+        """One of them; None if there is none."""
+        found = await self._dialogues(" AND dialogue = ?", (str(dialogue),))
+        return found[0] if found else None
+
+    async def _dialogues(self, rest: str, values: Sequence[Any]) -> list[IndexedDialogue]:
         rows = await self._select(
-            f"SELECT dialogue, run FROM dialogues{where} ORDER BY opened LIMIT ? OFFSET ?",
-            (limit, offset),
+            "SELECT dialogue, run, opened FROM dialogues"
+            f" WHERE run NOT IN (SELECT run FROM runs WHERE status = ?){rest}",
+            (UNREADABLE, *values),
         )
-        found = [(_id(dialogue), _id(run)) for dialogue, run in rows]
-        return [(dialogue, run) for dialogue, run in found if dialogue and run]
+        found = [(_id(dialogue), _id(run), opened) for dialogue, run, opened in rows]
+        return [
+            IndexedDialogue(each, run, opened)
+            for each, run, opened in found
+            if each and run and isinstance(opened, int)
+        ]
+
+    async def raised_before(self, dialogue: IndexedDialogue) -> int:
+        """The `seq` of the issue that a dialogue is about: the last one before it opened."""
+        rows = await self._select(
+            "SELECT max(seq) FROM events WHERE run = ? AND seq < ? AND type = 'issue_raised'",
+            (str(dialogue.run), dialogue.opened),
+        )
+        return int(rows[0][0] or dialogue.opened)
+
+    async def about_dialogues(
+        self, run: UUID, after: int, limit: int
+    ) -> list[tuple[int, int, str]]:
+        """Up to `limit` events of a run's dialogues and the issues that it raised, in order.
+
+        Each with its `seq` > `after`, the version that it was written in, and its JSON.
+        """
+        # In a string the quotes would be escaped.
+        return await self._select(
+            "SELECT seq, version, body FROM events WHERE run = ? AND seq > ?"
+            """ AND (type = 'issue_raised' OR instr(body, '"dialogue":"')) ORDER BY seq LIMIT ?""",
+            (str(run), after, limit),
+        )
 
     async def _runs(self, rest: str, values: Sequence[Any]) -> list[IndexedRun]:
         rows = await self._select(f"SELECT {COLUMNS} FROM runs{rest}", values)

@@ -37,6 +37,7 @@ from server.journal.keyed_request import (
     note_request,
 )
 from server.journal.opening import IN_MEMORY, open_journal
+from server.journal.pages import page_of
 from server.journal.pruning import Keep, Pruned, prune, pruned_through
 from server.journal.readable import read_readable
 from server.journal.reading import ReadingThread
@@ -288,15 +289,24 @@ class SqliteJournal:
         return Subscription(self, self._subscribers, after, capacity)
 
     async def read(self, after: int, limit: int, run: UUID | None = None) -> list[Event]:
-        records = await self.read_records(after, limit, run)
-        return [read_event(record.seq, record.text) for record in records]
+        events: list[Event] = []
+        while left := limit - len(events):
+            records = await self.read_records(after, left, run)
+            if not records:
+                break
+            events += [read_event(record.seq, record.text) for record in records]
+            after = records[-1].seq
+        return events
 
     async def read_records(self, after: int, limit: int, run: UUID | None = None) -> list[Record]:
         of_run = "" if run is None else "run = :run AND "
-        rows = await self._pages.select(
+        statement = (
             f"SELECT seq, version, body FROM events WHERE {of_run}seq > :after"
-            " ORDER BY seq LIMIT :limit",
-            {"run": str(run), "after": after, "limit": limit},
+            " ORDER BY seq LIMIT :limit"
+        )
+        values = {"run": str(run), "after": after, "limit": limit}
+        rows = await self._pages.query(
+            lambda connection: page_of(connection.execute(statement, values), body=2)
         )
         return [Record(seq, current_text(seq, body, version)) for seq, version, body in rows]
 

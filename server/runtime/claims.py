@@ -9,7 +9,7 @@ from server.errors import ConflictError
 from server.journal.events import Author
 from server.runtime.context import RunContext
 from server.runtime.dialogue_events import DialogueEvents
-from server.runtime.run_state import DialogueState
+from server.runtime.dialogue_state import DialogueState
 
 MOST_CLAIMS = 10_000
 """Of one dialogue, renewals included: who renews as the console does needs days for so many."""

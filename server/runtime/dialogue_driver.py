@@ -22,10 +22,10 @@ from server.runtime.clock import has_come
 from server.runtime.context import RunContext
 from server.runtime.dialogue_events import DialogueEvents
 from server.runtime.dialogue_looks import DialogueLooks, seen_at
+from server.runtime.dialogue_state import MOST_EXTENSIONS, DialogueState, rehearse
 from server.runtime.outlooks import is_suspect, outlook_at, outlook_now
 from server.runtime.promises import Promises
 from server.runtime.robot_side import Purpose, RobotSide
-from server.runtime.run_state import MOST_EXTENSIONS, DialogueState, rehearse
 from tasks.scenario import Person
 
 SendMail = Callable[[ev.Escalated | ev.SuspectedFalseAlarm, DialogueState], None]

@@ -18,8 +18,8 @@ from robots.link.messages import FinishedResult
 from server.journal import events as ev
 from server.runtime.clock import has_come
 from server.runtime.context import RunContext
+from server.runtime.dialogue_state import DialogueState
 from server.runtime.robot_side import Doing, Purpose, RobotSide
-from server.runtime.run_state import DialogueState
 
 FIRST_LOOK_S = 1.0
 """So long the first look may take to see whether an object rests within reach."""

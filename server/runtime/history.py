@@ -12,6 +12,7 @@ from server.journal.stored_event import read_event
 from server.journal.subscriptions import Record
 from server.runtime.journaled_tree import read_started
 from server.runtime.run_state import RunState
+from server.runtime.shared_work import SharedWork
 from server.turns import Turns
 from tasks.node_table import NodeTable
 
@@ -27,6 +28,7 @@ class History:
         self._journal = journal
         self._scripts = scripts
         self._kept: OrderedDict[UUID, RunState] = OrderedDict()
+        self._reading: SharedWork[UUID, RunState] = SharedWork()
 
     def kept(self, run: UUID) -> RunState | None:
         """The last state of a run, if it has ended and is kept."""
@@ -35,7 +37,13 @@ class History:
         return self._kept.get(run)
 
     async def read(self, run: UUID) -> RunState:
-        """The last state of a run as the journal has it. Raises `UnreadableError`."""
+        """The last state of a run as the journal has it, read once for all who ask meanwhile.
+
+        Raises `UnreadableError`.
+        """
+        return await self._reading.of(run, lambda: self._read(run))
+
+    async def _read(self, run: UUID) -> RunState:
         state = await self.at(run, None)
         if state is None:
             raise UnreadableError(f"the journal has no events of run {run}")

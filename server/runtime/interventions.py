@@ -1,11 +1,18 @@
 """Interventions that were asked for: journaled first, then told to the world until it did them."""
 
+import logging
 from uuid import uuid4
 
+from server.errors import ConflictError
 from server.journal import events as ev
 from server.runtime.context import RunContext
 from server.runtime.robot_side import RobotSide
 from tasks.intervention import Intervention
+
+MOST_WAITING = 100
+"""So many may have been accepted and not be done yet."""
+
+log = logging.getLogger(__name__)
 
 
 class Interventions:
@@ -17,7 +24,15 @@ class Interventions:
     async def accept(
         self, deed: Intervention, by: str, side: RobotSide, author: ev.Author | None = None
     ) -> None:
-        """Have a person do something in the world that `side` is in."""
+        """Have a person do something in the world that `side` is in.
+
+        Raises `ConflictError` while too many others are still to be done.
+        """
+        if len(self._context.state.accepted) >= MOST_WAITING:
+            raise ConflictError(
+                f"{MOST_WAITING} interventions of this run are still to be done: wait for one of "
+                "them"
+            )
         accepted = ev.InterventionAccepted(
             **self._context.stamp(),
             act=str(deed.act),
@@ -41,4 +56,9 @@ class Interventions:
 
 
 def _tell(accepted: ev.InterventionAccepted, side: RobotSide) -> None:
-    side.intervene(accepted.command, accepted.intervention, accepted.by, None)
+    try:
+        side.intervene(accepted.command, accepted.intervention, accepted.by, None)
+    except ConflictError as error:
+        # It is journaled, and so to be done, whatever else waits for the robot: it is told again
+        # once it has started anew.
+        log.warning("an intervention waits: %s", error)

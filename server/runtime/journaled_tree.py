@@ -4,9 +4,11 @@ The text of such an event has the tree after fields that hold no other object.
 """
 
 import json
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any
 
-from pydantic import TypeAdapter, ValidationError
+from pydantic import TypeAdapter
 
 from server.journal import events as ev
 from server.journal.stored_event import UnreadableEventError, read_event
@@ -24,7 +26,7 @@ _node: TypeAdapter[GoalNode | BehaviorNode] = TypeAdapter(NodeDefinition)
 
 async def read_nodes(text: str, begin: int = 0) -> NodeTable:
     """The nodes of a definition that is JSON. Raises `ValueError` where it is none."""
-    return (await _read_tree(text, begin))[0]
+    return (await _nodes_at(text, begin))[0]
 
 
 async def read_started(record: Record) -> tuple[ev.Event, NodeTable | None]:
@@ -32,53 +34,95 @@ async def read_started(record: Record) -> tuple[ev.Event, NodeTable | None]:
 
     They are None for an event that is not `run_started`. Raises `UnreadableEventError`.
     """
-    begin = record.text.find(_BEGIN)
-    if begin < 0 or '"type":"run_started"' not in record.text[:begin]:
+    begin = _begin_of_tree(record.text)
+    if begin is None:
         return read_event(record.seq, record.text), None
-    begin += len(_BEGIN)
+    with _told_of(record.seq):
+        nodes, end = await _nodes_at(record.text, begin)
+    return _without_tree(record, begin, end), nodes
+
+
+async def read_without_tree(record: Record) -> ev.Event:
+    """Any event; the tree of a run's first one is passed over, and left empty.
+
+    Raises `UnreadableEventError`.
+    """
+    begin = _begin_of_tree(record.text)
+    if begin is None:
+        return read_event(record.seq, record.text)
+    with _told_of(record.seq):
+        end = await _read_tree(record.text, begin, lambda _: None)
+    return _without_tree(record, begin, end)
+
+
+def _begin_of_tree(text: str) -> int | None:
+    """Where the tree of a `run_started` event begins; None in every other event."""
+    begin = text.find(_BEGIN)
+    if begin < 0 or '"type":"run_started"' not in text[:begin]:
+        return None
+    return begin + len(_BEGIN)
+
+
+@contextmanager
+def _told_of(seq: int) -> Iterator[None]:
+    """Raises `UnreadableEventError` for what a text trips over that is no tree."""
     try:
-        nodes, end = await _read_tree(record.text, begin)
-    except (ValueError, ValidationError) as error:
+        yield
+    except (ValueError, RecursionError) as error:
         first = str(error).splitlines()[0]
         raise UnreadableEventError(
-            f"event {record.seq} cannot be read: its tree is none: {first}"
+            f"event {seq} cannot be read: its tree is none: {first}"
         ) from error
-    return read_event(record.seq, f"{record.text[:begin]}{{}}{record.text[end:]}"), nodes
 
 
-async def _read_tree(text: str, begin: int) -> tuple[NodeTable, int]:
+def _without_tree(record: Record, begin: int, end: int) -> ev.Event:
+    return read_event(record.seq, f"{record.text[:begin]}{{}}{record.text[end:]}")
+
+
+async def _nodes_at(text: str, begin: int) -> tuple[NodeTable, int]:
     """The nodes of the object at `begin`, and where the object ends."""
-    nodes: NodeTable | None = None
-    at = _expect(text, begin, "{")
-    while True:
+    nodes = NodeTable()
+    end = await _read_tree(text, begin, lambda node: nodes.add(_node.validate_python(node)))
+    if len(nodes) == 0:
+        raise ValueError("it has no 'nodes'")
+    nodes.close()
+    return nodes, end
+
+
+async def _read_tree(text: str, begin: int, take: Callable[[Any], None]) -> int:
+    """Hand on each node of the object at `begin`; returns where the object ends."""
+    at = _skip(text, _expect(text, begin, "{"))
+    while text[at : at + 1] != "}":
         key, at = _value(text, at)
         at = _expect(text, at, ":")
         if key == "nodes":
-            nodes, at = await _read_list(text, at)
+            at = await _read_list(text, at, take)
         else:
             _, at = _value(text, at)
-        at = _skip(text, at)
-        if text[at : at + 1] == "}":
-            break
-        at = _expect(text, at, ",")
-    if nodes is None:
-        raise ValueError("it has no 'nodes'")
-    return nodes, at + 1
+        at = _after(text, at, "}")
+    return at + 1
 
 
-async def _read_list(text: str, begin: int) -> tuple[NodeTable, int]:
-    nodes, turns = NodeTable(), Turns()
-    at = _expect(text, begin, "[")
-    while True:
+async def _read_list(text: str, begin: int, take: Callable[[Any], None]) -> int:
+    turns = Turns()
+    at = _skip(text, _expect(text, begin, "["))
+    while text[at : at + 1] != "]":
         value, at = _value(text, at)
-        nodes.add(_node.validate_python(value))
-        at = _skip(text, at)
-        if text[at : at + 1] == "]":
-            break
-        at = _expect(text, at, ",")
+        take(value)
+        at = _after(text, at, "]")
         await turns.pass_on()
-    nodes.close()
-    return nodes, at + 1
+    return at + 1
+
+
+def _after(text: str, at: int, end: str) -> int:
+    """Where the next member begins, or the end of all of them stands."""
+    at = _skip(text, at)
+    if text[at : at + 1] == end:
+        return at
+    at = _skip(text, _expect(text, at, ","))
+    if text[at : at + 1] == end:
+        raise ValueError(f"something more was expected at character {at}")
+    return at
 
 
 def _value(text: str, at: int) -> tuple[Any, int]:

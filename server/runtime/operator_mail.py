@@ -9,7 +9,8 @@ from datetime import datetime, timedelta
 from server.dialogues.mail import Mailer, MailError, MailNotice, MailRequest
 from server.journal.events import Escalated, SuspectedFalseAlarm
 from server.journal.trouble import Sleep
-from server.runtime.run_state import DialogueState, RunState
+from server.runtime.dialogue_state import DialogueState
+from server.runtime.run_state import RunState
 
 log = logging.getLogger(__name__)
 

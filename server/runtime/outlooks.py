@@ -10,8 +10,9 @@ from dialogue.outlook import Next, Outlook, Sequel
 from dialogue.script import Expectation
 from server.journal import events as ev
 from server.runtime.choosing import able_mask
+from server.runtime.dialogue_state import DialogueState
 from server.runtime.robot_side import RobotSide
-from server.runtime.run_state import DialogueState, RunState
+from server.runtime.run_state import RunState
 from tasks.definition import NodeKind
 from tasks.task_tree import TaskTree
 

@@ -5,10 +5,11 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 from uuid import UUID
 
-from robots.link.messages import CommandBody, Hello
+from robots.link.messages import Hello
 from server.runtime.hardware import Hardware
 from server.runtime.pose_sink import PoseSink
 from server.runtime.requests import RunRequest
+from server.runtime.robot_side import CommandSender
 from server.runtime.run import Run
 from server.runtime.run_state import RunState
 from tasks.scenario import Scenario
@@ -36,14 +37,12 @@ class Preparation(Protocol):
         ...
 
 
-class Robots(Protocol):
+class Robots(CommandSender, Protocol):
     """The service's end of the robot link."""
 
     def assign(self, robot: str, sink: Run) -> None: ...
 
     def unassign(self, robot: str) -> None: ...
-
-    def send(self, robot: str, command_id: str, body: CommandBody) -> None: ...
 
     async def take_picture(self, robot: str, camera: str, timeout_s: float = 2.0) -> bytes: ...
 

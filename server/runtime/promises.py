@@ -4,8 +4,8 @@ import numpy as np
 
 from server.journal import events as ev
 from server.runtime.context import RunContext
+from server.runtime.dialogue_state import DialogueState
 from server.runtime.robot_side import RobotSide
-from server.runtime.run_state import DialogueState
 from sim.interventions import HELPER
 from sim.person import Promise, deed
 from tasks.scenario import Person

@@ -35,6 +35,7 @@ from server.runtime.claims import Claims
 from server.runtime.context import RunContext
 from server.runtime.cutting_short import CuttingShort
 from server.runtime.dialogue_driver import DialogueDriver
+from server.runtime.dialogue_state import DialogueState
 from server.runtime.failure import fail_run, why_it_stopped
 from server.runtime.giving_up import GivingUp
 from server.runtime.hardware import Hardware
@@ -45,7 +46,7 @@ from server.runtime.presence import Presence
 from server.runtime.report_events import ReportEvents
 from server.runtime.results import Results, missing_parts, results_of, unseen_parts
 from server.runtime.robot_side import JUDGING, Doing, Purpose, RobotSide
-from server.runtime.run_state import DialogueState, Execution
+from server.runtime.run_state import Execution
 from server.runtime.views import RunStatus
 from tasks.intervention import Intervention
 

@@ -10,8 +10,9 @@ from robots.link.messages import Hello
 from server.journal.journal import JournalReadError
 from server.journal.run_index import UNREADABLE, IndexedRun
 from server.journal.stored_event import read_event
+from server.runtime.dialogue_state import DialogueState
 from server.runtime.run_result import Ending, result_of
-from server.runtime.run_state import DialogueState, RunState
+from server.runtime.run_state import RunState
 from server.runtime.views import (
     AwaitedHelp,
     DialogueView,

@@ -7,7 +7,8 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from datetime import datetime
 from functools import partial
-from typing import Any, Literal, cast
+from itertools import islice
+from typing import Literal, cast
 from uuid import UUID
 
 import numpy as np
@@ -29,15 +30,17 @@ from server.runtime.choosing import potentials_for
 from server.runtime.clock import RunClock, SimulatedClock, WallClock
 from server.runtime.context import RunContext, RunSettings
 from server.runtime.dialogue_driver import DialogueDriver
+from server.runtime.dialogue_state import DialogueState
 from server.runtime.failure import fail_run, why_it_stopped
 from server.runtime.history import History
 from server.runtime.new_run import NewRun, NewRuns
+from server.runtime.past_dialogues import PastDialogues
 from server.runtime.past_states import PastStates
 from server.runtime.ports import LIVE, Poses, Preparation, RealRobots, Robots, Worlds
 from server.runtime.requests import RunRequest
 from server.runtime.robot_side import RobotSide
 from server.runtime.run import Run
-from server.runtime.run_state import DialogueState, RunState
+from server.runtime.run_state import RunState
 from server.runtime.run_views import (
     RunViewing,
     dialogue_view,
@@ -96,6 +99,7 @@ class Runtime:
         self._new_runs = NewRuns(preparation, worlds, utc_now, settings.limits)
         self._history = History(journal, scripts)
         self._past = PastStates(self._history)
+        self._past_dialogues = PastDialogues(journal.index, scripts)
         journal.trouble.watch(self._journal_troubled)
 
     # --- Beginning and ending -----------------------------------------------------------------
@@ -262,7 +266,7 @@ class Runtime:
 
     def _take_up(self, context: RunContext, *, live: bool) -> None:
         state = context.state
-        sides = {robot: RobotSide(robot, cast(Any, self._robots)) for robot in state.started.robots}
+        sides = {robot: RobotSide(robot, self._robots) for robot in state.started.robots}
         scenario = state.scenario
         dialogues = DialogueDriver(
             context,
@@ -347,6 +351,10 @@ class Runtime:
 
     async def run_summary(self, run: UUID) -> RunSummary:
         """One run without its nodes. Raises `NotFoundError` or `UnreadableError`."""
+        if run not in self._states:
+            indexed = await self._journal.index.find(run)
+            if indexed is not None and RunStatus(indexed.status).ended:
+                return summary_of_indexed(indexed)
         return self._summary(await self._state(run))
 
     async def run_json(self, run: UUID) -> list[bytes]:
@@ -393,14 +401,13 @@ class Runtime:
     # --- What people ask for ------------------------------------------------------------------
 
     async def _running(self, run: UUID) -> Run:
-        return self._running_of(await self._state(run))
-
-    def _running_of(self, state: RunState) -> Run:
-        if state.status.ended:
-            raise ConflictError(f"the run has ended ({state.status})")
-        if state.id not in self._runs:
-            raise ConflictError(f"nobody works on this run just now, though it is {state.status}")
-        return self._runs[state.id]
+        """Raises `NotFoundError`, `UnreadableError`, or `ConflictError` unless it goes on."""
+        line = await self.run_summary(run)
+        if line.status.ended:
+            raise ConflictError(f"the run has ended ({line.status})")
+        if run not in self._runs:
+            raise ConflictError(f"nobody works on this run just now, though it is {line.status}")
+        return self._runs[run]
 
     async def pause(self, run: UUID, author: ev.Author | None = None) -> RunSummary:
         """Stop a run where it is. Raises `ConflictError` unless it is running."""
@@ -450,35 +457,48 @@ class Runtime:
         """A page of dialogues, oldest first; without those of runs that cannot be read."""
         if status == "open":
             # Whoever hears of an event finds it here already; the index is a moment ahead of that.
-            return self._open_dialogues()[offset : offset + limit]
-        views = []
-        for dialogue, run in await self._journal.index.dialogues(status, limit, offset):
-            try:
-                state = await self._state(run)
-            except (NotFoundError, UnreadableError):
-                continue
-            if dialogue in state.dialogues:
-                views.append(dialogue_view(state.dialogues[dialogue]))
+            return [dialogue_view(e) for e in islice(self._open(), offset, offset + limit)]
+        found = await self._journal.index.dialogues(status, limit, offset)
+        now = {each: self._known_dialogue(each.dialogue) for each in found}
+        past = await self._past_dialogues.read([each for each in found if now[each] is None])
+        read = [now[each] or past.get(each.dialogue) for each in found]
+        views = [dialogue_view(each) for each in read if each is not None]
         return [each for each in views if status is None or each.status == status]
 
-    def _open_dialogues(self) -> list[DialogueView]:
-        return [dialogue_view(e) for state in self._states.values() for e in state.open_dialogues]
+    def _open(self) -> Iterator[DialogueState]:
+        return (each for state in self._states.values() for each in state.open_dialogues)
 
-    async def _dialogue(self, dialogue: UUID) -> tuple[RunState, DialogueState]:
+    def count_open_dialogues(self) -> int:
+        """How many dialogues are open."""
+        return sum(1 for _ in self._open())
+
+    async def _dialogue(self, dialogue: UUID) -> DialogueState:
         """Raises `NotFoundError` or `UnreadableError`."""
-        for state in self._states.values():
-            if dialogue in state.dialogues:
-                return state, state.dialogues[dialogue]
+        known = self._known_dialogue(dialogue)
+        if known is not None:
+            return known
+        found = await self._journal.index.dialogue(dialogue)
+        past = {} if found is None else await self._past_dialogues.read([found])
+        if dialogue in past:
+            return past[dialogue]
         run = await self._journal.index.run_of(dialogue)
         if run is not None:
+            # That says what is wrong with it, or that nothing is any more.
             state = await self._state(run)
             if dialogue in state.dialogues:
-                return state, state.dialogues[dialogue]
+                return state.dialogues[dialogue]
         raise NotFoundError(f"there is no dialogue {dialogue}")
+
+    def _known_dialogue(self, dialogue: UUID) -> DialogueState | None:
+        """A dialogue of a run that goes on."""
+        for state in self._states.values():
+            if dialogue in state.dialogues:
+                return state.dialogues[dialogue]
+        return None
 
     async def dialogue(self, dialogue: UUID) -> DialogueView:
         """One dialogue. Raises `NotFoundError` or `UnreadableError`."""
-        return dialogue_view((await self._dialogue(dialogue))[1])
+        return dialogue_view(await self._dialogue(dialogue))
 
     async def answer(
         self,
@@ -492,9 +512,9 @@ class Runtime:
 
         Raises `NotFoundError`, `LostRaceError` or `ConflictError`.
         """
-        state, found = await self._dialogue(dialogue)
+        found = await self._dialogue(dialogue)
         try:
-            run = self._running_of(state)
+            run = await self._running(found.opened.run)
             side = run.sides[found.opened.robot]
             answered = await run.request(
                 lambda: run.dialogues.answer(found, prompt, answer, helper, side, author)
@@ -510,8 +530,8 @@ class Runtime:
         self, dialogue: UUID, prompt: UUID, helper: str, author: ev.Author | None = None
     ) -> ev.DeadlineExtended:
         """Give the open question more time. Raises `NotFoundError` or `ConflictError`."""
-        state, found = await self._dialogue(dialogue)
-        run = self._running_of(state)
+        found = await self._dialogue(dialogue)
+        run = await self._running(found.opened.run)
         extended = await run.request(lambda: run.dialogues.extend(found, prompt, helper, author))
         return cast(ev.DeadlineExtended, extended)
 
@@ -527,8 +547,8 @@ class Runtime:
 
         Raises `ConflictError` while another is, unless it is taken over from them.
         """
-        state, found = await self._dialogue(dialogue)
-        run = self._running_of(state)
+        found = await self._dialogue(dialogue)
+        run = await self._running(found.opened.run)
         await run.request(
             lambda: run.claims.claim(found, helper, take_over=take_over, author=author)
         )
@@ -538,8 +558,8 @@ class Runtime:
         self, dialogue: UUID, helper: str, author: ev.Author | None = None
     ) -> DialogueView:
         """Give up a claim. Raises `ConflictError` without one."""
-        state, found = await self._dialogue(dialogue)
-        run = self._running_of(state)
+        found = await self._dialogue(dialogue)
+        run = await self._running(found.opened.run)
         await run.request(lambda: run.claims.release(found, helper, author))
         return dialogue_view(found)
 

@@ -70,6 +70,10 @@ class RunService(Protocol):
         """A page of dialogues, oldest first."""
         ...
 
+    def count_open_dialogues(self) -> int:
+        """How many dialogues are open."""
+        ...
+
     async def dialogue(self, dialogue: UUID) -> DialogueView:
         """One dialogue. Raises `NotFoundError` or `UnreadableError`."""
         ...

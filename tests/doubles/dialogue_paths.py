@@ -7,7 +7,7 @@ from typing import TypeVar
 from dialogue.conversation import Conversation, Phase
 from dialogue.outlook import Outlook
 from dialogue.script import Ask, Script, Turn
-from server.runtime.run_state import converse
+from server.runtime.dialogue_state import converse
 from tasks.issue import Issue
 
 Path = tuple[str, ...]

@@ -263,6 +263,9 @@ class FakeRuns:
         listed = [each for each in self._dialogues.values() if status in (None, each.status)]
         return listed[offset : offset + limit]
 
+    def count_open_dialogues(self) -> int:
+        return sum(each.status == "open" for each in self._dialogues.values())
+
     async def dialogue(self, dialogue: UUID) -> DialogueView:
         return self.dialogue_now(dialogue)
 

@@ -19,7 +19,7 @@ from server.errors import ConflictError, LostRaceError
 from server.journal import events as ev
 from server.journal.journal import Entry, Journal
 from server.runtime.dialogue_events import DialogueEvents
-from server.runtime.run_state import rehearse
+from server.runtime.dialogue_state import rehearse
 from server.runtime.views import AwaitedHelp, DialogueView, PromptView
 
 WIDTH_PX, HEIGHT_PX = 320, 240

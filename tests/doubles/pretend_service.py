@@ -19,10 +19,11 @@ from server.journal.sqlite import SqliteJournal
 from server.journal.trouble import Sleep
 from server.poses.feed import PoseFeed
 from server.runtime.context import RunSettings
+from server.runtime.dialogue_state import DialogueState
 from server.runtime.ports import PreparedRun
 from server.runtime.requests import RunRequest
 from server.runtime.run import Run
-from server.runtime.run_state import DialogueState, RunState
+from server.runtime.run_state import RunState
 from server.runtime.runtime import Runtime
 from server.runtime.views import RunView
 from tasks.definition import TaskTreeDefinition

@@ -13,7 +13,7 @@ from dialogue.conversation import Conversation
 from dialogue.outlook import Outlook
 from dialogue.registry import load_scripts
 from dialogue.script import Ask, AwaitHelp, Close, Say, Turn
-from server.runtime.run_state import converse
+from server.runtime.dialogue_state import converse
 from tasks.issue import Issue
 
 pytestmark = pytest.mark.asyncio(loop_scope="session")

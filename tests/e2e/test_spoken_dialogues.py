@@ -24,8 +24,9 @@ from test_question_dialogues import SCRIPTS, expect_shown, issue_of
 
 from dialogue.conversation import Conversation
 from dialogue.outlook import Outlook
+from server.runtime.dialogue_state import converse
 from server.runtime.requests import RunRequest
-from server.runtime.run_state import RunStatus, converse
+from server.runtime.run_state import RunStatus
 from server.speech.abilities import SpeechAbilities
 from server.speech.ear import ProcessEars
 from server.speech.rendering import SpokenTexts

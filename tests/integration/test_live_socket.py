@@ -81,6 +81,22 @@ async def test_the_layout_comes_first_then_frames_as_they_are_shown(
             assert await time_from(socket) == float(step)
 
 
+async def test_whoever_watches_a_run_has_none_of_its_nodes_viewed(
+    service: ServiceUnderTest, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    run, _ = await start(service)
+    monkeypatch.delattr(type(service.runs), "run")
+    async with watch(service, f"run={run}&helper=anna") as socket:
+        await layout_from(socket)
+        await service.runs.abort(run)
+        service.poses.close(run)
+        assert await code_at_end(socket) == 1000
+    async with httpx.AsyncClient(base_url=service.url) as client:
+        assert (await client.get(f"/api/runs/{run}/layout")).status_code == 404
+        assert (await client.get(f"/api/runs/{run}/poses")).status_code == 200
+        assert (await client.get(f"/api/runs/{NOBODY}/poses")).status_code == 404
+
+
 async def test_the_end_of_the_run_ends_the_connection(service: ServiceUnderTest) -> None:
     run, shown = await start(service)
     async with watch(service, f"run={run}&helper=anna") as socket:

@@ -11,7 +11,8 @@ from uuid import UUID
 import httpx
 import pytest
 from people import NAMES, People, serving_people
-from service_under_test import TOKEN, ServiceUnderTest, serving
+from service_under_test import TOKEN, ServiceUnderTest, serving, until
+from shown_run import hello, run_state
 from websockets.asyncio.client import ClientConnection, connect
 
 from server.access.deeds import deeds_in
@@ -121,6 +122,35 @@ async def test_the_open_socket_of_somebody_revoked_is_closed(served: Served) -> 
         async with as_a(served, Role.VIEWER) as other:
             assert (await other.get("/api/runs")).status_code == 200
         assert await close_code(socket) == 1008
+
+
+async def test_nothing_goes_on_for_somebody_revoked(served: Served) -> None:
+    service, people = served
+    run = await start(served)
+    shown = service.poses.open(run_state(run))
+    shown.robot_connected(hello())
+    headers = people.headers(Role.HELPER)
+    live = service.ws.replace("helper", f"live?run={run}")
+    async with (
+        connect(service.ws, additional_headers=headers) as events,
+        connect(live, additional_headers=headers) as watching,
+    ):
+        await message(events)
+        await message(watching)
+        assert {"HelperSocket._send_events", "LiveSocket._show"} <= connection_works()
+        people.revoke(Role.HELPER)
+        service.access.look()
+        assert await close_code(events) == await close_code(watching) == 1008
+        await until(lambda: not connection_works())
+    assert len(service.journal.subscribers) == 0
+    assert not service.journal.trouble._watchers
+    assert not shown._watchers
+
+
+def connection_works() -> set[str]:
+    """What connections of helpers have going on, each in a task."""
+    names = {task.get_coro().__qualname__ for task in asyncio.all_tasks()}  # type: ignore[union-attr]
+    return {each for each in names if each.startswith(("Helper", "LiveSocket"))}
 
 
 async def test_the_open_socket_of_a_session_is_closed_when_that_is_signed_out(

@@ -76,7 +76,7 @@ async def test_what_is_kept_stays_and_the_rest_goes_with_all_its_own(
         stays = number in kept
         assert len(await journal.read(0, 1000, run_id(number))) == (EVENTS if stays else 0)
         assert (await journal.picture(picture_id(number)) is not None) == stays
-    assert [run.node for _, run in await journal.index.dialogues(None, 100, 0)] == kept
+    assert [each.run.node for each in await journal.index.dialogues(None, 100, 0)] == kept
     journal.close()
     assert checked(path).findings == []
 

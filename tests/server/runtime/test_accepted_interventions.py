@@ -5,12 +5,14 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from pretend_robots import PretendRobots
 from pretend_service import PretendService, pretend_service
 from task_documents import definition_of
 
 from robots.link.messages import Intervene
 from server.errors import ConflictError
 from server.journal import events as ev
+from server.runtime.interventions import MOST_WAITING
 from server.runtime.requests import RunRequest
 from server.runtime.views import RunStatus, RunView
 from sim.tabletop.layout import lay_out
@@ -112,3 +114,55 @@ async def test_an_ended_run_accepts_nothing() -> None:
         with pytest.raises(ConflictError, match="has ended"):
             await service.runtime.intervene(run.id, STEAL)
         assert await interventions(service, run) == []
+
+
+async def test_no_more_are_accepted_than_may_wait(tmp_path: Path) -> None:
+    path = tmp_path / "journal.db"
+    async with service_with(journal=path, deaf=True) as service:
+        run = await start(service)
+        for _ in range(MOST_WAITING):
+            await service.runtime.intervene(run.id, STEAL)
+        with pytest.raises(ConflictError, match="100 interventions of this run are still to be"):
+            await service.runtime.intervene(run.id, STEAL)
+        assert len(await interventions(service, run)) == MOST_WAITING
+    async with service_with(journal=path, boot=2) as service:
+        await service.runtime.wait_for_end(run.id)
+        done = await interventions(service, run)
+    assert len(done) == 2 * MOST_WAITING
+
+
+async def test_what_was_accepted_is_not_refused_by_a_robot_for_which_too_much_waits(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    async with service_with(deaf=True) as service:
+        run = await start(service)
+        await service.runtime.pause(run.id)
+        send = PretendRobots.send
+
+        def full(robots: PretendRobots, robot: str, command: str, body: Any) -> None:
+            if isinstance(body, Intervene):
+                raise ConflictError("it has not taken its last commands")
+            send(robots, robot, command, body)
+
+        monkeypatch.setattr(PretendRobots, "send", full)
+        await service.runtime.intervene(run.id, STEAL)
+        [name] = run.robots
+        robot = service.robots.robots[name]
+        robot.boot, robot.deaf = 2, False
+        await service.run_of(run).robot_connected(name, robot.hello())
+        monkeypatch.undo()
+        assert len(await interventions(service, run)) == 1
+        assert (await service.runtime.run(run.id)).status is RunStatus.PAUSED
+
+
+async def test_a_run_remembers_nothing_of_what_was_accepted_and_done() -> None:
+    async with service_with(faults={"part_1": [("missed", 4)]}) as service:
+        run = await start(service)
+        state = service.run_of(run).context.state
+        await service.runtime.pause(run.id)
+        await service.runtime.intervene(run.id, STEAL)
+        await service.runtime.resume(run.id)
+        await service.runtime.wait_for_end(run.id)
+        assert len(await interventions(service, run)) == 2
+    assert not state.accepted
+    assert not state.intervened

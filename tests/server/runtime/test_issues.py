@@ -7,7 +7,7 @@ import pytest
 
 from robots.link.messages import Detection
 from server.journal import events as ev
-from server.runtime.run_state import issue_of
+from server.runtime.dialogue_state import issue_of
 from tasks.issue import Sensed
 
 

@@ -9,14 +9,16 @@ from uuid import uuid4
 
 import pytest
 from pretend_service import pretend_service
+from service_under_test import build
 
 import server.turns
+from server.api.first_answers import answer_of
 from server.journal import events as ev
 from server.journal.journal import Entry
 from server.journal.sqlite import SqliteJournal
 from server.journal.stored_event import UnreadableEventError
 from server.journal.subscriptions import Record
-from server.runtime.journaled_tree import read_nodes, read_started
+from server.runtime.journaled_tree import read_nodes, read_started, read_without_tree
 from server.runtime.requests import RunRequest
 from server.runtime.run_views import NODES
 from tasks.definition import BehaviorNode, GoalNode, TaskTreeDefinition
@@ -145,12 +147,46 @@ async def test_a_tree_that_was_given_as_text_is_journaled_as_any_other() -> None
         (('"name":"red_1"', '"name":"red_0"'), "two nodes are called 'red_0'"),
         (('"nodes":[', '"notes":['), "it has no 'nodes'"),
         (('"nodes":[{', '"nodes":[{{'), "its tree is none"),
+        (('"nodes":[', '"nodes":' + "[" * 100_000), "its tree is none"),
+        (("}}]", "}},]"), "something more was expected"),
+        (('"nodes":[', '"nodes":[],"notes":['), "it has no 'nodes'"),
     ],
 )
 async def test_a_damaged_tree_is_told_of(change: tuple[str, str], what: str) -> None:
     text = started(many_alternatives(3)).model_dump_json().replace(*change, 1)
     with pytest.raises(UnreadableEventError, match=f"event 1 cannot be read.*{what}"):
         await read_started(Record(1, text))
+
+
+@pytest.mark.usefixtures("_short_turns")
+async def test_others_have_their_turn_while_a_tree_is_passed_over() -> None:
+    whole = started(many_alternatives())
+    record = Record(0, whole.model_dump_json())
+    event, turns = await turns_of_others(lambda: read_without_tree(record))
+    assert turns >= MANY
+    assert event == whole.model_copy(update={"tree": {}})
+
+
+async def test_a_tree_that_cannot_be_passed_over_is_told_of() -> None:
+    text = started(many_alternatives(3)).model_dump_json().replace("[{", "[" * 100_000, 1)
+    with pytest.raises(UnreadableEventError, match="event 1 cannot be read: its tree is none"):
+        await read_without_tree(Record(1, text))
+
+
+@pytest.mark.usefixtures("_short_turns")
+async def test_the_audit_and_a_first_answer_pass_over_the_tree_of_a_run() -> None:
+    service = build()
+    run = await service.runs.start_run(RunRequest(tree="eket", world="tabletop"))
+    begun = started(many_alternatives()).model_copy(update={"run": run.id})
+    await service.journal.append(Entry(events=[begun]))
+    async with service.client() as client:
+        audit, turns = await turns_of_others(lambda: client.get("/api/access/deeds"))
+        assert turns >= MANY
+    assert [each["deed"] for each in audit.json()["deeds"]] == ["run_started"] * 2
+    answer, turns = await turns_of_others(lambda: answer_of(2, service.app.state.parts))
+    assert turns >= MANY
+    assert (answer.status, json.loads(answer.body)["id"]) == (201, str(run.id))
+    service.journal.close()
 
 
 async def test_an_event_that_begins_no_run_is_read_as_it_is() -> None:

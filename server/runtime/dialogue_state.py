@@ -1,0 +1,233 @@
+"""The state of a dialogue: a fold over its own events, and the issue that it is about."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from datetime import datetime
+from functools import singledispatchmethod
+from typing import Self
+from uuid import UUID
+
+from dialogue.conversation import Conversation
+from dialogue.evidence import Change, PutRight
+from dialogue.outlook import Outlook
+from dialogue.script import CloseReason, Expectation, Script, Turn
+from robots.link.messages import Detection
+from server.journal import events as ev
+from tasks.issue import Issue, Sensed
+
+MOST_EXTENSIONS = 10
+"""So often the deadline of one question may be moved."""
+
+
+@dataclass(slots=True)
+class Claim:
+    """A helper says that they are on it; wall time."""
+
+    helper: str
+    until: datetime
+
+
+@dataclass(slots=True)
+class DialogueState:
+    """One dialogue: its conversation, its latest prompt and what it waits for."""
+
+    opened: ev.DialogueOpened
+    raised: ev.IssueRaised
+    conversation: Conversation
+    calls: list[str] = field(default_factory=list)
+    prompt: ev.Prompt | None = None
+    asked: ev.Prompt | None = None
+    prompts: dict[UUID, ev.Prompt] = field(default_factory=dict)
+    answers: dict[UUID, ev.Answered] = field(default_factory=dict)
+    awaiting: ev.HelpAwaited | None = None
+    claim: Claim | None = None
+    claims: int = 0
+    """How often it was claimed so far, renewals included."""
+    resolved: ev.Resolved | None = None
+    closed: CloseReason | None = None
+    helps: int = 0
+    put_at: dict[int, float] = field(default_factory=dict)
+    """When (run's clock) the latest question was put, and each time again, by the ask's number."""
+    asked_for_s: float | None = None
+    """How long the open question waited for an answer when it was put."""
+    first_look: ev.FirstLook | None = None
+    looked_anew: ev.LookedAnew | None = None
+    """The latest look that later ones are compared with besides the first."""
+    extensions: dict[UUID, int] = field(default_factory=dict)
+    """How often each question's deadline may still be moved, where it was before."""
+    clip: list[ev.ClipPicture] = field(default_factory=list)
+
+    @property
+    def id(self) -> UUID:
+        return self.opened.dialogue
+
+    @property
+    def extensions_left(self) -> int:
+        """How often the latest question's deadline may still be moved."""
+        if self.asked is None:
+            return 0
+        return self.extensions.get(self.asked.prompt, MOST_EXTENSIONS)
+
+    @property
+    def open_ask(self) -> ev.Prompt | None:
+        """The question that waits for an answer."""
+        if self.closed or self.awaiting or self.asked is None:
+            return None
+        return None if self.asked.prompt in self.answers else self.asked
+
+    @property
+    def helper(self) -> str:
+        """Who answered last; empty if nobody has."""
+        last = next(reversed(self.answers.values()), None)
+        return "" if last is None else last.helper
+
+    def turns_after(self, calls: Sequence[str], script: Script, outlook: Outlook) -> list[Turn]:
+        """What the conversation would say to the last of more calls, without making them."""
+        return rehearse(script, self.raised, [*self.calls, *calls], outlook)
+
+    def advance(self, call: str) -> None:
+        """Make a call to the conversation."""
+        converse(self.conversation, call)
+        self.calls.append(call)
+
+    @classmethod
+    def begun(
+        cls, opened: ev.DialogueOpened, raised: ev.IssueRaised, scripts: Mapping[str, Script]
+    ) -> Self:
+        """The state of a dialogue that has just opened, right after its issue was raised."""
+        issue, outlook = issue_of(raised), raised.outlook or Outlook()
+        dialogue = cls(opened, raised, Conversation(scripts[opened.issue], issue, outlook))
+        dialogue.advance("open")
+        return dialogue
+
+    def fold(self, event: ev.DialogueEvent | ev.ClipRecorded) -> None:
+        """Apply one event of the dialogue; they come in order of `seq`."""
+        self._apply(event)
+
+    @singledispatchmethod
+    def _apply(self, event: ev.Event) -> None:
+        """Events that leave no trace in the state."""
+
+    @_apply.register
+    def _(self, event: ev.Prompt) -> None:
+        self.prompt = self.prompts[event.prompt] = event
+        if event.kind == "ask":
+            self.asked = event
+            self.asked_for_s = None if event.deadline is None else event.deadline - event.time
+            self.awaiting = None
+
+    @_apply.register
+    def _(self, event: ev.DeadlineExtended) -> None:
+        assert self.asked is not None, "only a question has a deadline"
+        moved = self.asked.model_copy(update={"deadline": event.deadline})
+        self.prompt = self.asked = self.prompts[event.prompt] = moved
+        self.extensions[event.prompt] = event.extensions_left
+
+    @_apply.register
+    def _(self, event: ev.ClipRecorded) -> None:
+        self.clip = event.pictures
+
+    @_apply.register
+    def _(self, event: ev.Claimed) -> None:
+        self.claim = Claim(event.helper, event.lease_until)
+        self.claims += 1
+
+    @_apply.register
+    def _(self, _event: ev.Released) -> None:
+        self.claim = None
+
+    @_apply.register
+    def _(self, event: ev.Answered) -> None:
+        self.answers[event.prompt] = event
+        self.claim = None
+        self.advance(event.answer)
+
+    @_apply.register
+    def _(self, event: ev.FirstLook) -> None:
+        self.first_look = event
+
+    @_apply.register
+    def _(self, event: ev.LookedAnew) -> None:
+        self.looked_anew = event
+
+    @_apply.register
+    def _(self, event: ev.HelpAwaited) -> None:
+        self.awaiting = event
+        self.helps += 1
+
+    @_apply.register
+    def _(self, event: ev.HelpVerified) -> None:
+        self.awaiting = None
+        self.advance(f"seen:{event.change}")
+
+    @_apply.register
+    def _(self, _event: ev.HelpNotSeen) -> None:
+        self.awaiting = None
+        self.advance("not_seen")
+
+    @_apply.register
+    def _(self, event: ev.Resolved) -> None:
+        self.resolved = event
+
+    @_apply.register
+    def _(self, event: ev.DialogueClosed) -> None:
+        self.closed = event.reason
+        self.awaiting = None
+        self.claim = None
+
+
+def converse(conversation: Conversation, call: str) -> list[Turn]:
+    """Make a call by its name: `open`, `yes`, `no`, `not_seen`, `silence`, `abort`.
+
+    Two have arguments: `seen:moved` (a change) and `put_right:at_place:moved` (what is seen, too).
+    """
+    verb, *arguments = call.split(":")
+    match verb, arguments:
+        case "yes" | "no", []:
+            return conversation.answer("yes" if verb == "yes" else "no")
+        case "seen", [change]:
+            return conversation.help_seen(Change(change))
+        case "put_right", [seen, change]:
+            return conversation.put_right(PutRight(Expectation(seen), Change(change)))
+    calls = {
+        "open": conversation.open,
+        "not_seen": conversation.help_not_seen,
+        "silence": conversation.silence,
+        "abort": conversation.abort,
+    }
+    return calls[verb]()
+
+
+def rehearse(
+    script: Script, raised: ev.IssueRaised, calls: Sequence[str], outlook: Outlook
+) -> list[Turn]:
+    """What a conversation says to the last of `calls`, made one after the other."""
+    conversation = Conversation(script, issue_of(raised), raised.outlook or Outlook(), outlook)
+    turns: list[Turn] = []
+    for call in calls:
+        turns = converse(conversation, call)
+    return turns
+
+
+def issue_of(raised: ev.IssueRaised) -> Issue:
+    """The issue as dialogue scripts know it."""
+    return Issue(
+        kind=raised.issue,
+        robot=raised.robot,
+        node=raised.node,
+        name=raised.name,
+        object=raised.object,
+        place=raised.place,
+        step=raised.step,
+        interrupts=raised.interrupts,
+        reason="" if raised.detection is None else raised.detection.explanation,
+        sensed=_sensed(raised.detection),
+    )
+
+
+def _sensed(detection: Detection | None) -> Sensed:
+    if detection is None:
+        return Sensed.SEEN
+    if detection.felt:
+        return Sensed.FELT
+    return Sensed.NOWHERE if detection.center is None else Sensed.SEEN
