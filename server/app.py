@@ -41,6 +41,7 @@ from server.api.problems import Problem, answer_errors_with_problems
 from server.api.repeats import Repeats
 from server.documents import DocumentLibrary
 from server.models import RobotModels
+from server.off_loop import OffLoop
 from server.poses.feed import PoseSource
 from server.public_url import host_of
 from server.refusals import Refusals
@@ -90,6 +91,7 @@ def create_app(
     deeds: DeedLog,
     speech_abilities: SpeechAbilities = NO_SPEECH,
     refusals: Refusals | None = None,
+    off_loop: OffLoop | None = None,
     lifespan: Lifespan | None = None,
     wall_time_s: Callable[[], float] = time.time,
 ) -> FastAPI:
@@ -116,8 +118,9 @@ def create_app(
         Repeats(journal, settings.limits, refusals, wall_time_s),
         speech_abilities,
         refusals,
+        off_loop or OffLoop(),
     )
-    app.add_middleware(Gate, access=access)
+    app.add_middleware(Gate, access=access, limits=settings.limits, refusals=refusals)
     return app
 
 

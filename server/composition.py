@@ -177,6 +177,7 @@ async def _open(
         deeds=deeds,
         speech_abilities=speech,
         refusals=refusals,
+        off_loop=off_loop,
     )
     add_robot_route(app, registry, access)
     server = Server(serve_config(app, settings), settings, refusals, tls)

@@ -21,6 +21,7 @@ LimitName = Literal[
     "head_s",
     "body_s",
     "stuck_client_s",
+    "stranger_body_bytes",
     "wrong_tokens",
     "idempotency_keys",
     "idempotency_s",
@@ -60,6 +61,8 @@ class Limits(BaseModel):
     """How long the body may take after that."""
     stuck_client_s: Seconds = 30.0
     """How long a client may take nothing of what is sent to it."""
+    stranger_body_bytes: AtLeastOne = 16 * 1024
+    """Bytes of the body of a request that anybody may send."""
     wrong_tokens: AtLeastOne = 5
     """Different wrong tokens from one address before it has to wait for the next."""
     idempotency_keys: AtLeastOne = 1000

@@ -94,6 +94,8 @@ def _known_keys(mistake: ErrorDetails, model: type[BaseModel]) -> str:
 
 
 def _show(value: Any) -> str:
+    if isinstance(value, str | bytes):
+        value = value[: _MAX_VALUE_CHARACTERS + 1]
     try:
         shown = json.dumps(value, default=str)
     except RecursionError:

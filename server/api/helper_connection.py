@@ -14,14 +14,9 @@ from server.access.permissions import SOCKETS, needed_for_message
 from server.access.principal import Caller
 from server.api.admission import REFUSED
 from server.api.helper_messages import Auth, Error, HelperMessage
+from server.api.mistakes import validation_sentences
 from server.api.parts import HelperName, Parts, parts_of
-from server.api.problems import (
-    Problem,
-    forbidden,
-    problem,
-    problem_response,
-    validation_sentences,
-)
+from server.api.problems import Problem, forbidden, problem, problem_response
 from server.journal.events import Author
 
 THE_END = 1000

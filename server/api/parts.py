@@ -17,6 +17,7 @@ from server.journal.journal import Journal
 from server.journal.subscriptions import Subscribers
 from server.journal.writer import CommitStatistics
 from server.models import RobotModels
+from server.off_loop import OffLoop
 from server.poses.feed import PoseSource
 from server.refusals import Refusals
 from server.runtime.service import RunService
@@ -67,6 +68,7 @@ class Parts:
     repeats: "Repeats"
     speech: SpeechAbilities = NO_SPEECH
     refusals: Refusals = field(default_factory=Refusals)
+    off_loop: OffLoop = field(default_factory=OffLoop)
 
 
 def parts_of(connection: HTTPConnection) -> Parts:
