@@ -118,7 +118,7 @@ def create_app(
         Repeats(journal, settings.limits, refusals, wall_time_s),
         speech_abilities,
         refusals,
-        off_loop or OffLoop(),
+        off_loop or OffLoop(settings.limits),
     )
     app.add_middleware(Gate, access=access, limits=settings.limits, refusals=refusals)
     return app

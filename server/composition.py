@@ -115,7 +115,7 @@ async def _open(
     # What runs need later is loaded now: there may be no descriptor left to open it with then.
     for group in ("mend.behaviors", "mend.monitors"):
         load_plugins(group)
-    off_loop = OffLoop()
+    off_loop = OffLoop(settings.limits)
     simulation_thread = SimulationThread()
     library = build_library(
         journal,

@@ -14,6 +14,8 @@ LimitName = Literal[
     "hello_chars",
     "departed_robots",
     "uploaded_chars",
+    "waiting_chars",
+    "check_s",
     "running_runs",
     "connections",
     "strangers",
@@ -47,6 +49,10 @@ class Limits(BaseModel):
     """Robots without connection and run that are still listed; those gone longest are forgotten."""
     uploaded_chars: AtLeastOne = 32 * 1024**2
     """Characters of all uploaded files of one kind together."""
+    waiting_chars: AtLeastOne = 64 * 1024**2
+    """Characters of what waits to be read and checked as it is large."""
+    check_s: Seconds = 120.0
+    """How long reading and checking one large piece of that may take."""
     running_runs: AtLeastOne = 16
     """Runs that have not ended, at a time; each in a simulated world may take a process."""
     connections: AtLeastOne = 500

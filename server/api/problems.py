@@ -21,6 +21,7 @@ from server.api.parts import parts_of
 from server.api.safe_headers import SAFE_HEADERS
 from server.descriptors import NO_DESCRIPTOR
 from server.errors import (
+    BusyError,
     ConflictError,
     InvalidError,
     LostRaceError,
@@ -40,6 +41,7 @@ STATUSES: tuple[tuple[type[Exception], int], ...] = (
     (ConflictError, 409),
     (InvalidError, 422),
     (UnreadableError, 500),
+    (BusyError, 503),
     (JournalReadError, 500),
     (PrincipalsFileError, 503),
     (JournalWriteError, 503),
@@ -165,7 +167,8 @@ async def _service_error(request: Request, error: Exception) -> Response:
     assert refusal is not None, "every service error has a status"
     if isinstance(error, ServiceError) and error.limit is not None:
         parts_of(request).refusals.note(error.limit)
-    return problem_response(refusal)
+    later = {"Retry-After": f"{error.retry_after_s}"} if isinstance(error, BusyError) else None
+    return problem_response(refusal, later)
 
 
 async def _no_descriptor(_request: Request, error: Exception) -> Response:
