@@ -138,7 +138,7 @@ async def _open(
             certificate=settings.tls_certificate,
             hang_s=settings.robot_hang_timeout_s,
         ),
-        own_robots.reserve,
+        own_robots,
     )
     public_url = settings.public_url or (None if is_everywhere(settings.host) else url)
     mail = _operator_mail(settings, public_url)
