@@ -12,6 +12,7 @@ LimitName = Literal[
     "world_options",
     "option_chars",
     "hello_chars",
+    "hello_s",
     "departed_robots",
     "uploaded_chars",
     "waiting_chars",
@@ -45,6 +46,8 @@ class Limits(BaseModel):
     """Characters of the name of such an option, and of one that is text."""
     hello_chars: AtLeastOne = 128 * 1024
     """Characters of a robot's `hello`."""
+    hello_s: Seconds = 10.0
+    """How long it may take to come, and then its connection to take the place of the last one."""
     departed_robots: AtLeastOne = 100
     """Robots without connection and run that are still listed; those gone longest are forgotten."""
     uploaded_chars: AtLeastOne = 32 * 1024**2
