@@ -104,7 +104,11 @@ async def _open(
     registry = RobotRegistry(
         journal,
         time.monotonic,
-        LinkTimes(heartbeat_s=settings.heartbeat_s, silence_s=settings.robot_hang_timeout_s),
+        LinkTimes(
+            heartbeat_s=settings.heartbeat_s,
+            silence_s=settings.robot_hang_timeout_s,
+            absence_s=settings.robot_absence_s,
+        ),
         settings.limits,
         refusals,
     )
