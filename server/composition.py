@@ -231,7 +231,7 @@ async def _open(
 async def _watch_access(access: Access, deeds: DeedLog, *, journal_changes: bool) -> None:
     """Let go of those who may come in no longer, also where nobody asks for anything."""
     while True:
-        access.look()
+        await access.look()
         access.let_go()
         deeds.tell_due()
         if journal_changes:

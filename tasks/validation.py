@@ -98,7 +98,8 @@ def _show(value: Any) -> str:
         value = value[: _MAX_VALUE_CHARACTERS + 1]
     try:
         shown = json.dumps(value, default=str)
-    except RecursionError:
+    except (RecursionError, ValueError):
+        # Also what has itself as a part, as an alias can make it.
         return "nested too deeply to be shown"
     if len(shown) > _MAX_VALUE_CHARACTERS:
         return shown[:_MAX_VALUE_CHARACTERS] + "..."

@@ -35,6 +35,8 @@ class Gate:
             await self._app(scope, receive, send)
             return
         connection = HTTPConnection(scope)
+        if scope["path"].startswith(PROTECTED):
+            await self._access.look()
         refusal = self._refusal(scope, connection)
         guarded = _guarded(
             send,

@@ -85,6 +85,7 @@ def add_robot_route(
     """
 
     async def connect(websocket: WebSocket) -> None:
+        await access.look()
         shown = _shown(websocket, access, allowed_origins)
         if isinstance(shown, Response):
             await websocket.send_denial_response(shown)

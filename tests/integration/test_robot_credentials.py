@@ -101,7 +101,7 @@ async def test_a_connected_robot_is_let_go_when_it_is_revoked(robots: Robots) ->
         await socket.send(hello("arm-1"))
         assert isinstance(service_message.validate_json(await socket.recv()), Welcome)
         robots.people.revoke(Role.ROBOT)
-        robots.service.access.look()
+        await robots.service.access.look()
         last = service_message.validate_json(await socket.recv())
         assert isinstance(last, LinkError)
         assert "good no longer" in last.detail
