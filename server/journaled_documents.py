@@ -159,43 +159,48 @@ class JournaledDocuments:
         self._off_loop = off_loop or OffLoop()
 
     async def summaries(self, offset: int = 0, limit: int = 1000) -> Sequence[DocumentSummary]:
-        names, own = await self._uploads.page(
-            self.kind, offset, limit, others=self._built_in.names()
+        alone = self._reading.summarize is None
+        names, uploaded = await self._uploads.page(
+            self.kind,
+            slice(offset, offset + limit),
+            self._built_in.names(),
+            () if alone else self._needs,
         )
-        if self._reading.summarize is None:
-            return self._reading.summaries(names, {})
-        uploaded = {**await self._uploads.named_in(own.values(), self._needs), self.kind: own}
-        return await self._off_loop.run(_chars(uploaded), self._reading.summaries, names, uploaded)
+        chars = 0 if alone else _chars(uploaded)
+        return await self._off_loop.run(chars, self._reading.summaries, names, uploaded)
 
     async def get(self, name: str) -> Rendered[DocumentView]:
-        text = await self._text(name)
-        return await self._with_what_it_names(text, partial(self._reading.view, name, text))
+        text, uploaded = await self._document(name)
+        return await self._read(text, uploaded, partial(self._reading.view, name, text))
 
     async def kept(self, name: str) -> Rendered[KeptDocument]:
-        text = await self._text(name)
-        _, view = await self._with_what_it_names(text, partial(self._reading.to_keep, name, text))
+        text, uploaded = await self._document(name)
+        _, view = await self._read(text, uploaded, partial(self._reading.to_keep, name, text))
         return view
 
-    async def _text(self, name: str) -> str:
+    async def _document(self, name: str) -> tuple[str, Uploaded]:
+        """A document, and what was uploaded that it may name. Raises `NotFoundError`."""
         if name in self._built_in.names():
-            return self._built_in.read(name)
-        text = await self._uploads.text(self.kind, name)
-        if text is None:
+            text = self._built_in.read(name)
+            return text, await self._uploads.named_in([text], self._needs)
+        found = await self._uploads.document(self.kind, name, self._needs)
+        if found is None:
             raise NotFoundError(f"there is no {SPOKEN[self.kind]} '{name}'")
-        return text
+        return found
 
     async def check(self, text: str, name: str | None = None) -> Rendered[DocumentCheck]:
-        return await self._with_what_it_names(text, partial(self._reading.check, name, text))
-
-    async def _with_what_it_names(self, text: str, read: Callable[[Uploaded], T]) -> T:
-        """Have a text read with the uploaded documents that it may name. Raises `BusyError`."""
         uploaded = await self._uploads.named_in([text], self._needs)
+        return await self._read(text, uploaded, partial(self._reading.check, name, text))
+
+    async def _read(self, text: str, uploaded: Uploaded, read: Callable[[Uploaded], T]) -> T:
+        """Have a text read together with what it may name. Raises `BusyError`."""
         return await self._off_loop.run(len(text) + _chars(uploaded), read, uploaded)
 
     async def save(self, name: str | None, text: str, author: Author | None = None) -> Kept:
         async with self._uploads.changes.turn(len(text)):
-            called, view = await self._with_what_it_names(
-                text, partial(self._reading.to_keep, name, text)
+            uploaded = await self._uploads.named_in([text], self._needs)
+            called, view = await self._read(
+                text, uploaded, partial(self._reading.to_keep, name, text)
             )
             self._refuse_built_in(called)
             others = await self._uploads.of(self.kind)
@@ -224,7 +229,7 @@ class JournaledDocuments:
     async def delete(self, name: str, author: Author | None = None) -> None:
         self._refuse_built_in(name)
         async with self._uploads.changes.turn(0):
-            if await self._uploads.text(self.kind, name) is None:
+            if name not in await self._uploads.of(self.kind):
                 raise NotFoundError(f"there is no {SPOKEN[self.kind]} '{name}'")
             for users in self._users:
                 await users.refuse_unfit(self.kind, name, None)

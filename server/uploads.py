@@ -2,7 +2,7 @@
 
 import asyncio
 import re
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 
 from server.documents import DocumentKind, FixedDocuments, Uploaded
 from server.journal.journal import Journal
@@ -30,7 +30,8 @@ class Uploads:
     ) -> None:
         self._journal = journal
         self._fixed = fixed
-        # All of a kind is read at a time, and most of it dropped again: that is there once.
+        # All of a kind is read at a time, and most of it dropped again: that is there once, and
+        # what is kept of it then waits where there is a limit to that.
         self._reading = asyncio.Lock()
         self.changes = OneByOne((limits or Limits()).waiting_chars)
         """Who changes a document has a turn: what it was checked with is to stay as it is."""
@@ -39,39 +40,44 @@ class Uploads:
         """All of a kind, by name."""
         return await self._journal.documents(kind)
 
-    async def text(self, kind: DocumentKind, name: str) -> str | None:
-        """One document; None if there is none."""
+    async def document(
+        self, kind: DocumentKind, name: str, needs: Iterable[DocumentKind]
+    ) -> tuple[str, Uploaded] | None:
+        """One document, and of these kinds what it may name; None if there is none."""
         async with self._reading:
-            return (await self.of(kind)).get(name)
+            text = (await self.of(kind)).get(name)
+            return None if text is None else (text, await self._named_in([text], needs))
 
     async def page(
-        self, kind: DocumentKind, first: int, limit: int, *, others: Collection[str]
-    ) -> tuple[list[str], dict[str, str]]:
-        """Some names of this kind in their order, among the `others`; and what was uploaded."""
+        self, kind: DocumentKind, names: slice, others: Iterable[str], needs: Iterable[DocumentKind]
+    ) -> tuple[list[str], Uploaded]:
+        """Some names of a kind in their order, among the `others`; what they are, and may name."""
         async with self._reading:
             uploaded = await self.of(kind)
-            names = sorted({*others, *uploaded})[first : first + limit]
-            return names, {each: uploaded[each] for each in names if each in uploaded}
+            chosen = sorted({*others, *uploaded})[names]
+            own = {each: uploaded[each] for each in chosen if each in uploaded}
+            return chosen, {**await self._named_in(own.values(), needs), kind: own}
 
     async def named_in(self, texts: Iterable[str], kinds: Iterable[DocumentKind]) -> Uploaded:
         """What these texts may name, and what that names in turn; of the others the names alone.
 
         Each kind only names kinds that come later.
         """
+        async with self._reading:
+            return await self._named_in(texts, kinds)
+
+    async def _named_in(self, texts: Iterable[str], kinds: Iterable[DocumentKind]) -> Uploaded:
         found: dict[DocumentKind, dict[str, str]] = {}
         naming = list(texts)
-        async with self._reading:
-            for kind in kinds:
-                uploaded = await self.of(kind)
-                fixed = self._fixed.get(kind)
-                known = frozenset({*uploaded, *(fixed.names() if fixed else ())})
-                # Beside the loop, as there may be much to look through.
-                named = await asyncio.to_thread(_named, naming, known)
-                found[kind] = {
-                    name: text if name in named else "" for name, text in uploaded.items()
-                }
-                naming += [text for text in found[kind].values() if text]
-                naming += [fixed.read(name) for name in named.difference(uploaded)] if fixed else []
+        for kind in kinds:
+            uploaded = await self.of(kind)
+            fixed = self._fixed.get(kind)
+            known = frozenset({*uploaded, *(fixed.names() if fixed else ())})
+            # Beside the loop, as there may be much to look through.
+            named = await asyncio.to_thread(_named, naming, known)
+            found[kind] = {name: text if name in named else "" for name, text in uploaded.items()}
+            naming += [text for text in found[kind].values() if text]
+            naming += [fixed.read(name) for name in named.difference(uploaded)] if fixed else []
         return found
 
 
