@@ -8,6 +8,7 @@ from typing import Any
 
 from fastapi import FastAPI
 
+from server.access.access import Access
 from server.access.changes import PrincipalsEditor
 from server.access.deed_log import DeedLog
 from server.access.known_principals import KnownPrincipals
@@ -31,7 +32,6 @@ from server.api import models as models_api
 from server.api import poses as poses_api
 from server.api import principals as principals_api
 from server.api import worlds as worlds_api
-from server.api.access import Access
 from server.api.gate import Gate
 from server.api.idempotency_key import take_keys
 from server.api.openapi_links import add_links

@@ -11,8 +11,9 @@ from datetime import UTC, datetime
 from functools import partial
 
 from dialogue.registry import load_scripts
+from server.access.access import Access
 from server.access.deed_log import DeedLog
-from server.api.access import Access
+from server.api.robot_socket import ROBOT_PATH, add_robot_route
 from server.app import build_access, create_app
 from server.dialogues.escalation import EscalationPolicy
 from server.dialogues.mail import Mailer
@@ -26,7 +27,6 @@ from server.poses.feed import PoseFeed
 from server.poses.record import PoseRecords
 from server.refusals import Refusals
 from server.retention import prune_regularly
-from server.robots.endpoint import ROBOT_PATH, add_robot_route
 from server.robots.passes import OwnRobots
 from server.robots.process import launch
 from server.robots.registry import RobotRegistry

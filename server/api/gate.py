@@ -9,8 +9,8 @@ from starlette.requests import HTTPConnection
 from starlette.responses import Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from server.access.access import Access
 from server.access.permissions import needed_for_request
-from server.api.access import Access
 from server.api.problems import forbidden, problem, problem_response
 from server.api.safe_headers import OVER_TLS, SAFE_HEADERS
 from server.limits import Limits

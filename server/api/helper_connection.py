@@ -10,9 +10,9 @@ from typing import Any, Generic, TypeVar
 from pydantic import BaseModel, ConfigDict, TypeAdapter, ValidationError
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
+from server.access.admission import REFUSED
 from server.access.permissions import SOCKETS, needed_for_message
 from server.access.principal import Caller
-from server.api.admission import REFUSED
 from server.api.helper_messages import Auth, Error, HelperMessage
 from server.api.mistakes import validation_sentences
 from server.api.parts import HelperName, Parts, parts_of

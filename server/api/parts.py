@@ -8,10 +8,10 @@ from fastapi import Depends, Path, Query
 from pydantic import Field
 from starlette.requests import HTTPConnection
 
+from server.access.access import Access
 from server.access.changes import PrincipalsEditor
 from server.access.deed_log import DeedLog
 from server.access.principal import Caller
-from server.api.access import Access
 from server.documents import DocumentLibrary
 from server.journal.journal import Journal
 from server.journal.subscriptions import Subscribers

@@ -11,8 +11,8 @@ from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketState
 
 from robots.link.channel import ChannelClosedError
 from robots.link.messages import LinkError
+from server.access.access import Access
 from server.access.principal import Caller
-from server.api.access import Access
 from server.api.problems import problem, problem_response
 from server.robots.passes import Pass
 from server.robots.registry import RobotRegistry

@@ -10,13 +10,13 @@ from urllib.parse import urlsplit
 
 from starlette.requests import HTTPConnection
 
+from server.access.admission import REFUSED, Admission
 from server.access.known_principals import KnownPrincipals
 from server.access.principal import ANYBODY, TOKEN_NAME, Caller, Principal
 from server.access.roles import Role
 from server.access.sessions import Session, Sessions, new_session_key
 from server.access.tokens import fingerprint, fits
-from server.api.admission import REFUSED, Admission
-from server.api.wrong_tokens import WrongTokens
+from server.access.wrong_tokens import WrongTokens
 from server.household import household_of
 from server.limits import Limits
 from server.refusals import Refusals
