@@ -25,8 +25,8 @@ from fastapi import FastAPI
 from starlette.websockets import WebSocket, WebSocketDisconnect
 from websockets.asyncio.client import connect
 
+from server.access.access import Access
 from server.api import helper_socket
-from server.api.access import Access
 from server.api.parts import Parts
 from server.journal.events import RunFailed
 from server.journal.journal import Entry

@@ -23,9 +23,9 @@ from fastapi import FastAPI, WebSocket
 from websockets.asyncio.client import ClientConnection, connect
 
 from robots.link.messages import Held, Hello, ReachLimits, Report
-from server.api.access import Access
+from server.access.access import Access
+from server.api.robot_socket import add_robot_route
 from server.journal.sqlite import SqliteJournal
-from server.robots.endpoint import add_robot_route
 from server.robots.registry import RobotRegistry
 from server.websocket_protocol import WebSocketProtocol
 

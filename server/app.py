@@ -8,6 +8,7 @@ from typing import Any
 
 from fastapi import FastAPI
 
+from server.access.access import Access
 from server.access.changes import PrincipalsEditor
 from server.access.deed_log import DeedLog
 from server.access.known_principals import KnownPrincipals
@@ -31,7 +32,6 @@ from server.api import models as models_api
 from server.api import poses as poses_api
 from server.api import principals as principals_api
 from server.api import worlds as worlds_api
-from server.api.access import Access
 from server.api.gate import Gate
 from server.api.idempotency_key import take_keys
 from server.api.openapi_links import add_links
@@ -41,6 +41,7 @@ from server.api.problems import Problem, answer_errors_with_problems
 from server.api.repeats import Repeats
 from server.documents import DocumentLibrary
 from server.models import RobotModels
+from server.off_loop import OffLoop
 from server.poses.feed import PoseSource
 from server.public_url import host_of
 from server.refusals import Refusals
@@ -90,6 +91,7 @@ def create_app(
     deeds: DeedLog,
     speech_abilities: SpeechAbilities = NO_SPEECH,
     refusals: Refusals | None = None,
+    off_loop: OffLoop | None = None,
     lifespan: Lifespan | None = None,
     wall_time_s: Callable[[], float] = time.time,
 ) -> FastAPI:
@@ -116,8 +118,9 @@ def create_app(
         Repeats(journal, settings.limits, refusals, wall_time_s),
         speech_abilities,
         refusals,
+        off_loop or OffLoop(settings.limits),
     )
-    app.add_middleware(Gate, access=access)
+    app.add_middleware(Gate, access=access, limits=settings.limits, refusals=refusals)
     return app
 
 

@@ -11,8 +11,9 @@ from datetime import UTC, datetime
 from functools import partial
 
 from dialogue.registry import load_scripts
+from server.access.access import Access
 from server.access.deed_log import DeedLog
-from server.api.access import Access
+from server.api.robot_socket import ROBOT_PATH, add_robot_route
 from server.app import build_access, create_app
 from server.background import Endless
 from server.dialogues.escalation import EscalationPolicy
@@ -27,7 +28,6 @@ from server.poses.feed import PoseFeed
 from server.poses.record import PoseRecords
 from server.refusals import Refusals
 from server.retention import prune_regularly
-from server.robots.endpoint import ROBOT_PATH, add_robot_route
 from server.robots.passes import OwnRobots
 from server.robots.process import launch
 from server.robots.registry import RobotRegistry
@@ -105,7 +105,11 @@ async def _open(
     registry = RobotRegistry(
         journal,
         time.monotonic,
-        LinkTimes(heartbeat_s=settings.heartbeat_s, silence_s=settings.robot_hang_timeout_s),
+        LinkTimes(
+            heartbeat_s=settings.heartbeat_s,
+            silence_s=settings.robot_hang_timeout_s,
+            absence_s=settings.robot_absence_s,
+        ),
         settings.limits,
         refusals,
     )
@@ -116,7 +120,7 @@ async def _open(
     # What runs need later is loaded now: there may be no descriptor left to open it with then.
     for group in ("mend.behaviors", "mend.monitors"):
         load_plugins(group)
-    off_loop = OffLoop()
+    off_loop = OffLoop(settings.limits)
     simulation_thread = SimulationThread()
     library = build_library(
         journal,
@@ -139,7 +143,7 @@ async def _open(
             certificate=settings.tls_certificate,
             hang_s=settings.robot_hang_timeout_s,
         ),
-        own_robots.reserve,
+        own_robots,
     )
     public_url = settings.public_url or (None if is_everywhere(settings.host) else url)
     mail = _operator_mail(settings, public_url)
@@ -178,6 +182,7 @@ async def _open(
         deeds=deeds,
         speech_abilities=speech,
         refusals=refusals,
+        off_loop=off_loop,
     )
     add_robot_route(app, registry, access)
     server = Server(serve_config(app, settings), settings, refusals, tls)
@@ -226,11 +231,13 @@ async def _open(
 
 async def _watch_access(access: Access, deeds: DeedLog, *, journal_changes: bool) -> None:
     """Let go of those who may come in no longer, also where nobody asks for anything."""
-    looks: list[Callable[[], None]] = [access.look, access.let_go, deeds.tell_due]
+    looks: list[Callable[[], None]] = [access.let_go, deeds.tell_due]
     if journal_changes:
         looks.append(lambda: deeds.take_changes(access.principals.changes))
     watching = Endless("watching who may come in")
     while True:
+        with watching.one_pass():
+            await access.look()
         for look in looks:
             with watching.one_pass():
                 look()

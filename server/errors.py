@@ -30,6 +30,12 @@ class ConflictError(ServiceError):
     """The state of the thing does not allow what was asked."""
 
 
+class BusyError(ServiceError):
+    """The service has too much to do for this just now; nothing of it was done."""
+
+    retry_after_s = 5
+
+
 class LostRaceError(ConflictError):
     """Somebody else answered first."""
 

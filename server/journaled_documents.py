@@ -1,10 +1,10 @@
 """Documents of one kind: the built-in ones, and those that were uploaded into the journal."""
 
-import asyncio
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
-from typing import Any
+from functools import partial
+from typing import Any, TypeVar
 
 from server.documents import (
     SPOKEN,
@@ -25,6 +25,9 @@ from server.journal.journal import Document, Entry, Journal
 from server.limits import Limits
 from server.off_loop import OffLoop
 from server.rendered import Rendered
+from server.uploads import Uploads
+
+T = TypeVar("T")
 
 Summarize = Callable[[str, bool, Mapping[str, Any] | None], DocumentSummary]
 """Makes the line about a document of its name, whether it is built in, and its definition."""
@@ -141,6 +144,7 @@ class JournaledDocuments:
         users: "Sequence[JournaledDocuments]" = (),
         summarize: Summarize | None = None,
         utc_now: Callable[[], datetime] = lambda: datetime.now(UTC),
+        uploads: Uploads | None = None,
         off_loop: OffLoop | None = None,
     ) -> None:
         self.kind = kind
@@ -149,56 +153,61 @@ class JournaledDocuments:
         self._built_in = built_in
         self._reading = _Reading(kind, built_in, checker, summarize)
         self._most_chars = most_chars
-        self._saving = asyncio.Lock()
         self._needs = tuple(needs)
         self._users = users
+        self._uploads = uploads or Uploads(journal, {kind: built_in})
         self._off_loop = off_loop or OffLoop()
 
     async def summaries(self, offset: int = 0, limit: int = 1000) -> Sequence[DocumentSummary]:
-        uploaded = await self._uploaded(own=True)
-        fixed = set(self._built_in.names())
-        names = sorted({*fixed, *uploaded[self.kind]})[offset : offset + limit]
-        chars = 0 if self._reading.summarize is None else _chars(uploaded)
+        alone = self._reading.summarize is None
+        names, uploaded = await self._uploads.page(
+            self.kind,
+            slice(offset, offset + limit),
+            self._built_in.names(),
+            () if alone else self._needs,
+        )
+        chars = 0 if alone else _chars(uploaded)
         return await self._off_loop.run(chars, self._reading.summaries, names, uploaded)
 
     async def get(self, name: str) -> Rendered[DocumentView]:
-        text, uploaded = await self._text(name), await self._uploaded()
-        return await self._off_loop.run(
-            len(text) + _chars(uploaded), self._reading.view, name, text, uploaded
-        )
+        text, uploaded = await self._document(name)
+        return await self._read(text, uploaded, partial(self._reading.view, name, text))
 
     async def kept(self, name: str) -> Rendered[KeptDocument]:
-        text, uploaded = await self._text(name), await self._uploaded()
-        _, view = await self._off_loop.run(
-            len(text) + _chars(uploaded), self._reading.to_keep, name, text, uploaded
-        )
+        text, uploaded = await self._document(name)
+        _, view = await self._read(text, uploaded, partial(self._reading.to_keep, name, text))
         return view
 
-    async def _text(self, name: str) -> str:
+    async def _document(self, name: str) -> tuple[str, Uploaded]:
+        """A document, and what was uploaded that it may name. Raises `NotFoundError`."""
         if name in self._built_in.names():
-            return self._built_in.read(name)
-        uploaded = await self._journal.documents(self.kind)
-        if name not in uploaded:
+            text = self._built_in.read(name)
+            return text, await self._uploads.named_in([text], self._needs)
+        found = await self._uploads.document(self.kind, name, self._needs)
+        if found is None:
             raise NotFoundError(f"there is no {SPOKEN[self.kind]} '{name}'")
-        return uploaded[name]
+        return found
 
     async def check(self, text: str, name: str | None = None) -> Rendered[DocumentCheck]:
-        uploaded = await self._uploaded()
-        return await self._off_loop.run(
-            len(text) + _chars(uploaded), self._reading.check, name, text, uploaded
-        )
+        uploaded = await self._uploads.named_in([text], self._needs)
+        return await self._read(text, uploaded, partial(self._reading.check, name, text))
+
+    async def _read(self, text: str, uploaded: Uploaded, read: Callable[[Uploaded], T]) -> T:
+        """Have a text read together with what it may name. Raises `BusyError`."""
+        return await self._off_loop.run(len(text) + _chars(uploaded), read, uploaded)
 
     async def save(self, name: str | None, text: str, author: Author | None = None) -> Kept:
-        uploaded = await self._uploaded()
-        called, view = await self._off_loop.run(
-            len(text) + _chars(uploaded), self._reading.to_keep, name, text, uploaded
-        )
-        self._refuse_built_in(called)
-        new = called not in await self._journal.documents(self.kind)
-        for users in () if new else self._users:
-            await users.refuse_unfit(self.kind, called, text)
-        async with self._saving:
-            await self._refuse_too_much(called, text)
+        async with self._uploads.changes.turn(len(text)):
+            uploaded = await self._uploads.named_in([text], self._needs)
+            called, view = await self._read(
+                text, uploaded, partial(self._reading.to_keep, name, text)
+            )
+            self._refuse_built_in(called)
+            others = await self._uploads.of(self.kind)
+            new = others.pop(called, None) is None
+            self._refuse_too_much(called, text, others)
+            for users in () if new else self._users:
+                await users.refuse_unfit(self.kind, called, text)
             await self._journal.append(
                 Entry(
                     events=[self._kept(called, not new, author)],
@@ -207,24 +216,23 @@ class JournaledDocuments:
             )
         return Kept(called, new, view)
 
-    async def _refuse_too_much(self, name: str, text: str) -> None:
+    def _refuse_too_much(self, name: str, text: str, others: Mapping[str, str]) -> None:
         """Raises `ConflictError`."""
-        kept = await self._journal.documents(self.kind)
-        others = sum(len(each) for other, each in kept.items() if other != name)
-        if others + len(text) > self._most_chars:
+        chars = sum(map(len, others.values()))
+        if chars + len(text) > self._most_chars:
             raise ConflictError(
                 f"there is no room for the {SPOKEN[self.kind]} '{name}': all that are uploaded may "
-                f"have {self._most_chars} characters, and the others have {others}; delete some",
+                f"have {self._most_chars} characters, and the others have {chars}; delete some",
                 limit="uploaded_chars",
             )
 
     async def delete(self, name: str, author: Author | None = None) -> None:
         self._refuse_built_in(name)
-        for users in self._users:
-            await users.refuse_unfit(self.kind, name, None)
-        async with self._saving:
-            if name not in await self._journal.documents(self.kind):
+        async with self._uploads.changes.turn(0):
+            if name not in await self._uploads.of(self.kind):
                 raise NotFoundError(f"there is no {SPOKEN[self.kind]} '{name}'")
+            for users in self._users:
+                await users.refuse_unfit(self.kind, name, None)
             await self._journal.append(
                 Entry(
                     events=[self._deleted(name, author)],
@@ -243,9 +251,9 @@ class JournaledDocuments:
     async def refuse_unfit(self, kind: DocumentKind, name: str, text: str | None) -> None:
         """Refuse a change that spoils a document here: another's new text, None where it goes.
 
-        Raises `ConflictError`.
+        Whoever asks has a turn to change something. Raises `ConflictError` or `BusyError`.
         """
-        uploaded = await self._uploaded(own=True)
+        uploaded = {each: await self._uploads.of(each) for each in {self.kind, *self._needs}}
         changed = {each: dict(texts) for each, texts in uploaded.items()}
         if text is None:
             changed[kind].pop(name, None)
@@ -258,11 +266,6 @@ class JournaledDocuments:
             uploaded,
             changed,
         )
-
-    async def _uploaded(self, *, own: bool = False) -> dict[DocumentKind, dict[str, str]]:
-        """What a check looks up; with `own` also the documents of this kind."""
-        kinds = {self.kind, *self._needs} if own else self._needs
-        return {kind: await self._journal.documents(kind) for kind in kinds}
 
     def _refuse_built_in(self, name: str) -> None:
         if name in self._built_in.names():

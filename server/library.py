@@ -20,6 +20,7 @@ from server.run_preparation import RunPreparer
 from server.runtime.ports import PreparedRun
 from server.runtime.requests import RunRequest
 from server.scene_checks import WorldChecks
+from server.uploads import Uploads
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,16 +31,18 @@ class Library:
     scenes: JournaledDocuments
     scenarios: JournaledDocuments
     preparer: RunPreparer
+    uploads: Uploads
     journal: Journal
     off_loop: OffLoop
 
     async def prepare(self, request: RunRequest) -> PreparedRun:
-        """Read and check what a request names. Raises `NotFoundError` or `InvalidError`."""
-        uploaded = {each: await self.journal.documents(each) for each in DocumentKind}
-        # What is not named is not looked for, and need not be handed over.
-        named = {DocumentKind.TREE: request.tree, DocumentKind.SCENARIO: request.scenario}
-        for kind, name in named.items():
-            uploaded[kind] = {each: text for each, text in uploaded[kind].items() if each == name}
+        """Read and check what a request names.
+
+        Raises `NotFoundError`, `InvalidError` or `BusyError`.
+        """
+        named = [each for each in (request.tree, request.scene, request.scenario) if each]
+        kinds = (DocumentKind.SCENARIO, DocumentKind.TREE, DocumentKind.SCENE)
+        uploaded = await self.uploads.named_in(named, kinds)
         chars = sum(len(text) for texts in uploaded.values() for text in texts.values())
         return await self.off_loop.run(chars, self.preparer.prepare, request, uploaded)
 
@@ -52,8 +55,10 @@ def build_library(
     off_loop: OffLoop | None = None,
 ) -> Library:
     """The documents that are fixed, and those that a journal keeps."""
-    most = (limits or Limits()).uploaded_chars
-    off_loop = off_loop or OffLoop()
+    limits = limits or Limits()
+    most = limits.uploaded_chars
+    off_loop = off_loop or OffLoop(limits)
+    uploads = Uploads(journal, fixed, limits)
     tree, scene, scenario = DocumentKind.TREE, DocumentKind.SCENE, DocumentKind.SCENARIO
     scenarios = JournaledDocuments(
         scenario,
@@ -63,6 +68,7 @@ def build_library(
         most,
         needs=(tree, scene),
         summarize=_about_scenario,
+        uploads=uploads,
         off_loop=off_loop,
     )
     trees = JournaledDocuments(
@@ -73,6 +79,7 @@ def build_library(
         most,
         needs=(scene,),
         users=[scenarios],
+        uploads=uploads,
         off_loop=off_loop,
     )
     scenes = JournaledDocuments(
@@ -83,9 +90,11 @@ def build_library(
         most,
         users=[trees, scenarios],
         summarize=_about_scene,
+        uploads=uploads,
         off_loop=off_loop,
     )
-    return Library(trees, scenes, scenarios, RunPreparer(fixed, worlds), journal, off_loop)
+    preparer = RunPreparer(fixed, worlds)
+    return Library(trees, scenes, scenarios, preparer, uploads, journal, off_loop)
 
 
 def _about_scene(

@@ -12,8 +12,11 @@ LimitName = Literal[
     "world_options",
     "option_chars",
     "hello_chars",
+    "hello_s",
     "departed_robots",
     "uploaded_chars",
+    "waiting_chars",
+    "check_s",
     "running_runs",
     "connections",
     "strangers",
@@ -21,6 +24,7 @@ LimitName = Literal[
     "head_s",
     "body_s",
     "stuck_client_s",
+    "stranger_body_bytes",
     "wrong_tokens",
     "idempotency_keys",
     "idempotency_s",
@@ -42,10 +46,16 @@ class Limits(BaseModel):
     """Characters of the name of such an option, and of one that is text."""
     hello_chars: AtLeastOne = 128 * 1024
     """Characters of a robot's `hello`."""
+    hello_s: Seconds = 10.0
+    """How long it may take to come, and then its connection to take the place of the last one."""
     departed_robots: AtLeastOne = 100
     """Robots without connection and run that are still listed; those gone longest are forgotten."""
     uploaded_chars: AtLeastOne = 32 * 1024**2
     """Characters of all uploaded files of one kind together."""
+    waiting_chars: AtLeastOne = 64 * 1024**2
+    """Characters of what waits to be read and checked as it is large."""
+    check_s: Seconds = 120.0
+    """How long reading and checking one large piece of that may take."""
     running_runs: AtLeastOne = 16
     """Runs that have not ended, at a time; each in a simulated world may take a process."""
     connections: AtLeastOne = 500
@@ -60,6 +70,8 @@ class Limits(BaseModel):
     """How long the body may take after that."""
     stuck_client_s: Seconds = 30.0
     """How long a client may take nothing of what is sent to it."""
+    stranger_body_bytes: AtLeastOne = 16 * 1024
+    """Bytes of the body of a request that anybody may send."""
     wrong_tokens: AtLeastOne = 5
     """Different wrong tokens from one address before it has to wait for the next."""
     idempotency_keys: AtLeastOne = 1000

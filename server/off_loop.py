@@ -13,9 +13,12 @@ import sys
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
+from functools import partial
 from typing import ParamSpec, TypeVar
 
-from server.errors import ConflictError
+from server.errors import BusyError
+from server.limits import Limits
+from server.one_by_one import OneByOne
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -29,29 +32,53 @@ NICE = 5
 
 
 class OffLoop:
-    """Does one piece of long work after the other in a process, which the first one starts."""
+    """Does one piece of long work after the other in a process, which the first one starts.
 
-    def __init__(self) -> None:
+    `longest_s` is how long one may take.
+    """
+
+    def __init__(self, limits: Limits | None = None) -> None:
+        limits = limits or Limits()
+        self.longest_s = limits.check_s
+        self._turns = OneByOne(limits.waiting_chars)
         self._pool: ProcessPoolExecutor | None = None
 
     async def run(self, chars: int, work: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
         """Do what there is to do with so many characters of text.
 
         `work` and what it is given have to be picklable, and so has what it returns or raises.
-        Raises what it raises, and `ConflictError` where its process has died.
+        Raises what it raises, and `BusyError` where too much waits, where it takes too long, and
+        where its process has died.
         """
         if chars < MUCH_CHARS:
             return await asyncio.to_thread(work, *args, **kwargs)
+        async with self._turns.turn(chars):
+            return await self._run(partial(work, *args, **kwargs))
+
+    async def _run(self, work: Callable[[], T]) -> T:
         pool = self._pool or self._start()
+        limit = asyncio.timeout(self.longest_s)
         try:
-            return await asyncio.wrap_future(pool.submit(work, *args, **kwargs))
+            async with limit:
+                return await asyncio.wrap_future(pool.submit(work))
         except BrokenProcessPool:
-            if self._pool is pool:
-                self._pool = None
-            raise ConflictError(
+            self.close()
+            raise BusyError(
                 "the process that does large pieces of work has died, as where there is too little "
                 "memory: try it again"
             ) from None
+        except TimeoutError:
+            if not limit.expired():
+                raise
+            self.close()
+            raise BusyError(
+                f"reading and checking this takes longer than {self.longest_s:g} s",
+                limit="check_s",
+            ) from None
+        except asyncio.CancelledError:
+            # Else whoever is next would wait for what nobody wants any more.
+            self.close()
+            raise
 
     def _start(self) -> ProcessPoolExecutor:
         context = multiprocessing.get_context("spawn")
@@ -59,11 +86,11 @@ class OffLoop:
         return self._pool
 
     def close(self) -> None:
-        """End the process; what is under way in it is of no use any more."""
+        """End the process; what is under way in it is of no use any more. The next starts anew."""
         pool, self._pool = self._pool, None
         if pool is None:
             return
-        processes = list(pool._processes.values())
+        processes = list((pool._processes or {}).values())
         pool.shutdown(wait=False, cancel_futures=True)
         for process in processes:
             process.kill()

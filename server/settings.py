@@ -96,6 +96,7 @@ class Settings(BaseSettings):
     claim_lease_s: Seconds = 30.0
     heartbeat_s: Seconds = 1.0
     robot_hang_timeout_s: Seconds = 10.0
+    robot_absence_s: Seconds = 3.0
     robot_lost_timeout_s: Seconds = 60.0
     subscriber_queue: Annotated[int, Field(ge=1, le=1_000_000)] = 4096
     """How many events may wait for one slow client before it is cut off."""

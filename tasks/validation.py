@@ -94,9 +94,12 @@ def _known_keys(mistake: ErrorDetails, model: type[BaseModel]) -> str:
 
 
 def _show(value: Any) -> str:
+    if isinstance(value, str | bytes):
+        value = value[: _MAX_VALUE_CHARACTERS + 1]
     try:
         shown = json.dumps(value, default=str)
-    except RecursionError:
+    except (RecursionError, ValueError):
+        # Also what has itself as a part, as an alias can make it.
         return "nested too deeply to be shown"
     if len(shown) > _MAX_VALUE_CHARACTERS:
         return shown[:_MAX_VALUE_CHARACTERS] + "..."

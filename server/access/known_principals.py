@@ -1,5 +1,6 @@
 """The principals that a running service knows: the file, read again whenever it has changed."""
 
+import asyncio
 import logging
 from collections.abc import Callable, Sequence
 from datetime import UTC, datetime
@@ -35,6 +36,7 @@ class KnownPrincipals:
         self.path = path
         self._wall_time_s = wall_time_s
         self._expected = expected
+        self._reading = asyncio.Lock()
         self._stamp = self._stamp_now()
         self._take(Principals() if path is None else read_principals(path))
 
@@ -52,19 +54,25 @@ class KnownPrincipals:
         """Everybody, also those whose token has expired."""
         return self._principals.principals
 
-    def look(self) -> bool:
-        """Read the file again if it has changed; says whether it had."""
-        stamp = self._stamp_now()
-        if stamp == self._stamp:
+    async def look(self) -> bool:
+        """Read the file again if it has changed, beside the event loop; says whether it had.
+
+        Whoever looks meanwhile waits for that.
+        """
+        if self._stamp_now() == self._stamp:
             return False
         # Whoever has once used principals does not want an open service because the file is gone.
         self._expected = True
-        self._stamp = stamp
-        assert self.path is not None, "without a path there is no stamp"
-        try:
-            self._take(read_principals(self.path))
-        except PrincipalsFileError as error:
-            log.error("The principals stay as they were: %s", error)
+        async with self._reading:
+            stamp = self._stamp_now()
+            if stamp == self._stamp:
+                return False
+            assert self.path is not None, "without a path there is no stamp"
+            try:
+                self._take(await asyncio.to_thread(read_principals, self.path))
+            except PrincipalsFileError as error:
+                log.error("The principals stay as they were: %s", error)
+            self._stamp = stamp
         return True
 
     def of_token(self, token: str) -> Principal | None:

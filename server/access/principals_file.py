@@ -3,11 +3,12 @@
 import fcntl
 import os
 import tempfile
+from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
 from datetime import datetime
 from pathlib import Path
-from typing import Annotated, Literal, Self
+from typing import Annotated, Any, Literal, Self
 from uuid import UUID
 
 import yaml
@@ -30,6 +31,11 @@ from tasks.validation import what_is_right
 HEADING = "# Written by `mend access`. Tokens are not in here, only their hashes.\n"
 KEPT_CHANGES = 1000
 """So many changes are kept here for a service that has not yet journaled them."""
+
+MAX_DEPTH = 100
+"""Of mappings and lists within one another; what is right needs three."""
+
+LOADER: type[Any] = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
 PrincipalName = Annotated[
     str, StringConstraints(min_length=1, max_length=64, pattern=r"^[^\x00-\x1f\x7f]+$")
@@ -95,8 +101,8 @@ class Principals(FileModel):
     @model_validator(mode="after")
     def _each_once(self) -> Self:
         for what in ("name", "id"):
-            seen = [getattr(each, what) for each in self.principals]
-            twice = next((each for each in seen if seen.count(each) > 1), None)
+            seen = Counter(getattr(each, what) for each in self.principals)
+            twice = next((each for each, times in seen.items() if times > 1), None)
             if twice is not None:
                 raise ValueError(f"two principals have the {what} '{twice}'; each needs its own")
         reserved = next((each.name for each in self.principals if each.name in RESERVED), None)
@@ -128,10 +134,12 @@ def principals_of(text: str, source: str) -> Principals:
     """What the text of such a file says. Raises `PrincipalsFileError`."""
     try:
         # As the file is written: with YAML 1.2's numbers an id such as 6798e113 would be one.
-        loaded = yaml.safe_load(text)
+        _refuse_depth(text, source)
+        loaded = yaml.load(text, LOADER)
     except yaml.YAMLError as error:
         where = getattr(error, "problem_mark", None)
-        line = "" if where is None else f", line {where.line + 1}"
+        # Where the text ends one reader says the last line, and the other the one after it.
+        line = "" if where is None else f", line {min(where.line, text.count(chr(10))) + 1}"
         raise PrincipalsFileError(f"{source}{line}: this is not YAML.") from error
     except RecursionError as error:
         raise PrincipalsFileError(f"{source}: something in it is nested too deeply.") from error
@@ -147,6 +155,16 @@ def principals_of(text: str, source: str) -> Principals:
         raise PrincipalsFileError("\n".join(dict.fromkeys(sentences))) from error
     except RecursionError as error:
         raise PrincipalsFileError(f"{source}: something in it is nested too deeply.") from error
+
+
+def _refuse_depth(text: str, source: str) -> None:
+    """Raise `PrincipalsFileError`: LibYAML's reader would crash the process."""
+    depth = 0
+    for event in yaml.parse(text, LOADER):
+        depth += isinstance(event, yaml.CollectionStartEvent)
+        depth -= isinstance(event, yaml.CollectionEndEvent)
+        if depth > MAX_DEPTH:
+            raise PrincipalsFileError(f"{source}: something in it is nested too deeply.")
 
 
 def _sentence(source: str, mistake: ErrorDetails) -> str:

@@ -5,11 +5,11 @@ from dataclasses import dataclass
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request, Response
-from pydantic import BaseModel, ConfigDict, ValidationError
 
+from server.api.document_upload import DocumentUpload, read_upload
 from server.api.json_answer import json_answer
-from server.api.parts import DocumentName, Limit, Offset, Parts, WithCaller, WithParts
-from server.api.problems import ProblemError, documented, validation_sentences
+from server.api.parts import DocumentName, Limit, Offset, Parts, WithCaller, WithParts, parts_of
+from server.api.problems import ProblemError, documented
 from server.api.repeatable import RepeatableRoute
 from server.documents import (
     SPOKEN,
@@ -22,7 +22,6 @@ from server.documents import (
     ScenarioSummary,
     SceneSummary,
 )
-from server.errors import InvalidError
 from server.journal.events import Author
 from tasks.scene import Name
 
@@ -49,15 +48,6 @@ interventions:
   - {when: {object: pink_bar, step: 4}, do: {act: steal, object: pink_bar}}
 answers: [yes]
 """
-
-
-class DocumentUpload(BaseModel):
-    """A file as YAML or JSON text; `name` wins over the one in the file."""
-
-    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
-
-    name: Name | None = None
-    text: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -196,11 +186,7 @@ async def _read_upload(request: Request, name: str | None) -> DocumentUpload:
         raise ProblemError(
             415, "send the file as application/json with a 'text', or as application/yaml"
         )
-    try:
-        upload = DocumentUpload.model_validate_json(body)
-    except ValidationError as error:
-        sentences = validation_sentences(error.errors())
-        raise InvalidError("the upload cannot be used", sentences) from None
+    upload = await parts_of(request).off_loop.run(len(body), read_upload, body)
     return upload if name is None else upload.model_copy(update={"name": name})
 
 

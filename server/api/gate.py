@@ -9,10 +9,12 @@ from starlette.requests import HTTPConnection
 from starlette.responses import Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from server.access.access import Access
 from server.access.permissions import needed_for_request
-from server.api.access import Access
 from server.api.problems import forbidden, problem, problem_response
 from server.api.safe_headers import OVER_TLS, SAFE_HEADERS
+from server.limits import Limits
+from server.refusals import Refusals
 
 MAX_BODY_BYTES = 8 * 1024 * 1024
 PROTECTED = ("/api/", "/metrics")
@@ -22,15 +24,19 @@ SAFE_METHODS = ("GET", "HEAD", "OPTIONS")
 class Gate:
     """ASGI middleware that refuses what must not even be parsed."""
 
-    def __init__(self, app: ASGIApp, access: Access) -> None:
+    def __init__(self, app: ASGIApp, access: Access, limits: Limits, refusals: Refusals) -> None:
         self._app = app
         self._access = access
+        self._strangers_bytes = min(limits.stranger_body_bytes, MAX_BODY_BYTES)
+        self._refusals = refusals
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         if scope["type"] != "http":
             await self._app(scope, receive, send)
             return
         connection = HTTPConnection(scope)
+        if scope["path"].startswith(PROTECTED):
+            await self._access.look()
         refusal = self._refusal(scope, connection)
         guarded = _guarded(
             send,
@@ -38,7 +44,7 @@ class Gate:
             encrypted=scope["scheme"] == "https",
         )
         if refusal is None:
-            await self._app(scope, _limited(receive), guarded)
+            await self._app(scope, self._limited(scope, receive), guarded)
         else:
             await refusal(scope, receive, guarded)
 
@@ -54,8 +60,8 @@ class Gate:
             refusal = self._stranger(scope, connection)
             if refusal is not None:
                 return refusal
-        if _declared_length(connection) > MAX_BODY_BYTES:
-            return _refused(413, _too_large())
+        if _declared_length(connection) > self._most_bytes(scope):
+            return _refused(413, self._too_large(scope))
         return None
 
     def _stranger(self, scope: Scope, connection: HTTPConnection) -> Response | None:
@@ -72,6 +78,45 @@ class Gate:
         scope.setdefault("state", {})["caller"] = admission.caller
         role = admission.caller.principal.role
         return None if role.may(needed) else problem_response(forbidden(needed, role))
+
+    def _most_bytes(self, scope: Scope) -> int:
+        """How large a body may be; much smaller where nobody had to say who they are."""
+        admitted = "caller" in scope.get("state", {})
+        return MAX_BODY_BYTES if admitted else self._strangers_bytes
+
+    def _too_large(self, scope: Scope) -> str:
+        most = self._most_bytes(scope)
+        if most < MAX_BODY_BYTES:
+            self._refusals.note("stranger_body_bytes")
+            return f"the body is larger than {most} bytes"
+        return f"the body is larger than {MAX_BODY_BYTES // 1024**2} MiB"
+
+    def _limited(self, scope: Scope, receive: Receive) -> Receive:
+        """A body without a declared length is counted as it comes.
+
+        One that is still coming when the service stops, or the client hangs up, is refused like
+        anything else.
+        """
+        received, complete, most = 0, False, self._most_bytes(scope)
+
+        async def limited() -> Message:
+            nonlocal received, complete
+            try:
+                message = await receive()
+            except asyncio.CancelledError:
+                if complete:
+                    raise
+                raise HTTPException(503, "the service is shutting down") from None
+            if message["type"] == "http.disconnect" and not complete:
+                # Nobody reads this, but it ends the request without a defect in the log.
+                raise HTTPException(400, "the connection ended before the body had come")
+            complete = not message.get("more_body", False)
+            received += len(message.get("body", b""))
+            if received > most:
+                raise HTTPException(413, self._too_large(scope))
+            return message
+
+        return limited
 
 
 def _refused(status: int, detail: str, headers: Mapping[str, str] | None = None) -> Response:
@@ -102,35 +147,3 @@ def _guarded(send: Send, *, private: bool, encrypted: bool) -> Send:
 def _declared_length(connection: HTTPConnection) -> int:
     declared = connection.headers.get("content-length", "0")
     return int(declared) if declared.isascii() and declared.isdigit() else 0
-
-
-def _limited(receive: Receive) -> Receive:
-    """A body without a declared length is counted as it comes.
-
-    One that is still coming when the service stops, or the client hangs up, is refused like
-    anything else.
-    """
-    received, complete = 0, False
-
-    async def limited() -> Message:
-        nonlocal received, complete
-        try:
-            message = await receive()
-        except asyncio.CancelledError:
-            if complete:
-                raise
-            raise HTTPException(503, "the service is shutting down") from None
-        if message["type"] == "http.disconnect" and not complete:
-            # Nobody reads this, but it ends the request without a defect in the log.
-            raise HTTPException(400, "the connection ended before the body had come")
-        complete = not message.get("more_body", False)
-        received += len(message.get("body", b""))
-        if received > MAX_BODY_BYTES:
-            raise HTTPException(413, _too_large())
-        return message
-
-    return limited
-
-
-def _too_large() -> str:
-    return f"the body is larger than {MAX_BODY_BYTES // 1024**2} MiB"

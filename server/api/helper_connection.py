@@ -10,18 +10,13 @@ from typing import Any, Generic, TypeVar
 from pydantic import BaseModel, ConfigDict, TypeAdapter, ValidationError
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
+from server.access.admission import REFUSED
 from server.access.permissions import SOCKETS, needed_for_message
 from server.access.principal import Caller
-from server.api.admission import REFUSED
 from server.api.helper_messages import Auth, Error, HelperMessage
+from server.api.mistakes import validation_sentences
 from server.api.parts import HelperName, Parts, parts_of
-from server.api.problems import (
-    Problem,
-    forbidden,
-    problem,
-    problem_response,
-    validation_sentences,
-)
+from server.api.problems import Problem, forbidden, problem, problem_response
 from server.journal.events import Author
 
 THE_END = 1000
@@ -109,6 +104,7 @@ class HelperConnection(ABC, Generic[Query]):
         if not (access.host_allowed(websocket) and access.origin_allowed(websocket)):
             await websocket.close(POLICY_VIOLATION, "this Host or Origin may not connect")
             return None
+        await access.look()
         admission = access.by_request(websocket)
         if admission.wait_s:
             refusal = problem(429, admission.too_many)
@@ -120,6 +116,7 @@ class HelperConnection(ABC, Generic[Query]):
         await websocket.accept()
         if admission.caller is None:
             token = await self._first_token()
+            await access.look()
             admission = REFUSED if token is None else access.by_token(token, websocket)
         if admission.wait_s:
             await self._turn_away(problem(429, admission.too_many), TRY_AGAIN_LATER)
@@ -150,7 +147,6 @@ class HelperConnection(ABC, Generic[Query]):
 
     def _why_not(self, kind: str) -> Problem | None:
         """Why the helper may not send such a message, with the role that they have now."""
-        self._parts.access.look()
         caller = self._parts.access.renewed(self._caller)
         if caller is None:
             return problem(401, "you are no longer signed in")
@@ -177,6 +173,7 @@ class HelperConnection(ABC, Generic[Query]):
             errors = validation_sentences(error.errors(include_input=False))
             await self._refuse(problem(422, "the message is wrong", errors=errors), _id_in(text))
             return None
+        await self._parts.access.look()
         refusal = self._why_not(vars(message)["type"])
         if refusal is not None:
             await self._refuse(refusal, message.id)

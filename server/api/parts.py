@@ -8,15 +8,16 @@ from fastapi import Depends, Path, Query
 from pydantic import Field
 from starlette.requests import HTTPConnection
 
+from server.access.access import Access
 from server.access.changes import PrincipalsEditor
 from server.access.deed_log import DeedLog
 from server.access.principal import Caller
-from server.api.access import Access
 from server.documents import DocumentLibrary
 from server.journal.journal import Journal
 from server.journal.subscriptions import Subscribers
 from server.journal.writer import CommitStatistics
 from server.models import RobotModels
+from server.off_loop import OffLoop
 from server.poses.feed import PoseSource
 from server.refusals import Refusals
 from server.runtime.service import RunService
@@ -67,6 +68,7 @@ class Parts:
     repeats: "Repeats"
     speech: SpeechAbilities = NO_SPEECH
     refusals: Refusals = field(default_factory=Refusals)
+    off_loop: OffLoop = field(default_factory=OffLoop)
 
 
 def parts_of(connection: HTTPConnection) -> Parts:

@@ -187,7 +187,7 @@ async def edited(parts: Parts, change: Callable[[], Done]) -> Done:
     except OSError as error:
         why = error.strerror or str(error)
         raise ProblemError(503, f"the file of principals cannot be written: {why}") from error
-    parts.access.look()
+    await parts.access.look()
     return done
 
 

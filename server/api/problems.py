@@ -2,7 +2,7 @@
 
 import json
 import logging
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from http import HTTPStatus
 from typing import Any
 from uuid import UUID
@@ -16,10 +16,12 @@ from starlette.responses import Response
 from server.access.changes import EnrolmentRefusedError
 from server.access.principals_file import PrincipalsFileError
 from server.access.roles import Role, with_article
+from server.api.mistakes import MOST_TOLD, validation_sentences
 from server.api.parts import parts_of
 from server.api.safe_headers import SAFE_HEADERS
 from server.descriptors import NO_DESCRIPTOR
 from server.errors import (
+    BusyError,
     ConflictError,
     InvalidError,
     LostRaceError,
@@ -28,8 +30,6 @@ from server.errors import (
     UnreadableError,
 )
 from server.journal.journal import JournalClosedError, JournalReadError, JournalWriteError
-from tasks.unit import unit_of_name
-from tasks.validation import what_is_right
 
 log = logging.getLogger(__name__)
 
@@ -41,6 +41,7 @@ STATUSES: tuple[tuple[type[Exception], int], ...] = (
     (ConflictError, 409),
     (InvalidError, 422),
     (UnreadableError, 500),
+    (BusyError, 503),
     (JournalReadError, 500),
     (PrincipalsFileError, 503),
     (JournalWriteError, 503),
@@ -151,7 +152,8 @@ async def _http_error(request: Request, error: Exception) -> Response:
 async def _validation_error(_request: Request, error: Exception) -> Response:
     assert isinstance(error, RequestValidationError)
     sentences = validation_sentences(error.errors(), error.body)
-    detail = sentences[0] if len(sentences) == 1 else f"{len(sentences)} things are wrong"
+    count = f"more than {MOST_TOLD}" if len(sentences) > MOST_TOLD else f"{len(sentences)}"
+    detail = sentences[0] if len(sentences) == 1 else f"{count} things are wrong"
     return problem_response(problem(422, detail, errors=sentences))
 
 
@@ -165,7 +167,8 @@ async def _service_error(request: Request, error: Exception) -> Response:
     assert refusal is not None, "every service error has a status"
     if isinstance(error, ServiceError) and error.limit is not None:
         parts_of(request).refusals.note(error.limit)
-    return problem_response(refusal)
+    later = {"Retry-After": f"{error.retry_after_s}"} if isinstance(error, BusyError) else None
+    return problem_response(refusal, later)
 
 
 async def _no_descriptor(_request: Request, error: Exception) -> Response:
@@ -180,48 +183,3 @@ async def _no_descriptor(_request: Request, error: Exception) -> Response:
 async def _defect(request: Request, error: Exception) -> Response:
     log.error("%s %s failed", request.method, request.url.path, exc_info=error)
     return problem_response(problem(500, "the service made a mistake; its log says more"))
-
-
-def validation_sentences(errors: Sequence[Any], body: object = None) -> list[str]:
-    """One sentence per value that pydantic found wrong: where it is, and what would be right.
-
-    `body` is what was sent, where that is known.
-    """
-    wrong: dict[tuple[int | str, ...], list[Any]] = {}
-    for each in errors:
-        wrong.setdefault(_where(each, body), []).append(each)
-    return [
-        f"{'.'.join(map(str, where)) or 'body'}: {_what_is_wrong(where, mistakes)}"
-        for where, mistakes in wrong.items()
-    ]
-
-
-def _where(mistake: Any, body: Any) -> tuple[int | str, ...]:
-    """The keys to a value; a value that may be of several types has one mistake for each."""
-    loc: tuple[int | str, ...] = mistake["loc"]
-    if mistake["type"] == "json_invalid":
-        return loc[:1]
-    if loc[:1] != ("body",) or mistake["type"] == "missing":
-        return loc
-    where = list(loc[:1])
-    for step in loc[1:]:
-        try:
-            body = body[step]
-        except (KeyError, IndexError, TypeError):
-            continue  # It names the type that was tried, and no key.
-        where.append(step)
-    return tuple(where)
-
-
-def _what_is_wrong(where: Sequence[int | str], mistakes: Sequence[Any]) -> str:
-    first = mistakes[0]
-    match first["type"]:
-        case "missing":
-            return "is missing"
-        case "extra_forbidden":
-            return "is not known here"
-        case "json_invalid":
-            return f"is not JSON: {first['ctx']['error']}"
-        case "value_error":
-            return str(first["msg"]).removeprefix("Value error, ")
-    return what_is_right(mistakes, unit_of_name(where))

@@ -9,9 +9,9 @@ from starlette.requests import Request
 from starlette.responses import Response, StreamingResponse
 from starlette.types import Message
 
+from server.access.access import address_of
 from server.access.principal import Caller
 from server.access.tokens import bytes_of
-from server.api.access import address_of
 from server.api.first_answers import answer_of
 from server.api.idempotency_key import REPLAYED, key_in
 from server.api.parts import parts_of

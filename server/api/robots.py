@@ -5,11 +5,11 @@ from datetime import UTC, datetime
 from fastapi import APIRouter, Request
 from pydantic import BaseModel, ConfigDict, Field
 
+from server.access.access import address_of
+from server.access.admission import Admission
 from server.access.changes import EnrolmentRefusedError
 from server.access.principals_file import RobotName
 from server.access.roles import Role
-from server.api.access import address_of
-from server.api.admission import Admission
 from server.api.parts import Limit, Offset, WithParts
 from server.api.principals import edited
 from server.api.problems import ProblemError, documented

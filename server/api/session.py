@@ -3,10 +3,10 @@
 from fastapi import APIRouter, Request, Response
 from pydantic import BaseModel, ConfigDict, Field
 
+from server.access.access import SESSION_COOKIE, address_of
 from server.access.principal import Caller
 from server.access.roles import Role
 from server.access.sessions import SESSION_LIFETIME_S, TooManySessionsError
-from server.api.access import SESSION_COOKIE, address_of
 from server.api.parts import WithParts
 from server.api.problems import ProblemError, documented
 from server.api.repeatable import SecretRoute

@@ -1,15 +1,21 @@
-"""JSON bodies as the standard has them: no NaN, no infinity, no nesting without end."""
+"""JSON bodies read strictly, and beside the event loop where there is much to read."""
 
-import json
-import math
 from collections.abc import Callable, Coroutine
-from typing import Any, NoReturn
+from typing import Any
 
 from fastapi.routing import APIRoute
+from starlette.exceptions import HTTPException
 from starlette.requests import Request
 from starlette.responses import Response
 
+from server.api.json_text import NotJsonError, TooManyValuesError, may_have, read_json
+from server.api.parts import parts_of
 from server.api.problems import ProblemError
+from server.errors import ServiceError
+from server.off_loop import MUCH_CHARS
+
+OTHER_VALUES = 1000
+"""So many values a body may have beside scripted answers and options of a world."""
 
 
 class StrictJsonRequest(Request):
@@ -17,14 +23,18 @@ class StrictJsonRequest(Request):
 
     async def json(self) -> Any:
         body = await self.body()
+        parts = parts_of(self)
+        limits = parts.settings.limits
+        most = OTHER_VALUES + limits.answers + limits.world_options
+        chars = max(len(body), MUCH_CHARS) if may_have(body, most) else len(body)
         try:
-            return json.loads(body.decode("utf-8"), parse_constant=_refuse, parse_float=_finite)
-        except json.JSONDecodeError:
-            raise
-        except UnicodeDecodeError as error:
-            raise ProblemError(400, f"the body is not UTF-8: byte {error.start} is wrong") from None
-        except (ValueError, RecursionError) as error:
-            raise ProblemError(400, f"the body cannot be read: {error}") from None
+            if chars < MUCH_CHARS:
+                return read_json(body, most)
+            return await parts.off_loop.run(chars, read_json, body, most)
+        except NotJsonError as error:
+            raise ProblemError(400, str(error)) from None
+        except TooManyValuesError as error:
+            raise ProblemError(413, str(error)) from None
 
 
 class StrictJsonRoute(APIRoute):
@@ -34,17 +44,12 @@ class StrictJsonRoute(APIRoute):
         handle = super().get_route_handler()
 
         async def handle_strictly(request: Request) -> Response:
-            return await handle(StrictJsonRequest(request.scope, request.receive))
+            try:
+                return await handle(StrictJsonRequest(request.scope, request.receive))
+            except HTTPException as error:
+                # What goes wrong with a body is told as one thing, whatever it was.
+                if isinstance(error.__cause__, ProblemError | ServiceError):
+                    raise error.__cause__ from None
+                raise
 
         return handle_strictly
-
-
-def _refuse(constant: str) -> NoReturn:
-    raise ValueError(f"{constant} is not JSON")
-
-
-def _finite(number: str) -> float:
-    value = float(number)
-    if math.isinf(value):
-        raise ValueError("a number is too large")
-    return value

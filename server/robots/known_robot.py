@@ -29,6 +29,7 @@ from robots.link.messages import (
 from server.errors import ConflictError, NotFoundError
 from server.journal.journal import DuplicateReceiptError, Entry, Journal, Receipt
 from server.plain_text import plain
+from server.robots.pace import CHARS_OF_ONE
 from server.robots.session import (
     MissingReportError,
     PictureError,
@@ -45,11 +46,17 @@ MOST_UNTAKEN_COMMANDS = 1000
 MOST_UNASKED_REPORTS = 10_000
 """What a robot has to report of one command is far less, so that more fills the journal only."""
 
-CHARS_OF_ONE = 4096
-"""Of a report with pictures each such part of them counts as a report."""
+MOST_NEW_BOOTS = 100
+"""Of each start of its program the journal keeps a number for ever."""
+
+REPLACED = "a newer connection of this robot has replaced this one"
 
 MISSED_HEARTBEATS = 2
 """After so many nobody can say that the program of a robot still runs."""
+
+
+class ReplacedError(Exception):
+    """A newer connection of the same robot has come before this one had its turn."""
 
 
 class KnownRobot:
@@ -59,7 +66,9 @@ class KnownRobot:
         self.name = name
         self.hello: Hello | None = None
         self.session: RobotSession | None = None
-        self.taking_over = asyncio.Lock()
+        self._taking_over = asyncio.Lock()
+        self._coming: asyncio.Task[None] | None = None
+        self._ours = False
         self._journal = journal
         self._times = times
         self._sink: RobotSink | None = None
@@ -69,27 +78,50 @@ class KnownRobot:
         self._received: dict[str, int] = {}
         self._heard_of: set[str] = set()
         self._refused: tuple[str, str] | None = None
-        self._unasked_reports = 0
+        self._unasked_reports = self._new_boots = 0
         self._poses_hz = 0.0
         self._absence: asyncio.TimerHandle | None = None
         self._tasks: set[asyncio.Task[None]] = set()
 
     @property
     def forgettable(self) -> bool:
-        """Whether nobody will ask for it again: a simulated robot whose run is over."""
-        return self.departed and (self.hello is None or self.hello.simulated)
+        """Whether nobody will ask for it again: a simulated robot of ours whose run is over."""
+        ours = self._ours and self.hello is not None and self.hello.simulated
+        return self.departed and (self.hello is None or ours)
 
     @property
     def departed(self) -> bool:
         """Whether it has no connection and no run."""
-        return self.session is None and self._sink is None and not self.taking_over.locked()
+        return self.session is None and self._sink is None and not self._taking_over.locked()
 
     # --- Its connection -----------------------------------------------------------------------
 
-    async def connect(self, session: RobotSession, hello: Hello) -> None:
-        """Let a new connection take the place of the one there may be."""
+    async def connect(self, session: RobotSession, hello: Hello, *, ours: bool) -> None:
+        """Let a new connection take the place of the one there may be, once that has ended.
+
+        Raises `ReplacedError` where a newer one comes meanwhile. `ours`: see `why_refused`.
+        """
+        if self._coming is not None:
+            self._coming.cancel()
+        coming = self._coming = asyncio.create_task(self._take_over(session, hello, ours=ours))
+        try:
+            await coming
+        except asyncio.CancelledError:
+            if self._coming is coming:
+                raise
+            raise ReplacedError(REPLACED) from None
+        finally:
+            if self._coming is coming:
+                self._coming = None
+
+    async def _take_over(self, session: RobotSession, hello: Hello, *, ours: bool) -> None:
+        async with self._taking_over:
+            await self._connect(session, hello)
+            self._ours = ours
+
+    async def _connect(self, session: RobotSession, hello: Hello) -> None:
         if self.session is not None:
-            await self.session.end("a newer connection of this robot has replaced this one")
+            await self.session.end(REPLACED)
         received = await self._journal.received(self.name, hello.boot)
         self._cancel_absence()
         if self.hello is None or self.hello.boot != hello.boot:
@@ -144,7 +176,7 @@ class KnownRobot:
         """
         if self.session is None or self.hello is None or (hello.simulated and ours):
             return False
-        lively = self.session.silent_for_s() <= MISSED_HEARTBEATS * self._times.heartbeat_s
+        lively = self.session.silent_s <= MISSED_HEARTBEATS * self._times.heartbeat_s
         return lively and self.hello.boot != hello.boot
 
     def disconnect(self, session: RobotSession) -> None:
@@ -206,7 +238,7 @@ class KnownRobot:
 
     async def _tell_lost(self, reason: str) -> None:
         # Who is about to take the ended connection's place has not gone away.
-        async with self.taking_over:
+        async with self._taking_over:
             gone = self.session is None
         if gone and self._sink is not None and self._sink_sees_it:
             self._sink_sees_it = False
@@ -222,7 +254,7 @@ class KnownRobot:
             raise ConflictError(
                 f"the robot '{self.name}' has not taken its last {MOST_UNTAKEN_COMMANDS} commands"
             )
-        self._unasked_reports = 0
+        self._unasked_reports = self._new_boots = 0
         command = self._untaken[command_id] = Command(id=command_id, body=body)
         if self.session is not None:
             self.session.send(command)
@@ -291,7 +323,7 @@ class KnownRobot:
         last = self._received[boot]
         if report.seq > last:
             self._require_no_gap(boot, last, report.seq)
-            self._require_bound(report)
+            self._require_bound(report, new_boot=last == 0)
             await self._commit(report, Receipt(self.name, boot, report.seq))
             last = self._received[boot] = report.seq
         self._heard_of.add(boot)
@@ -307,7 +339,13 @@ class KnownRobot:
                 f"report {seq} came, but the last one was {last}; send {last + 1} first"
             )
 
-    def _require_bound(self, report: Report) -> None:
+    def _require_bound(self, report: Report, *, new_boot: bool) -> None:
+        self._new_boots += new_boot
+        if self._new_boots > MOST_NEW_BOOTS:
+            raise TooManyReportsError(
+                f"the robot '{self.name}' has sent reports of {MOST_NEW_BOOTS} boots that were "
+                "not known since it was last told something"
+            )
         self._unasked_reports += 1 + _picture_chars(report) // CHARS_OF_ONE
         if self._unasked_reports > MOST_UNASKED_REPORTS:
             raise TooManyReportsError(

@@ -41,7 +41,8 @@ class OneRobot:
 class OwnRobots:
     """The robots that this service runs itself; each process has a credential for its time.
 
-    A name that was once one of them is nobody else's, also while its process is started again.
+    A name of one of them is nobody else's while its run lasts, also while its process is started
+    again.
     """
 
     _names: set[str] = field(default_factory=set)
@@ -50,6 +51,10 @@ class OwnRobots:
     def reserve(self, robots: Iterable[str]) -> None:
         """These are robots of this service, whose processes are still to come."""
         self._names.update(robots)
+
+    def release(self, robots: Iterable[str]) -> None:
+        """Their run has ended, and so have their processes."""
+        self._names.difference_update(robots)
 
     def issue(self, robot: str) -> str:
         """A credential for a process that is about to be started as this robot."""

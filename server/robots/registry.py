@@ -15,7 +15,7 @@ from server.errors import ConflictError
 from server.journal.journal import Journal, JournalClosedError
 from server.limits import Limits
 from server.refusals import Refusals
-from server.robots.known_robot import KnownRobot
+from server.robots.known_robot import KnownRobot, ReplacedError
 from server.robots.pace import Pace, PacedChannel
 from server.robots.passes import Anyone, Pass
 from server.robots.session import NoSenseError, RobotSession, read_message, sentence
@@ -173,9 +173,8 @@ class RobotRegistry:
             return
         session = RobotSession(channel, robot, self._clock, self._times)
         try:
-            async with robot.taking_over:
-                await robot.connect(session, hello)
-            await session.run()
+            if await self._connected(robot, session, hello, ours=ours):
+                await session.run()
         except JournalClosedError:
             log.info("robot %s came while the service was shutting down", hello.robot)
         finally:
@@ -183,10 +182,27 @@ class RobotRegistry:
             self._forget(hello.robot)
             self._forget_the_longest_gone(hello.robot)
 
+    async def _connected(
+        self, robot: KnownRobot, session: RobotSession, hello: Hello, *, ours: bool
+    ) -> bool:
+        """Whether it is the robot's connection now."""
+        # Who is told of a mistake before the welcome stops; this one is to come again.
+        try:
+            async with asyncio.timeout(self._limits.hello_s):
+                await robot.connect(session, hello, ours=ours)
+        except ReplacedError as error:
+            log.info("robot %s has to come again: %s", robot.name, error)
+            return False
+        except TimeoutError:
+            self._refusals.note("hello_s")
+            log.info("robot %s has to come again: its last report is not committed", robot.name)
+            return False
+        return True
+
     async def _greeted(self, channel: Channel) -> Hello | None:
         """The hello, or None if there is none to go on with."""
         try:
-            async with asyncio.timeout(self._times.hello_s):
+            async with asyncio.timeout(self._limits.hello_s):
                 while True:
                     text = await channel.receive()
                     complaint = self._too_long(text) or _other_protocol(text)
@@ -204,7 +220,10 @@ class RobotRegistry:
                     if isinstance(message, Hello):
                         return message
                     await _complain(channel, "the first message of a connection is a hello")
-        except (ChannelClosedError, TimeoutError):
+        except TimeoutError:
+            self._refusals.note("hello_s")
+            return None
+        except ChannelClosedError:
             return None
 
     def _too_long(self, text: str) -> str | None:
@@ -217,7 +236,9 @@ class RobotRegistry:
 
 
 async def _complain(channel: Channel, detail: str) -> None:
-    await channel.send(LinkError(detail=detail).model_dump_json())
+    """Say what is wrong to whoever is still there."""
+    with suppress(ChannelClosedError):
+        await channel.send(LinkError(detail=detail).model_dump_json())
 
 
 def _other_protocol(text: str) -> str | None:

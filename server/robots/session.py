@@ -129,9 +129,10 @@ class RobotSession:
         self._last_word = ""
         self.reason = "its connection was closed"
 
-    def silent_for_s(self) -> float:
-        """How long ago something last came."""
-        return self._clock() - self.last_heard
+    @property
+    def silent_s(self) -> float:
+        """How long nothing has come, not counting when this service did not look."""
+        return self._silence.so_far()
 
     def send(self, message: AnyServiceMessage) -> None:
         """Send a message after those that wait already; a robot that reads none is cut off."""

@@ -28,8 +28,14 @@ class Silence:
     def look(self) -> float:
         """Count what has passed; returns for how long nothing has come."""
         now = self._clock()
-        passed_s, self._looked = now - self._looked, now
-        if not self._heard and passed_s <= LATE * self._period_s:
-            self.seconds += passed_s
-        self._heard = False
+        self.seconds, self._looked, self._heard = self._until(now), now, False
         return self.seconds
+
+    def so_far(self) -> float:
+        """For how long nothing has come, between two looks."""
+        return self._until(self._clock())
+
+    def _until(self, now: float) -> float:
+        passed_s = now - self._looked
+        counts = not self._heard and passed_s <= LATE * self._period_s
+        return self.seconds + passed_s if counts else self.seconds

@@ -14,4 +14,3 @@ class LinkTimes:
     heartbeat_s: float = 1.0
     silence_s: float = 5.0
     absence_s: float = 3.0
-    hello_s: float = 10.0

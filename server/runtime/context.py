@@ -18,7 +18,6 @@ from server.runtime.run_state import RunState
 class RunSettings:
     """How patient a run is. Seconds of the run's clock, but for `robot_lost_timeout_s` (wall).
 
-    `max_restarts`: so often a simulated robot is started again without having begun a step since.
     `max_helped_retries`: so often a robot tries one leaf again because somebody has helped.
     `max_times_gone`: so often a leaf is done again whose result was seen gone. Such a leaf has not
     failed, so it is no attempt; the bound is for a person who takes it away each time.
@@ -26,7 +25,6 @@ class RunSettings:
 
     help_window_s: float = 30.0
     robot_lost_timeout_s: float = 60.0
-    max_restarts: int = 20
     max_helped_retries: int = 20
     max_times_gone: int = 10
     claim_lease_s: float = 30.0

@@ -16,6 +16,9 @@ from server.runtime.report_events import ReportEvents
 from server.runtime.robot_side import Doing, RobotSide
 from server.runtime.run_state import Execution
 
+MAX_RESTARTS = 20
+"""So often a simulated robot is started again without having begun a step since."""
+
 
 class Presence:
     """The presence of one run's robots.
@@ -105,7 +108,7 @@ class Presence:
                 [ev.RobotLost(**self._context.stamp(), robot=robot, reason=reason)]
             )
         side.restarts += 1
-        if self._hardware.simulated and side.restarts <= self._context.settings.max_restarts:
+        if self._hardware.simulated and side.restarts <= MAX_RESTARTS:
             await self._hardware.restart(robot)
         elif self._hardware.simulated:
             await self._given_up(side, f"its process keeps ending: {reason}")

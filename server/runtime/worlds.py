@@ -28,23 +28,32 @@ Launch = Callable[[str, WorldSetup, Callable[[str], None]], Awaitable[RobotHandl
 """Starts a world's robot: the world's name, its setup, and what to call (a reason) if it ends."""
 
 
-class SimulatedWorlds:
-    """The worlds of the entry point group `mend.worlds`.
+class RobotNames(Protocol):
+    """Where it is known which robots this service runs."""
 
-    `reserve` is told the names of robots that are to be started.
-    """
+    def reserve(self, robots: Iterable[str]) -> None:
+        """These are to be started; nobody else can come in under their names."""
+        ...
+
+    def release(self, robots: Iterable[str]) -> None:
+        """These will be started no more."""
+        ...
+
+
+class SimulatedWorlds:
+    """The worlds of the entry point group `mend.worlds`."""
 
     def __init__(
         self,
         adapters: Mapping[str, WorldAdapter],
         journal: Journal,
         launch: Launch,
-        reserve: Callable[[Iterable[str]], None],
+        names: RobotNames,
     ) -> None:
         self._adapters = adapters
         self._journal = journal
         self._launch = launch
-        self._reserve = reserve
+        self._names = names
 
     def worlds(self) -> list[WorldView]:
         """Every world that a run may be in, and why one cannot run here."""
@@ -80,8 +89,10 @@ class SimulatedWorlds:
 
         From now on nobody else can come in under the names of its robots.
         """
-        self._reserve(state.started.robots)
-        return SimulatedHardware(self._launch, self._journal, self._setup(state), state, run)
+        self._names.reserve(state.started.robots)
+        return SimulatedHardware(
+            self._launch, self._journal, self._names, self._setup(state), state, run
+        )
 
     def _setup(self, state: RunState) -> WorldSetup:
         started, request = state.started, state.request
@@ -111,12 +122,14 @@ class SimulatedHardware:
         self,
         launch: Launch,
         journal: Journal,
+        names: RobotNames,
         setup: WorldSetup,
         state: RunState,
         run: Callable[[], Run],
     ) -> None:
         self._launch = launch
         self._journal = journal
+        self._names = names
         self._setup = setup
         self._state = state
         self._run = run
@@ -125,7 +138,7 @@ class SimulatedHardware:
 
     async def restart(self, robot: str) -> None:
         """Start the robot, its world as the journal has it if it has one."""
-        await self.release()
+        await self._stop()
         self._life += 1
         snapshot = await self._journal.world(self._state.id)
         setup = self._setup.model_copy(update={"robot": robot, "snapshot": snapshot})
@@ -138,7 +151,13 @@ class SimulatedHardware:
             self._run().tell_lost(robot, reason)
 
     async def release(self) -> None:
-        """Stop the robot."""
+        """Stop the robot, whose name is then free."""
+        try:
+            await self._stop()
+        finally:
+            self._names.release(self._state.started.robots)
+
+    async def _stop(self) -> None:
         handle, self._handle = self._handle, None
         self._life += 1
         if handle is not None:

@@ -9,8 +9,8 @@ from contextlib import asynccontextmanager, contextmanager
 import uvicorn
 from fastapi import FastAPI
 
-from server.api.access import Access
-from server.robots.endpoint import ROBOT_PATH, add_robot_route
+from server.access.access import Access
+from server.api.robot_socket import ROBOT_PATH, add_robot_route
 from server.robots.registry import RobotRegistry
 from server.websocket_protocol import WebSocketProtocol
 

@@ -16,8 +16,8 @@ import httpx
 from fake_runs import TREES, FakeRuns, FakeTreeChecker, FakeWorlds
 from fastapi import FastAPI
 
+from server.access.access import Access
 from server.access.deed_log import DeedLog
-from server.api.access import Access
 from server.app import build_access, create_app
 from server.documents import DocumentKind
 from server.fixed_documents import GivenFiles, NamedTexts, fixed_documents

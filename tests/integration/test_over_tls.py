@@ -17,9 +17,9 @@ from websockets.asyncio.client import connect
 from robots.link.channel import ChannelClosedError
 from robots.link.pinned_tls import pinned_tls
 from robots.link.websocket import websocket_channel
+from server.api.robot_socket import ROBOT_PATH
 from server.composition import Service, open_service
 from server.limits import Limits
-from server.robots.endpoint import ROBOT_PATH
 from server.runtime.requests import RunRequest
 from server.settings import Settings, WrongSettingsError
 

@@ -19,11 +19,11 @@ from websockets.exceptions import InvalidStatus
 from robots.link.channel import LinkRefusedError
 from robots.link.enrolment import robot_credential
 from robots.link.messages import Hello, LinkError, Welcome, service_message
+from server.access.access import Access
 from server.access.roles import PEOPLE, Role
-from server.api.access import Access
+from server.api.robot_socket import ROBOT_PATH, add_robot_route
 from server.composition import open_service
 from server.journal import events as ev
-from server.robots.endpoint import ROBOT_PATH, add_robot_route
 from server.robots.passes import OwnRobots
 from server.robots.registry import RobotRegistry
 from server.runtime.requests import RunRequest
@@ -101,7 +101,7 @@ async def test_a_connected_robot_is_let_go_when_it_is_revoked(robots: Robots) ->
         await socket.send(hello("arm-1"))
         assert isinstance(service_message.validate_json(await socket.recv()), Welcome)
         robots.people.revoke(Role.ROBOT)
-        robots.service.access.look()
+        await robots.service.access.look()
         last = service_message.validate_json(await socket.recv())
         assert isinstance(last, LinkError)
         assert "good no longer" in last.detail

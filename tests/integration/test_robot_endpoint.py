@@ -9,8 +9,8 @@ from loopback import served
 from websockets.asyncio.client import connect
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
+from server.api.robot_socket import MESSAGE_TOO_BIG
 from server.journal.sqlite import SqliteJournal
-from server.robots.endpoint import MESSAGE_TOO_BIG
 from server.robots.registry import RobotRegistry
 
 RIGHT = {"Authorization": "Bearer secret"}

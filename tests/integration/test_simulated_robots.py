@@ -17,7 +17,7 @@ from recording_sink import RecordingSink
 from ticking_clock import TickingClock
 
 from robots.link.messages import Interrupt, Shutdown, Start
-from server.api.access import Access
+from server.access.access import Access
 from server.errors import InvalidError
 from server.journal.sqlite import SqliteJournal
 from server.robots.passes import OwnRobots

@@ -14,10 +14,10 @@ from service_under_test import ServiceUnderTest, serving, until
 from shown_run import hello
 from websockets.frames import Frame, Opcode
 
+from server.api.robot_socket import add_robot_route
 from server.journal.events import RunFailed
 from server.journal.journal import Entry
 from server.limits import Limits
-from server.robots.endpoint import add_robot_route
 from server.robots.registry import RobotRegistry
 from server.robots.times import LinkTimes
 

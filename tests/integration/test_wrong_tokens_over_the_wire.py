@@ -17,10 +17,10 @@ from websockets.exceptions import InvalidStatus
 from robots.link.channel import ChannelClosedError, LinkRefusedError
 from robots.link.enrolment import enrol
 from robots.link.websocket import websocket_channel
+from server.api.robot_socket import ROBOT_PATH, add_robot_route
 from server.client import MendClient
 from server.client_errors import UnreachableError
 from server.limits import Limits
-from server.robots.endpoint import ROBOT_PATH, add_robot_route
 from server.robots.registry import RobotRegistry
 
 LIMITS = Limits(wrong_tokens=2)

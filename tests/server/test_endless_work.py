@@ -10,8 +10,8 @@ from typing import Any, cast
 import pytest
 
 from server.accepting import Acceptor
+from server.access.access import Access
 from server.access.deed_log import DeedLog
-from server.api.access import Access
 from server.background import Endless
 from server.composition import _watch_access
 from server.limits import Limits

@@ -1,5 +1,6 @@
 """Much work is done in a process of its own, which is begun anew if it dies."""
 
+import asyncio
 import os
 import signal
 from collections.abc import AsyncIterator
@@ -8,7 +9,8 @@ import psutil
 import pytest
 
 from server.documents import DocumentMistake, WrongDocumentError
-from server.errors import ConflictError
+from server.errors import BusyError
+from server.limits import Limits
 from server.off_loop import MUCH_CHARS, OffLoop
 
 
@@ -44,9 +46,42 @@ async def test_a_refusal_comes_back_as_it_was_made(off_loop: OffLoop) -> None:
 
 
 async def test_a_process_that_dies_is_told_of_and_begun_anew(off_loop: OffLoop) -> None:
-    with pytest.raises(ConflictError, match="has died"):
+    with pytest.raises(BusyError, match="has died"):
         await off_loop.run(MUCH_CHARS, die)
     assert await off_loop.run(MUCH_CHARS, os.getpid) != os.getpid()
+
+
+async def test_work_that_does_not_end_is_ended_and_the_next_is_done(off_loop: OffLoop) -> None:
+    worker = psutil.Process(await off_loop.run(MUCH_CHARS, os.getpid))
+    patience_s, off_loop.longest_s = off_loop.longest_s, 0.1
+    with pytest.raises(BusyError, match="takes longer than") as refused:
+        await off_loop.run(MUCH_CHARS, signal.pause)
+    assert refused.value.limit == "check_s"
+    worker.wait(60)
+    off_loop.longest_s = patience_s
+    assert await off_loop.run(MUCH_CHARS, os.getpid) != worker.pid
+
+
+async def test_work_that_nobody_waits_for_any_more_keeps_nobody_waiting(off_loop: OffLoop) -> None:
+    worker = psutil.Process(await off_loop.run(MUCH_CHARS, os.getpid))
+    unwanted = asyncio.create_task(off_loop.run(MUCH_CHARS, signal.pause))
+    next_one = asyncio.create_task(off_loop.run(MUCH_CHARS, os.getpid))
+    await asyncio.sleep(0)
+    unwanted.cancel()
+    assert await next_one != worker.pid
+
+
+async def test_who_comes_when_too_much_waits_is_told_so_at_once() -> None:
+    off_loop = OffLoop(Limits(waiting_chars=2 * MUCH_CHARS))
+    at_work = [asyncio.create_task(off_loop.run(MUCH_CHARS, os.getpid)) for _ in range(2)]
+    await asyncio.sleep(0)
+    with pytest.raises(BusyError, match="too many large files wait") as refused:
+        await off_loop.run(MUCH_CHARS, os.getpid)
+    assert refused.value.limit == "waiting_chars"
+    assert len(set(await asyncio.gather(*at_work))) == 1
+    # One alone may be as large as it likes.
+    await off_loop.run(3 * MUCH_CHARS, os.getpid)
+    off_loop.close()
 
 
 async def test_its_process_ends_with_it() -> None:

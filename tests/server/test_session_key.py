@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 from starlette.requests import HTTPConnection
 
+from server.access.access import Access
 from server.access.sessions import KEY_BYTES
-from server.api.access import Access
 from server.session_key import session_key
 
 

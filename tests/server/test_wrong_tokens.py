@@ -2,7 +2,7 @@
 
 import pytest
 
-from server.api.wrong_tokens import MOST_ADDRESSES, WrongTokens
+from server.access.wrong_tokens import MOST_ADDRESSES, WrongTokens
 
 
 class Guesser:

@@ -1,5 +1,7 @@
 """The principals of a running service follow the file."""
 
+import asyncio
+import threading
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -7,7 +9,7 @@ import pytest
 
 from server.access.changes import PrincipalsEditor
 from server.access.known_principals import KnownPrincipals
-from server.access.principals_file import PrincipalsFileError
+from server.access.principals_file import Principals, PrincipalsFileError, read_principals
 from server.access.roles import PEOPLE, Role
 
 NOW = datetime(2026, 5, 4, 12, tzinfo=UTC)
@@ -22,20 +24,20 @@ def known(editor: PrincipalsEditor, now: datetime = NOW) -> KnownPrincipals:
     return KnownPrincipals(editor.path, now.timestamp)
 
 
-def test_a_token_is_known_as_soon_as_the_file_is_looked_at(editor: PrincipalsEditor) -> None:
+async def test_a_token_is_known_as_soon_as_the_file_is_looked_at(editor: PrincipalsEditor) -> None:
     principals = known(editor)
     assert not principals.required
     token = editor.add("anna", Role.HELPER, NOW)
     assert principals.of_token(token) is None
-    assert principals.look()
+    assert await principals.look()
     found = principals.of_token(token)
     assert found is not None
     assert (found.name, found.role) == ("anna", Role.HELPER)
     assert principals.of_token(token[:-1] + "!") is None
-    assert not principals.look()
+    assert not await principals.look()
 
 
-def test_a_revoked_token_and_an_expired_one_are_nobodys(editor: PrincipalsEditor) -> None:
+async def test_a_revoked_token_and_an_expired_one_are_nobodys(editor: PrincipalsEditor) -> None:
     anna = editor.add("anna", Role.HELPER, NOW)
     ben = editor.add("ben", Role.HELPER, NOW, expires_days=1)
     principals = known(editor, datetime(2026, 5, 6, tzinfo=UTC))
@@ -43,33 +45,57 @@ def test_a_revoked_token_and_an_expired_one_are_nobodys(editor: PrincipalsEditor
     assert principals.of_token(ben) is None
     assert principals.of_name("ben") is None
     editor.revoke("anna", NOW)
-    principals.look()
+    await principals.look()
     assert principals.of_token(anna) is None
 
 
-def test_a_service_that_has_had_principals_is_never_open_again(editor: PrincipalsEditor) -> None:
+async def test_a_service_that_has_had_principals_is_never_open_again(
+    editor: PrincipalsEditor,
+) -> None:
     token = editor.add("anna", Role.HELPER, NOW)
     principals = known(editor)
     editor.revoke("anna", NOW)
-    principals.look()
+    await principals.look()
     assert principals.required
     editor.path.unlink()
-    principals.look()
+    await principals.look()
     assert principals.required
     assert principals.of_token(token) is None
 
 
-def test_mistakes_that_come_later_change_nobody(
+async def test_mistakes_that_come_later_change_nobody(
     editor: PrincipalsEditor, caplog: pytest.LogCaptureFixture
 ) -> None:
     token = editor.add("anna", Role.HELPER, NOW)
     principals = known(editor)
     editor.path.write_text("principals: 3")
-    principals.look()
+    await principals.look()
     assert principals.of_token(token) is not None
     assert "stay as they were" in caplog.text
     with pytest.raises(PrincipalsFileError):
         known(editor)
+
+
+async def test_the_file_is_read_beside_the_loop_and_once_for_all_who_look(
+    editor: PrincipalsEditor, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    principals = known(editor)
+    token = editor.add("anna", Role.HELPER, NOW)
+    read_in: list[int] = []
+
+    def read(path: Path) -> Principals:
+        read_in.append(threading.get_ident())
+        return read_principals(path)
+
+    monkeypatch.setattr("server.access.known_principals.read_principals", read)
+    looks = [asyncio.create_task(principals.look()) for _ in range(3)]
+    await asyncio.sleep(0)
+    # From the moment that there is a file nobody comes in without a token.
+    assert principals.required
+    assert await asyncio.gather(*looks) == [True, False, False]
+    assert principals.of_token(token) is not None
+    assert len(read_in) == 1
+    assert read_in != [threading.get_ident()]
 
 
 def test_each_role_may_do_what_those_before_it_may() -> None:

@@ -142,6 +142,11 @@ ENTRY = f"role: helper, id: '01234567', sha256: '{HASH}', added: 2026-01-01T00:0
         (f"people: {'[' * 3000}{']' * 3000}", "f.yaml: something in it is nested too deeply."),
         (f"people: {'9' * 5000}", "f.yaml: a value in it cannot be read."),
         ("people: 2026-99-99", "f.yaml: a value in it cannot be read."),
+        (
+            "principals: &a [*a]",
+            "f.yaml: principals.0: must be a valid dictionary or instance of "
+            "KeptPrincipal, but it is nested too deeply to be shown.",
+        ),
         ("- anna", "f.yaml: a file of principals has the key 'principals'."),
         ("people: []", "f.yaml: people: is not known here."),
         ("principals: [{name: anna}]", "f.yaml: principals.0.role: is missing."),

@@ -15,7 +15,7 @@ from server.limits import Limits
 from server.robots.registry import RobotRegistry
 from server.robots.times import LinkTimes
 
-TIMES = LinkTimes(heartbeat_s=0.001, silence_s=10.0, absence_s=0.001, hello_s=5.0)
+TIMES = LinkTimes(heartbeat_s=0.001, silence_s=10.0, absence_s=0.001)
 
 HELLO: dict[str, Any] = {
     "type": "hello",

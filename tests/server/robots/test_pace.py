@@ -30,10 +30,11 @@ from server.limits import Limits
 from server.refusals import Refusals
 from server.robots.known_robot import MOST_UNASKED_REPORTS
 from server.robots.pace import CHARS_OF_ONE, Pace, PacedChannel
+from server.robots.passes import Anyone
 from server.robots.registry import RobotRegistry
 from server.robots.times import LinkTimes
 
-TIMES = LinkTimes(heartbeat_s=1.0, silence_s=60.0, absence_s=0.001, hello_s=5.0)
+TIMES = LinkTimes(heartbeat_s=1.0, silence_s=60.0, absence_s=0.001)
 HEADERS = {"Authorization": "Bearer secret"}
 
 
@@ -158,6 +159,25 @@ async def test_who_reports_without_end_is_ended_and_let_in_no_more_until_started
     assert isinstance(refused, LinkError)
     assert "start the robot's program again" in refused.detail
     await serving
+    registry.close()
+
+
+async def test_a_robot_that_says_it_is_simulated_is_let_in_no_more_either(
+    journal: SqliteJournal, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("server.robots.known_robot.MOST_UNASKED_REPORTS", 5)
+    registry = RobotRegistry(journal, lambda: 0.0, TIMES)
+    for said in ("has sent 5 reports since", "start the robot's program again"):
+        ours, theirs = memory_channel()
+        serving = asyncio.create_task(registry.serve_stranger(theirs, Anyone()))
+        await ours.send(hello(simulated=True))
+        for seq in range(1, 12):
+            with suppress(ChannelClosedError):
+                await ours.send(report(seq))
+        *_, last = [service_message.validate_json(each) async for each in all_of(ours)]
+        assert isinstance(last, LinkError)
+        assert said in last.detail
+        await serving
     registry.close()
 
 

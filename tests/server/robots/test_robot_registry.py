@@ -7,6 +7,7 @@ from collections.abc import AsyncIterator
 from dataclasses import replace
 
 import pytest
+from dropping_channel import DroppingChannel
 from full_disk import FailingConnection
 from recording_sink import RecordingSink
 from ticking_clock import TickingClock
@@ -36,10 +37,13 @@ from robots.link.messages import (
 from server.errors import ConflictError, NotFoundError
 from server.journal.journal import Receipt
 from server.journal.sqlite import SqliteJournal
+from server.limits import Limits
+from server.refusals import Refusals
+from server.robots.passes import Anyone
 from server.robots.registry import RobotRegistry
 from server.robots.times import LinkTimes
 
-QUICK = LinkTimes(heartbeat_s=0.001, silence_s=10.0, absence_s=0.001, hello_s=5.0)
+QUICK = LinkTimes(heartbeat_s=0.001, silence_s=10.0, absence_s=0.001)
 
 
 def hello(robot: str = "arm", boot: str = "b1", simulated: bool = False) -> Hello:
@@ -285,9 +289,80 @@ async def test_a_second_program_with_a_robots_name_is_refused_while_the_first_is
         await second.hear()
     assert (await first.deliver(report(1))).seq == 1
     # Nothing comes of the first one any more.
-    clock.now_s += 3 * QUICK.heartbeat_s
+    clock.step_s = QUICK.heartbeat_s
+    await clock.looked_at(5)
     await PlayedRobot(registry).greet(hello(boot="b2"))
     await sink.wait_until(lambda: len(sink.hellos) == 2)
+
+
+async def test_a_service_that_stood_still_gives_a_robots_name_to_no_second_program(
+    registry: RobotRegistry, clock: TickingClock
+) -> None:
+    first, second = PlayedRobot(registry), PlayedRobot(registry)
+    await first.greet(hello(boot="b1"))
+    clock.now_s += 60.0
+    await second.say(hello(boot="b2"))
+    refusal = await second.hear()
+    assert isinstance(refusal, LinkError)
+    assert "another program is connected as the robot 'arm'" in refusal.detail
+    assert (await first.deliver(report(1))).seq == 1
+
+
+async def test_of_connections_that_wait_for_the_journal_the_newest_alone_goes_on_waiting(
+    registry: RobotRegistry, journal: SqliteJournal
+) -> None:
+    connection = FailingConnection(journal._write_connection)
+    journal._writer._connection = connection  # type: ignore[assignment]
+    connection.error = "disk I/O error"
+    robot = PlayedRobot(registry)
+    await robot.greet(hello())
+    await robot.say(report(1))
+    await asyncio.wait_for(journal.trouble.begun(), timeout=60)
+    waiting = [PlayedRobot(registry) for _ in range(3)]
+    for each in waiting:
+        await each.say(hello())
+    for each in waiting[:-1]:
+        # Without an error, after which it would not come again.
+        with pytest.raises(ChannelClosedError):
+            await each.hear()
+        await each.serving
+    connection.error = None
+    welcome = await waiting[-1].hear()
+    assert isinstance(welcome, Welcome)
+    assert welcome.received == 1
+
+
+async def test_a_connection_that_waits_too_long_for_the_journal_has_to_come_again(
+    journal: SqliteJournal, clock: TickingClock
+) -> None:
+    refusals = Refusals()
+    registry = RobotRegistry(journal, clock, QUICK, Limits(hello_s=0.05), refusals)
+    sink = StuckSink(journal)
+    registry.assign("arm", sink)
+    robot, later = PlayedRobot(registry), PlayedRobot(registry)
+    await robot.greet(hello())
+    await robot.say(report(1))
+    await sink.stuck.wait()
+    await later.say(hello())
+    with pytest.raises(ChannelClosedError):
+        await later.hear()
+    await later.serving
+    assert refusals.counts["hello_s"] == 1
+    sink.go_on.set()
+    await robot.serving
+    assert (await PlayedRobot(registry).greet(hello())).received == 1
+    registry.close()
+
+
+@pytest.mark.parametrize("text", ["no hello", '{"type": "hello", "protocol": 2}'])
+async def test_who_has_gone_before_being_told_what_is_wrong_is_no_fault_of_ours(
+    registry: RobotRegistry, text: str
+) -> None:
+    await PlayedRobot(registry).greet(hello())
+    for said in (text, hello(boot="b2").model_dump_json()):
+        ours, theirs = memory_channel()
+        await ours.send(said)
+        await registry.serve(DroppingChannel(theirs, sends=0, receives=2))
 
 
 async def test_a_robot_is_not_lost_while_a_newer_connection_is_being_made(
@@ -461,6 +536,19 @@ async def test_a_picture_that_does_not_come_is_a_conflict(registry: RobotRegistr
         await gone
 
 
+class StuckSink(RecordingSink):
+    """Commits nothing until it may go on."""
+
+    def __init__(self, journal: SqliteJournal) -> None:
+        super().__init__(journal)
+        self.stuck, self.go_on = asyncio.Event(), asyncio.Event()
+
+    async def robot_reported(self, robot: str, report: Report, receipt: Receipt) -> None:
+        self.stuck.set()
+        await self.go_on.wait()
+        await super().robot_reported(robot, report, receipt)
+
+
 class BrokenSink(RecordingSink):
     """Fails once to commit."""
 
@@ -514,6 +602,34 @@ async def test_a_simulated_robot_is_forgotten_when_nobody_owns_it(
     assert registry.known() == ["arm"]
     await robot.leave()
     assert registry.known() == []
+
+
+async def test_a_robot_that_only_says_that_it_is_simulated_is_not_forgotten(
+    registry: RobotRegistry,
+) -> None:
+    ours, theirs = memory_channel()
+    serving = asyncio.create_task(registry.serve_stranger(theirs, Anyone()))
+    await ours.send(hello(simulated=True).model_dump_json())
+    await ours.receive()
+    await ours.close()
+    await serving
+    assert registry.known() == ["arm"]
+
+
+async def test_a_robot_that_makes_up_boots_is_ended(
+    registry: RobotRegistry, journal: SqliteJournal, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("server.robots.known_robot.MOST_NEW_BOOTS", 3)
+    robot = PlayedRobot(registry)
+    await robot.greet(hello(boot="b0"))
+    for number in range(5):
+        await robot.say(report(1, boot=f"made-up-{number}"))
+    while isinstance(last := await robot.hear(), Ack):
+        pass
+    assert isinstance(last, LinkError)
+    assert "has sent reports of 3 boots that were not known" in last.detail
+    assert await journal.received("arm", "made-up-2") == 1
+    assert await journal.received("arm", "made-up-3") == 0
 
 
 async def test_a_closed_registry_ends_every_connection(registry: RobotRegistry) -> None:

@@ -28,3 +28,17 @@ def test_a_look_that_comes_late_counts_nothing() -> None:
     assert silence.look() == 1.0
     clock.now_s += 2.0
     assert silence.look() == 3.0
+
+
+def test_between_two_looks_it_is_told_without_being_counted() -> None:
+    clock = TickingClock()
+    silence = Silence(clock, 1.0)
+    silence.look()
+    clock.now_s += 1.5
+    assert silence.so_far() == 1.5
+    assert silence.look() == 1.5
+    # Nobody was there to hear anything.
+    clock.now_s += 60.0
+    assert silence.so_far() == 1.5
+    silence.hear()
+    assert silence.so_far() == 0.0

@@ -6,6 +6,7 @@ import pytest
 
 from server.errors import InvalidError
 from server.journal.sqlite import SqliteJournal
+from server.robots.passes import OwnRobots
 from server.runtime.worlds import SimulatedWorlds
 from tasks.plugins import load_plugins
 
@@ -27,7 +28,7 @@ def test_options_are_checked_beforehand(world: str, options: dict[str, Any], sen
     if world == "workcell":
         pytest.importorskip("pybullet")
     journal = SqliteJournal(":memory:")
-    worlds = SimulatedWorlds(load_plugins("mend.worlds"), journal, _launch, lambda _: None)
+    worlds = SimulatedWorlds(load_plugins("mend.worlds"), journal, _launch, OwnRobots())
     worlds.check(world, {"depth_noise": 0.5})
     with pytest.raises(InvalidError, match=sentence):
         worlds.check(world, options)

@@ -23,7 +23,7 @@ from server.journal import events as ev
 from server.journal.audit import audit
 from server.journal.journal import Entry
 from server.journal.run_index import RunPage
-from server.runtime.context import RunSettings
+from server.runtime.presence import MAX_RESTARTS
 from server.runtime.requests import RunRequest
 from server.runtime.run_state import RunState
 from server.runtime.views import DialogueView, RunStatus, RunView
@@ -349,12 +349,12 @@ async def test_a_robot_that_never_begins_a_step_is_not_started_for_ever() -> Non
         request = RunRequest(tree="tree", world="tabletop", speed="max")
         started = await service.runtime.start_run(request)
         run = service.run_of(started)
-        for _ in range(RunSettings().max_restarts + 1):
+        for _ in range(MAX_RESTARTS + 1):
             run.tell_lost(started.robots[0], "it was killed")
         view = await asyncio.wait_for(service.runtime.wait_for_end(started.id), timeout=60)
     assert view.result is not None
     assert "its process keeps ending: it was killed" in view.result.reason
-    assert len(service.worlds.restarted) == 1 + RunSettings().max_restarts
+    assert len(service.worlds.restarted) == 1 + MAX_RESTARTS
 
 
 async def test_a_run_that_cannot_be_taken_up_fails_and_the_others_go_on(

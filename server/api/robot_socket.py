@@ -11,8 +11,8 @@ from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketState
 
 from robots.link.channel import ChannelClosedError
 from robots.link.messages import LinkError
+from server.access.access import Access
 from server.access.principal import Caller
-from server.api.access import Access
 from server.api.problems import problem, problem_response
 from server.robots.passes import Pass
 from server.robots.registry import RobotRegistry
@@ -85,6 +85,7 @@ def add_robot_route(
     """
 
     async def connect(websocket: WebSocket) -> None:
+        await access.look()
         shown = _shown(websocket, access, allowed_origins)
         if isinstance(shown, Response):
             await websocket.send_denial_response(shown)

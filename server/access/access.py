@@ -10,13 +10,13 @@ from urllib.parse import urlsplit
 
 from starlette.requests import HTTPConnection
 
+from server.access.admission import REFUSED, Admission
 from server.access.known_principals import KnownPrincipals
 from server.access.principal import ANYBODY, TOKEN_NAME, Caller, Principal
 from server.access.roles import Role
 from server.access.sessions import Session, Sessions, new_session_key
 from server.access.tokens import bytes_of, fingerprint, fits
-from server.api.admission import REFUSED, Admission
-from server.api.wrong_tokens import WrongTokens
+from server.access.wrong_tokens import WrongTokens
 from server.household import household_of
 from server.limits import Limits
 from server.refusals import Refusals
@@ -72,7 +72,6 @@ class Access:
 
     def of_token(self, token: str) -> Principal | None:
         """Whose token this is; anybody's where none is needed."""
-        self.look()
         if not self.required:
             return ANYBODY
         if self._holder is not None and fits(token, self._holder.key):
@@ -87,7 +86,6 @@ class Access:
         bearer = bearer_of(connection)
         if bearer:
             return self.by_token(bearer, connection)
-        self.look()
         if not self.required:
             return _welcomed(Caller(ANYBODY, address_of(connection)), connection)
         # Signed with a key that nobody can guess, so guessing it needs no throttle.
@@ -115,7 +113,6 @@ class Access:
         While an address has to wait, what it shows is not even read; else guessing would be as
         quick as before. Whoever is in already stays in: on a connection that was admitted it is.
         """
-        self.look()
         if self.required:
             wait_s = self.wait_s(shown, connection)
             if wait_s > 0:
@@ -172,9 +169,12 @@ class Access:
 
     # --- While it lasts -----------------------------------------------------------------------
 
-    def look(self) -> None:
-        """See whether the principals have changed, and let go of those who are gone."""
-        if self.principals.look():
+    async def look(self) -> None:
+        """See whether the principals have changed, and let go of those who are gone.
+
+        Every door does so before it asks who somebody is.
+        """
+        if await self.principals.look():
             self.let_go()
 
     def let_go(self) -> None:
