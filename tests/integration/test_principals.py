@@ -139,7 +139,7 @@ async def test_nothing_goes_on_for_somebody_revoked(served: Served) -> None:
         await message(watching)
         assert {"HelperSocket._send_events", "LiveSocket._show"} <= connection_works()
         people.revoke(Role.HELPER)
-        service.access.look()
+        await service.access.look()
         assert await close_code(events) == await close_code(watching) == 1008
         await until(lambda: not connection_works())
     assert len(service.journal.subscribers) == 0
