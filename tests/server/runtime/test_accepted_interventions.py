@@ -131,6 +131,9 @@ async def test_no_more_are_accepted_than_may_wait(tmp_path: Path) -> None:
     assert len(done) == 2 * MOST_WAITING
 
 
+async def _nothing() -> None: ...
+
+
 async def test_what_was_accepted_is_not_refused_by_a_robot_for_which_too_much_waits(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -150,6 +153,8 @@ async def test_what_was_accepted_is_not_refused_by_a_robot_for_which_too_much_wa
         robot = service.robots.robots[name]
         robot.boot, robot.deaf = 2, False
         await service.run_of(run).robot_connected(name, robot.hello())
+        # What is asked for now has its turn after that.
+        await service.run_of(run).request(_nothing)
         monkeypatch.undo()
         assert len(await interventions(service, run)) == 1
         assert (await service.runtime.run(run.id)).status is RunStatus.PAUSED
