@@ -2,7 +2,6 @@
 
 import asyncio
 import base64
-import binascii
 import logging
 from collections import OrderedDict
 from collections.abc import Callable, Coroutine
@@ -298,7 +297,7 @@ class KnownRobot:
     def receive_picture(self, picture: Picture) -> None:
         try:
             jpeg = base64.b64decode(picture.jpeg, validate=True)
-        except binascii.Error as error:
+        except ValueError as error:
             raise PictureError(f"the picture of '{picture.camera}' is not base64") from error
         self._answer(picture.command, lambda future: future.set_result(jpeg))
 

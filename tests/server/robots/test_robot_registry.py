@@ -454,6 +454,7 @@ async def test_a_robot_that_beats_is_not_cut_off(
         ('{"type": "heartbeat", "time": "1"}', "at heartbeat.time"),
         ('{"type": "report", "seq": 1, "time": 1, "body": {}}', "at report"),
         ('{"type": "picture", "command": "c", "camera": "head", "jpeg": "!"}', "is not base64"),
+        ('{"type": "picture", "command": "c", "camera": "head", "jpeg": "é"}', "is not base64"),
         ("[" * 100_000, "the message was not understood"),
     ],
 )
