@@ -159,7 +159,7 @@ class Ledger:
             if each.outcome == "accepted" and started.get(each.seed) != each.run:
                 yield f"run {each.run} was accepted, and the journal has {started.get(each.seed)}"
             if each.outcome == "refused" and each.seed in started:
-                yield f"run {started[each.seed]} was refused, and is in the journal"
+                yield f"run {started[each.seed]} was refused, and is in the journal; {each.said}"
 
     def _against_answers(self, witness: Witness) -> Iterator[str]:
         answered = [row.body for row in self.rows if row.kind == "answered"]

@@ -18,8 +18,8 @@ from websockets.exceptions import WebSocketException
 TRIES_AGAIN_S = 0.2
 REQUEST_S = 10.0
 MOST_TRIES = 300
-LATER = 500
-"""Statuses from here on say that it is to be tried again."""
+LATER = (409, 429, *range(500, 600))
+"""Statuses that say that it is to be tried again."""
 ENDED = ("finished", "failed", "aborted")
 ENDS = tuple(f"run_{each}" for each in ENDED)
 
@@ -133,7 +133,9 @@ class Clients:
             if running is not None and running < many:
                 seed = len(self._witness.runs)
                 outcome, told = await self._post("/api/runs", {**request(seed), "seed": seed})
-                self._witness.runs.append(RunAttempt(seed, outcome, told.get("id")))
+                self._witness.runs.append(
+                    RunAttempt(seed, outcome, told.get("id"), told.get("said", ""))
+                )
             else:
                 await asyncio.sleep(TRIES_AGAIN_S)
 
@@ -184,8 +186,8 @@ class Clients:
                 if response.is_success:
                     self._witness.repeated += asked
                     return "accepted", response.json()
-                # What was asked before may have been done, and nobody can look it up for now.
-                if not asked or response.status_code < LATER:
-                    return "refused", {}
+                # What was asked before may be under way or done, and nobody can say so for now.
+                if not asked or response.status_code not in LATER:
+                    return "refused", {"said": f"{response.status_code} {response.text[:300]}"}
             await asyncio.sleep(TRIES_AGAIN_S)
         return "unknown", {}

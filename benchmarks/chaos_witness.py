@@ -19,11 +19,15 @@ class AnswerAttempt:
 
 @dataclass(frozen=True, slots=True)
 class RunAttempt:
-    """Somebody asked for a run; no other has this `seed`. `run` is its id, if that was told."""
+    """Somebody asked for a run; no other has this `seed`.
+
+    `run` is its id, if that was told; `said` is why there is none.
+    """
 
     seed: int
     outcome: Outcome
     run: str | None = None
+    said: str = ""
 
 
 @dataclass(slots=True)

@@ -19,6 +19,7 @@ LimitName = Literal[
     "check_s",
     "running_runs",
     "connections",
+    "connections_per_principal",
     "strangers",
     "strangers_per_address",
     "head_s",
@@ -60,6 +61,8 @@ class Limits(BaseModel):
     """Runs that have not ended, at a time; each in a simulated world may take a process."""
     connections: AtLeastOne = 500
     """Connections to the service at a time."""
+    connections_per_principal: AtLeastOne = 50
+    """Connections of one principal with a credential of their own; for one more the oldest ends."""
     strangers: AtLeastOne = 200
     """Those of them that have not been admitted; for one more the oldest is ended."""
     strangers_per_address: AtLeastOne = 50

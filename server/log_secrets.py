@@ -1,4 +1,4 @@
-"""Tokens and sessions do not belong in a log, not even in that of every byte."""
+"""What does not belong in a log: tokens and sessions, and whatever is too long for a line."""
 
 import logging
 import re
@@ -11,13 +11,19 @@ SECRETS = re.compile(
 )
 
 
+LONGEST_CHARS = 500
+"""Whoever asks for something decides how long what is logged of it would be."""
+
+
 class HideSecrets(logging.Filter):
-    """Puts stars in the place of every secret of a record."""
+    """Puts stars in the place of every secret of a record, and ends long ones early."""
 
     def filter(self, record: logging.LogRecord) -> bool:
         """Keep the record, without what nobody may read."""
         text = record.getMessage()
         hidden = SECRETS.sub(r"\1***", text)
+        if len(hidden) > LONGEST_CHARS:
+            hidden = f"{hidden[:LONGEST_CHARS]}... ({len(hidden)} characters)"
         if hidden != text:
             record.msg, record.args = hidden, ()
         return True

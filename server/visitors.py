@@ -56,6 +56,7 @@ class Visitor:
         self.household = household
         self.end = end
         self.is_admitted = False
+        self.principal: str | None = None
         self.phase = Phase.HEAD
         self.since = visitors.now()
         self._visitors = visitors
@@ -73,10 +74,11 @@ class Visitor:
         if phase is not self.phase:
             self.phase, self.since = phase, self._visitors.now()
 
-    def admit(self) -> None:
-        """It is no stranger any more."""
+    def admit(self, principal: str | None = None) -> None:
+        """It is no stranger any more, but whoever `principal` stands for, if they have a share."""
         self.is_admitted = True
         self._visitors.no_stranger(self)
+        self._visitors.belongs(self, principal)
 
     def leave(self) -> None:
         """The connection is gone. Saying so twice does nothing."""
@@ -115,6 +117,7 @@ class Visitors:
         self._here: dict[Visitor, None] = {}
         self._strangers: dict[Visitor, None] = {}
         self._by_household: Counter[str] = Counter()
+        self._by_principal: dict[str, dict[Visitor, None]] = {}
 
     def __len__(self) -> int:
         return len(self._here)
@@ -169,10 +172,39 @@ class Visitors:
             if self._by_household[visitor.household] == 0:
                 del self._by_household[visitor.household]
 
+    def belongs(self, visitor: Visitor, principal: str | None) -> None:
+        """It is this principal's; of too many of theirs the one that has been here longest ends.
+
+        A proxy's connection is everybody's.
+        """
+        if visitor.principal == principal or visitor.household is None:
+            return
+        self._belongs_to_nobody(visitor)
+        if principal is None or visitor not in self._here:
+            return
+        theirs = self._by_principal.setdefault(principal, {})
+        visitor.principal, most = principal, self._limits.connections_per_principal
+        theirs[visitor] = None
+        if len(theirs) > most:
+            oldest = next(iter(theirs))
+            self._belongs_to_nobody(oldest)
+            sentence = f"somebody had more than {most} connections: the oldest was ended"
+            self._end(oldest, Beyond("connections_per_principal", sentence))
+
+    def _belongs_to_nobody(self, visitor: Visitor) -> None:
+        if visitor.principal is None:
+            return
+        theirs = self._by_principal[visitor.principal]
+        del theirs[visitor]
+        if not theirs:
+            del self._by_principal[visitor.principal]
+        visitor.principal = None
+
     def leave(self, visitor: Visitor) -> None:
         """Its connection is gone."""
         self._here.pop(visitor, None)
         self.no_stranger(visitor)
+        self._belongs_to_nobody(visitor)
 
     def end_overdue(self) -> None:
         """End every connection whose client has taken too long for what it owes."""

@@ -1,6 +1,9 @@
 """WebSockets as uvicorn speaks them, which can be shut down at any moment."""
 
+import asyncio
+
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
+from websockets.frames import Frame
 from websockets.protocol import State
 
 from server.visitors import STATE_KEY, Visitor
@@ -9,21 +12,40 @@ STRANGER_MESSAGE_BYTES = 64 * 1024
 """Long enough for a token."""
 
 
+READ_BYTES = 16 * 1024
+"""So much is read at a time: whoever sends thousands of frames at once keeps nobody waiting."""
+
+MOST_FRAGMENTS = 256
+"""So many parts a message may come in."""
+
+PINGS_AT_ONCE = 100
+PINGS_PER_S = 10.0
+"""Of pings, pongs and parts of messages that hold nothing, more than anybody needs."""
+
+POLICY_VIOLATION, TOO_BIG = 1008, 1009
+
 LATE_S = 1.0
 """A timer that runs so much later than it should says that this process had no time."""
 
 
 class WebSocketProtocol(WebSocketsSansIOProtocol):
-    """Uvicorn's own, but for clients that are just closing, or ping and read nothing."""
+    """Uvicorn's own, but for clients that are just closing, or that send frames without end."""
 
     _pong_within_s = 0.0
     """How long after the ping its answer is awaited."""
+    _pings_left = float(PINGS_AT_ONCE)
+    _pinged_at_s = 0.0
 
     @property
     def _visitor(self) -> Visitor | None:
         """The visitor of `app_state`, where there is one."""
         visitor: Visitor | None = self.app_state.get(STATE_KEY)
         return visitor
+
+    def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
+        super().connection_made(transport)
+        if hasattr(transport, "max_size"):
+            transport.max_size = READ_BYTES
 
     def connection_lost(self, exc: Exception | None) -> None:
         if self._visitor is not None:
@@ -37,13 +59,43 @@ class WebSocketProtocol(WebSocketsSansIOProtocol):
         self.conn.max_message_size = min(most, STRANGER_MESSAGE_BYTES) if stranger else most
         super().data_received(data)
 
+    def handle_cont(self, event: Frame) -> None:
+        """Take a part of a message; one in too many parts is never put together."""
+        if self._has_ended:
+            return
+        if len(self.frames) >= MOST_FRAGMENTS:
+            self._end(TOO_BIG, f"a message comes in at most {MOST_FRAGMENTS} parts")
+            return
+        super().handle_cont(event)
+
     def handle_ping(self) -> None:
-        """Answer a ping, unless so much waits for the client already."""
-        if self.writable.is_set():
+        """Answer a ping, unless so much waits for the client already, or it pings without end."""
+        if self._has_ended:
+            return
+        now_s = self.loop.time()
+        refilled = self._pings_left + (now_s - self._pinged_at_s) * PINGS_PER_S
+        self._pings_left, self._pinged_at_s = min(refilled, PINGS_AT_ONCE) - 1.0, now_s
+        if self._pings_left < 0.0:
+            self._end(POLICY_VIOLATION, f"at most {PINGS_PER_S:g} pings a second")
+        elif self.writable.is_set():
             super().handle_ping()
         else:
             # The pong that was made for it.
             self.conn.data_to_send()
+
+    @property
+    def _has_ended(self) -> bool:
+        """What has still been read when a connection was ended is of no use any more."""
+        return self.transport.is_closing()
+
+    def _end(self, code: int, reason: str) -> None:
+        """End the connection, as uvicorn does for what is no WebSocket."""
+        self.frames = []
+        if self.conn.state is State.OPEN:
+            self.conn.send_close(code, reason)
+            self.handle_parser_exception()
+        else:
+            self.transport.abort()
 
     def keepalive_timeout(self) -> None:
         """End the connection to a client that does not answer; not while it is us who are late.

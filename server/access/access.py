@@ -271,15 +271,16 @@ def address_of(connection: HTTPConnection) -> str | None:
 
 
 def _welcomed(caller: Caller, connection: HTTPConnection) -> Admission:
-    _admit(connection)
+    principal = caller.principal
+    _admit(connection, principal.key if principal.named else None)
     return Admission(caller)
 
 
-def _admit(connection: HTTPConnection) -> None:
-    """Whoever made this connection is no stranger any more."""
+def _admit(connection: HTTPConnection, principal: str | None = None) -> None:
+    """Whoever made this connection is no stranger any more; who has one token has no share."""
     visitor = visitor_of(connection.scope)
     if visitor is not None:
-        visitor.admit()
+        visitor.admit(principal)
 
 
 def _is_in(connection: HTTPConnection) -> bool:

@@ -241,6 +241,21 @@ async def test_every_principal_has_keys_of_their_own(tmp_path: Path) -> None:
     assert runs[0] != runs[1]
 
 
+async def test_a_later_principal_of_the_same_name_has_keys_of_their_own(tmp_path: Path) -> None:
+    people = People(tmp_path)
+    service = build(principals=people.file)
+    async with service.client() as client:
+        served = Served(service, client)
+        first = await served.post("/api/runs", RUN, **people.headers(Role.OPERATOR))
+        people.revoke(Role.OPERATOR)
+        token = people.editor.add("olga", Role.OPERATOR, datetime.now(UTC))
+        second = await served.post("/api/runs", RUN, Authorization=f"Bearer {token}")
+    service.journal.close()
+    assert (first.status_code, second.status_code) == (201, 201)
+    assert REPLAYED not in second.headers
+    assert first.json()["id"] != second.json()["id"]
+
+
 async def test_an_answer_with_a_secret_is_given_again_and_not_in_the_journal(
     tmp_path: Path,
 ) -> None:

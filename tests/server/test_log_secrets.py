@@ -6,7 +6,7 @@ import logging
 import pytest
 
 from server.app import described_app
-from server.log_secrets import SECRETS
+from server.log_secrets import LONGEST_CHARS, SECRETS, HideSecrets
 from server.serving import serve_config
 from server.settings import Settings
 
@@ -43,3 +43,9 @@ def test_the_log_of_the_service_shows_no_token() -> None:
     finally:
         logger.removeHandler(handler)
     assert written.getvalue() == "< authorization: ***\n"
+
+
+def test_a_line_of_the_log_is_no_longer_than_it_has_to_be() -> None:
+    asked = logging.LogRecord("", logging.INFO, "", 0, "GET /%s 404", ("a" * 60_000,), None)
+    HideSecrets().filter(asked)
+    assert asked.getMessage() == f"GET /{'a' * (LONGEST_CHARS - 5)}... (60009 characters)"

@@ -186,3 +186,34 @@ def test_a_client_that_reads_slowly_stays() -> None:
     connection.unread = 5000
     assert house.after(29.0) == []
     assert house.after(1.0) == [(visitor, "stuck_client_s")]
+
+
+def test_of_too_many_connections_of_one_principal_the_oldest_is_ended() -> None:
+    house = House(Limits(connections=9, connections_per_principal=2))
+    first, second, third = (house.come(f"10.0.0.{number}") for number in range(3))
+    for each in (first, second, first, third):
+        each.admit("of ada")
+    assert [(visitor, beyond.limit) for visitor, beyond in house.ended] == [
+        (first, "connections_per_principal")
+    ]
+    house.come("10.0.0.4").admit("of ben")
+    second.leave()
+    house.come("10.0.0.5").admit("of ada")
+    assert len(house.ended) == 1
+
+
+def test_a_connection_counts_for_whoever_shows_something_on_it_last() -> None:
+    house = House(Limits(connections=9, connections_per_principal=1))
+    shared, other = house.come("10.0.0.1"), house.come("10.0.0.1")
+    shared.admit("of ada")
+    shared.admit("of ben")
+    other.admit("of ada")
+    assert house.ended == []
+
+
+def test_who_has_no_credential_of_their_own_and_a_proxy_have_no_share() -> None:
+    house = House(Limits(connections=9, connections_per_principal=1), proxies=("10.0.0.9",))
+    for address, principal in (("10.0.0.1", None), ("10.0.0.9", "of ada")):
+        for _ in range(3):
+            house.come(address).admit(principal)
+    assert house.ended == []
