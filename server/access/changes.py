@@ -150,10 +150,14 @@ class PrincipalsEditor:
 
 
 def _refuse_name(name: str, longest: int) -> None:
-    if name in RESERVED:
+    if name.strip().casefold() in RESERVED:
         raise InvalidError(f"nobody can be called '{name}': that is what the service calls others")
-    if not name or len(name) > longest or any(ord(each) < 32 or ord(each) == 127 for each in name):
+    if not 0 < len(name) <= longest or not name.isprintable():
         raise InvalidError(f"a name has 1 to {longest} characters, and no control characters")
+    if name != name.strip() or "/" in name or name in (".", ".."):
+        raise InvalidError(
+            f"nobody can be called '{name}': a name begins and ends with no blank, and has no '/'"
+        )
 
 
 def _enrolment(robot: str, code: str, expires: datetime) -> Enrolment:

@@ -118,6 +118,7 @@ class LiveTranscript:
 def print_rows(rows: list[tuple[str, ...]], headings: tuple[str, ...]) -> None:
     """Print a table: with headings in a terminal, tab-separated lines where stdout is piped."""
     console = Console(highlight=False)
+    rows = [tuple(plain(each) for each in row) for row in rows]
     if not console.is_terminal:
         for row in rows:
             sys.stdout.write("\t".join(row) + "\n")

@@ -178,3 +178,14 @@ def test_an_id_that_looks_like_a_number_is_none() -> None:
     text = f"principals: [{{name: anna, {ENTRY}}}]".replace("'01234567'", "6798e113")
     (anna,) = principals_of(text, "f.yaml").principals
     assert anna.id == "6798e113"
+
+
+@pytest.mark.parametrize(
+    "name", ["", " ", "anna ", "a/b", "..", "Token", "a\u202egnp", "x\x9b31m", "\u200b", "a" * 65]
+)
+def test_a_name_that_reads_as_another_or_names_no_address_is_refused(
+    name: str, tmp_path: Path
+) -> None:
+    editor = PrincipalsEditor(tmp_path / "principals.yaml", by="root", keep_changes=False)
+    with pytest.raises(InvalidError):
+        editor.add(name, Role.VIEWER, datetime.now(UTC))
