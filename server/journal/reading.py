@@ -44,8 +44,11 @@ class ReadingThread:
         except SQLITE_ERRORS as error:
             raise JournalReadError(f"the journal could not be read: {error}") from error
 
-    def close(self) -> None:
-        """Answer those who wait, then close the connection."""
+    def end(self) -> None:
+        """Answer those who wait, then end the thread; the connection may be another's as well."""
         self._closed = True
         self._thread.shutdown()
+
+    def close(self) -> None:
+        """Close the connection, once every thread that reads from it has ended."""
         self._connection.close()

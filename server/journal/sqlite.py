@@ -354,8 +354,11 @@ class SqliteJournal:
         self._trouble.close()
         self._writer.close()
         self._subscribers.close()
-        self._pages.close()
-        self._look_ups.close()
+        # In memory all have one connection: closed under a query it takes the process with it.
+        for reading in (self._pages, self._look_ups):
+            reading.end()
+        for reading in (self._pages, self._look_ups):
+            reading.close()
         self._write_connection.close()
         if self._lock is not None:
             self._lock.release()

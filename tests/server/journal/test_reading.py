@@ -59,3 +59,21 @@ async def test_nothing_is_looked_up_in_a_closed_journal() -> None:
         await journal.received("arm", "boot")
     with pytest.raises(JournalClosedError):
         await journal.index.find(RUN)
+
+
+async def test_a_journal_in_memory_is_closed_only_once_nobody_reads_it() -> None:
+    journal = SqliteJournal(":memory:")
+    begun, read_on = threading.Event(), threading.Event()
+
+    def read_later(connection: sqlite3.Connection) -> int:
+        begun.set()
+        assert read_on.wait(IN_TIME_S)
+        return int(connection.execute("SELECT count(*) FROM events").fetchone()[0])
+
+    reading = asyncio.create_task(journal._look_ups.query(read_later))
+    await asyncio.to_thread(begun.wait, IN_TIME_S)
+    closing = asyncio.create_task(asyncio.to_thread(journal.close))
+    await asyncio.wait([closing], timeout=0.1)
+    read_on.set()
+    assert await reading == 0
+    await closing
