@@ -29,6 +29,7 @@ import numpy as np
 from chaos_ordeal import Findings, Ordeal
 from chaos_place import DISK_MB, Footprint, chaos_place
 from full_disk import small_disk
+from numpy.typing import NDArray
 
 MANY_RUNS = 20
 WANTED_P99_MS = 250.0
@@ -65,7 +66,7 @@ def _takes(when: str, footprint: Footprint | None) -> str:
     )
 
 
-def _latencies_ms(found: Findings) -> "np.typing.NDArray[np.float64]":
+def _latencies_ms(found: Findings) -> NDArray[np.float64]:
     return np.array(found.latencies_s or [np.nan]) * 1000
 
 

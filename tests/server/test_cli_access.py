@@ -13,6 +13,7 @@ import pytest
 from server.access.known_principals import KnownPrincipals
 from server.access.roles import Role
 from server.cli import main
+from server.cli.output import print_rows
 from server.journal import events as ev
 from server.journal.journal import Entry
 from server.journal.sqlite import SqliteJournal
@@ -131,3 +132,8 @@ async def test_audit_lists_deeds_and_exports_them_as_json_lines(mend: Mend, data
         ("run_paused", str(run)),
     ]
     journal.close()
+
+
+def test_a_table_shows_what_is_not_printed_spelt_out(capsys: pytest.CaptureFixture[str]) -> None:
+    print_rows([("a\u202egnp", "x\x9b31m")], ("name", "role"))
+    assert capsys.readouterr().out == "a\\u202egnp\tx\\x9b31m\n"

@@ -308,9 +308,10 @@ async def test_a_service_that_stood_still_gives_a_robots_name_to_no_second_progr
     assert (await first.deliver(report(1))).seq == 1
 
 
-async def test_of_connections_that_wait_for_the_journal_the_newest_alone_goes_on_waiting(
+async def report_that_waits(
     registry: RobotRegistry, journal: SqliteJournal
-) -> None:
+) -> tuple[FailingConnection, PlayedRobot]:
+    """A robot whose report cannot be written, until the connection has no `error` any more."""
     connection = FailingConnection(journal._write_connection)
     journal._writer._connection = connection  # type: ignore[assignment]
     connection.error = "disk I/O error"
@@ -318,6 +319,13 @@ async def test_of_connections_that_wait_for_the_journal_the_newest_alone_goes_on
     await robot.greet(hello())
     await robot.say(report(1))
     await asyncio.wait_for(journal.trouble.begun(), timeout=60)
+    return connection, robot
+
+
+async def test_of_connections_that_wait_for_the_journal_the_newest_alone_goes_on_waiting(
+    registry: RobotRegistry, journal: SqliteJournal
+) -> None:
+    connection, _ = await report_that_waits(registry, journal)
     waiting = [PlayedRobot(registry) for _ in range(3)]
     for each in waiting:
         await each.say(hello())
@@ -582,13 +590,7 @@ async def test_a_report_that_could_not_be_committed_is_not_acknowledged(
 async def test_a_report_waits_on_its_connection_while_the_journal_cannot_be_written(
     registry: RobotRegistry, journal: SqliteJournal
 ) -> None:
-    connection = FailingConnection(journal._write_connection)
-    journal._writer._connection = connection  # type: ignore[assignment]
-    connection.error = "disk I/O error"
-    robot = PlayedRobot(registry)
-    await robot.greet(hello())
-    await robot.say(report(1))
-    await asyncio.wait_for(journal.trouble.begun(), timeout=60)
+    connection, robot = await report_that_waits(registry, journal)
     connection.error = None
     assert await robot.hear() == Ack(seq=1)
 

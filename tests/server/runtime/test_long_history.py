@@ -17,7 +17,7 @@ from server.errors import ConflictError, NotFoundError, UnreadableError
 from server.journal import events as ev
 from server.journal.pruning import Keep
 from server.journal.run_index import RunPage
-from server.runtime.history import MOST_KEPT, History
+from server.runtime.history import MOST_KEPT
 from server.runtime.requests import RunRequest
 from server.runtime.views import RunStatus
 
@@ -38,20 +38,6 @@ def path(tmp_path: Path) -> Path:
     path = tmp_path / "journal.db"
     write_history(path, RUNS)
     return path
-
-
-@pytest.fixture
-def folded(monkeypatch: pytest.MonkeyPatch) -> list[UUID]:
-    """Every run that is folded from the journal, in order."""
-    runs: list[UUID] = []
-    fold = History.at
-
-    async def at(history: History, run: UUID, *until: Any) -> Any:
-        runs.append(run)
-        return await fold(history, run, *until)
-
-    monkeypatch.setattr(History, "at", at)
-    return runs
 
 
 async def listed(service: PretendService, **page: Any) -> list[UUID]:

@@ -12,7 +12,7 @@ from task_documents import definition_of
 from server.errors import ConflictError, LostRaceError, NotFoundError
 from server.journal import events as ev
 from server.runtime.dialogue_state import DialogueState
-from server.runtime.history import MOST_KEPT, History
+from server.runtime.history import MOST_KEPT
 from server.runtime.requests import RunRequest
 from server.runtime.run_views import dialogue_view
 from server.runtime.views import DialogueView
@@ -29,20 +29,6 @@ def path(tmp_path: Path) -> Path:
     path = tmp_path / "journal.db"
     write_history(path, RUNS)
     return path
-
-
-@pytest.fixture
-def folded(monkeypatch: pytest.MonkeyPatch) -> list[UUID]:
-    """Every run that is folded from the journal."""
-    runs: list[UUID] = []
-    fold = History.at
-
-    async def at(history: History, run: UUID, *until: Any) -> Any:
-        runs.append(run)
-        return await fold(history, run, *until)
-
-    monkeypatch.setattr(History, "at", at)
-    return runs
 
 
 async def folded_views(service: PretendService, run: UUID) -> dict[UUID, Any]:
