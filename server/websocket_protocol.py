@@ -11,7 +11,6 @@ from server.visitors import STATE_KEY, Visitor
 STRANGER_MESSAGE_BYTES = 64 * 1024
 """Long enough for a token."""
 
-
 READ_BYTES = 16 * 1024
 """So much is read at a time: whoever sends thousands of frames at once keeps nobody waiting."""
 
@@ -20,7 +19,7 @@ MOST_FRAGMENTS = 256
 
 PINGS_AT_ONCE = 100
 PINGS_PER_S = 10.0
-"""Of pings, pongs and parts of messages that hold nothing, more than anybody needs."""
+"""More pings than any client needs, at once and in the long run."""
 
 POLICY_VIOLATION, TOO_BIG = 1008, 1009
 
