@@ -87,6 +87,14 @@ class WebSocketProtocol(WebSocketsSansIOProtocol):
         """What has still been read when a connection was ended is of no use any more."""
         return self.transport.is_closing()
 
+    def handle_parser_exception(self) -> None:
+        """End the connection; who is just sending hears that the client is gone.
+
+        Uvicorn would call it a mistake of the application.
+        """
+        super().handle_parser_exception()
+        self.close_sent = False
+
     def _end(self, code: int, reason: str) -> None:
         """End the connection, as uvicorn does for what is no WebSocket."""
         self.frames = []

@@ -8,6 +8,7 @@ import uvicorn
 from starlette.applications import Starlette
 from starlette.routing import WebSocketRoute
 from starlette.websockets import WebSocket
+from uvicorn.protocols.utils import ClientDisconnected
 from websockets.frames import Close, Frame, Opcode
 
 from server.websocket_protocol import WebSocketProtocol
@@ -62,6 +63,32 @@ async def test_a_server_ends_while_a_client_closes_and_has_not_read_all(closing:
         client.transport.abort()
     await ending
     assert not server.server_state.connections
+
+
+async def test_who_is_just_sending_to_a_client_that_was_sent_away_hears_that_it_is_gone() -> None:
+    async def wait(websocket: WebSocket) -> None:
+        await websocket.accept()
+        await websocket.receive()
+
+    listening = socket.create_server(("127.0.0.1", 0))
+    config = uvicorn.Config(
+        Starlette(routes=[WebSocketRoute("/", wait)]),
+        ws=WebSocketProtocol, lifespan="off", log_level="critical",
+    )  # fmt: skip
+    config.load()
+    server = uvicorn.Server(config)
+    server.lifespan = config.lifespan_class(config)
+    await server.startup(sockets=[listening])
+    client = await connected(listening.getsockname()[1])
+    (connection,) = server.server_state.connections
+    assert isinstance(connection, WebSocketProtocol)
+    connection._pings_left, connection._pinged_at_s = 0.0, connection.loop.time()
+    connection.handle_ping()
+    # In the same turn of the loop: the connection is not lost yet.
+    with pytest.raises(ClientDisconnected):
+        await connection.send({"type": "websocket.send", "text": "late"})
+    client.transport.abort()
+    await server.shutdown(sockets=[listening])
 
 
 class StubLoop:
