@@ -30,6 +30,7 @@ LimitName = Literal[
     "idempotency_keys",
     "idempotency_s",
     "robot_messages_per_s",
+    "helper_messages_per_s",
 ]
 """The limits by name: whoever refuses something says for which of them."""
 
@@ -83,3 +84,5 @@ class Limits(BaseModel):
     """How long they are kept."""
     robot_messages_per_s: AtLeastOne = 500
     """Messages of one robot's connection that are read in a second, of 4096 characters each."""
+    helper_messages_per_s: AtLeastOne = 100
+    """Messages of one helper's connection, of whatever kind, counted in the same way."""

@@ -40,7 +40,7 @@ async def healthz() -> Health:
 @router.get("/readyz", operation_id="readyz", responses=documented(421, 503))
 async def readyz(parts: WithParts) -> Readiness:
     """The journal can be read and written, so runs can be started and watched."""
-    parts.journal.look()
+    await parts.journal.look()
     if parts.journal.trouble.reason is not None:
         raise JournalWriteError(parts.journal.trouble.reason)
     await parts.journal.read_records(parts.journal.head, 1)

@@ -2,6 +2,7 @@
 
 import asyncio
 import json
+import time
 from abc import ABC, abstractmethod
 from collections.abc import Coroutine
 from contextlib import suppress
@@ -18,6 +19,7 @@ from server.api.mistakes import validation_sentences
 from server.api.parts import HelperName, Parts, parts_of
 from server.api.problems import Problem, forbidden, problem, problem_response
 from server.journal.events import Author
+from server.pace import Pace
 
 THE_END = 1000
 GOING_AWAY = 1001
@@ -56,6 +58,7 @@ class HelperConnection(ABC, Generic[Query]):
         self._query = query
         self._max_message_chars = max_message_chars
         self._parts: Parts = parts_of(websocket)
+        self._pace = Pace(self._parts.settings.limits.helper_messages_per_s, time.monotonic)
 
     async def run(self) -> None:
         """Let the helper in and serve them, until either side has had enough."""
@@ -159,7 +162,15 @@ class HelperConnection(ABC, Generic[Query]):
         if frame["type"] == "websocket.disconnect":
             raise WebSocketDisconnect(frame.get("code", THE_END))
         text: str | None = frame.get("text")
-        return bytes(frame.get("bytes") or b"") if text is None else text
+        received = bytes(frame.get("bytes") or b"") if text is None else text
+        await self._keep_pace(received)
+        return received
+
+    async def _keep_pace(self, received: str | bytes) -> None:
+        wait_s = self._pace.take(received)
+        if wait_s > 0.0:
+            self._parts.refusals.note("helper_messages_per_s")
+            await asyncio.sleep(wait_s)
 
     async def _read(self, text: str, shape: TypeAdapter[Message]) -> Message | None:
         """What a text message says; None for one that was refused, also for want of a role."""

@@ -135,15 +135,18 @@ class RunIndex:
     ) -> list[IndexedDialogue]:
         """Dialogues, oldest first, without those of runs that cannot be read."""
         closed = "" if status is None else " AND closed IS NOT NULL"
-        return await self._dialogues(f"{closed} ORDER BY opened LIMIT ? OFFSET ?", (limit, offset))
+        rest = f"{closed} ORDER BY opened LIMIT ? OFFSET ?"
+        return await self._dialogues(self._select, rest, (limit, offset))
 
     async def dialogue(self, dialogue: UUID) -> IndexedDialogue | None:
         """One of them; None if there is none."""
-        found = await self._dialogues(" AND dialogue = ?", (str(dialogue),))
+        found = await self._dialogues(self._look_up, " AND dialogue = ?", (str(dialogue),))
         return found[0] if found else None
 
-    async def _dialogues(self, rest: str, values: Sequence[Any]) -> list[IndexedDialogue]:
-        rows = await self._select(
+    async def _dialogues(
+        self, select: Select, rest: str, values: Sequence[Any]
+    ) -> list[IndexedDialogue]:
+        rows = await select(
             "SELECT dialogue, run, opened FROM dialogues"
             f" WHERE run NOT IN (SELECT run FROM runs WHERE status = ?){rest}",
             (UNREADABLE, *values),
@@ -157,11 +160,13 @@ class RunIndex:
 
     async def raised_before(self, dialogue: IndexedDialogue) -> int:
         """The `seq` of the issue that a dialogue is about: the last one before it opened."""
-        rows = await self._select(
-            "SELECT max(seq) FROM events WHERE run = ? AND seq < ? AND type = 'issue_raised'",
+        # Backwards from the dialogue, which it is not far from.
+        rows = await self._look_up(
+            "SELECT seq FROM events WHERE run = ? AND seq < ? AND type = 'issue_raised'"
+            " ORDER BY seq DESC LIMIT 1",
             (str(dialogue.run), dialogue.opened),
         )
-        return int(rows[0][0] or dialogue.opened)
+        return int(rows[0][0]) if rows else dialogue.opened
 
     async def about_dialogues(
         self, run: UUID, after: int, limit: int

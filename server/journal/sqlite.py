@@ -53,6 +53,9 @@ __all__ = ["IN_MEMORY", "SqliteJournal"]
 
 log = logging.getLogger(__name__)
 
+PROVEN_S = 5.0
+"""For so long after something was written it is taken for granted that more can be."""
+
 PROBE = "probe"
 PROBE_BYTES = 64 * 1024
 """Room for so much is room for most of what waits to be written."""
@@ -81,7 +84,7 @@ class SqliteJournal:
     opened or written. Only its owner can read the file. Belongs to one event loop at a time.
     `sleep` is what passes between two tries to write where that is not possible; the look at the
     pages on opening takes at most `check_s`. `wall_time_s` says when a receipt was given, in
-    seconds of 1970.
+    seconds of 1970; `clock` is any monotonic one in seconds.
     """
 
     def __init__(
@@ -92,8 +95,11 @@ class SqliteJournal:
         check_s: float = 1.0,
         sleep: Sleep = asyncio.sleep,
         wall_time_s: Callable[[], float] = time.time,
+        clock: Callable[[], float] = time.monotonic,
     ) -> None:
         self._wall_time_s = wall_time_s
+        self._clock = clock
+        self._wrote_at = float("-inf")
         opened = open_journal(path, busy_timeout_s, check_s)
         self._lock = opened.lock
         self._file = opened.file
@@ -146,8 +152,13 @@ class SqliteJournal:
     def damage(self) -> Sequence[Break]:
         return self._damage
 
-    def look(self) -> None:
+    async def look(self) -> None:
         """Notice now, rather than at the next commit, that nothing can be written any more."""
+        self._look_at_file()
+        if self._trouble.reason is None and self._clock() - self._wrote_at > PROVEN_S:
+            await self._probe()
+
+    def _look_at_file(self) -> None:
         try:
             if self._file is not None:
                 self._file.check()
@@ -271,6 +282,7 @@ class SqliteJournal:
         # A commit of nothing succeeds also where there is no room for anything.
         wrote = [each.result for each in done if each.wrote]
         if wrote:
+            self._wrote_at = self._clock()
             self._trouble.ended(probed=all(result == PROBE for result in wrote))
 
     def _publish(self, done: list[Done]) -> None:

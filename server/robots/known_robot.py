@@ -27,8 +27,8 @@ from robots.link.messages import (
 )
 from server.errors import ConflictError, NotFoundError
 from server.journal.journal import DuplicateReceiptError, Entry, Journal, Receipt
+from server.pace import CHARS_OF_ONE
 from server.plain_text import plain
-from server.robots.pace import CHARS_OF_ONE
 from server.robots.session import (
     MissingReportError,
     PictureError,

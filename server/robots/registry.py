@@ -14,9 +14,10 @@ from robots.link.messages import PROTOCOL_VERSION, CommandBody, Hello, LinkError
 from server.errors import ConflictError
 from server.journal.journal import Journal, JournalClosedError
 from server.limits import Limits
+from server.pace import Pace
 from server.refusals import Refusals
 from server.robots.known_robot import KnownRobot, ReplacedError
-from server.robots.pace import Pace, PacedChannel
+from server.robots.paced_channel import PacedChannel
 from server.robots.passes import Anyone, Pass
 from server.robots.session import NoSenseError, RobotSession, read_message, sentence
 from server.robots.sink import RobotSink

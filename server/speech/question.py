@@ -1,9 +1,17 @@
 """The question that a conversation is about: finding it, and noticing that it is over."""
 
+from collections.abc import AsyncIterator
 from uuid import UUID
 
 from server.errors import ConflictError, NotFoundError
-from server.journal.events import Answered, DialogueClosed, Prompt, any_event
+from server.journal.events import (
+    Answered,
+    DialogueClosed,
+    DialogueEvent,
+    Event,
+    Prompt,
+    any_event,
+)
 from server.journal.journal import Journal, JournalClosedError
 from server.journal.subscriptions import PrunedEventsError, SubscriptionOverflowError
 from server.runtime.service import RunService
@@ -20,20 +28,26 @@ async def find_prompt(
     view = await runs.dialogue(dialogue)
     if view.prompt is not None and view.prompt.prompt == prompt:
         return view.prompt
-    after = 0
-    while records := await journal.read_records(after, PAGE, view.run):
-        for record in records:
-            # Most events are not about it, and the first one may be very long.
-            event = _prompt_in(record.text) if str(prompt) in record.text else None
-            if event is not None and (event.dialogue, event.prompt) == (dialogue, prompt):
-                return event
-        after = records[-1].seq
+    async for event in _events_of(journal, view.run, dialogue):
+        if isinstance(event, Prompt) and event.prompt == prompt:
+            return event
     raise NotFoundError(f"there is no prompt {prompt} in the dialogue {dialogue}")
 
 
-def _prompt_in(text: str) -> Prompt | None:
-    event = any_event.validate_json(text)
-    return event if isinstance(event, Prompt) else None
+async def _events_of(journal: Journal, run: UUID, dialogue: UUID) -> AsyncIterator[Event]:
+    """The events of a dialogue, from its first one to its last."""
+    indexed = await journal.index.dialogue(dialogue)
+    after = 0 if indexed is None else indexed.opened - 1
+    while records := await journal.read_records(after, PAGE, run):
+        for record in records:
+            if str(dialogue) not in record.text:
+                continue
+            event = any_event.validate_json(record.text)
+            if isinstance(event, DialogueEvent) and event.dialogue == dialogue:
+                yield event
+                if isinstance(event, DialogueClosed):
+                    return
+        after = records[-1].seq
 
 
 async def open_question(runs: RunService, dialogue: UUID, prompt: UUID) -> PromptView:

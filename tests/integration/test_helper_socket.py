@@ -15,6 +15,7 @@ from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed
 
 from server.journal.pruning import Keep
+from server.limits import Limits
 from server.runtime.requests import RunRequest
 
 REQUEST = RunRequest(tree="eket", world="tabletop", speed="max")
@@ -70,6 +71,19 @@ async def test_helpers_are_told_when_the_journal_cannot_be_written(
             service.journal.trouble.ended(probed=True)
             for socket in (before, later):
                 assert await receive(socket) == {"type": "trouble", "reason": None}
+
+
+async def test_who_floods_is_read_at_their_pace_and_nobody_else_waits() -> None:
+    limits = Limits(helper_messages_per_s=1)
+    async with serving(limits=limits) as service, helper(service) as flooding:
+        assert (await receive(flooding))["type"] == "snapshot"
+        for number in range(100):
+            await flooding.send(json.dumps({"type": "ping", "id": number}))
+        await service.refused("helper_messages_per_s")
+        async with helper(service, "helper=ben") as other:
+            assert (await receive(other))["type"] == "snapshot"
+            assert (await exchange(other, '{"type": "ping", "id": 1}'))["id"] == 1
+        assert service.refusals.counts["helper_messages_per_s"] < 100
 
 
 async def test_after_replays_what_was_missed(service: ServiceUnderTest) -> None:

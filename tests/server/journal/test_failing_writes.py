@@ -16,7 +16,7 @@ from server.journal.journal import (
     Receipt,
 )
 from server.journal.keyed_request import FirstAnswer, KeyedRequest
-from server.journal.sqlite import SqliteJournal
+from server.journal.sqlite import PROVEN_S, SqliteJournal
 
 IN_TIME_S = 60.0
 
@@ -97,13 +97,31 @@ async def test_a_writer_that_has_ended_is_noticed(journal: SqliteJournal) -> Non
     def end(_: sqlite3.Connection) -> None:
         raise SystemExit
 
-    journal.look()
+    await journal.look()
     assert journal.trouble.reason is None
     waiting = journal._writer.submit(end)
     await asyncio.to_thread(journal._writer._thread.join, IN_TIME_S)
-    journal.look()
+    await journal.look()
     assert "its thread has ended" in str(journal.trouble.reason)
     assert not waiting.done()
+
+
+async def test_a_disk_that_is_full_is_noticed_before_anybody_has_something_to_write() -> None:
+    now = 0.0
+    journal = SqliteJournal(":memory:", sleep=Never(), clock=lambda: now)
+    connection = failing(journal, "INSERT")
+    await journal.append(Entry(events=[paused()]))
+    connection.error = "database or disk is full"
+    now += PROVEN_S
+    await journal.look()
+    assert journal.trouble.reason is None, "what was just written proves that more can be"
+    now += 0.001
+    await journal.look()
+    assert "database or disk is full" in str(journal.trouble.reason)
+    connection.error = None
+    await journal.append(Entry(events=[paused()]))
+    assert journal.trouble.reason is None
+    journal.close()
 
 
 async def test_a_commit_that_wrote_nothing_does_not_end_the_trouble(journal: SqliteJournal) -> None:

@@ -77,9 +77,9 @@ async def test_a_file_that_is_put_back_is_written_again(tmp_path: Path) -> None:
 async def test_it_is_noticed_before_anything_is_to_be_written(tmp_path: Path) -> None:
     path = tmp_path / "journal.db"
     journal = SqliteJournal(path, sleep=Never())
-    journal.look()
+    await journal.look()
     assert journal.trouble.reason is None
     delete(path)
-    journal.look()
+    await journal.look()
     assert "was deleted or moved" in str(journal.trouble.reason)
     journal.close()

@@ -1,33 +1,10 @@
-"""How fast a robot from outside is listened to: one that floods waits, and nobody else does."""
+"""A robot from outside is listened to at its pace: one that floods waits, and nobody else does."""
 
 import asyncio
 from collections.abc import Awaitable, Callable
 
 from robots.link.channel import Channel
-
-CHARS_OF_ONE = 4096
-"""A longer message counts as one for each such part."""
-
-BURST_S = 4.0
-"""What was not said for so long may come at once."""
-
-
-class Pace:
-    """Lets through `per_s` messages a second; `now` is any monotonic clock in seconds."""
-
-    def __init__(self, per_s: float, now: Callable[[], float]) -> None:
-        self._per_s = per_s
-        self._now = now
-        self._left = per_s * BURST_S
-        self._at = now()
-
-    def take(self, messages: int) -> float:
-        """Note that so many came; returns for how many seconds nothing more is to be read."""
-        now = self._now()
-        self._left = min(self._per_s * BURST_S, self._left + (now - self._at) * self._per_s)
-        self._at = now
-        self._left -= messages
-        return max(0.0, -self._left / self._per_s)
+from server.pace import Pace
 
 
 class PacedChannel:
@@ -53,7 +30,7 @@ class PacedChannel:
 
     async def receive(self) -> str:
         text = await self._channel.receive()
-        wait_s = self._pace.take(1 + len(text) // CHARS_OF_ONE)
+        wait_s = self._pace.take(text)
         if wait_s > 0.0:
             self._held_back()
             await self._sleep(wait_s)

@@ -27,9 +27,10 @@ from robots.link.messages import (
 )
 from server.journal.sqlite import SqliteJournal
 from server.limits import Limits
+from server.pace import CHARS_OF_ONE, Pace
 from server.refusals import Refusals
 from server.robots.known_robot import MOST_UNASKED_REPORTS
-from server.robots.pace import CHARS_OF_ONE, Pace, PacedChannel
+from server.robots.paced_channel import PacedChannel
 from server.robots.passes import Anyone
 from server.robots.registry import RobotRegistry
 from server.robots.times import LinkTimes
@@ -99,7 +100,7 @@ async def test_a_robot_that_keeps_to_its_pace_never_waits() -> None:
     pace = Pace(10, clock)
     for _ in range(1000):
         clock.now += 0.1
-        assert pace.take(1) == 0.0
+        assert pace.take("x") == 0.0
 
 
 async def test_a_long_message_counts_as_many() -> None:
