@@ -3,8 +3,7 @@
 import asyncio
 import logging
 from array import array
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Mapping
 from datetime import datetime
 from functools import partial
 from itertools import islice
@@ -24,7 +23,7 @@ from server.errors import (
     UnreadableError,
 )
 from server.journal import events as ev
-from server.journal.journal import Entry, Journal, JournalClosedError, JournalWriteError
+from server.journal.journal import Entry, Journal
 from server.journal.run_index import UNREADABLE, IndexedRun, RunPage
 from server.runtime.choosing import potentials_for
 from server.runtime.clock import RunClock, SimulatedClock, WallClock
@@ -32,15 +31,14 @@ from server.runtime.context import RunContext, RunSettings
 from server.runtime.dialogue_driver import DialogueDriver
 from server.runtime.dialogue_state import DialogueState
 from server.runtime.failure import fail_run, why_it_stopped
-from server.runtime.history import History
 from server.runtime.new_run import NewRun, NewRuns
-from server.runtime.past_dialogues import PastDialogues
-from server.runtime.past_states import PastStates
 from server.runtime.ports import LIVE, Poses, Preparation, RealRobots, Robots, Worlds
 from server.runtime.requests import RunRequest
+from server.runtime.robot_owners import RobotOwners
 from server.runtime.robot_side import RobotSide
 from server.runtime.run import Run
 from server.runtime.run_state import RunState
+from server.runtime.run_states import RunStates
 from server.runtime.run_views import (
     RunViewing,
     dialogue_view,
@@ -91,15 +89,12 @@ class Runtime:
         self._monotonic = monotonic
         self._utc_now = utc_now
         self._poses = poses
-        self._states: dict[UUID, RunState] = {}
+        self._states = RunStates(journal, scripts)
         self._runs: dict[UUID, Run] = {}
         self._tasks: dict[UUID, asyncio.Task[None]] = {}
-        self._promised: dict[str, UUID] = {}
+        self._owners = RobotOwners(robots)
         self._closing = False
         self._new_runs = NewRuns(preparation, worlds, utc_now, settings.limits)
-        self._history = History(journal, scripts)
-        self._past = PastStates(self._history)
-        self._past_dialogues = PastDialogues(journal.index, scripts)
         journal.trouble.watch(self._journal_troubled)
 
     # --- Beginning and ending -----------------------------------------------------------------
@@ -109,51 +104,20 @@ class Runtime:
 
         What cannot be read, or was found to be damaged, is left alone and listed as unreadable.
         """
-        damaged = {run: each.sentence for each in self._journal.damage for run in each.runs}
-        for run, why in damaged.items():
-            with suppress(ValueError):
-                await self._cannot_read(UUID(run), f"run {run} is damaged: {why}")
-        for indexed in await self._journal.index.going_on():
-            if str(indexed.run) not in damaged:
-                await self._take_up_again(indexed)
+        for indexed in await self._states.left_by_the_last_service():
+            await self._take_up_again(indexed)
 
     async def _take_up_again(self, indexed: IndexedRun) -> None:
         try:
-            state = await self._read_state(indexed)
+            state = await self._states.read(indexed)
         except UnreadableError as error:
             # One run that cannot be read must not keep the others from going on.
             log.error("%s", error)
             return
-        self._states[indexed.run] = state
+        self._states.add(state)
         if not state.status.ended:
             await self._take_up_or_fail(state)
-        self._let_go(state)
-
-    async def _read_state(self, indexed: IndexedRun) -> RunState:
-        """The state of a run that is not in memory. Raises `UnreadableError`."""
-        doubted = indexed.status == UNREADABLE
-        if doubted and not await self._journal.is_whole(indexed.run):
-            raise UnreadableError(indexed.why or f"run {indexed.run} cannot be read")
-        try:
-            state = await self._history.read(indexed.run)
-        except UnreadableError as error:
-            if not doubted:
-                await self._cannot_read(indexed.run, str(error))
-            raise
-        if doubted:
-            with suppress(JournalWriteError, JournalClosedError):
-                await self._journal.mark_readable(indexed.run, state.status)
-        return state
-
-    async def _cannot_read(self, run: UUID, why: str) -> None:
-        """Have a run listed as unreadable from now on."""
-        with suppress(JournalWriteError, JournalClosedError):
-            await self._journal.mark_unreadable(run, why)
-
-    def _let_go(self, state: RunState) -> None:
-        """Of runs that have ended only a few are kept in memory."""
-        if state.status.ended and self._states.pop(state.id, None) is not None:
-            self._history.keep(state)
+        self._states.let_go(state)
 
     def _journal_troubled(self, reason: str | None) -> None:
         for run in tuple(self._runs.values()):
@@ -185,13 +149,13 @@ class Runtime:
         self._refuse_one_too_many()
         if request.world == LIVE:
             await self._wait_until_given_back(request.robots)
-            self._check_robots(request.robots)
-        with self._promise(new.started):
+            self._owners.check(request.robots)
+        with self._owners.promised(new.started):
             return await self._begin(new)
 
     def _refuse_one_too_many(self) -> None:
         most = self._settings.limits.running_runs
-        running = len({*self._runs, *self._promised.values()})
+        running = len({*self._runs, *self._owners.promised_to})
         if running >= most:
             raise ConflictError(
                 f"{running} runs have not ended yet, and at most {most} may go on at a time: abort "
@@ -199,30 +163,20 @@ class Runtime:
                 limit="running_runs",
             )
 
-    @contextmanager
-    def _promise(self, started: ev.RunStarted) -> Iterator[None]:
-        """While a run is being journaled no other may be given its robots."""
-        promised = dict.fromkeys(started.robots, started.run)
-        self._promised.update(promised)
-        try:
-            yield
-        finally:
-            for robot in promised:
-                del self._promised[robot]
-
     async def _begin(self, new: NewRun) -> RunSummary:
-        run = new.started.run
+        states: list[RunState] = []
 
         def fold(numbered: list[ev.Event]) -> None:
             started = cast(ev.RunStarted, numbered[0])
-            self._states[run] = RunState(started, self._scripts, new.nodes)
+            states.append(RunState(started, self._scripts, new.nodes))
+            self._states.add(states[0])
 
         await self._journal.append(Entry(events=[new.started], tree=new.tree), fold)
-        state = self._states[run]
+        (state,) = states
         # One that is journaled while the service stops is taken up at the next start.
         if not self._closing:
             await self._take_up_or_fail(state)
-            self._let_go(state)
+            self._states.let_go(state)
         return self._summary(state)
 
     async def _wait_until_given_back(self, robots: list[str]) -> None:
@@ -234,22 +188,6 @@ class Runtime:
         ]
         if parting:
             await asyncio.wait(parting)
-
-    def _check_robots(self, robots: list[str]) -> None:
-        if not robots:
-            raise InvalidError(
-                "a run in the world 'live' needs 'robots': the ids of connected ones"
-            )
-        twice = next((each for each in robots if robots.count(each) > 1), None)
-        if twice is not None:
-            raise InvalidError(f"'robots' names the robot '{twice}' more than once; once is enough")
-        busy = {robot: run for run, each in self._runs.items() for robot in each.sides}
-        busy |= self._promised
-        for robot in robots:
-            if not self._robots.connected(robot):
-                raise NotFoundError(f"no robot '{robot}' is connected")
-            if robot in busy:
-                raise ConflictError(f"the robot '{robot}' is busy with run {busy[robot]}")
 
     async def _take_up_or_fail(self, state: RunState) -> None:
         """Let a run go on; if that cannot be, it fails and says why."""
@@ -277,50 +215,27 @@ class Runtime:
         )
         hardware = RealRobots() if live else self._worlds.open(state, lambda: self._runs[state.id])
         run = Run(context, sides, dialogues, hardware, self._poses.open(state))
-        self._assign(run)
+        try:
+            self._owners.give(run)
+        except ConflictError:
+            self._poses.close(state.id)
+            raise
         self._runs[state.id] = run
         task = asyncio.create_task(run.main(), name=f"run {state.id}")
-        task.add_done_callback(partial(self._ended, state))
+        task.add_done_callback(partial(self._ended, run))
         self._tasks[state.id] = task
 
-    def _assign(self, run: Run) -> None:
-        """Give a run all its robots, or none. Raises `ConflictError` if another run has one."""
-        given: list[str] = []
-        try:
-            for robot in run.sides:
-                self._robots.assign(robot, run)
-                given.append(robot)
-        except ConflictError:
-            for robot in given:
-                self._robots.unassign(robot)
-            self._poses.close(run.context.state.id)
-            raise
-
-    def _ended(self, state: RunState, task: asyncio.Task[None]) -> None:
-        for robot in state.started.robots:
-            self._robots.unassign(robot)
+    def _ended(self, run: Run, task: asyncio.Task[None]) -> None:
+        state = run.context.state
+        self._owners.take_back(run)
         self._runs.pop(state.id, None)
         self._tasks.pop(state.id, None)
         self._poses.close(state.id)
-        self._let_go(state)
+        self._states.let_go(state)
         if not task.cancelled() and (error := task.exception()) is not None:
             log.error("run %s stopped and could not say so", state.id, exc_info=error)
 
     # --- What there is ------------------------------------------------------------------------
-
-    async def _state(self, run: UUID) -> RunState:
-        """Raises `NotFoundError` or `UnreadableError`."""
-        if run in self._states:
-            return self._states[run]
-        # Looked for in the index first: what is kept in memory may have been pruned.
-        indexed = await self._journal.index.find(run)
-        if indexed is None:
-            pruned = await self._journal.pruned_through()
-            hint = "; ended runs have been pruned from this journal" if pruned else ""
-            raise NotFoundError(f"there is no run {run}{hint}")
-        if run in self._states:
-            return self._states[run]
-        return self._history.kept(run) or await self._read_state(indexed)
 
     def _time(self, state: RunState) -> float:
         run = self._runs.get(state.id)
@@ -333,7 +248,7 @@ class Runtime:
         trouble = self._journal.trouble.reason
         summaries = []
         for indexed in await self._journal.index.page(page):
-            state = self._states.get(indexed.run)
+            state = self._states.going_on(indexed.run)
             if state is None or indexed.status == UNREADABLE:
                 summaries.append(summary_of_indexed(indexed))
             else:
@@ -347,19 +262,19 @@ class Runtime:
 
     async def run(self, run: UUID) -> RunView:
         """Everything about one run. Raises `NotFoundError` or `UnreadableError`."""
-        return await self._viewing(await self._state(run)).view()
+        return await self._viewing(await self._states.find(run)).view()
 
     async def run_summary(self, run: UUID) -> RunSummary:
         """One run without its nodes. Raises `NotFoundError` or `UnreadableError`."""
-        if run not in self._states:
+        if self._states.going_on(run) is None:
             indexed = await self._journal.index.find(run)
             if indexed is not None and RunStatus(indexed.status).ended:
                 return summary_of_indexed(indexed)
-        return self._summary(await self._state(run))
+        return self._summary(await self._states.find(run))
 
     async def run_json(self, run: UUID) -> list[bytes]:
         """What `run` returns, in JSON, in pieces."""
-        return await self._viewing(await self._state(run)).json()
+        return await self._viewing(await self._states.find(run)).json()
 
     def _viewing(self, state: RunState) -> RunViewing:
         leaves = np.asarray(state.tree.leaves, dtype=np.int64)
@@ -378,25 +293,12 @@ class Runtime:
         """The state after event `seq`, or after the last one without it."""
         head = self._journal.head
         at = head if seq is None else min(seq, head)
-        states = []
-        for run in await self._journal.index.open_at(at):
-            try:
-                state = await self._state_at(run, at)
-            except UnreadableError:
-                continue  # It is listed as unreadable.
-            if state is not None and not state.status.ended:
-                states.append(state)
+        states = await self._states.open_at(at)
         return Snapshot(
             seq=at,
             runs=[self._summary(each) for each in states],
             dialogues=[dialogue_view(d) for each in states for d in each.open_dialogues],
         )
-
-    async def _state_at(self, run: UUID, at: int) -> RunState | None:
-        state = self._states.get(run)
-        if state is not None and await self._history.is_at(state, at):
-            return state
-        return await self._past.at(run, at, state)
 
     # --- What people ask for ------------------------------------------------------------------
 
@@ -457,48 +359,19 @@ class Runtime:
         """A page of dialogues, oldest first; without those of runs that cannot be read."""
         if status == "open":
             # Whoever hears of an event finds it here already; the index is a moment ahead of that.
-            return [dialogue_view(e) for e in islice(self._open(), offset, offset + limit)]
-        found = await self._journal.index.dialogues(status, limit, offset)
-        now = {each: self._known_dialogue(each.dialogue) for each in found}
-        past = await self._past_dialogues.read([each for each in found if now[each] is None])
-        read = [now[each] or past.get(each.dialogue) for each in found]
-        views = [dialogue_view(each) for each in read if each is not None]
+            opened = self._states.open_dialogues()
+            return [dialogue_view(each) for each in islice(opened, offset, offset + limit)]
+        page = await self._states.page_of_dialogues(status, limit, offset)
+        views = [dialogue_view(each) for each in page]
         return [each for each in views if status is None or each.status == status]
-
-    def _open(self) -> Iterator[DialogueState]:
-        return (each for state in self._states.values() for each in state.open_dialogues)
 
     def count_open_dialogues(self) -> int:
         """How many dialogues are open."""
-        return sum(1 for _ in self._open())
-
-    async def _dialogue(self, dialogue: UUID) -> DialogueState:
-        """Raises `NotFoundError` or `UnreadableError`."""
-        known = self._known_dialogue(dialogue)
-        if known is not None:
-            return known
-        found = await self._journal.index.dialogue(dialogue)
-        past = {} if found is None else await self._past_dialogues.read([found])
-        if dialogue in past:
-            return past[dialogue]
-        run = await self._journal.index.run_of(dialogue)
-        if run is not None:
-            # That says what is wrong with it, or that nothing is any more.
-            state = await self._state(run)
-            if dialogue in state.dialogues:
-                return state.dialogues[dialogue]
-        raise NotFoundError(f"there is no dialogue {dialogue}")
-
-    def _known_dialogue(self, dialogue: UUID) -> DialogueState | None:
-        """A dialogue of a run that goes on."""
-        for state in self._states.values():
-            if dialogue in state.dialogues:
-                return state.dialogues[dialogue]
-        return None
+        return sum(1 for _ in self._states.open_dialogues())
 
     async def dialogue(self, dialogue: UUID) -> DialogueView:
         """One dialogue. Raises `NotFoundError` or `UnreadableError`."""
-        return dialogue_view(await self._dialogue(dialogue))
+        return dialogue_view(await self._states.find_dialogue(dialogue))
 
     async def answer(
         self,
@@ -512,7 +385,7 @@ class Runtime:
 
         Raises `NotFoundError`, `LostRaceError` or `ConflictError`.
         """
-        found = await self._dialogue(dialogue)
+        found = await self._states.find_dialogue(dialogue)
         try:
             run = await self._running(found.opened.run)
             side = run.sides[found.opened.robot]
@@ -530,7 +403,7 @@ class Runtime:
         self, dialogue: UUID, prompt: UUID, helper: str, author: ev.Author | None = None
     ) -> ev.DeadlineExtended:
         """Give the open question more time. Raises `NotFoundError` or `ConflictError`."""
-        found = await self._dialogue(dialogue)
+        found = await self._states.find_dialogue(dialogue)
         run = await self._running(found.opened.run)
         extended = await run.request(lambda: run.dialogues.extend(found, prompt, helper, author))
         return cast(ev.DeadlineExtended, extended)
@@ -547,7 +420,7 @@ class Runtime:
 
         Raises `ConflictError` while another is, unless it is taken over from them.
         """
-        found = await self._dialogue(dialogue)
+        found = await self._states.find_dialogue(dialogue)
         run = await self._running(found.opened.run)
         await run.request(
             lambda: run.claims.claim(found, helper, take_over=take_over, author=author)
@@ -558,7 +431,7 @@ class Runtime:
         self, dialogue: UUID, helper: str, author: ev.Author | None = None
     ) -> DialogueView:
         """Give up a claim. Raises `ConflictError` without one."""
-        found = await self._dialogue(dialogue)
+        found = await self._states.find_dialogue(dialogue)
         run = await self._running(found.opened.run)
         await run.request(lambda: run.claims.release(found, helper, author))
         return dialogue_view(found)

@@ -109,9 +109,9 @@ async def test_a_run_of_a_large_tree_goes_on_after_a_restart_and_ends(tmp_path) 
     journal = tmp_path / "journal.db"
     async with pretend_service(many_alternatives(), journal=journal) as service:
         run = await service.runtime.start_run(RunRequest(tree="tree", world="tabletop"))
-        tree = service.runtime._states[run.id].tree
+        tree = service.runtime._states.going_on(run.id).tree
     async with pretend_service(many_alternatives(), journal=journal) as service:
-        again = service.runtime._states[run.id].tree
+        again = service.runtime._states.going_on(run.id).tree
         assert again.nodes.names == tree.nodes.names
         ended = await service.runtime.wait_for_end(run.id)
         events = await service.journal.read(0, 10_000, run.id)

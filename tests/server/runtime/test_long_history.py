@@ -104,8 +104,8 @@ async def test_ended_runs_are_folded_when_asked_for_and_few_are_kept(
         assert [node.done for node in view.nodes] == [True] * 5
         for number in range(RUNS):
             await service.runtime.run(run_id(number))
-        assert len(service.runtime._history._kept) == MOST_KEPT
-        assert service.runtime._states == {}
+        assert len(service.runtime._states._history._kept) == MOST_KEPT
+        assert service.runtime._states._going_on == {}
         with pytest.raises(ConflictError, match="has ended"):
             await service.runtime.pause(run_id(3))
 
@@ -113,7 +113,7 @@ async def test_ended_runs_are_folded_when_asked_for_and_few_are_kept(
 async def test_a_run_that_ends_is_let_go_of(path: Path, folded: list[UUID]) -> None:
     async with pretend_service(TWO_PARTS, journal=path) as service:
         view, _ = await service.run_to_end()
-        assert service.runtime._states == {}
+        assert service.runtime._states._going_on == {}
         assert (await service.runtime.run(view.id)).status is RunStatus.FINISHED
     assert folded == []
 

@@ -33,7 +33,7 @@ def path(tmp_path: Path) -> Path:
 
 async def folded_views(service: PretendService, run: UUID) -> dict[UUID, Any]:
     """The run's dialogues as a fold of all its events has them."""
-    state = await service.runtime._history.read(run)
+    state = await service.runtime._states._history.read(run)
     return {each.id: dialogue_view(each) for each in state.dialogues.values()}
 
 

@@ -66,7 +66,7 @@ async def test_an_old_run_that_many_ask_for_at_once_is_folded_once(
 ) -> None:
     async with pretend_service(TREE) as service:
         view, _ = await service.run_to_end()
-        service.runtime._history._kept.clear()
+        service.runtime._states._history._kept.clear()
         views = await asyncio.gather(*(service.runtime.run(view.id) for _ in range(20)))
     assert folded == [None]
     assert views == [view] * 20
@@ -116,7 +116,7 @@ async def test_one_who_goes_away_takes_it_from_nobody() -> None:
         first, second = (
             asyncio.create_task(service.runtime.snapshot(events[-2].seq)) for _ in range(2)
         )
-        while not service.runtime._past._moments:  # noqa: ASYNC110
+        while not service.runtime._states._past._moments:  # noqa: ASYNC110
             await asyncio.sleep(0)
         first.cancel()
         assert len((await second).runs) == 1

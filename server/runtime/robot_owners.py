@@ -1,0 +1,73 @@
+"""Which run has which robot, or is about to be given it."""
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from uuid import UUID
+
+from server.errors import ConflictError, InvalidError, NotFoundError
+from server.journal.events import RunStarted
+from server.runtime.ports import Robots
+from server.runtime.run import Run
+
+
+class RobotOwners:
+    """Gives each robot to one run at a time."""
+
+    def __init__(self, robots: Robots) -> None:
+        self._robots = robots
+        self._promised: dict[str, UUID] = {}
+        self._given: dict[str, UUID] = {}
+
+    @property
+    def promised_to(self) -> set[UUID]:
+        """The runs that are being journaled, and get their robots then."""
+        return set(self._promised.values())
+
+    def check(self, robots: Sequence[str]) -> None:
+        """Look whether a run in the world 'live' can have these robots.
+
+        Raises `InvalidError`, `NotFoundError` or `ConflictError`.
+        """
+        if not robots:
+            raise InvalidError(
+                "a run in the world 'live' needs 'robots': the ids of connected ones"
+            )
+        twice = next((each for each in robots if robots.count(each) > 1), None)
+        if twice is not None:
+            raise InvalidError(f"'robots' names the robot '{twice}' more than once; once is enough")
+        busy = self._given | self._promised
+        for robot in robots:
+            if not self._robots.connected(robot):
+                raise NotFoundError(f"no robot '{robot}' is connected")
+            if robot in busy:
+                raise ConflictError(f"the robot '{robot}' is busy with run {busy[robot]}")
+
+    @contextmanager
+    def promised(self, started: RunStarted) -> Iterator[None]:
+        """While a run is being journaled no other may be given its robots."""
+        promised = dict.fromkeys(started.robots, started.run)
+        self._promised.update(promised)
+        try:
+            yield
+        finally:
+            for robot in promised:
+                del self._promised[robot]
+
+    def give(self, run: Run) -> None:
+        """Give a run all its robots, or none. Raises `ConflictError` if another run has one."""
+        given: list[str] = []
+        try:
+            for robot in run.sides:
+                self._robots.assign(robot, run)
+                given.append(robot)
+        except ConflictError:
+            for robot in given:
+                self._robots.unassign(robot)
+            raise
+        self._given.update(dict.fromkeys(given, run.context.state.id))
+
+    def take_back(self, run: Run) -> None:
+        """A run needs its robots no more."""
+        for robot in run.sides:
+            self._robots.unassign(robot)
+            del self._given[robot]
