@@ -5,7 +5,7 @@ import socket
 import ssl
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 import uvicorn
@@ -50,7 +50,10 @@ def serve_config(app: FastAPI, settings: Settings) -> uvicorn.Config:
 
 
 class Server(uvicorn.Server):
-    """A uvicorn within somebody else's event loop, on sockets that are bound already."""
+    """A uvicorn within somebody else's event loop, on sockets that are bound already.
+
+    `now` is any monotonic clock in seconds: by it connections are ended.
+    """
 
     def __init__(
         self,
@@ -58,10 +61,11 @@ class Server(uvicorn.Server):
         settings: Settings,
         refusals: Refusals,
         tls: ssl.SSLContext | None = None,
+        now: Callable[[], float] = time.monotonic,
     ) -> None:
         super().__init__(config)
         proxies = TrustedProxies(settings.trusted_proxies)
-        self.visitors = Visitors(settings.limits, refusals, time.monotonic, proxies)
+        self.visitors = Visitors(settings.limits, refusals, now, proxies)
         self._tls = tls
 
     @contextmanager

@@ -128,12 +128,14 @@ def build(
 
 @contextlib.asynccontextmanager
 async def serving(
-    speech: SpeechAbilities = NO_SPEECH, **arguments: Any
+    speech: SpeechAbilities = NO_SPEECH,
+    now: Callable[[], float] = time.monotonic,
+    **arguments: Any,
 ) -> AsyncIterator[ServiceUnderTest]:
-    """A service behind a real socket on a free port."""
+    """A service behind a real socket on a free port; by `now` connections are ended."""
     service = build(speech, **arguments)
     config = serve_config(service.app, service.settings)
-    server = Server(config, service.settings, service.refusals)
+    server = Server(config, service.settings, service.refusals, now=now)
     service.served_by = server
     server.config.log_level = None
     socket = listen(service.settings)

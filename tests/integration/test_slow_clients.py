@@ -1,6 +1,5 @@
 """Clients that stop reading are ended by the service itself, whatever they were sent."""
 
-import asyncio
 import time
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
@@ -12,6 +11,7 @@ from raw_client import RawClient, raw_client
 from sample_events import started
 from service_under_test import ServiceUnderTest, serving, until
 from shown_run import hello
+from ticking_clock import TickingClock
 from websockets.frames import Frame, Opcode
 
 from server.api.robot_socket import add_robot_route
@@ -59,14 +59,18 @@ async def test_a_helper_who_reads_nothing_is_ended() -> None:
 
 
 async def test_a_helper_who_reads_slowly_gets_everything() -> None:
-    async with serving(limits=SOON) as service, client_of(service) as client:
+    clock = TickingClock()
+    limits = Limits(stuck_client_s=10.0)
+    async with serving(limits=limits, now=clock) as service, client_of(service) as client:
         await client.upgraded("/ws/helper?helper=anna")
-        events = [failed(number) for number in range(10)]
+        events = [failed(number % 10) for number in range(MORE_THAN_IS_BUFFERED)]
         await service.journal.append(Entry(events=events))
-        read = b""
-        while b'"9999' not in read:
-            read += await client.reader.readexactly(50_000)
-            await asyncio.sleep(0.01)
+        unread_chars = EVENT_CHARS * MORE_THAN_IS_BUFFERED
+        while unread_chars > 0:
+            # A tenth of what is allowed for taking anything, and 200 times as long for it all.
+            clock.now_s += 1.0
+            service.server.visitors.end_overdue()
+            unread_chars -= len(await client.reader.readexactly(EVENT_CHARS))
         assert service.refusals.counts["stuck_client_s"] == 0
 
 
