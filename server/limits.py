@@ -31,6 +31,7 @@ LimitName = Literal[
     "idempotency_s",
     "robot_messages_per_s",
     "helper_messages_per_s",
+    "requests_per_s",
 ]
 """The limits by name: whoever refuses something says for which of them."""
 
@@ -86,3 +87,5 @@ class Limits(BaseModel):
     """Messages of one robot's connection that are read in a second, of 4096 characters each."""
     helper_messages_per_s: AtLeastOne = 100
     """Messages of one helper's connection, of whatever kind, counted in the same way."""
+    requests_per_s: AtLeastOne = 100
+    """Requests of one principal with a credential of their own that are answered in a second."""

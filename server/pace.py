@@ -18,10 +18,28 @@ class Pace:
         self._left = per_s * BURST_S
         self._at = now()
 
-    def take(self, message: str | bytes) -> float:
-        """Note one that came; returns for how many seconds nothing more is to be read."""
+    def take(self, chars: int = 0) -> float:
+        """Note one of so many characters; returns for how many seconds no more are to be read."""
         now = self._now()
         self._left = min(self._per_s * BURST_S, self._left + (now - self._at) * self._per_s)
         self._at = now
-        self._left -= 1 + len(message) // CHARS_OF_ONE
+        self._left -= 1 + chars // CHARS_OF_ONE
         return max(0.0, -self._left / self._per_s)
+
+
+class Paces:
+    """The pace of each of many, by a key; `most` of them, those that were heard last."""
+
+    def __init__(self, per_s: float, now: Callable[[], float], most: int = 1000) -> None:
+        self._per_s = per_s
+        self._now = now
+        self._most = most
+        # The one that was heard last is the last.
+        self._paces: dict[str, Pace] = {}
+
+    def of(self, key: str) -> Pace:
+        pace = self._paces.pop(key, None) or Pace(self._per_s, self._now)
+        self._paces[key] = pace
+        if len(self._paces) > self._most:
+            del self._paces[next(iter(self._paces))]
+        return pace

@@ -1,6 +1,7 @@
 """The gate before every HTTP request: Host, Origin, token, role and the size of the body."""
 
 import asyncio
+import time
 from collections.abc import Mapping
 
 from starlette.datastructures import MutableHeaders
@@ -11,9 +12,11 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from server.access.access import Access
 from server.access.permissions import needed_for_request
+from server.access.principal import Caller
 from server.api.problems import forbidden, problem, problem_response
 from server.api.safe_headers import OVER_TLS, SAFE_HEADERS
 from server.limits import Limits
+from server.pace import Paces
 from server.refusals import Refusals
 
 MAX_BODY_BYTES = 8 * 1024 * 1024
@@ -29,6 +32,7 @@ class Gate:
         self._access = access
         self._strangers_bytes = min(limits.stranger_body_bytes, MAX_BODY_BYTES)
         self._refusals = refusals
+        self._paces = Paces(limits.requests_per_s, time.monotonic)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         if scope["type"] != "http":
@@ -43,6 +47,7 @@ class Gate:
             private=scope["path"].startswith(PROTECTED),
             encrypted=scope["scheme"] == "https",
         )
+        await self._keep_pace(scope)
         if refusal is None:
             await self._app(scope, self._limited(scope, receive), guarded)
         else:
@@ -78,6 +83,16 @@ class Gate:
         scope.setdefault("state", {})["caller"] = admission.caller
         role = admission.caller.principal.role
         return None if role.may(needed) else problem_response(forbidden(needed, role))
+
+    async def _keep_pace(self, scope: Scope) -> None:
+        """Who asks too fast waits; those who share the one token are not held to a share of it."""
+        caller: Caller | None = scope.get("state", {}).get("caller")
+        if caller is None or not caller.principal.named:
+            return
+        wait_s = self._paces.of(caller.principal.key).take()
+        if wait_s:
+            self._refusals.note("requests_per_s")
+            await asyncio.sleep(wait_s)
 
     def _most_bytes(self, scope: Scope) -> int:
         """How large a body may be; much smaller where nobody had to say who they are."""

@@ -167,7 +167,7 @@ class HelperConnection(ABC, Generic[Query]):
         return received
 
     async def _keep_pace(self, received: str | bytes) -> None:
-        wait_s = self._pace.take(received)
+        wait_s = self._pace.take(len(received))
         if wait_s > 0.0:
             self._parts.refusals.note("helper_messages_per_s")
             await asyncio.sleep(wait_s)

@@ -30,7 +30,7 @@ class PacedChannel:
 
     async def receive(self) -> str:
         text = await self._channel.receive()
-        wait_s = self._pace.take(text)
+        wait_s = self._pace.take(len(text))
         if wait_s > 0.0:
             self._held_back()
             await self._sleep(wait_s)

@@ -21,6 +21,7 @@ from server.access.sessions import SESSION_LIFETIME_S
 from server.client import MendClient
 from server.composition import open_service
 from server.journal import events as ev
+from server.limits import Limits
 from server.settings import Settings
 
 Served = tuple[ServiceUnderTest, People]
@@ -59,6 +60,22 @@ async def with_cookie(service: ServiceUnderTest, cookie: str) -> int:
     async with httpx.AsyncClient(base_url=service.url) as client:
         headers = {"Cookie": f"mend_session={cookie}"}
         return (await client.get("/api/runs", headers=headers)).status_code
+
+
+async def test_who_asks_without_end_is_answered_at_a_pace_and_nobody_else_waits(
+    tmp_path: Path,
+) -> None:
+    async with serving_people(tmp_path, limits=Limits(requests_per_s=1)) as served:
+        service, _ = served
+        async with as_a(served, Role.ROBOT) as flooding, as_a(served, Role.HELPER) as other:
+            # Also what is refused, and over however many connections.
+            many = [asyncio.create_task(flooding.get("/api/runs")) for _ in range(20)]
+            await service.refused("requests_per_s")
+            assert (await other.get("/api/runs")).status_code == 200
+            assert sum(each.done() for each in many) < 20
+            for each in many:
+                each.cancel()
+            await asyncio.gather(*many, return_exceptions=True)
 
 
 # --- Sessions -------------------------------------------------------------------------------------

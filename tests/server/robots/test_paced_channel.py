@@ -100,7 +100,7 @@ async def test_a_robot_that_keeps_to_its_pace_never_waits() -> None:
     pace = Pace(10, clock)
     for _ in range(1000):
         clock.now += 0.1
-        assert pace.take("x") == 0.0
+        assert pace.take() == 0.0
 
 
 async def test_a_long_message_counts_as_many() -> None:
