@@ -73,7 +73,7 @@ def test_ports_are_published_on_this_machine_alone() -> None:
 def test_every_stage_is_made_of_the_one_base_that_can_be_given_by_its_digest() -> None:
     bases = [line.split()[1] for line in instructions(DOCKERFILE) if line.startswith("FROM ")]
     assert bases[0] == "${BASE_IMAGE}"
-    assert set(bases[1:]) <= stages().keys()
+    assert set(bases[1:]) - {"scratch"} <= stages().keys()
     assert re.search(r"^ARG BASE_IMAGE=\S+$", DOCKERFILE, re.MULTILINE)
     for service in SERVICES.values():
         assert service["build"]["args"]["BASE_IMAGE"].startswith("${BASE_IMAGE:-")
@@ -85,17 +85,39 @@ def test_images_run_as_a_user_of_their_own_who_owns_nothing_of_the_program() -> 
     assert service.index("USER mend") > next(
         index for index, line in enumerate(service) if line.startswith("COPY")
     )
-    assert not any("--chown" in line for line in service)
+    owned = [line.split()[-1] for line in service if "--chown" in line]
+    assert owned == ["/data"]
     assert not any(line.startswith("USER") for line in stages()["demo"])
 
 
-def test_the_image_is_relieved_of_what_no_service_needs() -> None:
-    script = ROOT / "docker/slim.sh"
-    assert script.stat().st_mode & 0o111
+def test_the_environment_is_relieved_of_what_no_service_needs() -> None:
+    assert (ROOT / "docker/slim.sh").stat().st_mode & 0o111
     assert any("&& docker/slim.sh /opt/mend/" in line for line in stages()["build"])
+
+
+def test_an_image_begins_with_nothing_and_gets_what_it_needs_to_run() -> None:
+    service = stages()["service"]
+    assert service[0] == "FROM scratch AS service"
+    # There is no shell to run anything with, while it is built and afterwards.
+    for name in ("service", "demo"):
+        assert not any(line.startswith(("RUN", "SHELL")) for line in stages()[name])
+        for line in stages()[name]:
+            if line.startswith(("CMD", "ENTRYPOINT")):
+                assert line.partition(" ")[2].startswith("[")
+    assert "COPY --from=system /service /" in service
+
+
+def test_what_a_build_copies_from_here_enters_it() -> None:
     allowed = (ROOT / ".dockerignore").read_text().splitlines()
-    copied = next(line for line in stages()["build"] if line.startswith("COPY docker/"))
-    for file in copied.split()[1:-1]:
+    files = [
+        file
+        for lines in stages().values()
+        for line in lines
+        if line.startswith("COPY docker/")
+        for file in line.split()[1:-1]
+    ]
+    assert len(files) >= 4
+    for file in files:
         assert (ROOT / file).is_file()
         assert any(fnmatch(file, each.removeprefix("!")) for each in allowed if each[:1] == "!")
 
