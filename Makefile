@@ -47,7 +47,8 @@ screenshots: console  ## The console's pictures in docs/images, from situations 
 
 test: console  ## Every test, in random order; one in a browser that fails is run once more
 	@# The kernels and the tests are compiled once here, not by many processes at a time.
-	$(MAKE) --no-print-directory -j -O console-tests test-modules arm-kernels fleet-kernels
+	$(MAKE) --no-print-directory -j -O arm-kernels fleet-kernels
+	$(MAKE) --no-print-directory -j -O console-tests test-modules
 	@command -v chromium google-chrome >/dev/null || echo 'There is no Chromium on this machine: the tests in a browser are skipped.'
 	$(BIN)/python scripts/run_tests.py
 
