@@ -77,6 +77,8 @@ class MendClient:
             base_url=self._url,
             headers=self._headers,
             timeout=timeout_s,
+            # Without TLS there is nobody to verify: reading all authorities would take for nothing.
+            verify=not self._url.lower().startswith("http:"),
             limits=httpx.Limits(keepalive_expiry=IDLE_S),
         )
 

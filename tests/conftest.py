@@ -1,8 +1,10 @@
 """What all tests share: the order in which processes take them, and patience with busy machines."""
 
 import os
+from collections.abc import Iterator
 
 import pytest
+import trustme
 from hypothesis import settings
 
 # No property fails for how long it takes.
@@ -28,3 +30,16 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         del quick[:rest]
     if len(dealt) == len(items):
         items[:] = dealt
+
+
+@pytest.fixture(autouse=True, scope="session")
+def _one_authority(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """A client that may come to speak TLS reads all authorities first, which takes long.
+
+    None of them is needed by any test.
+    """
+    file = tmp_path_factory.mktemp("authority") / "ca.pem"
+    trustme.CA().cert_pem.write_to_path(file)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("SSL_CERT_FILE", str(file))
+        yield

@@ -12,7 +12,7 @@ from fuzz_robots import fuzz_robot
 
 from server.cli.failures import CommandLineError
 
-FEW, MANY = 10, 80
+FEW, MANY = 4, 30
 """Of files that take long to read, and of others."""
 
 SLOW = ("task tree", "scene", "scenario", "delivery", "delivery of any format")
@@ -34,7 +34,7 @@ def test_mutated_files_are_taken_or_refused_in_sentences(tmp_path: Path) -> None
 async def test_mutated_requests_and_messages_do_no_harm() -> None:
     async with bench() as made:
         for fuzz, mutations in (
-            (fuzz_requests, 100), (fuzz_strangers, 100), (fuzz_helper, 150), (fuzz_robot, 150),
+            (fuzz_requests, 30), (fuzz_strangers, 30), (fuzz_helper, 50), (fuzz_robot, 50),
         ):  # fmt: skip
             found = await fuzz(made, mutations, 7)
             assert found.tried > 0.9 * mutations

@@ -7,13 +7,13 @@ import pytest
 from console_in_browser import OpenPage
 from long_run import long_run
 from playwright.async_api import Locator, Page, expect
+from recorded_service import recorded_events
 from run_page import WAIT_MS, texts_in_order, told_after, wait_for_tree
 
 from dialogue.registry import load_scripts
 from server.composition import Service
 from server.journal import events as ev
 from server.journal.journal import Entry
-from server.runtime.requests import RunRequest
 from server.runtime.run_state import RunState
 
 # One event loop for all tests of the console, and so one browser.
@@ -36,12 +36,11 @@ class Replay:
 
 
 async def replay(service: Service, open_page: OpenPage) -> Replay:
-    run = await service.runtime.start_run(
-        RunRequest(tree="eket", world="tabletop", speed="max", scenario="eket_paper", seed=7)
-    )
-    await service.runtime.wait_for_end(run.id)
-    events = await service.journal.read(0, 10_000, run.id)
-    page = await open_page(f"/runs/{run.id}")
+    recorded = recorded_events()
+    await service.journal.append(Entry(events=recorded))
+    run = recorded[0].run
+    events = await service.journal.read(0, 10_000, run)
+    page = await open_page(f"/runs/{run}")
     await expect(page.get_by_role("tree")).to_be_visible()
     return Replay(page, events)
 
