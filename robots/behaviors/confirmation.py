@@ -24,7 +24,7 @@ def look_at_outcome(part: Part, target: Location, arm: Arm, senses: Senses) -> R
 
 def _look(part: Part, target: Location, senses: Senses) -> Outcome:
     image = senses.head.look()
-    blind = senses.head.why_blind(image)
+    blind = senses.head.why_blind(image, (part, target))
     if blind is not None:
         return Outcome(image, None, Presence.HIDDEN, blind)
     return Outcome(image, senses.head.sight(part, image), senses.head.presence(image, part, target))

@@ -71,6 +71,11 @@ class Execution:
         part = self._assignment.part
         return None if part is None else (part, self._assignment.target)
 
+    @property
+    def unconfirmed(self) -> tuple[Part, Location] | None:
+        """The object and its place, if it was placed there and that could not be seen."""
+        return self._work.unconfirmed
+
     # --- Routines -----------------------------------------------------------------------------
 
     def run(self) -> Routine[None]:

@@ -40,7 +40,7 @@ class Outcome:
     sighting: HeadSighting | None
     presence: Presence
     blind: str | None = None
-    """Why the picture shows nothing of the table."""
+    """Why the picture shows nothing of the table, or of the object's place."""
 
     def is_inexact(self, part: Part, target: Location) -> bool:
         """Whether it is at its place, but could be placed better."""

@@ -31,7 +31,7 @@ def find_object(work: Work) -> Routine[None]:
             if findings.sighting is None:
                 senses.head.doubt()
         findings.image = senses.head.look()
-        findings.blind = senses.head.why_blind(findings.image)
+        findings.blind = senses.head.why_blind(findings.image, work.unconfirmed)
         if findings.blind is not None:
             continue
         if part is None:

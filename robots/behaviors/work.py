@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from robots.arm import Arm
 from robots.behaviors.assignment import Assignment
 from robots.behaviors.progress import Progress
-from robots.link.messages import ReportBody
+from robots.catalogue import Part
+from robots.link.messages import Location, ReportBody
 from robots.senses import Senses
 
 
@@ -19,3 +20,11 @@ class Work:
     arm: Arm
     senses: Senses
     report: Callable[[ReportBody], None]
+
+    @property
+    def unconfirmed(self) -> tuple[Part, Location] | None:
+        """The object and its place, if it was placed there and that could not be seen."""
+        part, target = self.assignment.part, self.assignment.target
+        if part is None or target is None or not self.progress.unconfirmed:
+            return None
+        return part, target

@@ -56,7 +56,7 @@ class Looker:
         results = self.finished if self.arm.at_neutral else ()
         verdicts = self._judge(image, results)
         doubted = [each for each in results if verdicts[each.message] is Presence.GONE]
-        blind = self.senses.head.why_blind(image) is not None
+        blind = self._why_blind(image) is not None
         if doubted or blind:
             yield from self.arm.wait(LOOK_AGAIN_S)
             self.senses.head.doubt()
@@ -67,12 +67,17 @@ class Looker:
     def look_at_table(self) -> CameraImage | None:
         """A head picture; None if it shows nothing of the table."""
         image = self.senses.head.look()
-        return image if self.senses.head.why_blind(image) is None else None
+        return image if self._why_blind(image) is None else None
+
+    def _why_blind(self, image: CameraImage) -> str | None:
+        """Why a picture shows nothing of the table, or of where the one that waits put its part."""
+        of = None if self.held is None else self.held.unconfirmed
+        return self.senses.head.why_blind(image, of)
 
     def _judge(
         self, image: CameraImage, results: Sequence[Result]
     ) -> dict[FinishedResult, Presence]:
-        if self.senses.head.why_blind(image) is not None:
+        if self._why_blind(image) is not None:
             return {each.message: Presence.HIDDEN for each in results}
         presence = self.senses.head.presence
         return {each.message: presence(image, each.part, each.target) for each in results}
@@ -84,7 +89,7 @@ class Looker:
         image: CameraImage,
         verdicts: Mapping[FinishedResult, Presence],
     ) -> Looked:
-        blind = self.senses.head.why_blind(image)
+        blind = self._why_blind(image)
         return Looked(
             command=command,
             objects=self.senses.head.sight_all(image) if blind is None else {},

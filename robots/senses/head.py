@@ -19,7 +19,14 @@ from robots.vision.head import HeadSighting
 from robots.vision.height_map import measure_heights
 from robots.vision.obstruction import Clearance, Obstruction, corridor, find_obstruction
 from robots.vision.occupancy import Fit, find_occupant, room_above, room_at_place
-from robots.vision.presence import Presence, is_at, is_seen_through, judge_presence, room_of
+from robots.vision.presence import (
+    Presence,
+    is_at,
+    is_seen_through,
+    is_unmeasured,
+    judge_presence,
+    room_of,
+)
 from robots.vision.projection import project
 from robots.vision.seen_box import SeenBox
 
@@ -58,12 +65,22 @@ class HeadSense:
         """
         self._overtaken = since if self._table.camera_is_noisy else None
 
-    def why_blind(self, image: CameraImage) -> str | None:
-        """Why a head picture just taken tells nothing of the table, as a clause; or None."""
+    def why_blind(self, image: CameraImage, of: tuple[Part, Location] | None = None) -> str | None:
+        """Why a head picture just taken tells nothing of the table, as a clause; or None.
+
+        Or of the place `of` a part that is to be there, if it is seen nowhere else.
+        """
         frozen = why_frozen(image, self._overtaken)
         if frozen is None:
             self._overtaken = None
-        return why_outdated(image, self._body.time_s()) or frozen or self._table.why_blind(image)
+        blind = why_outdated(image, self._body.time_s()) or frozen or self._table.why_blind(image)
+        if blind is not None or of is None:
+            return blind
+        part, target = of
+        room = room_of(part, target, self._catalogue.height_of(target))
+        if self.sight(part, image) is not None or not is_unmeasured(image, room):
+            return None
+        return f"my head camera measures no depth where {part.name} is to be"
 
     def sight(self, part: Part, image: CameraImage) -> HeadSighting | None:
         """Where a part is in a head picture; nowhere while it is held."""

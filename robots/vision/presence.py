@@ -7,16 +7,20 @@ from itertools import permutations
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
 from scipy.spatial.distance import directed_hausdorff
 
+from robots.body import CameraImage
 from robots.catalogue import Part
 from robots.link.messages import Location
 from robots.vision.head import HeadSighting
 from robots.vision.height_map import HeightMap
 from robots.vision.level_rectangle import Rectangle
-from robots.vision.projection import project
+from robots.vision.projection import is_measured, project
 from robots.vision.seen_box import SeenBox
 from robots.vision.table_view import TableView
+
+Indices = NDArray[np.intp]
 
 AT_PLACE_M = 0.02
 """A part is at its place if no corner of it is farther off,"""
@@ -30,6 +34,8 @@ _SQUARE_M = 0.005
 _SAMPLES = 9
 _SEEN_THROUGH = 0.6
 """A part is gone if more than this share of where its top would be lets the camera see behind."""
+_LEAST_MEASURED = 0.5
+"""Of less of that a picture tells nothing."""
 _INNER = 0.8
 """The share of its top that is asked about: at the rim depth says little."""
 
@@ -98,6 +104,17 @@ def is_seen_through(heights: HeightMap, room: SeenBox) -> bool:
     return _share_seen_through(heights, room) >= _SEEN_THROUGH
 
 
+def is_unmeasured(image: CameraImage, room: SeenBox) -> bool:
+    """Whether a picture has no depth of most of where the top of what is in a room would be."""
+    if image.depth_m is None:
+        return True
+    rows, columns, pictured = _pixels_of_top(image, room)
+    if not pictured.any():
+        return False
+    measured = is_measured(image.depth_m[rows[pictured], columns[pictured]])
+    return float(measured.mean()) < _LEAST_MEASURED
+
+
 def _stands_at(box: SeenBox, part: Part, target: Location, bottom_z: float) -> bool:
     near = _is_near(box, part, target)
     return near and abs(box.bottom_z - bottom_z) <= AT_PLACE_HEIGHT_M
@@ -136,19 +153,27 @@ def _fills(box: SeenBox, room: SeenBox) -> bool:
 
 def _share_seen_through(seen: HeightMap, room: SeenBox) -> float:
     """The share of where the part's top would be behind which the camera sees something."""
-    spread = np.linspace(-_INNER / 2, _INNER / 2, _SAMPLES)
-    x, y = (each.ravel() for each in np.meshgrid(spread * room.size[0], spread * room.size[1]))
-    cos, sin = math.cos(room.yaw), math.sin(room.yaw)
-    top_z = room.bottom_z + room.size[2]
-    tops = np.stack(
-        [room.x + cos * x - sin * y, room.y + sin * x + cos * y, np.full(len(x), top_z)], axis=1
-    )
-    us, vs = np.rint(project(seen.image, tops)).astype(np.intp).T
-    rows, columns = seen.height_m.shape
-    pictured = (us >= 0) & (us < columns) & (vs >= 0) & (vs < rows)
-    heights = np.full(len(us), np.nan)
-    heights[pictured] = seen.height_m[vs[pictured], us[pictured]]
+    rows, columns, pictured = _pixels_of_top(seen.image, room)
+    heights = np.full(len(rows), np.nan)
+    heights[pictured] = seen.height_m[rows[pictured], columns[pictured]]
     # A ray that is still under the top's height has passed through where the top would be.
     slack_m = min(max(0.006, 5 * seen.noise_m), room.size[2] / 2)
     with np.errstate(invalid="ignore"):
-        return float((heights < top_z - slack_m).mean())
+        return float((heights < room.top_z - slack_m).mean())
+
+
+def _pixels_of_top(image: CameraImage, room: SeenBox) -> tuple[Indices, Indices, NDArray[np.bool_]]:
+    """The rows and columns of points (n) of the part's top, and which of them are in the picture.
+
+    It is the inner part of the top of which `_INNER` tells.
+    """
+    spread = np.linspace(-_INNER / 2, _INNER / 2, _SAMPLES)
+    x, y = (each.ravel() for each in np.meshgrid(spread * room.size[0], spread * room.size[1]))
+    cos, sin = math.cos(room.yaw), math.sin(room.yaw)
+    tops = np.stack(
+        [room.x + cos * x - sin * y, room.y + sin * x + cos * y, np.full(len(x), room.top_z)],
+        axis=1,
+    )
+    us, vs = np.rint(project(image, tops)).astype(np.intp).T
+    height, width = image.bgr.shape[:2]
+    return vs, us, (us >= 0) & (us < width) & (vs >= 0) & (vs < height)

@@ -14,6 +14,7 @@ from robots.grasp import grasp_of
 from robots.gripper import GripperModel
 from robots.link.messages import Location
 from robots.vision.color_model import ColorModel, Sample
+from robots.vision.projection import project
 from robots.vision.table_view import TableView, view_table
 from robots.vision.tracking import LastSeen
 from sim.tabletop.arm import GRIPPER
@@ -23,6 +24,7 @@ NEUTRAL = ToolPose(0.30, -0.85, 1.05, 0.0)
 HAND_OVER = ToolPose(0.45, -0.20, 1.00, 0.0)
 CYCLE_S = 1 / 60
 GRIPPER_CYCLES = 12
+SPOT_PX = 60
 
 
 @dataclass
@@ -59,6 +61,8 @@ class ScriptedCamera:
             if self._last is not None and self._body.head_frozen:
                 picture = replace(self._last, time=picture.time)
             self._last = picture
+            if self._body.head_covered_at is not None:
+                return covered_at(picture, *self._body.head_covered_at)
             return covered(picture) if self._body.head_covered else picture
         return scene.picture(
             pose=self.pose(),
@@ -75,6 +79,17 @@ def covered(image: CameraImage) -> CameraImage:
     assert image.depth_m is not None
     nothing = np.full_like(image.depth_m, np.nan)
     return replace(image, bgr=np.zeros_like(image.bgr), depth_m=nothing)
+
+
+def covered_at(image: CameraImage, x: float, y: float) -> CameraImage:
+    """What a camera gives that has a spot on its lens where it would show a point of the table."""
+    assert image.depth_m is not None
+    u, v = project(image, np.array([[x, y, TABLE_Z]]))[0]
+    rows, columns = np.indices(image.depth_m.shape)
+    spot = np.hypot(rows - v, columns - u) < SPOT_PX
+    bgr, depth_m = image.bgr.copy(), image.depth_m.copy()
+    bgr[spot], depth_m[spot] = 0, np.nan
+    return replace(image, bgr=bgr, depth_m=depth_m)
 
 
 def tool_matrix(pose: ToolPose) -> np.ndarray:
@@ -106,6 +121,7 @@ class ScriptedBody:
         self.parts: dict[str, Resting] = {name: replace(each) for name, each in parts.items()}
         self.grey_boxes: list = []
         self.head_covered = False
+        self.head_covered_at: tuple[float, float] | None = None
         self.head_frozen = False
         self.head_noisy = False
         self.bars: frozenset[str | None] = frozenset()

@@ -1,8 +1,11 @@
 """A robot whose head camera shows nothing starts nothing, and calls nothing done."""
 
+from drawn_scene import Resting
 from robot_bench import RobotBench
 
-from robots.link.messages import Finished, IssueDetected, Resume, StepStarted
+from robots.link.messages import Finished, IssueDetected, Looked, Resume, StepStarted
+
+ITS_PLACE = (0.55, 0.05)
 
 
 def issues(bench: RobotBench) -> list[tuple[str, int]]:
@@ -53,6 +56,48 @@ def test_what_was_put_down_in_the_dark_is_done_once_it_is_seen_and_by_the_robot(
     bench.send(Resume(execution="e1"))
     bench.run()
     assert bench.of(Finished) == [Finished(execution="e1", found_in_place=False)]
+
+
+def test_what_was_put_where_nothing_is_measured_is_done_once_that_is_seen() -> None:
+    bench = RobotBench()
+    bench.start("pink_bar")
+    bench.run_to(6)
+    bench.body.head_covered_at = ITS_PLACE
+    bench.run()
+    (issue,) = bench.of(IssueDetected)
+    assert (issue.issue, issue.step) == ("blind", 8)
+    why = "my head camera measures no depth where pink_bar is to be"
+    assert issue.detection.explanation == why
+    assert bench.of(Finished) == []
+    bench.look(expect="view_clear")
+    bench.run()
+    assert bench.of(Looked)[-1].blind == why
+    bench.send(Resume(execution="e1"))
+    bench.run()
+    assert issues(bench) == [("blind", 8), ("blind", 0)]
+    bench.body.head_covered_at = None
+    bench.look(expect="view_clear")
+    bench.run()
+    assert (bench.of(Looked)[-1].fulfilled, bench.of(Looked)[-1].blind) == (True, None)
+    bench.send(Resume(execution="e1"))
+    bench.run()
+    assert bench.of(Finished) == [Finished(execution="e1", found_in_place=False)]
+
+
+def test_what_is_seen_elsewhere_needs_no_sight_of_its_place() -> None:
+    bench = RobotBench()
+    bench.start("pink_bar")
+    bench.run_to(6)
+    bench.body.head_covered_at = ITS_PLACE
+    bench.run()
+    bench.body.parts["pink_bar"] = Resting(0.55, 0.25)
+    bench.look(expect="view_clear")
+    bench.run()
+    assert (bench.of(Looked)[-1].fulfilled, bench.of(Looked)[-1].blind) == (True, None)
+    bench.send(Resume(execution="e1"))
+    bench.run()
+    assert bench.of(Finished) == []
+    assert [issue for issue, _ in issues(bench)][:2] == ["blind", "blind"]
 
 
 def test_what_was_taken_away_in_the_dark_is_told_and_not_called_done() -> None:
