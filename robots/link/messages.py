@@ -243,8 +243,9 @@ class Looked(Message):
     what was expected came to be within the time given; None when nothing was expected.
     `there` and `gone`: of the command's `finished` results those that are seen to be so, and those
     whose place is seen without the object; what something hides is in neither. `held`: the object
-    that is between the fingers. `blind`: why the head camera showed nothing of the table, so that
-    the look tells nothing of what is on it; None if it did.
+    that is between the fingers. `blind`: why the head camera showed nothing of the table, or of
+    where the object that was just put down is to be, so that the look tells nothing of what is on
+    the table; None if it did.
     """
 
     type: Literal["looked"] = "looked"
