@@ -1,5 +1,6 @@
 """How fast a client is listened to: one that floods waits, and nobody else does."""
 
+import math
 from collections.abc import Callable
 
 CHARS_OF_ONE = 4096
@@ -18,13 +19,19 @@ class Pace:
         self._left = per_s * BURST_S
         self._at = now()
 
-    def take(self, chars: int = 0) -> float:
-        """Note one of so many characters; returns for how many seconds no more are to be read."""
+    def take(self, chars: int = 0, patience_s: float = math.inf) -> float:
+        """Note one of so many characters; returns for how many seconds no more are to be read.
+
+        One that would have to wait longer than `patience_s` is not noted: it is to be refused.
+        """
         now = self._now()
         self._left = min(self._per_s * BURST_S, self._left + (now - self._at) * self._per_s)
         self._at = now
-        self._left -= 1 + chars // CHARS_OF_ONE
-        return max(0.0, -self._left / self._per_s)
+        left = self._left - 1 - chars // CHARS_OF_ONE
+        wait_s = max(0.0, -left / self._per_s)
+        if wait_s <= patience_s:
+            self._left = left
+        return wait_s
 
 
 class Paces:

@@ -48,7 +48,7 @@ class Presence(StrEnum):
     GONE = "gone"
     """Its place is seen, and it is not there."""
     HIDDEN = "hidden"
-    """Something in front of its place keeps the camera from telling."""
+    """Something in front of its place, or depth that is missing, keeps the camera from telling."""
 
 
 def is_at(sighting: HeadSighting, part: Part, target: Location, target_z: float) -> bool:

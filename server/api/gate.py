@@ -1,8 +1,9 @@
 """The gate before every HTTP request: Host, Origin, token, role and the size of the body."""
 
 import asyncio
+import math
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 from starlette.datastructures import MutableHeaders
 from starlette.exceptions import HTTPException
@@ -16,7 +17,7 @@ from server.access.principal import Caller
 from server.api.problems import forbidden, problem, problem_response
 from server.api.safe_headers import OVER_TLS, SAFE_HEADERS
 from server.limits import Limits
-from server.pace import Paces
+from server.pace import BURST_S, Paces
 from server.refusals import Refusals
 
 MAX_BODY_BYTES = 8 * 1024 * 1024
@@ -25,14 +26,24 @@ SAFE_METHODS = ("GET", "HEAD", "OPTIONS")
 
 
 class Gate:
-    """ASGI middleware that refuses what must not even be parsed."""
+    """ASGI middleware that refuses what must not even be parsed.
 
-    def __init__(self, app: ASGIApp, access: Access, limits: Limits, refusals: Refusals) -> None:
+    `now` is any monotonic clock in seconds: by it everybody is held to their pace.
+    """
+
+    def __init__(
+        self,
+        app: ASGIApp,
+        access: Access,
+        limits: Limits,
+        refusals: Refusals,
+        now: Callable[[], float] = time.monotonic,
+    ) -> None:
         self._app = app
         self._access = access
         self._strangers_bytes = min(limits.stranger_body_bytes, MAX_BODY_BYTES)
         self._refusals = refusals
-        self._paces = Paces(limits.requests_per_s, time.monotonic)
+        self._paces = Paces(limits.requests_per_s, now)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         if scope["type"] != "http":
@@ -47,7 +58,8 @@ class Gate:
             private=scope["path"].startswith(PROTECTED),
             encrypted=scope["scheme"] == "https",
         )
-        await self._keep_pace(scope)
+        # Whoever is refused has asked all the same.
+        refusal = await self._too_fast(scope) or refusal
         if refusal is None:
             await self._app(scope, self._limited(scope, receive), guarded)
         else:
@@ -84,15 +96,24 @@ class Gate:
         role = admission.caller.principal.role
         return None if role.may(needed) else problem_response(forbidden(needed, role))
 
-    async def _keep_pace(self, scope: Scope) -> None:
-        """Who asks too fast waits; those who share the one token are not held to a share of it."""
+    async def _too_fast(self, scope: Scope) -> Response | None:
+        """Let who asks too fast wait; refuse them where they would have to wait for long.
+
+        So no more of theirs wait than are answered in that time, also of clients that hang up.
+        Those who share the one token are not held to a share of it.
+        """
         caller: Caller | None = scope.get("state", {}).get("caller")
         if caller is None or not caller.principal.named:
-            return
-        wait_s = self._paces.of(caller.principal.key).take()
-        if wait_s:
-            self._refusals.note("requests_per_s")
-            await asyncio.sleep(wait_s)
+            return None
+        wait_s = self._paces.of(caller.principal.key).take(patience_s=BURST_S)
+        if wait_s == 0.0:
+            return None
+        self._refusals.note("requests_per_s")
+        if wait_s > BURST_S:
+            again = {"Retry-After": str(math.ceil(wait_s))}
+            return _refused(429, "you ask faster than 'requests_per_s' allows", again)
+        await asyncio.sleep(wait_s)
+        return None
 
     def _most_bytes(self, scope: Scope) -> int:
         """How large a body may be; much smaller where nobody had to say who they are."""

@@ -26,7 +26,7 @@ def _close() -> Iterator[None]:
 
 @pytest.mark.slow
 @SCHEMA.parametrize()
-@settings(max_examples=25, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=10, deadline=None, suppress_health_check=list(HealthCheck))
 def test_rest(case: schemathesis.Case) -> None:
     case.call_and_validate(
         checks=[
