@@ -134,7 +134,9 @@ class TableUnderstanding:
         """What is known of a head picture: all that was of an earlier one, if that still holds."""
         held, seen = self._hand.held, self._seen
         doubted, self._doubted = self._doubted, False
-        if seen is not None and seen.held == held and is_same(seen.latest, image):
+        # A doubted picture is understood anew, unless it is the very one that was understood.
+        known = None if seen is None else seen.image if doubted else seen.latest
+        if seen is not None and known is not None and seen.held == held and is_same(known, image):
             return seen
         blind = why_blind(image, self.catalogue.table, self._own_arm.includes)
         if (
