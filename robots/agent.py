@@ -5,9 +5,9 @@ reports. Simulated and real robots, and tests, drive the same core.
 """
 
 from collections.abc import Callable
-from typing import Any, Protocol
+from typing import Any, Protocol, runtime_checkable
 
-from robots.link.messages import CommandBody, Hello, Picture, ReportBody
+from robots.link.messages import CommandBody, Hello, Picture, PoseLayout, Poses, ReportBody
 
 Emit = Callable[[ReportBody, float, dict[str, Any] | None], None]
 """Takes a report's body, the time (s, robot's clock) and a simulated world's state or None."""
@@ -48,4 +48,17 @@ class AgentCore(Protocol):
     @property
     def shut_down(self) -> bool:
         """Whether a `shutdown` command came."""
+        ...
+
+
+@runtime_checkable
+class ShowsPoses(Protocol):
+    """An agent core that can say where everything is."""
+
+    def pose_layout(self) -> PoseLayout:
+        """What its poses hold; the same all the time."""
+        ...
+
+    def poses(self) -> Poses:
+        """Where everything is now."""
         ...

@@ -43,6 +43,7 @@ from robots.monitors.monitor import BEFORE_FIRST_STEP, Monitor
 from robots.result import Result
 from robots.senses import FOREARM, Senses
 from robots.showing import PoseDisplay
+from robots.task_progress import TaskProgress
 from robots.understanding import CommandError, Understanding
 from robots.vision.color_model import ColorModel
 from robots.vision.drawing import encode_jpeg
@@ -53,19 +54,6 @@ _SEEN_AT_ONCE = (IssueDetected, Finished, Looked, Rejected)
 
 _EXPLAINING = frozenset({"missing", "undone", "unreachable"})
 """Without these monitors an object that is not there would leave the service without a word."""
-
-
-@dataclass(frozen=True, slots=True)
-class TaskProgress:
-    """How far the behavior under way is: `fraction` in [0, 1] of `step`.
-
-    `attempt` counts the starts of a behavior with this object from 1.
-    """
-
-    object: str | None
-    step: int
-    fraction: float
-    attempt: int
 
 
 @dataclass(frozen=True, slots=True)

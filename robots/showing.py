@@ -14,19 +14,6 @@ from robots.senses import Senses
 
 
 @runtime_checkable
-class ShowsPoses(Protocol):
-    """An agent core that can say where everything is."""
-
-    def pose_layout(self) -> PoseLayout:
-        """What its poses hold; the same all the time."""
-        ...
-
-    def poses(self) -> Poses:
-        """Where everything is now."""
-        ...
-
-
-@runtime_checkable
 class JointedBody(Protocol):
     """A body that a model can be drawn of, from its joint positions."""
 

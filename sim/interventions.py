@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from robots.link.messages import Intervene
-from robots.robot import TaskProgress
+from robots.task_progress import TaskProgress
 from tasks.intervention import Act, Intervention
 from tasks.scenario import ScriptedIntervention, Trigger
 from tasks.scene import StrictModel

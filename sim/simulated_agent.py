@@ -25,7 +25,8 @@ from robots.link.messages import (
     StepStarted,
     TakePicture,
 )
-from robots.robot import Robot, TaskProgress
+from robots.robot import Robot
+from robots.task_progress import TaskProgress
 from sim.interventions import HELPER, Deed, PendingInterventions, PendingSnapshot
 from sim.world import ShownWorld, World
 from tasks.intervention import Act, Intervention

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any, TypeVar
 
-from robots.agent import AgentCore
+from robots.agent import AgentCore, ShowsPoses
 from robots.link.backoff import Backoff
 from robots.link.channel import Channel, ChannelClosedError
 from robots.link.clock import Clock
@@ -20,7 +20,6 @@ from robots.link.messages import Command, Hello, Picture, Rejected, ReportBody, 
 from robots.link.outbox import Outbox
 from robots.link.pacing import Pacer
 from robots.link.sampling import PoseSampling
-from robots.showing import ShowsPoses
 
 log = logging.getLogger(__name__)
 

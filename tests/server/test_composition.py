@@ -1,0 +1,17 @@
+"""What a service brings into its process."""
+
+import subprocess
+import sys
+
+_LOADED = """
+import sys
+import server.composition
+print(*sorted({"numba", "scipy", "pybullet", "pinocchio", "coal", "ortools"} & sys.modules.keys()))
+"""
+
+
+def test_what_robots_and_schedules_reckon_with_is_left_to_their_processes() -> None:
+    loaded = subprocess.run(
+        [sys.executable, "-c", _LOADED], capture_output=True, text=True, check=True
+    )
+    assert loaded.stdout.split() == []
