@@ -4,7 +4,7 @@ import asyncio
 import time
 from collections.abc import Callable
 
-LONGEST_S = 0.01
+LONGEST_S = 0.005
 
 
 class Turns:

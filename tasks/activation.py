@@ -82,32 +82,24 @@ class FullEvaluation:
                     levels[node] = _share(levels[parent], open_children)
 
     def _pass_up(self, nodes: range) -> None:
-        shape, state, potentials = self._shape, self._state, self.potentials
-        startable = self._startable
+        shape, state = self._shape, self._state
         for node in nodes:
             if state.done[node] or state.abandoned[node]:
                 continue
-            kind = shape.kinds[node]
-            if kind is NodeKind.BEHAVIOR:
-                potentials[node] = self._leaf_potentials[node]
-                startable[node] = state.leaf_status[node] is LeafStatus.IDLE
-                continue
-            children = _competing_children(shape, state, node)
-            startable[node] = any(startable[child] for child in children)
-            if kind is NodeKind.AND:
-                children = [child for child in children if startable[child]]
-            potentials[node] = max((potentials[child] for child in children), default=0.0)
+            if shape.kinds[node] is NodeKind.BEHAVIOR:
+                self.potentials[node] = self._leaf_potentials[node]
+                self._startable[node] = state.leaf_status[node] is LeafStatus.IDLE
+            parent = shape.parents[node]
+            if parent != NO_NODE and self._counts_for(parent, node):
+                self.potentials[parent] = max(self.potentials[parent], self.potentials[node])
+                self._startable[parent] |= self._startable[node]
 
-
-def _competing_children(shape: TreeShape, state: TreeState, goal: int) -> list[int]:
-    """The children to which a goal node that is not done passes its level."""
-    kind = shape.kinds[goal]
-    if kind is NodeKind.THEN:
-        return [state.next_child(goal)]
-    if kind is NodeKind.OR and state.committed[goal] != NO_NODE:
-        return [state.committed[goal]]
-    taken_out = state.done if kind is NodeKind.AND else state.abandoned
-    return [child for child in shape.children[goal] if not taken_out[child]]
+    def _counts_for(self, parent: int, child: int) -> bool:
+        """Whether the potential of a child that is neither done nor abandoned is passed up."""
+        shape, state = self._shape, self._state
+        if state.done[parent] or state.abandoned[parent] or not state.open_to(child):
+            return False
+        return shape.kinds[parent] is not NodeKind.AND or bool(self._startable[child])
 
 
 def _share(level: float, among: int) -> float:

@@ -84,6 +84,8 @@ class TreeShape:
         if end == goal + 1:
             raise ValueError(f"goal node {goal} must have a child")
         self.ends[goal] = end
+        # Whoever collects garbage does not look through tuples of numbers, as it does lists.
+        self.children[goal] = tuple(self.children[goal])
 
     def close(self) -> None:
         """There are no more nodes. Raises `ValueError`: a goal node has no child."""

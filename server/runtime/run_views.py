@@ -77,7 +77,7 @@ def _result_of_indexed(run: IndexedRun) -> RunResult | None:
         return RunResult(reason=str(error))
 
 
-NODES = 500
+NODES = 250
 """So many nodes are viewed at a time."""
 
 _nodes: TypeAdapter[list[NodeView]] = TypeAdapter(list[NodeView])
