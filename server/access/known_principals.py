@@ -12,6 +12,7 @@ from server.access.principals_file import (
     KeptPrincipal,
     Principals,
     PrincipalsFileError,
+    UnreadablePrincipalsError,
     read_principals,
 )
 from server.access.roles import Role
@@ -26,8 +27,9 @@ class KnownPrincipals:
     """Who may come in with a token of their own.
 
     Raises `PrincipalsFileError` if the file has mistakes when the service starts; mistakes that
-    come later are logged, and whoever was known before stays known. A file that is gone means
-    nobody. `expected`: there is to be a file, even if there is none yet.
+    come later are logged, and whoever was known before stays known. So do they while the file
+    cannot be read, which is tried again at every look. A file that is gone means nobody.
+    `expected`: there is to be a file, even if there is none yet.
     """
 
     def __init__(
@@ -37,6 +39,7 @@ class KnownPrincipals:
         self._wall_time_s = wall_time_s
         self._expected = expected
         self._reading = asyncio.Lock()
+        self._told: str | None = None
         self._stamp = self._stamp_now()
         self._take(Principals() if path is None else read_principals(path))
 
@@ -70,10 +73,21 @@ class KnownPrincipals:
             assert self.path is not None, "without a path there is no stamp"
             try:
                 self._take(await asyncio.to_thread(read_principals, self.path))
+            except UnreadablePrincipalsError as error:
+                self._tell(error)
+                return False
             except PrincipalsFileError as error:
-                log.error("The principals stay as they were: %s", error)
+                self._tell(error)
+            else:
+                self._told = None
             self._stamp = stamp
         return True
+
+    def _tell(self, error: PrincipalsFileError) -> None:
+        """Say it once, however often it is found."""
+        if str(error) != self._told:
+            self._told = str(error)
+            log.error("The principals stay as they were: %s", error)
 
     def of_token(self, token: str) -> Principal | None:
         """Whose token it is, if it is still good."""

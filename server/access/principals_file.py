@@ -50,6 +50,10 @@ class PrincipalsFileError(Exception):
     """The file of principals cannot be used; one sentence per mistake."""
 
 
+class UnreadablePrincipalsError(PrincipalsFileError):
+    """The file of principals could not be read this time, whatever is in it."""
+
+
 class FileModel(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
@@ -118,15 +122,17 @@ class Principals(FileModel):
 def read_principals(path: Path) -> Principals:
     """What the file says; nobody where there is none.
 
-    Raises `PrincipalsFileError` with every mistake.
+    Raises `PrincipalsFileError` with every mistake, and `UnreadablePrincipalsError`.
     """
+    unreadable = f"The principals in {path} cannot be read"
     try:
         text = path.read_text(encoding="utf-8")
     except FileNotFoundError:
         return Principals()
-    except (OSError, UnicodeDecodeError) as error:
-        why = error.strerror if isinstance(error, OSError) else "it is not UTF-8"
-        raise PrincipalsFileError(f"The principals in {path} cannot be read: {why}.") from error
+    except OSError as error:
+        raise UnreadablePrincipalsError(f"{unreadable}: {error.strerror}.") from error
+    except UnicodeDecodeError as error:
+        raise PrincipalsFileError(f"{unreadable}: it is not UTF-8.") from error
     return principals_of(text, str(path))
 
 

@@ -1,6 +1,7 @@
 """The principals of a running service follow the file."""
 
 import asyncio
+import errno
 import threading
 from datetime import UTC, datetime
 from pathlib import Path
@@ -74,6 +75,26 @@ async def test_mistakes_that_come_later_change_nobody(
     assert "stay as they were" in caplog.text
     with pytest.raises(PrincipalsFileError):
         known(editor)
+
+
+async def test_a_file_that_cannot_be_read_just_now_is_read_at_the_next_look(
+    editor: PrincipalsEditor, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    token = editor.add("anna", Role.HELPER, NOW)
+    principals = known(editor)
+    editor.revoke("anna", NOW)
+
+    def read(*_: object, **__: object) -> str:
+        raise OSError(errno.EMFILE, "Too many open files")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Path, "read_text", read)
+        assert not await principals.look()
+        assert not await principals.look()
+    assert principals.of_token(token) is not None
+    assert caplog.text.count("Too many open files") == 1
+    assert await principals.look()
+    assert principals.of_token(token) is None
 
 
 async def test_the_file_is_read_beside_the_loop_and_once_for_all_who_look(
