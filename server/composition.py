@@ -5,7 +5,7 @@ import logging
 import ssl
 import time
 from collections.abc import AsyncIterator, Callable
-from contextlib import asynccontextmanager, suppress
+from contextlib import AsyncExitStack, asynccontextmanager, suppress
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from functools import partial
@@ -16,9 +16,11 @@ from server.access.deed_log import DeedLog
 from server.api.robot_socket import ROBOT_PATH, add_robot_route
 from server.app import build_access, create_app
 from server.background import Endless
+from server.believed_time import BelievedTime
 from server.dialogues.escalation import EscalationPolicy
 from server.dialogues.mail import Mailer
 from server.fixed_documents import GivenFiles, fixed_documents
+from server.journal.run_index import RunPage
 from server.journal.sqlite import IN_MEMORY, SqliteJournal
 from server.library import Library, build_library
 from server.listening import listen, reachable_host
@@ -113,13 +115,13 @@ async def _open(
         settings.limits,
         refusals,
     )
-    tls = _tls(settings)
-    config_socket = listen(settings)
-    url = f"{'https' if tls else 'http'}://{reachable_host(settings.host)}:{config_socket.getsockname()[1]}"
     adapters = load_plugins("mend.worlds")
     # What runs need later is loaded now: there may be no descriptor left to open it with then.
     for group in ("mend.behaviors", "mend.monitors"):
         load_plugins(group)
+    tls = _tls(settings)
+    config_socket = listen(settings)
+    url = f"{'https' if tls else 'http'}://{reachable_host(settings.host)}:{config_socket.getsockname()[1]}"
     off_loop = OffLoop(settings.limits)
     simulation_thread = SimulationThread()
     library = build_library(
@@ -197,7 +199,7 @@ async def _open(
             await deeds.recover(access.sessions)
         pruning = asyncio.create_task(
             prune_regularly(
-                journal.prune, poses.forget, settings.keep.keep(), lambda: datetime.now(UTC)
+                journal.prune, poses.forget, settings.keep.keep(), await _pruning_time(journal)
             ),
             name="pruning",
         )
@@ -207,26 +209,41 @@ async def _open(
         await server.wait_until_started(serving)
         yield Service(runtime, journal, registry, library, url, public_url, settings)
     finally:
-        # First: a report that no run takes any more must not be acknowledged.
-        registry.close()
-        if pruning is not None:
-            pruning.cancel()
-            await asyncio.gather(pruning, return_exceptions=True)
-        await runtime.close()
-        if watching is not None:
-            watching.cancel()
-            await asyncio.gather(watching, return_exceptions=True)
-        await mail.close()
-        poses.shut()
-        await _stop_speech(speech, rendering)
-        if serving is not None:
-            server.should_exit = True
-            with suppress(asyncio.CancelledError):
-                await serving
-        await deeds.close()
-        off_loop.close()
-        simulation_thread.close()
-        config_socket.close()
+        # From the last to the first, each of them also where one before has failed.
+        async with AsyncExitStack() as ending:
+            ending.callback(config_socket.close)
+            ending.callback(simulation_thread.close)
+            ending.callback(off_loop.close)
+            ending.push_async_callback(deeds.close)
+            ending.push_async_callback(_stop_serving, server, serving)
+            ending.push_async_callback(_stop_speech, speech, rendering)
+            ending.callback(poses.shut)
+            ending.push_async_callback(mail.close)
+            ending.push_async_callback(_cancel, watching)
+            ending.push_async_callback(runtime.close)
+            ending.push_async_callback(_cancel, pruning)
+            # First: a report that no run takes any more must not be acknowledged.
+            ending.callback(registry.close)
+
+
+async def _pruning_time(journal: SqliteJournal) -> BelievedTime:
+    """A clock that is far ahead of the last run may be wrong, and what is pruned is gone."""
+    newest = await journal.index.page(RunPage(limit=1))
+    since = max((each.ended_at or each.started for each in newest), default=None)
+    return BelievedTime(lambda: datetime.now(UTC), time.monotonic, since)
+
+
+async def _cancel(task: "asyncio.Task[None] | None") -> None:
+    if task is not None:
+        task.cancel()
+        await asyncio.gather(task, return_exceptions=True)
+
+
+async def _stop_serving(server: Server, serving: "asyncio.Task[None] | None") -> None:
+    if serving is not None:
+        server.should_exit = True
+        with suppress(asyncio.CancelledError):
+            await serving
 
 
 async def _watch_access(access: Access, deeds: DeedLog, *, journal_changes: bool) -> None:

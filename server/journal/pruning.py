@@ -190,9 +190,11 @@ def _forget_boots(connection: sqlite3.Connection, keep: Keep, now: datetime) -> 
     """
     since = None if keep.ended_within is None else (now - keep.ended_within).timestamp()
     connection.execute(
-        "DELETE FROM receipts WHERE EXISTS (SELECT 1 FROM receipts AS later"
-        " WHERE later.robot = receipts.robot AND later.time > receipts.time"
-        " AND later.time < coalesce(:since, (SELECT min(started) FROM runs)))",
+        # Once for each robot: each start compared with each would keep all who write waiting.
+        "WITH latest AS (SELECT robot, max(time) AS time FROM receipts"
+        " WHERE time < coalesce(:since, (SELECT min(started) FROM runs)) GROUP BY robot)"
+        " DELETE FROM receipts WHERE time <"
+        " (SELECT time FROM latest WHERE latest.robot = receipts.robot)",
         {"since": since},
     )
 

@@ -4,12 +4,13 @@ import json
 import sqlite3
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager, closing
+from datetime import timedelta
 from pathlib import Path
 from typing import Any
 
 import httpx
 import pytest
-from made_up_history import made_up_run, picture_id, run_id, write_history
+from made_up_history import BETWEEN_RUNS, made_up_run, picture_id, run_id, write_history
 from typer.testing import CliRunner
 
 from server.cli import app
@@ -150,6 +151,17 @@ async def test_a_service_prunes_what_it_is_told_not_to_keep(folder: Path) -> Non
         assert (await client.get(f"/api/pictures/{picture_id(RUNS - 1)}")).status_code == 200
     left = {each.name for each in poses.iterdir()}
     assert left == {f"{run_id(RUNS - 1)}.poses", f"{run_id(RUNS - 1)}.layout.json"}
+
+
+async def test_a_clock_far_ahead_of_the_last_run_makes_nothing_old(folder: Path) -> None:
+    # The last of them ended long ago, or so this machine's clock says; two days keep some of them.
+    days = 2 * BETWEEN_RUNS / timedelta(days=1)
+    keep = KeepSettings(days=days, runs=RUNS - 1)
+    async with service(folder, keep=keep) as client:
+        while (await client.get(f"/api/pictures/{picture_id(0)}")).status_code == 200:
+            pass
+        left = (await client.get("/api/runs")).json()
+    assert 1 < len(left) < RUNS
 
 
 async def test_a_client_that_follows_from_before_what_was_pruned_begins_anew(
