@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from fastapi import FastAPI
 from starlette.responses import Response
+from starlette.types import Message
 from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketState
 
 from robots.link.channel import ChannelClosedError
@@ -16,11 +17,13 @@ from server.access.principal import Caller
 from server.api.problems import problem, problem_response
 from server.robots.passes import Pass
 from server.robots.registry import RobotRegistry
+from server.robots.session import LAST_WORD_S
 
 ROBOT_PATH = "/ws/robot"
 
 MAX_MESSAGE_BYTES = 1 << 20
 
+DEAF = "nothing more of it is listened to"
 REVOKED = "this credential is good no longer: enrol the robot again"
 NO_CREDENTIAL = (
     "a robot has to present its credential, or the service's token: 'Authorization: Bearer ...'"
@@ -35,6 +38,14 @@ class StarletteChannel:
 
     def __init__(self, websocket: WebSocket) -> None:
         self._websocket = websocket
+        self._deaf = False
+        self._patience: asyncio.Timeout | None = None
+
+    def go_deaf(self) -> None:
+        """Let nothing more be received, whatever has come already."""
+        self._deaf = True
+        if self._patience is not None:
+            self._patience.reschedule(asyncio.get_running_loop().time())
 
     async def send(self, text: str) -> None:
         try:
@@ -46,7 +57,7 @@ class StarletteChannel:
     async def receive(self) -> str:
         if self._websocket.client_state is not WebSocketState.CONNECTED:
             raise ChannelClosedError("the connection is closed")
-        message = await self._websocket.receive()
+        message = await self._next_message()
         if message["type"] == "websocket.disconnect":
             raise ChannelClosedError(f"closed with code {message.get('code', CLOSED_NORMALLY)}")
         text = message.get("text")
@@ -56,6 +67,17 @@ class StarletteChannel:
             await self._close(MESSAGE_TOO_BIG)
             raise ChannelClosedError("a message was too big")
         return content
+
+    async def _next_message(self) -> Message:
+        if self._deaf:
+            raise ChannelClosedError(DEAF)
+        try:
+            async with asyncio.timeout(None) as self._patience:
+                return await self._websocket.receive()
+        except TimeoutError:
+            raise ChannelClosedError(DEAF) from None
+        finally:
+            self._patience = None
 
     async def close(self) -> None:
         await self._close(CLOSED_NORMALLY)
@@ -107,9 +129,12 @@ def add_robot_route(
 
 async def _end_when(gone: asyncio.Event, channel: StarletteChannel) -> None:
     await gone.wait()
-    with suppress(ChannelClosedError):
-        await channel.send(LinkError(detail=REVOKED).model_dump_json())
-        await channel.close()
+    # First: what it wants to be told may take as long as it likes to read it.
+    channel.go_deaf()
+    with suppress(ChannelClosedError, TimeoutError):
+        async with asyncio.timeout(LAST_WORD_S):
+            await channel.send(LinkError(detail=REVOKED).model_dump_json())
+            await channel.close()
 
 
 @dataclass(frozen=True, slots=True)

@@ -90,8 +90,8 @@ class KnownRobot:
 
     @property
     def departed(self) -> bool:
-        """Whether it has no connection and no run."""
-        return self.session is None and self._sink is None and not self._taking_over.locked()
+        """Whether it has no connection, also none that is coming, and no run."""
+        return self.session is None and self._sink is None and self._coming is None
 
     # --- Its connection -----------------------------------------------------------------------
 

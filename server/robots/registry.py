@@ -12,7 +12,7 @@ from pydantic import ValidationError
 from robots.link.channel import Channel, ChannelClosedError
 from robots.link.messages import PROTOCOL_VERSION, CommandBody, Hello, LinkError
 from server.errors import ConflictError
-from server.journal.journal import Journal, JournalClosedError
+from server.journal.journal import Journal, JournalClosedError, JournalReadError
 from server.limits import Limits
 from server.pace import Pace
 from server.refusals import Refusals
@@ -197,6 +197,9 @@ class RobotRegistry:
         except TimeoutError:
             self._refusals.note("hello_s")
             log.info("robot %s has to come again: its last report is not committed", robot.name)
+            return False
+        except JournalReadError as error:
+            log.info("robot %s has to come again: %s", robot.name, error)
             return False
         return True
 

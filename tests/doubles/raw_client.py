@@ -9,6 +9,8 @@ from contextlib import asynccontextmanager
 from dataclasses import dataclass
 from typing import Any
 
+from websockets.frames import Frame, Opcode
+
 SMALL_BUFFER_BYTES = 4096
 
 UPGRADE = (
@@ -29,6 +31,11 @@ class Answer:
     def problem(self) -> Any:
         assert self.headers["content-type"] == "application/problem+json"
         return json.loads(self.body)
+
+
+def text_frame(text: str) -> bytes:
+    """A client's WebSocket frame."""
+    return Frame(Opcode.TEXT, text.encode()).serialize(mask=True)
 
 
 class RawClient:

@@ -6,13 +6,15 @@ from collections.abc import AsyncIterator
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
+from urllib.parse import urlsplit
 
 import httpx
 import pytest
 from example_robot import example_robot
 from people import NAMES, People
+from raw_client import raw_client, text_frame
 from recording_sink import RecordingSink
-from service_under_test import TOKEN, ServiceUnderTest, serving
+from service_under_test import TOKEN, ServiceUnderTest, serving, until
 from websockets.asyncio.client import connect
 from websockets.exceptions import InvalidStatus
 
@@ -24,8 +26,10 @@ from server.access.roles import PEOPLE, Role
 from server.api.robot_socket import ROBOT_PATH, add_robot_route
 from server.composition import open_service
 from server.journal import events as ev
+from server.limits import Limits
 from server.robots.passes import OwnRobots
 from server.robots.registry import RobotRegistry
+from server.robots.times import LinkTimes
 from server.runtime.requests import RunRequest
 from server.settings import Settings
 
@@ -108,6 +112,36 @@ async def test_a_connected_robot_is_let_go_when_it_is_revoked(robots: Robots) ->
         await socket.wait_closed()
     with pytest.raises(InvalidStatus):
         await said_to(robots.url, "arm-1", robots.people.tokens[Role.ROBOT])
+
+
+async def test_nothing_more_is_heard_of_a_revoked_robot_that_does_not_read(tmp_path: Path) -> None:
+    people = People(tmp_path)
+    patient = Limits(stuck_client_s=3600.0, robot_messages_per_s=1_000_000)
+    async with (
+        serving(principals=people.file, limits=patient) as service,
+        raw_client(urlsplit(service.url).port or 0) as client,
+    ):
+        times = LinkTimes(silence_s=3600.0)
+        registry = RobotRegistry(service.journal, time.monotonic, times, patient)
+        add_robot_route(service.app, registry, service.access)
+        headers = people.headers(Role.ROBOT).items()
+        await client.upgraded(ROBOT_PATH, *(f"{key}: {value}" for key, value in headers))
+        client.send(text_frame(hello("arm-1")))
+        await until(lambda: registry.connected("arm-1"))
+        session = registry._robots["arm-1"].session
+        assert session is not None
+        outgoing = session._outgoing
+
+        def no_more_can_be_sent_to_it() -> bool:
+            # Each is answered with what is wrong with it.
+            client.send(text_frame("{}") * 50)
+            return outgoing.qsize() > 100
+
+        await until(no_more_can_be_sent_to_it)
+        people.revoke(Role.ROBOT)
+        await service.access.look()
+        await until(lambda: not registry.connected("arm-1"))
+        registry.close()
 
 
 async def test_a_code_is_exchanged_once_for_a_credential_that_is_kept(

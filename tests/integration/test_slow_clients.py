@@ -7,7 +7,7 @@ from datetime import UTC, datetime
 from urllib.parse import urlsplit
 from uuid import uuid4
 
-from raw_client import RawClient, raw_client
+from raw_client import RawClient, raw_client, text_frame
 from sample_events import started
 from service_under_test import ServiceUnderTest, serving, until
 from shown_run import hello
@@ -36,10 +36,6 @@ def failed(number: int) -> RunFailed:
 async def client_of(service: ServiceUnderTest) -> AsyncIterator[RawClient]:
     async with raw_client(urlsplit(service.url).port or 0) as client:
         yield client
-
-
-def text_frame(text: str) -> bytes:
-    return Frame(Opcode.TEXT, text.encode()).serialize(mask=True)
 
 
 async def ended(service: ServiceUnderTest) -> None:

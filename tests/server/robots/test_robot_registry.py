@@ -35,7 +35,7 @@ from robots.link.messages import (
     service_message,
 )
 from server.errors import ConflictError, NotFoundError
-from server.journal.journal import Receipt
+from server.journal.journal import JournalReadError, Receipt
 from server.journal.sqlite import SqliteJournal
 from server.limits import Limits
 from server.refusals import Refusals
@@ -694,3 +694,38 @@ async def test_a_robot_that_shows_nothing_is_never_asked_for_poses(
     assert isinstance(await robot.deliver(report(1)), Ack)
     assert sink.posed == []
     await robot.leave()
+
+
+@pytest.mark.parametrize("turns", range(12))
+async def test_who_comes_again_as_another_goes_is_not_forgotten(
+    journal: SqliteJournal, turns: int
+) -> None:
+    registry = RobotRegistry(journal, TickingClock(), QUICK, Limits(departed_robots=1))
+    gone, other = PlayedRobot(registry), PlayedRobot(registry)
+    await gone.greet(hello("arm"))
+    await gone.channel.close()
+    await gone.serving
+    await other.greet(hello("leg"))
+    going = asyncio.create_task(other.channel.close())
+    for _ in range(turns):
+        await asyncio.sleep(0)
+    back = PlayedRobot(registry)
+    assert isinstance(await back.greet(hello("arm")), Welcome)
+    await asyncio.gather(going, other.serving)
+    assert registry.connected("arm")
+    registry.close()
+
+
+async def test_who_comes_while_the_journal_cannot_be_read_has_to_come_again(
+    registry: RobotRegistry, journal: SqliteJournal, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async def unreadable(*_: object) -> int:
+        raise JournalReadError("the journal could not be read: disk I/O error")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(journal, "received", unreadable)
+        robot = PlayedRobot(registry)
+        await robot.say(hello())
+        await robot.serving
+    assert not registry.connected("arm")
+    await PlayedRobot(registry).greet(hello())
