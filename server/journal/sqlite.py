@@ -178,15 +178,20 @@ class SqliteJournal:
         self, entry: Entry, fold: Fold | None = None, *, patient: bool = False
     ) -> list[Event]:
         work = partial(self._write_entry, entry, fold)
-        while True:
-            try:
-                committed: _Committed = await self._writer.submit(work)
-            except JournalWriteError:
-                if not patient:
-                    raise
-                await self._trouble.over()
-            else:
-                return committed.events
+        try:
+            return await self._commit(work)
+        except JournalWriteError:
+            if not patient:
+                raise
+        async with self._trouble.in_line() as turn:
+            while True:
+                await turn()
+                with suppress(JournalWriteError):
+                    return await self._commit(work)
+
+    async def _commit(self, work: Callable[[sqlite3.Connection], _Committed]) -> list[Event]:
+        committed: _Committed = await self._writer.submit(work)
+        return committed.events
 
     async def keep_answer(
         self, request: KeyedRequest, answer: FirstAnswer | None, most: int, since: float

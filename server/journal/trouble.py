@@ -2,7 +2,8 @@
 
 import asyncio
 import logging
-from collections.abc import Awaitable, Callable
+from collections.abc import AsyncIterator, Awaitable, Callable
+from contextlib import asynccontextmanager
 from typing import Protocol
 
 log = logging.getLogger(__name__)
@@ -14,6 +15,9 @@ Watcher = Callable[[str | None], None]
 """Told why the journal cannot be written from now on, and None once it can be again."""
 
 
+Turn = Callable[[], Awaitable[None]]
+
+
 class Sleep(Protocol):
     """Lets so many seconds pass."""
 
@@ -21,10 +25,11 @@ class Sleep(Protocol):
 
 
 class Trouble:
-    """Begins when a commit fails; ends when one succeeds, for which `probe` is tried.
+    """Begins when a commit fails; ends when one succeeds.
 
-    The pauses between two tries grow until something else than a probe was committed: room for a
-    probe need not be room for what waits. Belongs to one event loop.
+    After each pause the first of those who wait tries again, which proves more than what would be
+    written only to see whether it can be; where nobody waits that is tried, with `probe`. The
+    pauses grow until something else than a probe was committed. Belongs to one event loop.
     """
 
     def __init__(self, probe: Callable[[], Awaitable[None]], sleep: Sleep) -> None:
@@ -33,7 +38,9 @@ class Trouble:
         self._sleep = sleep
         self._pause_s = FIRST_PAUSE_S
         self._watchers: list[Watcher] = []
-        self._over = asyncio.Event()
+        self._line: list[asyncio.Event] = []
+        self._trying_now: asyncio.Event | None = None
+        self._tried = asyncio.Event()
         self._begun = asyncio.Event()
         self._trying: asyncio.Task[None] | None = None
         self._closed = False
@@ -52,7 +59,6 @@ class Trouble:
         if self._trying is not None:
             self._trying.cancel()
         log.error("%s; trying again until it can be", reason)
-        self._over.clear()
         self._begun.set()
         self._change(reason)
         self._trying = asyncio.create_task(self._try_again(), name="journal-trouble")
@@ -65,21 +71,43 @@ class Trouble:
             log.warning("the journal can be written again")
             self._begun.clear()
             self._change(None)
-            self._over.set()
+            self._let_all_try()
 
     async def begun(self) -> None:
         """Wait until the journal cannot be written."""
         await self._begun.wait()
 
-    async def over(self) -> None:
-        """Wait until the journal can be written, or is closed."""
-        if self.reason is not None:
-            await self._over.wait()
+    @asynccontextmanager
+    async def in_line(self) -> AsyncIterator[Turn]:
+        """Wait with others, in this order: what it yields waits until it is worth trying again.
+
+        That is once the trouble is over or the journal closed, and after each pause for the first
+        in line. Nobody else tries before that one waits again or has left.
+        """
+        place = asyncio.Event()
+        self._line.append(place)
+
+        async def turn() -> None:
+            self._end_try(place)
+            place.clear()
+            if self.reason is not None and not self._closed:
+                await place.wait()
+
+        try:
+            yield turn
+        finally:
+            self._line.remove(place)
+            self._end_try(place)
+
+    def _end_try(self, place: asyncio.Event) -> None:
+        if self._trying_now is place:
+            self._trying_now = None
+            self._tried.set()
 
     def close(self) -> None:
         """Try no more."""
         self._closed = True
-        self._over.set()
+        self._let_all_try()
         if self._trying is not None:
             self._trying.cancel()
 
@@ -93,4 +121,14 @@ class Trouble:
             pause_s = self._pause_s
             self._pause_s = min(LONGEST_PAUSE_S, pause_s * 2)
             await self._sleep(pause_s)
-            await self._probe()
+            if self._line:
+                self._tried.clear()
+                self._trying_now = self._line[0]
+                self._trying_now.set()
+                await self._tried.wait()
+            else:
+                await self._probe()
+
+    def _let_all_try(self) -> None:
+        for place in self._line:
+            place.set()

@@ -15,13 +15,14 @@ from server.journal.sqlite import SqliteJournal
 
 
 class Passing:
-    """Time that passes at once; `pauses` are those that were asked for."""
+    """Time that passes at the loop's next turn; `pauses` are those that were asked for."""
 
     def __init__(self) -> None:
         self.pauses: list[float] = []
 
     async def __call__(self, delay: float, /) -> None:
         self.pauses.append(delay)
+        await asyncio.sleep(0)
 
 
 class Never:

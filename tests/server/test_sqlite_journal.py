@@ -296,13 +296,51 @@ async def test_who_watches_is_told_when_trouble_begins_and_ends() -> None:
     sleep = PassingUntilGood(2)
     journal = SqliteJournal(":memory:", sleep=sleep)
     told: list[str | None] = []
-    journal.trouble.watch(told.append)
+    over = asyncio.Event()
+
+    def tell(reason: str | None) -> None:
+        told.append(reason)
+        if reason is None:
+            over.set()
+
+    journal.trouble.watch(tell)
     sleep.connection = failing(journal)
     sleep.connection.error = "disk I/O error"
     with pytest.raises(JournalWriteError):
         await journal.append(Entry(events=[paused()]))
-    await asyncio.wait_for(journal.trouble.over(), timeout=60)
+    await asyncio.wait_for(over.wait(), timeout=60)
     assert told == ["the journal could not be written: disk I/O error", None]
+    journal.close()
+
+
+async def test_that_a_probe_could_be_written_ends_no_trouble_of_who_waits() -> None:
+    sleep = PassingUntilGood(12)
+    journal = SqliteJournal(":memory:", sleep=sleep)
+    told: list[str | None] = []
+    journal.trouble.watch(told.append)
+    # As on a damaged page: everything else can be written all the time.
+    sleep.connection = failing(journal, "INSERT INTO events")
+    sleep.connection.error = sqlite3.DatabaseError("database disk image is malformed")
+    entries = [journal.append(Entry(events=[paused(float(i))]), patient=True) for i in range(3)]
+    await asyncio.wait_for(asyncio.gather(*entries), timeout=60)
+    assert told == ["the journal could not be written: database disk image is malformed", None]
+    assert len(sleep.pauses) == 12
+    journal.close()
+
+
+async def test_who_stops_waiting_keeps_nobody_else_from_trying() -> None:
+    sleep = PassingUntilGood(5)
+    journal = SqliteJournal(":memory:", sleep=sleep)
+    sleep.connection = failing(journal)
+    sleep.connection.error = "disk I/O error"
+    first, second = (
+        asyncio.create_task(journal.append(Entry(events=[paused(time)]), patient=True))
+        for time in (1.0, 2.0)
+    )
+    await asyncio.wait_for(journal.trouble.begun(), timeout=60)
+    first.cancel()
+    (event,) = await asyncio.wait_for(second, timeout=60)
+    assert event.time == 2.0
     journal.close()
 
 
