@@ -21,7 +21,6 @@ ONLY_WHILE_INSTALLING = {"debconf", "dpkg", "openssl"}
 """Packages that others name because their installation runs them."""
 
 NOT_READ = (
-    "/usr/lib/x86_64-linux-gnu/gconv/",
     "/usr/share/bug/",
     "/usr/share/doc/",
     "/usr/share/info/",
@@ -30,6 +29,9 @@ NOT_READ = (
     "/usr/share/man/",
 )
 """Below these nothing is read at run time, but for the licences."""
+
+CONVERSIONS = re.compile(r"/usr/lib/[^/]+/gconv/")
+"""Of character sets that Python has its own tables for; below a folder of each architecture."""
 
 MADE_HERE = (
     "/etc/group",
@@ -97,7 +99,9 @@ def copy(path: str, root: Path) -> None:
 
 
 def is_read(path: str) -> bool:
-    return path.endswith("/copyright") or not path.startswith(NOT_READ)
+    """Whether it is to go along."""
+    unread = path.startswith(NOT_READ) or CONVERSIONS.match(path)
+    return path.endswith("/copyright") or not unread
 
 
 def make(root: Path, names: list[str]) -> None:

@@ -28,6 +28,7 @@ def test_a_package_comes_with_what_it_needs(tmp_path: Path) -> None:
     assert not {"bash", "coreutils", "debconf", "dpkg"} & listed
     assert (root / "tmp").stat().st_mode & 0o7777 == 0o1777
     assert not (root / "usr/share/man").exists()
+    assert not list(root.glob("usr/lib/*/gconv/*"))
 
 
 @pytest.mark.skipif(os.geteuid() != 0, reason="only root may enter another root")
