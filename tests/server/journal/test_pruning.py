@@ -161,6 +161,33 @@ async def test_of_earlier_starts_that_no_run_names_no_receipt_is_kept_for_ever(
     journal.close()
 
 
+async def test_a_robot_that_started_often_keeps_nobody_waiting_while_its_starts_are_forgotten(
+    tmp_path: Path,
+) -> None:
+    async def steps_for(boots: int) -> int:
+        """How much SQLite does, in units of 100 of its instructions."""
+        journal = SqliteJournal(tmp_path / f"{boots}.db")
+        journal._write_connection.executemany(
+            "INSERT INTO receipts (robot, boot, seq, time) VALUES ('arm', ?, 1, ?)",
+            [(f"boot {boot}", float(boot)) for boot in range(boots)],
+        )
+        steps = 0
+
+        def count() -> int:
+            nonlocal steps
+            steps += 1
+            return 0
+
+        journal._write_connection.set_progress_handler(count, 100)
+        await journal.prune(Keep(ended_within=timedelta(days=1)), NOW)
+        left = journal._write_connection.execute("SELECT count(*) FROM receipts").fetchone()
+        journal.close()
+        assert left == (1,)
+        return steps
+
+    assert await steps_for(4000) < 8 * await steps_for(1000)
+
+
 async def test_numbers_are_never_given_again(path: Path) -> None:
     journal = SqliteJournal(path)
     head = journal.head
