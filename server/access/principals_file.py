@@ -35,6 +35,12 @@ KEPT_CHANGES = 1000
 MAX_DEPTH = 100
 """Of mappings and lists within one another; what is right needs three."""
 
+MOST_TOLD = 50
+"""So many mistakes are told of one file."""
+
+KEY_CHARS = 100
+"""Of a longer key only the beginning is told."""
+
 LOADER: type[Any] = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
 PrincipalName = Annotated[
@@ -157,8 +163,11 @@ def principals_of(text: str, source: str) -> Principals:
     try:
         return Principals.model_validate(loaded or {})
     except ValidationError as error:
-        sentences = [_sentence(source, each) for each in error.errors(include_url=False)]
-        raise PrincipalsFileError("\n".join(dict.fromkeys(sentences))) from error
+        sentences = dict.fromkeys(_sentence(source, each) for each in error.errors())
+        told = list(sentences)[:MOST_TOLD]
+        if len(sentences) > MOST_TOLD:
+            told.append(f"{source}: and {len(sentences) - MOST_TOLD} more mistakes.")
+        raise PrincipalsFileError("\n".join(told)) from error
     except RecursionError as error:
         raise PrincipalsFileError(f"{source}: something in it is nested too deeply.") from error
 
@@ -174,7 +183,7 @@ def _refuse_depth(text: str, source: str) -> None:
 
 
 def _sentence(source: str, mistake: ErrorDetails) -> str:
-    where = ".".join(str(each) for each in mistake["loc"])
+    where = ".".join(str(each)[:KEY_CHARS] for each in mistake["loc"])
     if mistake["type"] == "extra_forbidden":
         return f"{source}: {where}: is not known here."
     if mistake["type"] == "missing":

@@ -1,5 +1,6 @@
 """The file of principals: kept safely, checked with sentences, and without any token in it."""
 
+import json
 import os
 import stat
 from datetime import UTC, datetime, timedelta
@@ -164,6 +165,16 @@ def test_every_mistake_is_one_sentence(text: str, sentence: str) -> None:
     with pytest.raises(PrincipalsFileError) as told:
         principals_of(text, "f.yaml")
     assert sentence in str(told.value).splitlines()
+
+
+def test_of_very_many_mistakes_some_are_told_and_how_many_more_there_are() -> None:
+    keys = {f"key{n}{'y' * 200}": 0 for n in range(5000)}
+    with pytest.raises(PrincipalsFileError) as refused:
+        principals_of(json.dumps({"principals": [keys]}), "file")
+    told = str(refused.value).splitlines()
+    assert len(told) == 51
+    assert told[-1] == "file: and 4955 more mistakes."
+    assert max(map(len, told)) < 200
 
 
 def test_a_file_with_mistakes_is_not_overwritten(path: Path, editor: PrincipalsEditor) -> None:
