@@ -1,13 +1,13 @@
 """One robot that the service knows: what it is, what it was told, who owns it."""
 
 import asyncio
-import base64
 import logging
 from collections import OrderedDict
 from collections.abc import Callable, Coroutine
 from typing import Any
 from uuid import uuid4
 
+from robots.link.jpeg import NotJpegError, read_jpeg
 from robots.link.messages import (
     PROTOCOL_VERSION,
     Ack,
@@ -296,9 +296,9 @@ class KnownRobot:
 
     def receive_picture(self, picture: Picture) -> None:
         try:
-            jpeg = base64.b64decode(picture.jpeg, validate=True)
-        except ValueError as error:
-            raise PictureError(f"the picture of '{picture.camera}' is not base64") from error
+            jpeg = read_jpeg(picture.jpeg)
+        except NotJpegError as error:
+            raise PictureError(f"the picture of '{picture.camera}' {error}") from error
         self._answer(picture.command, lambda future: future.set_result(jpeg))
 
     def receive_poses(self, poses: Poses) -> None:

@@ -43,6 +43,8 @@ from server.robots.passes import Anyone
 from server.robots.registry import RobotRegistry
 from server.robots.times import LinkTimes
 
+A_PICTURE = b"\xff\xd8\xff a picture \xff\xd9"
+PICTURE_OF_NOTHING = '{"type": "picture", "command": "c", "camera": "head", "jpeg": "PGh0bWw+"}'
 QUICK = LinkTimes(heartbeat_s=0.001, silence_s=10.0, absence_s=0.001)
 
 
@@ -463,6 +465,7 @@ async def test_a_robot_that_beats_is_not_cut_off(
         ('{"type": "report", "seq": 1, "time": 1, "body": {}}', "at report"),
         ('{"type": "picture", "command": "c", "camera": "head", "jpeg": "!"}', "is not base64"),
         ('{"type": "picture", "command": "c", "camera": "head", "jpeg": "é"}', "is not base64"),
+        (PICTURE_OF_NOTHING, "is not a JPEG"),
         ("[" * 100_000, "the message was not understood"),
     ],
 )
@@ -516,9 +519,9 @@ async def test_a_picture_is_asked_for_and_comes(registry: RobotRegistry) -> None
     asked = asyncio.create_task(registry.take_picture("arm", "head"))
     command = await robot.hear()
     assert isinstance(command, Command)
-    jpeg = base64.b64encode(b"a picture").decode()
+    jpeg = base64.b64encode(A_PICTURE).decode()
     await robot.say(Picture(command=command.id, camera="head", jpeg=jpeg))
-    assert await asked == b"a picture"
+    assert await asked == A_PICTURE
 
 
 async def test_a_picture_that_does_not_come_is_a_conflict(registry: RobotRegistry) -> None:
@@ -700,7 +703,7 @@ async def test_a_robot_that_shows_nothing_is_never_asked_for_poses(
 async def test_who_comes_again_as_another_goes_is_not_forgotten(
     journal: SqliteJournal, turns: int
 ) -> None:
-    registry = RobotRegistry(journal, TickingClock(), QUICK, Limits(departed_robots=1))
+    registry = RobotRegistry(journal, TickingClock(), limits=Limits(departed_robots=1))
     gone, other = PlayedRobot(registry), PlayedRobot(registry)
     await gone.greet(hello("arm"))
     await gone.channel.close()
