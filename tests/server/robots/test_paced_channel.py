@@ -82,7 +82,7 @@ async def all_of(channel: Channel) -> AsyncIterator[str]:
 
 async def read_all(messages: list[str], clock: Clock, held_back: list[int]) -> None:
     ours, theirs = memory_channel()
-    paced = PacedChannel(theirs, Pace(10, clock), lambda: held_back.append(1), clock.sleep)
+    paced = PacedChannel(theirs, Pace(10, clock, lambda: held_back.append(1), clock.sleep))
     for text in messages:
         await ours.send(text)
     assert [await paced.receive() for _ in messages] == messages
