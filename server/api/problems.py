@@ -111,14 +111,11 @@ def problem_response(refusal: Problem, headers: Mapping[str, str] | None = None)
 
 
 def documented(*statuses: int) -> dict[int | str, dict[str, Any]]:
-    """The refusals of an operation, for its OpenAPI description.
-
-    Whoever may be asked for the token (401) may also be asked to wait with it (429).
-    """
+    """The refusals of an operation, for its OpenAPI description."""
     content = {MEDIA_TYPE: {"schema": {"$ref": "#/components/schemas/Problem"}}}
     return {
         status: {"description": HTTPStatus(status).phrase, "content": content}
-        for status in sorted({*statuses, *([429] if 401 in statuses else [])})
+        for status in sorted(statuses)
     }
 
 

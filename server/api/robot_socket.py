@@ -80,13 +80,13 @@ def add_robot_route(
     """Serve `/ws/robot`.
 
     A robot has to present its credential as a bearer token, or the service's own token where there
-    is one (else HTTP status 401, or 429 while its address has to wait). A request with an `Origin`
-    comes from a browser and is refused (403) unless that origin is allowed.
+    is one (else HTTP status 401, or 429 while it or its address has to wait). A request with an
+    `Origin` comes from a browser and is refused (403) unless that origin is allowed.
     """
 
     async def connect(websocket: WebSocket) -> None:
         await access.look()
-        shown = _shown(websocket, access, allowed_origins)
+        shown = await _shown(websocket, access, allowed_origins)
         if isinstance(shown, Response):
             await websocket.send_denial_response(shown)
             return
@@ -120,7 +120,7 @@ class _Shown:
     caller: Caller | None
 
 
-def _shown(
+async def _shown(
     websocket: WebSocket, access: Access, allowed_origins: Collection[str]
 ) -> _Shown | Response:
     origin = websocket.headers.get("origin")
@@ -129,7 +129,7 @@ def _shown(
     own = access.own_robot(websocket)
     if own is not None:
         return _Shown(own, None)
-    admission = access.by_bearer(websocket)
+    admission = await access.in_time(access.by_bearer(websocket))
     if admission.wait_s:
         return problem_response(problem(429, admission.too_many), admission.retry_after)
     robot = None if admission.caller is None else access.robot_pass(admission.caller)

@@ -86,7 +86,20 @@ async def by_robot(service: ServiceUnderTest, token: str) -> tuple[int, str | No
     return await by_socket(service.url.replace("http", "ws", 1) + ROBOT_PATH, token)
 
 
-DOORS = [(by_rest, 401, 200), (by_sign_in, 401, 204), (by_helper, 403, 200), (by_robot, 401, 200)]
+async def by_look(service: ServiceUnderTest, token: str) -> tuple[int, str | None]:
+    """At a door that is open to everybody."""
+    headers = {"Authorization": f"Bearer {token}"}
+    response = await once(service, "/api/session", headers=headers)
+    return response.status_code, response.headers.get("retry-after")
+
+
+DOORS = [
+    (by_rest, 401, 200),
+    (by_look, 200, 200),
+    (by_sign_in, 401, 204),
+    (by_helper, 403, 200),
+    (by_robot, 401, 200),
+]
 
 
 @pytest.mark.parametrize(("door", "refused", "welcome"), DOORS)
