@@ -49,13 +49,17 @@ End = Callable[[Beyond], None]
 
 
 class Visitor:
-    """One connection. It is a stranger until it is admitted; `end` ends it."""
+    """One connection. It is a stranger until it is admitted; `end` ends it.
+
+    `shown` is the fingerprint of the token that it was admitted with last, if it was one.
+    """
 
     def __init__(self, visitors: "Visitors", household: str | None, end: End) -> None:
         self.household = household
         self.end = end
         self.is_admitted = False
         self.principal: str | None = None
+        self.shown: str | None = None
         self.phase = Phase.HEAD
         self.since = visitors.now()
         self._visitors = visitors
@@ -73,9 +77,9 @@ class Visitor:
         if phase is not self.phase:
             self.phase, self.since = phase, self._visitors.now()
 
-    def admit(self, principal: str | None = None) -> None:
+    def admit(self, principal: str | None = None, shown: str | None = None) -> None:
         """It is no stranger any more, but whoever `principal` stands for, if they have a share."""
-        self.is_admitted = True
+        self.is_admitted, self.shown = True, shown
         self._visitors.no_stranger(self)
         self._visitors.belongs(self, principal)
 

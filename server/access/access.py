@@ -120,7 +120,7 @@ class Access:
         """By the token that somebody shows on a connection, wherever in it.
 
         While an address has to wait, what it shows is not even read; else guessing would be as
-        quick as before. Whoever is in already stays in: on a connection that was admitted it is.
+        quick as before. Whoever is in already stays in, with what their connection came in with.
         """
         if self.required:
             waiting = self.waiting(shown, connection)
@@ -130,7 +130,7 @@ class Access:
         if principal is None:
             self.wrong(shown, connection)
             return REFUSED
-        return _welcomed(Caller(principal, address_of(connection)), connection)
+        return _welcomed(Caller(principal, address_of(connection)), connection, shown)
 
     def waiting(self, shown: str, connection: HTTPConnection) -> Admission:
         """Nobody, and how many seconds nothing new that this address shows is read; 0: it is now.
@@ -139,7 +139,7 @@ class Access:
         have changed since.
         """
         household = household_of(address_of(connection))
-        if _is_in(connection) or self._wrong.is_known(household, bytes_of(shown)):
+        if self._is_in(shown, connection) or self._wrong.is_known(household, bytes_of(shown)):
             return REFUSED
         wait_s = math.ceil(self._wrong.wait_s(household))
         if wait_s == 0:
@@ -147,6 +147,16 @@ class Access:
         self._refusals.note("wrong_tokens")
         too_many = f"too many wrong tokens came from this address: try again in {wait_s} s"
         return Admission(None, wait_s, too_many)
+
+    def _is_in(self, shown: str, connection: HTTPConnection) -> bool:
+        """Whether the connection, one client's alone, was admitted with this, and it is still good.
+
+        Anything else that comes on it is a guess like any other.
+        """
+        visitor = visitor_of(connection.scope)
+        if visitor is None or visitor.household is None or visitor.shown is None:
+            return False
+        return fits(shown, visitor.shown) and self.of_token(shown) is not None
 
     def wrong(self, shown: str, connection: HTTPConnection) -> None:
         """Somebody has shown a wrong token or code."""
@@ -302,23 +312,20 @@ def address_of(connection: HTTPConnection) -> str | None:
     return None if connection.client is None else connection.client.host
 
 
-def _welcomed(caller: Caller, connection: HTTPConnection) -> Admission:
+def _welcomed(caller: Caller, connection: HTTPConnection, token: str | None = None) -> Admission:
     principal = caller.principal
-    _admit(connection, principal.key if principal.named else None)
+    shown = None if token is None else fingerprint(token)
+    _admit(connection, principal.key if principal.named else None, shown)
     return Admission(caller)
 
 
-def _admit(connection: HTTPConnection, principal: str | None = None) -> None:
+def _admit(
+    connection: HTTPConnection, principal: str | None = None, shown: str | None = None
+) -> None:
     """Whoever made this connection is no stranger any more; who has one token has no share."""
     visitor = visitor_of(connection.scope)
     if visitor is not None:
-        visitor.admit(principal)
-
-
-def _is_in(connection: HTTPConnection) -> bool:
-    """Whether the connection was admitted before, and is one client's alone."""
-    visitor = visitor_of(connection.scope)
-    return visitor is not None and visitor.is_admitted and visitor.household is not None
+        visitor.admit(principal, shown)
 
 
 def _is_ip(name: str) -> bool:
