@@ -83,6 +83,10 @@ class Visitor:
         self._visitors.no_stranger(self)
         self._visitors.belongs(self, principal)
 
+    def note(self, beyond: Beyond) -> None:
+        """Something that came on it was beyond a limit."""
+        self._visitors.note(beyond)
+
     def leave(self) -> None:
         """The connection is gone. Saying so twice does nothing."""
         self._visitors.leave(self)
@@ -135,7 +139,7 @@ class Visitors:
         most = self._limits.connections
         if len(self._here) >= most:
             beyond = Beyond("connections", f"the service has {most} connections and takes no more")
-            self._note(beyond)
+            self.note(beyond)
             return beyond
         household = None if address in self._proxies else household_of(address)
         self._make_room(household)
@@ -226,7 +230,7 @@ class Visitors:
         return None
 
     def _end(self, visitor: Visitor, beyond: Beyond) -> None:
-        self._note(beyond)
+        self.note(beyond)
         # So that it is ended once.
         visitor.enter(Phase.SERVICE)
         self.no_stranger(visitor)
@@ -234,7 +238,8 @@ class Visitors:
         with self._ending.one_pass():
             visitor.end(beyond)
 
-    def _note(self, beyond: Beyond) -> None:
+    def note(self, beyond: Beyond) -> None:
+        """Count what was beyond a limit, and say so now and then."""
         self._refusals.note(beyond.limit)
         self._rare_log.warn(beyond.limit, f"{beyond.limit}: {beyond.sentence}")
 

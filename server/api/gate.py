@@ -91,6 +91,7 @@ class Gate:
         if most < MAX_BODY_BYTES:
             self._refusals.note("stranger_body_bytes")
             return f"the body is larger than {most} bytes"
+        self._refusals.note("body_bytes")
         return f"the body is larger than {MAX_BODY_BYTES // 1024**2} MiB"
 
     def _limited(self, scope: Scope, receive: Receive) -> Receive:

@@ -137,8 +137,9 @@ class HelperConnection(ABC, Generic[Query]):
             async with asyncio.timeout(FIRST_MESSAGE_S):
                 first = await self._receive()
         except TimeoutError:
+            self._parts.refusals.note("first_message_s")
             return None
-        if not isinstance(first, str) or len(first) > self._max_message_chars:
+        if not isinstance(first, str) or self._is_too_long(first):
             return None
         try:
             return Auth.model_validate_json(first).token
@@ -170,9 +171,16 @@ class HelperConnection(ABC, Generic[Query]):
         await self._pace.keep(len(received))
         return received
 
+    def _is_too_long(self, text: str) -> bool:
+        """Whether a message is longer than it may be, which is counted."""
+        too_long = len(text) > self._max_message_chars
+        if too_long:
+            self._parts.refusals.note("helper_message_chars")
+        return too_long
+
     async def _read(self, text: str, shape: TypeAdapter[Message]) -> Message | None:
         """What a text message says; None for one that was refused, also for want of a role."""
-        if len(text) > self._max_message_chars:
+        if self._is_too_long(text):
             limit = f"a message may have {self._max_message_chars} characters"
             await self._refuse(problem(413, limit))
             return None

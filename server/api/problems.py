@@ -30,6 +30,8 @@ from server.errors import (
     UnreadableError,
 )
 from server.journal.journal import JournalClosedError, JournalReadError, JournalWriteError
+from server.limits import LimitName
+from server.refusals import Refusals
 
 log = logging.getLogger(__name__)
 
@@ -64,12 +66,20 @@ class Problem(BaseModel):
 
 
 class ProblemError(Exception):
-    """A refusal that the API itself decides on."""
+    """A refusal that the API itself decides on; `limit` is the one that was reached, if any."""
 
-    def __init__(self, status: int, detail: str, headers: Mapping[str, str] | None = None) -> None:
+    def __init__(
+        self,
+        status: int,
+        detail: str,
+        headers: Mapping[str, str] | None = None,
+        *,
+        limit: LimitName | None = None,
+    ) -> None:
         super().__init__(detail)
         self.status = status
         self.headers = headers
+        self.limit = limit
 
 
 def problem(status: int, detail: str, **more: Any) -> Problem:
@@ -91,6 +101,12 @@ def problem_of(error: Exception) -> Problem | None:
     if isinstance(error, InvalidError):
         return problem(status, str(error), errors=error.problems or [str(error)])
     return problem(status, str(error))
+
+
+def count_refusal(error: Exception, refusals: Refusals) -> None:
+    """Count what was refused because a limit was reached."""
+    if isinstance(error, ServiceError | ProblemError) and error.limit is not None:
+        refusals.note(error.limit)
 
 
 def problem_text(refusal: Problem) -> bytes:
@@ -154,16 +170,16 @@ async def _validation_error(_request: Request, error: Exception) -> Response:
     return problem_response(problem(422, detail, errors=sentences))
 
 
-async def _problem_error(_request: Request, error: Exception) -> Response:
+async def _problem_error(request: Request, error: Exception) -> Response:
     assert isinstance(error, ProblemError)
+    count_refusal(error, parts_of(request).refusals)
     return problem_response(problem(error.status, str(error)), error.headers)
 
 
 async def _service_error(request: Request, error: Exception) -> Response:
     refusal = problem_of(error)
     assert refusal is not None, "every service error has a status"
-    if isinstance(error, ServiceError) and error.limit is not None:
-        parts_of(request).refusals.note(error.limit)
+    count_refusal(error, parts_of(request).refusals)
     later = {"Retry-After": f"{error.retry_after_s}"} if isinstance(error, BusyError) else None
     return problem_response(refusal, later)
 

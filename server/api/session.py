@@ -67,7 +67,7 @@ async def sign_in(body: SignIn, request: Request, response: Response, parts: Wit
     try:
         _, cookie = parts.access.sessions.new(principal)
     except TooManySessionsError as error:
-        raise ProblemError(429, str(error)) from error
+        raise ProblemError(429, str(error), limit="sign_ins") from error
     _end_session(request, parts)
     parts.deeds.signed_in(principal, address_of(request))
     response.set_cookie(

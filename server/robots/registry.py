@@ -119,7 +119,7 @@ class RobotRegistry:
 
     def _known(self, name: str) -> KnownRobot:
         if name not in self._robots:
-            self._robots[name] = KnownRobot(name, self._journal, self._times)
+            self._robots[name] = KnownRobot(name, self._journal, self._times, self._refusals)
         return self._robots[name]
 
     def _forget(self, name: str) -> None:
@@ -216,6 +216,7 @@ class RobotRegistry:
                         await _complain(channel, sentence(error))
                         continue
                     except NoSenseError as error:
+                        self._refusals.note("robot_numbers")
                         await _complain(channel, str(error))
                         return None
                     if isinstance(message, Hello):

@@ -179,6 +179,12 @@ async def test_what_a_stranger_says_is_short(service_with_token: ServiceUnderTes
         assert (await first_message(socket))["type"] == "snapshot"
         await socket.send(long)
         assert (await first_message(socket))["status"] == 413
+        await socket.send("x" * (1024**2 + 1))
+        await socket.wait_closed()
+        assert socket.close_code == 1009
+    counts = service_with_token.refusals.counts
+    for limit in ("stranger_message_bytes", "helper_message_chars", "message_bytes"):
+        assert counts[limit] == 1
 
 
 @pytest.fixture

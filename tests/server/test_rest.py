@@ -317,7 +317,9 @@ async def test_camera_picture_is_a_jpeg(client: httpx.AsyncClient) -> None:
     assert (await client.get(f"/api/runs/{run}/cameras/foot")).status_code == 404
 
 
-async def test_body_above_the_limit_is_refused(client: httpx.AsyncClient) -> None:
+async def test_body_above_the_limit_is_refused(
+    client: httpx.AsyncClient, service: ServiceUnderTest
+) -> None:
     yaml = {"content-type": "application/yaml"}
     declared = await client.post("/api/trees", content=b"then" * (3 * 1024**2), headers=yaml)
     assert declared.status_code == 413
@@ -330,6 +332,7 @@ async def test_body_above_the_limit_is_refused(client: httpx.AsyncClient) -> Non
     streamed = await client.post("/api/trees", content=endless(), headers=yaml)
     assert streamed.status_code == 413
     problem_in(streamed)
+    assert service.refusals.counts["body_bytes"] == 2
 
 
 async def test_health_scenarios_robots_and_metrics(client: httpx.AsyncClient) -> None:
