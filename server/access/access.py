@@ -34,7 +34,7 @@ class Access:
 
     Without a token and without principals everybody may come in who can reach the service.
     `failed` is told the address of whoever shows something wrong. `now` is any monotonic clock in
-    seconds: by it everybody is held to their pace.
+    seconds: by it everybody is held to their pace, and sign-ins are counted.
     """
 
     def __init__(
@@ -55,7 +55,7 @@ class Access:
     ) -> None:
         limits, refusals = limits or Limits(), refusals or Refusals()
         self.principals = principals or KnownPrincipals(None, wall_time_s)
-        self.sessions = Sessions(session_key or new_session_key(), wall_time_s)
+        self.sessions = Sessions(session_key or new_session_key(), wall_time_s, now)
         self._holder = (
             None
             if token is None

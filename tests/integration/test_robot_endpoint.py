@@ -33,8 +33,6 @@ async def url() -> AsyncIterator[str]:
         ({"Authorization": "Bearer"}, 401),
         ({"Authorization": "Basic secret"}, 401),
         (RIGHT | {"Origin": "https://evil.example"}, 403),
-        # Robots are no pages, not even of the service's own.
-        (RIGHT | {"Origin": "http://127.0.0.1"}, 403),
     ],
 )
 async def test_who_is_not_to_connect_is_refused_before_the_socket_opens(
