@@ -82,7 +82,14 @@ def known_caller(connection: HTTPConnection) -> Caller:
     return caller
 
 
+def caller_if_known(connection: HTTPConnection) -> Caller | None:
+    """Who it is, at a door that is open to strangers; None for one."""
+    known: Caller | None = connection.state.known
+    return known
+
+
 WithCaller = Annotated[Caller, Depends(known_caller)]
+WithCallerIfKnown = Annotated[Caller | None, Depends(caller_if_known)]
 WithParts = Annotated[Parts, Depends(parts_of)]
 
 RunId = Annotated[UUID, Path(description="The run's id.")]

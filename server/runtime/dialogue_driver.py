@@ -196,7 +196,8 @@ class DialogueDriver:
         left = dialogue.extensions_left - 1
         if left < 0:
             raise ConflictError(
-                f"this question was given more time {MOST_EXTENSIONS} times already"
+                f"this question was given more time {MOST_EXTENSIONS} times already",
+                limit="extensions",
             )
         make = self._make(dialogue)
         event = make.extended(ask, ask.deadline + length_s, left, helper, author)

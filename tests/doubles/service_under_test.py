@@ -27,6 +27,7 @@ from server.library import build_library
 from server.limits import LimitName
 from server.listening import listen
 from server.models import RobotModels
+from server.pace import Sleep
 from server.poses.feed import PoseFeed
 from server.poses.record import PoseRecords
 from server.refusals import Refusals
@@ -93,6 +94,8 @@ def build(
     records: PoseRecords | None = None,
     models: Sequence[Any] = (),
     wall_time_s: Callable[[], float] = time.time,
+    now: Callable[[], float] = time.monotonic,
+    sleep: Sleep = asyncio.sleep,
     **settings: Any,
 ) -> ServiceUnderTest:
     """A service on an empty journal in memory; `models` are adapters that provide some."""
@@ -102,7 +105,9 @@ def build(
     chosen = Settings(port=0, **{"data_dir": folder, **settings})
     deeds = DeedLog(journal, lambda: datetime.now(UTC))
     refusals = Refusals()
-    access = build_access(chosen, deeds, refusals=refusals, wall_time_s=wall_time_s)
+    access = build_access(
+        chosen, deeds, refusals=refusals, wall_time_s=wall_time_s, now=now, sleep=sleep
+    )
     library = build_library(journal, fixed_documents(GivenFiles(), None), WorldChecks({}))
     trees = JournaledDocuments(DocumentKind.TREE, journal, NamedTexts(TREES), FakeTreeChecker())
     poses = PoseFeed(lambda *_: None, lambda _: None, records)
@@ -133,7 +138,7 @@ async def serving(
     **arguments: Any,
 ) -> AsyncIterator[ServiceUnderTest]:
     """A service behind a real socket on a free port; by `now` connections are ended."""
-    service = build(speech, **arguments)
+    service = build(speech, now=now, **arguments)
     config = serve_config(service.app, service.settings)
     server = Server(config, service.settings, service.refusals, now=now)
     service.served_by = server

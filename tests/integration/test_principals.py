@@ -14,6 +14,7 @@ from people import NAMES, People, serving_people
 from service_under_test import TOKEN, ServiceUnderTest, serving, until
 from shown_run import hello, run_state
 from websockets.asyncio.client import ClientConnection, connect
+from websockets.exceptions import InvalidStatus
 
 from server.access.deeds import deeds_in
 from server.access.roles import Role
@@ -77,6 +78,89 @@ async def test_who_asks_without_end_is_answered_at_a_pace_and_nobody_else_waits(
     assert {each.status_code for each in answers} == {403, 429}
     assert all(int(each.headers["Retry-After"]) >= 4 for each in refused)
     assert "requests_per_s" in refused[0].json()["detail"]
+
+
+async def at_once(_: float) -> None:
+    """The clock stands still: who has to wait goes on at once."""
+
+
+STILL: dict[str, Any] = {"now": lambda: 0.0, "sleep": at_once, "limits": Limits(requests_per_s=1)}
+ANSWERED = 8
+"""Four seconds' worth at once, and as many that wait."""
+
+
+@pytest.mark.parametrize("path", ["/api/session", "/healthz", "/readyz", "/"])
+async def test_who_says_who_they_are_has_their_pace_at_open_doors_too(
+    tmp_path: Path, path: str
+) -> None:
+    async with serving_people(tmp_path, **STILL) as served:
+        service, _ = served
+        async with as_a(served, Role.VIEWER) as viewer, as_a(served, Role.HELPER) as other:
+            statuses = [(await viewer.get(path)).status_code for _ in range(ANSWERED + 2)]
+            assert (await other.get(path)).status_code == 200
+        async with httpx.AsyncClient(base_url=service.url) as stranger:
+            assert (await stranger.get(path)).status_code == 200
+    assert statuses == [200] * ANSWERED + [429] * 2
+
+
+async def opened(served: Served) -> int:
+    """What somebody is answered who opens a socket."""
+    service, people = served
+    try:
+        async with connect(service.ws, additional_headers=people.headers(Role.VIEWER)) as socket:
+            assert (await message(socket))["type"] == "snapshot"
+    except InvalidStatus as refused:
+        return refused.response.status_code
+    return 200
+
+
+async def opened_by_a_message(served: Served) -> int:
+    """What they are answered who show their token in the first message."""
+    service, people = served
+    async with connect(service.ws) as socket:
+        await socket.send(json.dumps({"type": "auth", "token": people.tokens[Role.VIEWER]}))
+        answer = await message(socket)
+        if answer["type"] == "snapshot":
+            return 200
+        assert await close_code(socket) == 1013
+    status: int = answer["status"]
+    return status
+
+
+@pytest.mark.parametrize("opening", [opened, opened_by_a_message])
+async def test_to_open_sockets_is_to_ask_too(tmp_path: Path, opening: Any) -> None:
+    async with serving_people(tmp_path, **STILL) as served:
+        statuses = [await opening(served) for _ in range(ANSWERED + 1)]
+        assert served[0].refusals.counts["requests_per_s"] == 5
+        async with as_a(served, Role.VIEWER) as viewer:
+            assert (await viewer.get("/api/runs")).status_code == 429
+    assert statuses == [200] * ANSWERED + [429]
+
+
+@pytest.mark.parametrize("path", ["/api/runs", "/ws/helper"])
+async def test_who_is_revoked_while_they_have_to_wait_is_not_let_in(
+    tmp_path: Path, path: str
+) -> None:
+    waited: list[float] = []
+
+    async def revoked_meanwhile(seconds: float) -> None:
+        served[1].revoke(Role.OPERATOR)
+        waited.append(seconds)
+
+    settings = {**STILL, "sleep": revoked_meanwhile}
+    async with serving_people(tmp_path, **settings) as served, as_a(served, Role.OPERATOR) as olga:
+        for _ in range(4):
+            assert (await olga.get("/api/runs")).status_code == 200
+        if path == "/api/runs":
+            assert (await olga.post(path, json=RUN)).status_code == 401
+        else:
+            with pytest.raises(InvalidStatus):
+                await connect(
+                    served[0].ws,
+                    additional_headers={"Authorization": olga.headers["Authorization"]},
+                )
+        assert len(waited) == 1
+        assert served[0].journal.head == 0
 
 
 # --- Sessions -------------------------------------------------------------------------------------

@@ -103,8 +103,15 @@ def clock() -> TickingClock:
 
 
 @pytest.fixture
-async def registry(journal: SqliteJournal, clock: TickingClock) -> AsyncIterator[RobotRegistry]:
-    registry = RobotRegistry(journal, clock, QUICK)
+def refusals() -> Refusals:
+    return Refusals()
+
+
+@pytest.fixture
+async def registry(
+    journal: SqliteJournal, clock: TickingClock, refusals: Refusals
+) -> AsyncIterator[RobotRegistry]:
+    registry = RobotRegistry(journal, clock, QUICK, refusals=refusals)
     yield registry
     registry.close()
 
@@ -231,13 +238,14 @@ async def test_commands_for_an_earlier_boot_are_dropped(registry: RobotRegistry)
 
 
 async def test_a_robot_that_takes_no_commands_is_not_sent_more_and_more(
-    registry: RobotRegistry,
+    registry: RobotRegistry, refusals: Refusals
 ) -> None:
     for n in range(1000):
         registry.send("arm", f"c{n}", Look())
     registry.send("arm", "c7", Look())
     with pytest.raises(ConflictError, match="has not taken its last 1000 commands"):
         registry.send("arm", "one more", Look())
+    assert refusals.counts["untaken_commands"] == 1
 
 
 async def test_a_robot_has_one_owner(
@@ -623,7 +631,10 @@ async def test_a_robot_that_only_says_that_it_is_simulated_is_not_forgotten(
 
 
 async def test_a_robot_that_makes_up_boots_is_ended(
-    registry: RobotRegistry, journal: SqliteJournal, monkeypatch: pytest.MonkeyPatch
+    registry: RobotRegistry,
+    journal: SqliteJournal,
+    refusals: Refusals,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr("server.robots.known_robot.MOST_NEW_BOOTS", 3)
     robot = PlayedRobot(registry)
@@ -636,6 +647,7 @@ async def test_a_robot_that_makes_up_boots_is_ended(
     assert "has sent reports of 3 boots that were not known" in last.detail
     assert await journal.received("arm", "made-up-2") == 1
     assert await journal.received("arm", "made-up-3") == 0
+    assert refusals.counts["new_boots"] == 1
 
 
 async def test_a_closed_registry_ends_every_connection(registry: RobotRegistry) -> None:

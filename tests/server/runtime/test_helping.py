@@ -89,8 +89,9 @@ async def test_nobody_fills_the_journal_with_claims(
     await service.runtime.claim(question.dialogue, "bob")
     head = service.journal.head
     for take_over in (False, True):
-        with pytest.raises(ConflictError, match="can be answered, not claimed"):
+        with pytest.raises(ConflictError, match="can be answered, not claimed") as refused:
             await service.runtime.claim(question.dialogue, "bob", take_over=take_over)
+        assert refused.value.limit == "claims"
     assert service.journal.head == head
     await service.runtime.answer(question.dialogue, prompt_in(question).prompt, "yes", "ann")
 
@@ -143,8 +144,9 @@ async def test_more_time_is_given_ten_times_and_no_more(service: PretendService)
     for _ in range(10):
         await service.runtime.extend(view.dialogue, prompt_in(view).prompt, "ann")
     head = service.journal.head
-    with pytest.raises(ConflictError, match="10 times"):
+    with pytest.raises(ConflictError, match="10 times") as refused:
         await service.runtime.extend(view.dialogue, prompt_in(view).prompt, "bob")
+    assert refused.value.limit == "extensions"
     assert service.journal.head == head
 
 
