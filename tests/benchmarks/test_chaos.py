@@ -1,11 +1,15 @@
 """The benchmark of chaos in small, and that the one who compares notices what is wrong."""
 
+import http.client
 import json
 import os
+import socket
 import sqlite3
+import threading
 from collections.abc import Callable
 from contextlib import closing
 from dataclasses import replace
+from http.server import BaseHTTPRequestHandler, HTTPServer
 from pathlib import Path
 
 import pytest
@@ -13,6 +17,7 @@ from chaos_faults import FAULTS
 from chaos_ledger import NO_RUN, Ledger
 from chaos_ordeal import Ordeal
 from chaos_place import chaos_place
+from chaos_probe import is_healthy
 from chaos_witness import AnswerAttempt, RunAttempt, Witness
 from full_disk import small_disk
 from made_up_history import write_history
@@ -39,6 +44,35 @@ async def test_a_service_among_faults_loses_doubles_and_invents_nothing(tmp_path
     assert found.end is not None
     assert found.end.processes == 1
     assert found.latencies_s
+
+
+@pytest.mark.parametrize(
+    ("status", "healthy"), [(200, True), (204, False), (429, False), (500, False), (503, False)]
+)
+def test_only_an_answer_of_200_says_that_the_service_is_well(status: int, healthy: bool) -> None:
+    class Answers(BaseHTTPRequestHandler):
+        def do_GET(self) -> None:
+            self.send_response(status)
+            self.end_headers()
+            self.wfile.write(b"" if status == 204 else b"{}")
+
+        def log_message(self, *_: object) -> None:
+            pass
+
+    with HTTPServer(("127.0.0.1", 0), Answers) as server:
+        answering = threading.Thread(target=server.handle_request)
+        answering.start()
+        connection = http.client.HTTPConnection("127.0.0.1", server.server_port)
+        assert is_healthy(connection, {}) is healthy
+        connection.close()
+        answering.join()
+
+
+def test_a_service_that_is_not_there_is_not_well() -> None:
+    with socket.socket() as nobody:
+        nobody.bind(("127.0.0.1", 0))
+        connection = http.client.HTTPConnection("127.0.0.1", nobody.getsockname()[1])
+        assert not is_healthy(connection, {})
 
 
 @pytest.fixture
