@@ -10,6 +10,8 @@ from fuzz_mutations import Mutator
 from fuzz_requests import fuzz_requests, fuzz_strangers
 from fuzz_robots import fuzz_robot
 
+from server.access.admission import Admission
+from server.access.principal import ANYBODY, Caller
 from server.cli.failures import CommandLineError
 
 FEW, MANY = 4, 30
@@ -40,6 +42,16 @@ async def test_mutated_requests_and_messages_do_no_harm() -> None:
             assert found.tried > 0.9 * mutations
             assert found.refused > mutations / 3
             assert found.findings == [], str(found.findings[0])
+
+
+@pytest.mark.slow
+async def test_a_service_that_lets_strangers_do_what_others_may_is_found(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("server.access.access.REFUSED", Admission(Caller(ANYBODY)))
+    async with bench() as made:
+        found = await fuzz_strangers(made, 30, 7)
+    assert any("without a credential" in each.sentence for each in found.findings)
 
 
 def test_the_same_seed_draws_the_same() -> None:
