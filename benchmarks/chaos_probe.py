@@ -28,8 +28,10 @@ class Probe:
         self._thread.start()
 
     def stop(self) -> None:
+        """Whether it was started or not."""
         self._stop.set()
-        self._thread.join()
+        if self._thread.ident is not None:
+            self._thread.join()
 
     @contextmanager
     def excused(self) -> Iterator[None]:
