@@ -59,7 +59,9 @@ def _teller() -> Callable[[str], None]:
     return lambda what: print(f"{time.monotonic() - began:7.1f} s  {what}", flush=True)
 
 
-def _takes(when: str, footprint: Footprint) -> str:
+def _takes(when: str, footprint: Footprint | None) -> str:
+    if footprint is None:
+        return f"{when}: not known"
     return (
         f"{when}: {footprint.rss_mb:.0f} MB, {footprint.processes} process(es), "
         f"{footprint.threads} threads, {footprint.descriptors} descriptors"
@@ -73,8 +75,8 @@ def _about(lives: Lives) -> list[str]:
     return [
         _takes("after the first run", lives.each[0].first),
         _takes("at the end", lives.each[-1].last) + f"; at most {lives.most_rss_mb:.0f} MB",
-        f"{len(lives.each)} lives, of which one grew by {lives.worst.grown_mb:.0f} MB in "
-        f"{lives.worst.lasted_s:.0f} s, the others by less",
+        f"{len(lives.each)} lives; after the first end of a run in it none grew by more than "
+        f"{lives.worst.grown_mb:.0f} MB, which took it {lives.worst.lasted_s:.0f} s",
     ]
 
 

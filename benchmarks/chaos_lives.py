@@ -17,16 +17,22 @@ class Footprint:
 
 @dataclass(slots=True)
 class Life:
-    """What one life took at first, with its runs taken up, and what it took last."""
+    """What one life took once a run had ended in it, None before; and what it took last.
+
+    By then it has everything in memory that it uses, and has taken up the runs of the life before.
+    """
 
     pid: int
-    began_s: float
-    first: Footprint
-    last: Footprint
+    ended_before: int
+    began_s: float = 0.0
+    first: Footprint | None = None
+    last: Footprint | None = None
     lasted_s: float = 0.0
 
     @property
     def grown_mb(self) -> float:
+        if self.first is None or self.last is None:
+            return 0.0
         return self.last.rss_mb - self.first.rss_mb
 
 
@@ -37,22 +43,22 @@ class Lives:
         self.each: list[Life] = []
         self.most_rss_mb = 0.0
 
-    def forget(self) -> None:
-        """What was noted so far does not count."""
-        self.each.clear()
-
-    def note(self, pid: int, footprint: Footprint, now_s: float) -> None:
-        """This is what it takes now; that of a new `pid` is the first of a life."""
+    def note(self, pid: int, footprint: Footprint, ended: int, now_s: float) -> None:
+        """This is what it takes now that so many runs have ended; a new `pid` is a new life."""
         self.most_rss_mb = max(self.most_rss_mb, footprint.rss_mb)
         if not self.each or self.each[-1].pid != pid:
-            self.each.append(Life(pid, now_s, footprint, footprint))
+            self.each.append(Life(pid, ended))
         life = self.each[-1]
-        life.last, life.lasted_s = footprint, now_s - life.began_s
+        if life.first is None and ended > life.ended_before:
+            life.began_s, life.first = now_s, footprint
+        if life.first is not None:
+            life.last, life.lasted_s = footprint, now_s - life.began_s
 
     @property
     def worst(self) -> Life | None:
-        """The life that grew by most."""
-        return max(self.each, key=lambda life: life.grown_mb, default=None)
+        """The life that grew by most; None if none was there for long enough."""
+        known = [life for life in self.each if life.first is not None]
+        return max(known, key=lambda life: life.grown_mb, default=None)
 
 
 def footprint_of(pid: int) -> Footprint | None:

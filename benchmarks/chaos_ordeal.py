@@ -59,7 +59,6 @@ class Ordeal:
         )
         try:
             await self._warm_up()
-            place.lives.forget()
             place.look()
             place.probe.start()
             await self._disturb(goes_on)
@@ -80,7 +79,7 @@ class Ordeal:
         """Until a run has ended: by then the service has everything in memory that it uses."""
         followers = self._place.followers
         await self._while_there_is_news(
-            lambda: any(each.has_heard_an_end for each in followers), "no run ends at all"
+            lambda: any(each.ends for each in followers), "no run ends at all"
         )
 
     async def _while_there_is_news(self, until: Callable[[], bool], otherwise: str) -> None:

@@ -110,7 +110,8 @@ class Place:
         pid = self.service.process.pid
         footprint = footprint_of(pid)
         if footprint is not None:
-            self.lives.note(pid, footprint, time.monotonic())
+            ended = self.followers[0].ends
+            self.lives.note(pid, footprint, ended, time.monotonic())
 
     def request(self, seed: int) -> dict[str, Any]:
         """A run: most in an instant world, some on robots, a few on hostile ones."""
