@@ -121,6 +121,7 @@ def create_app(
         speech_abilities,
         refusals,
         off_loop or OffLoop(settings.limits),
+        wall_time_s,
     )
     app.add_middleware(Gate, access=access, limits=settings.limits, refusals=refusals)
     return app

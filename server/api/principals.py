@@ -2,7 +2,6 @@
 
 import re
 from collections.abc import Callable
-from datetime import UTC, datetime
 from typing import Annotated, Literal, TypeVar
 
 from fastapi import APIRouter, Path, Query
@@ -101,7 +100,7 @@ class DeedsPage(View):
 @router.get("/principals", operation_id="list_principals", responses=documented(401, 403, 421))
 async def list_principals(parts: WithParts) -> list[PrincipalView]:
     """Every principal and robot that has a token of its own."""
-    now = datetime.now(UTC)
+    now = parts.utc_now()
     return [
         PrincipalView(
             name=each.name,
@@ -119,7 +118,7 @@ async def add_principal(body: NewPrincipal, parts: WithParts, caller: WithCaller
     """Add a principal, and get its token: it is shown only now."""
     token = await edited(
         parts,
-        lambda: parts.editor.add(body.name, Role(body.role), datetime.now(UTC), body.expires_days),
+        lambda: parts.editor.add(body.name, Role(body.role), parts.utc_now(), body.expires_days),
     )
     parts.deeds.access_changed("added", body.name, Role(body.role), caller.author)
     return TokenView(name=body.name, token=token)
@@ -132,7 +131,7 @@ async def rotate_principal(
     """Give a principal a new token; the old one and its sessions end."""
     role = _role(parts, name)
     token = await edited(
-        parts, lambda: parts.editor.rotate(name, datetime.now(UTC), body.expires_days)
+        parts, lambda: parts.editor.rotate(name, parts.utc_now(), body.expires_days)
     )
     parts.deeds.access_changed("rotated", name, role, caller.author)
     return TokenView(name=name, token=token)
@@ -143,7 +142,7 @@ async def rotate_principal(
 )
 async def revoke_principal(name: Name, parts: WithParts, caller: WithCaller) -> None:
     """End a principal: its token, its sessions and its connections."""
-    role = await edited(parts, lambda: parts.editor.revoke(name, datetime.now(UTC)))
+    role = await edited(parts, lambda: parts.editor.revoke(name, parts.utc_now()))
     parts.deeds.access_changed("revoked", name, role, caller.author)
 
 
@@ -152,7 +151,7 @@ async def open_enrolment(body: NewEnrolment, parts: WithParts, caller: WithCalle
     """Make a code with which a robot fetches its own credential, once."""
     code = await edited(
         parts,
-        lambda: parts.editor.open_enrolment(body.robot, datetime.now(UTC), body.minutes),
+        lambda: parts.editor.open_enrolment(body.robot, parts.utc_now(), body.minutes),
     )
     parts.deeds.access_changed("enrolment_opened", body.robot, Role.ROBOT, caller.author)
     return CodeView(robot=body.robot, code=code)

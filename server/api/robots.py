@@ -1,7 +1,5 @@
 """Robots over REST: which there are, and how one fetches its own credential."""
 
-from datetime import UTC, datetime
-
 from fastapi import APIRouter, Request
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -55,7 +53,7 @@ async def enrol_robot(body: EnrolmentRequest, request: Request, parts: WithParts
         raise ProblemError(429, waiting.too_many, waiting.retry_after)
     try:
         token = await edited(
-            parts, lambda: parts.editor.enrol(body.robot, body.code, datetime.now(UTC))
+            parts, lambda: parts.editor.enrol(body.robot, body.code, parts.utc_now())
         )
     except EnrolmentRefusedError:
         parts.access.wrong(body.code, request)

@@ -103,13 +103,20 @@ def build(
     runs = runs_in(journal)
     folder = Path(tempfile.mkdtemp())
     chosen = Settings(port=0, **{"data_dir": folder, **settings})
-    deeds = DeedLog(journal, lambda: datetime.now(UTC))
+
+    def utc_now() -> datetime:
+        return datetime.fromtimestamp(wall_time_s(), UTC)
+
+    deeds = DeedLog(journal, utc_now)
     refusals = Refusals()
     access = build_access(
         chosen, deeds, refusals=refusals, wall_time_s=wall_time_s, now=now, sleep=sleep
     )
-    library = build_library(journal, fixed_documents(GivenFiles(), None), WorldChecks({}))
-    trees = JournaledDocuments(DocumentKind.TREE, journal, NamedTexts(TREES), FakeTreeChecker())
+    fixed = fixed_documents(GivenFiles(), None)
+    library = build_library(journal, fixed, WorldChecks({}), utc_now=utc_now)
+    trees = JournaledDocuments(
+        DocumentKind.TREE, journal, NamedTexts(TREES), FakeTreeChecker(), utc_now=utc_now
+    )
     poses = PoseFeed(lambda *_: None, lambda _: None, records)
     app = create_app(
         runs,
@@ -125,6 +132,7 @@ def build(
         deeds=deeds,
         speech_abilities=speech,
         refusals=refusals,
+        wall_time_s=wall_time_s,
     )
     service = ServiceUnderTest(app, runs, journal, chosen, poses, access, deeds)
     weakref.finalize(service, shutil.rmtree, folder)

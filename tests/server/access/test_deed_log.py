@@ -1,8 +1,10 @@
 """What people do to the service is journaled, and nobody can flood the journal with sign-ins."""
 
+import asyncio
 from collections.abc import AsyncIterator
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
+from typing import cast
 from uuid import uuid4
 
 import pytest
@@ -13,7 +15,7 @@ from server.access.principals_file import KEPT_CHANGES, Change
 from server.access.roles import Role
 from server.access.sessions import Sessions
 from server.journal import events as ev
-from server.journal.journal import Entry, UnreadableEvent
+from server.journal.journal import Entry, Journal, UnreadableEvent
 from server.journal.sqlite import SqliteJournal
 
 ANNA = Principal("anna", Role.HELPER, "key")
@@ -184,3 +186,17 @@ async def test_a_clock_that_is_set_back_keeps_nothing_from_being_told(
     await deeds.written()
     told = await journal.read(0, 10, ev.NO_RUN)
     assert [each.times for each in told if isinstance(each, ev.SignInFailed)] == [1, 1]
+
+
+async def test_a_service_that_stops_waits_only_so_long_for_a_journal_that_takes_nothing(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    class Stuck:
+        async def append(self, *_: object, **__: object) -> None:
+            await asyncio.Event().wait()
+
+    monkeypatch.setattr("server.access.deed_log.LAST_WORDS_S", 0.01)
+    deeds = DeedLog(cast(Journal, Stuck()), Clock())
+    deeds.failed("10.0.0.1")
+    async with asyncio.timeout(60):
+        await deeds.close()

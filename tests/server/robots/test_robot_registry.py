@@ -41,6 +41,7 @@ from server.limits import Limits
 from server.refusals import Refusals
 from server.robots.passes import Anyone
 from server.robots.registry import RobotRegistry
+from server.robots.session import ACK_AT_LEAST_EVERY, WAITING_REPORTS
 from server.robots.times import LinkTimes
 
 A_PICTURE = b"\xff\xd8\xff a picture \xff\xd9"
@@ -744,3 +745,47 @@ async def test_who_comes_while_the_journal_cannot_be_read_has_to_come_again(
         await robot.serving
     assert not registry.connected("arm")
     await PlayedRobot(registry).greet(hello())
+
+
+async def test_a_robot_whose_reports_wait_for_the_journal_is_not_called_silent(
+    journal: SqliteJournal, clock: TickingClock
+) -> None:
+    registry = RobotRegistry(journal, clock, replace(QUICK, silence_s=0.01))
+    sink = StuckSink(journal)
+    registry.assign("arm", sink)
+    robot = PlayedRobot(registry)
+    await robot.greet(hello())
+    many = WAITING_REPORTS + 2
+    for seq in range(1, many + 1):
+        await robot.say(report(seq))
+    async with asyncio.timeout(60):
+        await sink.stuck.wait()
+    # What it says is not read any more, for many times as long as it may say nothing.
+    clock.step_s = QUICK.heartbeat_s
+    await clock.looked_at(100)
+    assert registry.connected("arm")
+    clock.step_s = 0.0
+    sink.go_on.set()
+    while await robot.hear() != Ack(seq=many):
+        pass
+    assert sink.lost == []
+    registry.close()
+
+
+async def test_a_robot_that_reports_without_a_pause_is_acknowledged_now_and_then(
+    registry: RobotRegistry, journal: SqliteJournal
+) -> None:
+    sink = StuckSink(journal)
+    registry.assign("arm", sink)
+    robot = PlayedRobot(registry)
+    await robot.greet(hello())
+    many = 2 * ACK_AT_LEAST_EVERY + 5
+    for seq in range(1, many + 1):
+        await robot.say(report(seq))
+    await sink.stuck.wait()
+    async with asyncio.timeout(60):
+        while not robot.channel._outgoing.empty():  # noqa: ASYNC110 - a queue tells nobody
+            await asyncio.sleep(0)
+    sink.go_on.set()
+    acks = [await robot.hear() for _ in range(3)]
+    assert acks == [Ack(seq=seq) for seq in (ACK_AT_LEAST_EVERY, 2 * ACK_AT_LEAST_EVERY, many)]
