@@ -56,7 +56,7 @@ console-tests:
 	cd web && PATH="$(CURDIR)/$(BIN):$$PATH" npm test --silent
 
 test-modules:
-	$(BIN)/pytest --collect-only -q >/dev/null
+	@told=$$($(BIN)/pytest --collect-only -q) || { tail -20 <<<"$$told"; exit 1; }
 
 # Vision, kinematics, drawing and localization.
 arm-kernels:
