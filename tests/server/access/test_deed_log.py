@@ -67,8 +67,7 @@ async def test_a_session_that_was_ended_stays_so_after_a_restart(journal: Sqlite
     sessions = Sessions(key, wall)
     session, cookie = sessions.new(ANNA)
     deeds = DeedLog(journal, clock)
-    deeds.signed_out(session, Caller(ANNA, "10.0.0.1", session.id))
-    await deeds.close()
+    await deeds.signed_out(session, Caller(ANNA, "10.0.0.1", session.id), lambda: None)
     again = Sessions(key, wall)
     assert again.read(cookie) is not None
     await DeedLog(journal, clock).recover(again)
@@ -134,10 +133,8 @@ async def test_what_cannot_be_read_takes_nothing_else_with_it(journal: SqliteJou
     key, wall = b"k" * 32, clock.now.timestamp
     session, cookie = Sessions(key, wall).new(ANNA)
     deeds = DeedLog(journal, clock)
-    deeds.access_changed("added", "bert", Role.VIEWER, ev.Author(principal="root", role=Role.ADMIN))
-    await deeds.written()
-    deeds.signed_out(session, Caller(ANNA, "10.0.0.1", session.id))
-    await deeds.close()
+    await deeds.access_changed(revoked(clock), ev.Author(principal="root", role=Role.ADMIN))
+    await deeds.signed_out(session, Caller(ANNA, "10.0.0.1", session.id), lambda: None)
     journal._write_connection.execute("UPDATE events SET body = '{}' WHERE seq = 1")
     again = Sessions(key, wall)
     recovered = DeedLog(journal, clock)
