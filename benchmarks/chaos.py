@@ -9,9 +9,10 @@ files, which stands for a broken or read-only disk; the wall clock that jumps is
 service is given, as the kernel's is everybody's. At the end a reader of its own compares the
 journal with what clients saw: nothing may be lost, doubled or invented, and every run ends; what a
 client asked for and got no answer to it asks for again under the same key. Prints how many there
-were of each fault, how long `/healthz` took while the service was not stopped, and what its process
-takes; fails also where that is more than is wanted. There is no peer: what is measured is that
-nothing is lost. Needs the right to mount a file system.
+were of each fault, how long `/healthz` took while the service was not stopped, what its process
+takes, and the most that it grew by within one of its lives; fails also where that is more than is
+wanted. There is no peer: what is measured is that nothing is lost. Needs the right to mount a file
+system.
 """
 
 import argparse
@@ -26,8 +27,9 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "doubles"))
 
 import numpy as np
+from chaos_lives import Footprint, Lives
 from chaos_ordeal import Findings, Ordeal
-from chaos_place import DISK_MB, Footprint, chaos_place
+from chaos_place import DISK_MB, chaos_place
 from full_disk import small_disk
 from numpy.typing import NDArray
 
@@ -66,6 +68,18 @@ def _takes(when: str, footprint: Footprint | None) -> str:
     )
 
 
+def _about(lives: Lives) -> list[str]:
+    """What the process took; what it grew by is told of one life, not over a kill."""
+    if lives.worst is None:
+        return ["what the process takes is not known"]
+    return [
+        _takes("after the first run", lives.each[0].first),
+        _takes("at the end", lives.each[-1].last) + f"; at most {lives.most_rss_mb:.0f} MB",
+        f"{len(lives.each)} lives; after the first end of a run in it none grew by more than "
+        f"{lives.worst.grown_mb:.0f} MB, which took it {lives.worst.lasted_s:.0f} s",
+    ]
+
+
 def _latencies_ms(found: Findings) -> NDArray[np.float64]:
     return np.array(found.latencies_s or [np.nan]) * 1000
 
@@ -77,11 +91,13 @@ def misses(found: Findings) -> list[str]:
     if not p99 < WANTED_P99_MS:
         told.append(f"the p99 of /healthz is {p99:.0f} ms, {WANTED_P99_MS:.0f} are wanted")
     if found.unanswered:
-        told.append(f"{found.unanswered} requests of /healthz were not answered")
-    if found.start is not None and found.end is not None:
-        grown = found.end.rss_mb - found.start.rss_mb
-        if grown > WANTED_GROWTH_MB:
-            told.append(f"the process grew by {grown:.0f} MB, {WANTED_GROWTH_MB:.0f} are allowed")
+        told.append(f"{found.unanswered} requests of /healthz were not answered with 200")
+    worst = found.lives.worst
+    if worst is not None and worst.grown_mb > WANTED_GROWTH_MB:
+        told.append(
+            f"the process grew by {worst.grown_mb:.0f} MB within one life of "
+            f"{worst.lasted_s:.0f} s, {WANTED_GROWTH_MB:.0f} are allowed"
+        )
     return told
 
 
@@ -97,8 +113,7 @@ def report(found: Findings) -> str:
             + f"; {found.repeated} requests were answered when they came again",
             f"/healthz: p50 {p50:.1f} ms, p99 {p99:.1f} ms, max {most:.0f} ms over {ms.size} "
             f"requests; {found.unanswered} not answered",
-            _takes("after the first run", found.start),
-            _takes("at the end", found.end) + f"; at most {found.most_rss_mb:.0f} MB",
+            *_about(found.lives),
             f"{len(found.faults)} things are wrong",
             *found.faults,
             *misses(found),

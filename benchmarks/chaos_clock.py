@@ -2,8 +2,9 @@
 
     python benchmarks/chaos_clock.py FILE
 
-Every clock of the service that tells the date is shifted by the seconds that the file holds. The
-kernel's own clock is left alone, as everything on the machine shares it.
+Every clock of the service that tells the date is shifted by the seconds that the file holds, but
+for that of the note that a journal's format was changed. The kernel's own clock is left alone, as
+everything on the machine shares it.
 """
 
 import sys

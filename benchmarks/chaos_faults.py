@@ -53,7 +53,7 @@ async def journal_away(place: Place) -> None:
 
 async def killed_service(place: Place) -> None:
     with place.probe.excused():
-        await place.service.kill()
+        await place.kill_service()
         await place.start_service()
 
 
@@ -63,7 +63,7 @@ async def killed_on_full_disk(place: Place) -> None:
         await asyncio.to_thread(place.disk.fill)
         try:
             await asyncio.sleep(place.a_while_s(1.0))
-            await place.service.kill()
+            await place.kill_service()
             await place.service.spawn()
             await asyncio.sleep(place.a_while_s(4.0))
         finally:

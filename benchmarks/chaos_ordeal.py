@@ -12,7 +12,8 @@ from pathlib import Path
 import numpy as np
 from chaos_faults import FAULTS, Fault
 from chaos_ledger import Ledger, last_heard_by_all
-from chaos_place import Footprint, HangsError, Place
+from chaos_lives import Lives
+from chaos_place import HangsError, Place
 
 PATIENCE_S = 60.0
 """Runs of which nothing at all is heard for so long, with nothing that disturbs them, hang."""
@@ -33,9 +34,7 @@ class Findings:
     latencies_s: list[float] = field(default_factory=list)
     unanswered: int = 0
     repeated: int = 0
-    start: Footprint | None = None
-    end: Footprint | None = None
-    most_rss_mb: float = 0.0
+    lives: Lives = field(default_factory=Lives)
 
 
 class Ordeal:
@@ -47,8 +46,9 @@ class Ordeal:
         self._place = place
         self._many = many
         self._tell = tell
-        self._findings = Findings()
-        self._alone = asyncio.Lock()
+        self._findings = Findings(lives=place.lives)
+        # Others draw as often as time allows; the faults are the same for the same seed.
+        (self._rng,) = place.rng.spawn(1)
 
     async def go_through(self, goes_on: Callable[[int], bool]) -> Findings:
         """`goes_on` is asked with how many faults there were."""
@@ -59,7 +59,7 @@ class Ordeal:
         )
         try:
             await self._warm_up()
-            findings.start = place.footprint()
+            place.look()
             place.probe.start()
             await self._disturb(goes_on)
             enough.set()
@@ -70,9 +70,8 @@ class Ordeal:
         finally:
             starting.cancel()
             await asyncio.gather(starting, return_exceptions=True)
-            if findings.start is not None:
-                await asyncio.to_thread(place.probe.stop)
-        findings.end = place.footprint()
+            await asyncio.to_thread(place.probe.stop)
+        place.look()
         await self._look()
         return findings
 
@@ -80,7 +79,7 @@ class Ordeal:
         """Until a run has ended: by then the service has everything in memory that it uses."""
         followers = self._place.followers
         await self._while_there_is_news(
-            lambda: any(each.has_heard_an_end for each in followers), "no run ends at all"
+            lambda: any(each.ends for each in followers), "no run ends at all"
         )
 
     async def _while_there_is_news(self, until: Callable[[], bool], otherwise: str) -> None:
@@ -95,24 +94,19 @@ class Ordeal:
                 raise HangsError(f"{otherwise}: {await self._place.clients.last_words()}")
 
     async def _disturb(self, goes_on: Callable[[int], bool]) -> None:
-        rng = self._place.rng
+        rng = self._rng
         while goes_on(sum(self._findings.counts.values())):
             drawn = [_drawn(FAULTS, rng)]
             if rng.random() < SECOND_FAULT:
                 drawn.append(_drawn([each for each in FAULTS if not each.alone], rng))
             await asyncio.gather(*(self._commit(each) for each in drawn))
-            rss_mb = self._place.footprint().rss_mb
-            self._findings.most_rss_mb = max(self._findings.most_rss_mb, rss_mb)
+            self._place.look()
             await asyncio.sleep(float(rng.uniform(0.0, MOST_PAUSE_S)))
 
     async def _commit(self, fault: Fault) -> None:
         self._findings.counts[fault.name] += 1
         self._tell(fault.name)
-        if fault.alone:
-            async with self._alone:
-                await fault.act(self._place)
-        else:
-            await fault.act(self._place)
+        await fault.act(self._place)
 
     async def _wait_for_the_ends(self) -> None:
         """Until no run goes on, and everybody has heard everything."""

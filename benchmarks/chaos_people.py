@@ -2,7 +2,6 @@
 
 import asyncio
 import json
-from collections import Counter
 from collections.abc import Callable
 from contextlib import suppress
 from typing import Any
@@ -45,15 +44,14 @@ class Follower:
         return int(self._heard[-1]["seq"]) if self._heard else 0
 
     @property
-    def has_heard_an_end(self) -> bool:
-        """Whether a run has ended so far."""
-        return any(event["type"] in ENDS for event in self._heard)
+    def ends(self) -> int:
+        """How many runs have ended, by what was heard."""
+        return sum(event["type"] in ENDS for event in self._heard)
 
     @property
     def runs_going_on(self) -> int:
         """How many runs have begun and not ended, by what was heard."""
-        kinds = Counter(event["type"] for event in self._heard)
-        return kinds["run_started"] - sum(kinds[each] for each in ENDS)
+        return sum(event["type"] == "run_started" for event in self._heard) - self.ends
 
     async def follow(self) -> None:
         """Until cancelled."""

@@ -2,15 +2,16 @@
 
 import asyncio
 import sys
+import time
 from collections.abc import AsyncIterator
 from contextlib import AsyncExitStack, asynccontextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import psutil
+from chaos_lives import Lives, footprint_of
 from chaos_people import Clients, Follower
 from chaos_probe import Probe
 from chaos_robots import RobotKeeper
@@ -49,16 +50,6 @@ class HangsError(Exception):
     """Something that must happen does not; says what."""
 
 
-@dataclass(frozen=True, slots=True)
-class Footprint:
-    """What the service's process takes: memory in MB, its processes and its descriptors."""
-
-    rss_mb: float
-    processes: int
-    descriptors: int
-    threads: int
-
-
 @dataclass(slots=True)
 class Place:
     """Everything that takes part. `most_stop_s`: so long may a process be stopped at most."""
@@ -74,6 +65,7 @@ class Place:
     strangers: Strangers
     rng: np.random.Generator
     most_stop_s: float
+    lives: Lives = field(default_factory=Lives)
 
     def a_while_s(self, most_s: float) -> float:
         """A time that is drawn, mostly short."""
@@ -85,6 +77,7 @@ class Place:
             while True:
                 await self.service.spawn()
                 if await self._ready():
+                    self.look()
                     return
                 await asyncio.sleep(0.2)
 
@@ -93,6 +86,7 @@ class Place:
         async with _within(START_S, "the service does not get ready"):
             if not await self._ready():
                 raise HangsError("the service has ended by itself")
+        self.look()
 
     async def _ready(self) -> bool:
         """Wait until it can be used, or has ended."""
@@ -106,14 +100,18 @@ class Place:
             ended.cancel()
         return False
 
-    def footprint(self) -> Footprint:
-        process = psutil.Process(self.service.process.pid)
-        return Footprint(
-            process.memory_info().rss / 1e6,
-            1 + len(process.children(recursive=True)),
-            process.num_fds(),
-            process.num_threads(),
-        )
+    async def kill_service(self) -> None:
+        """`kill -9`, after a last look at what this life of it takes."""
+        self.look()
+        await self.service.kill()
+
+    def look(self) -> None:
+        """Note what the service takes now, if it is there."""
+        pid = self.service.process.pid
+        footprint = footprint_of(pid)
+        if footprint is not None:
+            ended = self.followers[0].ends
+            self.lives.note(pid, footprint, ended, time.monotonic())
 
     def request(self, seed: int) -> dict[str, Any]:
         """A run: most in an instant world, some on robots, a few on hostile ones."""

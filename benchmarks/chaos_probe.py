@@ -3,15 +3,16 @@
 import http.client
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from http import HTTPStatus
 
 EVERY_S = 0.1
 PATIENCE_S = 10.0
 
 
 class Probe:
-    """`latencies_s` of what was answered, `failures` while the service should have answered."""
+    """`latencies_s` of what was answered with 200, `failures` while all should have been."""
 
     def __init__(self, port: int, token: str) -> None:
         self.latencies_s: list[float] = []
@@ -27,8 +28,10 @@ class Probe:
         self._thread.start()
 
     def stop(self) -> None:
+        """Whether it was started or not."""
         self._stop.set()
-        self._thread.join()
+        if self._thread.ident is not None:
+            self._thread.join()
 
     @contextmanager
     def excused(self) -> Iterator[None]:
@@ -45,13 +48,7 @@ class Probe:
         connection = http.client.HTTPConnection("127.0.0.1", self._port, timeout=PATIENCE_S)
         while not self._stop.wait(EVERY_S):
             epoch, began = self._epoch, time.perf_counter()
-            answered = False
-            try:
-                # It connects by itself where there is no connection any more.
-                connection.request("GET", "/healthz", headers=self._headers)
-                answered = connection.getresponse().read() != b""
-            except (OSError, http.client.HTTPException):
-                connection.close()
+            answered = is_healthy(connection, self._headers)
             if self._not_expected or epoch != self._epoch:
                 continue
             if answered:
@@ -59,3 +56,16 @@ class Probe:
             else:
                 self.failures += 1
         connection.close()
+
+
+def is_healthy(connection: http.client.HTTPConnection, headers: Mapping[str, str]) -> bool:
+    """Ask for `/healthz`; whether it is answered, which a refusal, however fast, is not."""
+    try:
+        # It connects by itself where there is no connection any more.
+        connection.request("GET", "/healthz", headers=dict(headers))
+        answer = connection.getresponse()
+        answer.read()
+    except (OSError, http.client.HTTPException):
+        connection.close()
+        return False
+    return answer.status == HTTPStatus.OK

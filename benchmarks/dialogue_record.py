@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from untruths import Rest, equals_of, leaves_of
 
 from robots.body import Matrix4
 from robots.vision.line_of_sight import sight_of
 from robots.vision.seen_box import SeenBox
 from server.journal import events as ev
-from server.journal.untruths import Rest, equals_of, leaves_of
 from tasks.part_boxes import height_of
 from tasks.scene import Scene
 

@@ -22,16 +22,18 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "doubles"))
+
+from broken_constraints import broken_constraints
 from dialogue_judge import DialogueJudge, Untruth
 from random_scenarios import MOST_LEAVES, draw
+from untruths import find_untruths, kinds_of
 from watched_world import WatchedWorld, where_parts_rest
 
 from server.composition import open_service
 from server.dialogues import answers as answering
 from server.journal import events as ev
-from server.journal.audit import audit
 from server.journal.sqlite import IN_MEMORY
-from server.journal.untruths import find_untruths, kinds_of
 from server.runtime.requests import RunRequest
 from server.settings import Settings
 from tasks.scenario import Person
@@ -115,7 +117,7 @@ async def run_once(world: str, kind: str, seed: int, *, show: bool = False) -> O
         left_out=sum(isinstance(each, ev.NodeLeftOut) for each in events),
         helped=sum(isinstance(each, ev.Resolved) and each.helped for each in events),
         untruths=untruths,
-        broken=audit(events, kinds_of(started)),
+        broken=broken_constraints(events, kinds_of(started)),
     )
 
 

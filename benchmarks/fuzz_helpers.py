@@ -7,9 +7,8 @@ from typing import Any
 from fuzz_bench import Bench
 from fuzz_files import Finding, Found
 from fuzz_mutations import Mutator
-from fuzz_said import said
-from websockets.asyncio.client import connect
-from websockets.exceptions import ConnectionClosed
+from fuzz_said import framed, said
+from websockets.asyncio.client import ClientConnection, connect
 
 Judge = Callable[[str, bytes, Sequence[str]], None]
 
@@ -60,11 +59,18 @@ async def _converse(
                 number += 1
                 found.tried += 1
                 try:
-                    answers = await said(socket, mutator, sample)
-                except ConnectionClosed:
-                    answers = []
+                    answers = await _answers(socket, framed(mutator, sample), f"after {name}")
+                except TimeoutError:
+                    found.add(Finding(name, "after it nothing is answered", sample))
+                    break
                 judge(name, sample, answers)
                 for each in made.tracebacks():
                     found.add(Finding(name, f"a traceback: {each[-300:]}", sample))
                 if socket.state.name != "OPEN":
                     break
+
+
+async def _answers(socket: ClientConnection, sample: bytes | str, mark: str) -> list[str]:
+    """What is answered to a message: one is dealt with after the other, and so is a ping."""
+    ping = json.dumps({"type": "ping", "id": mark})
+    return await said(socket, [sample, ping], lambda told: told.get("id") == mark)

@@ -12,6 +12,8 @@ from fuzz_bench import PATIENCE_S, ROBOT, SCENARIO, SCENE, TREE, Bench
 from fuzz_files import Finding, Found
 from fuzz_mutations import Mutator
 
+from server.access.permissions import OPEN, PATTERNS
+
 
 @dataclass(frozen=True)
 class Request:
@@ -93,9 +95,7 @@ async def _fuzz(
     found, mutator = Found(), Mutator(seed)
     examples = requests(made)
     before = await made.state()
-    async with httpx.AsyncClient(
-        base_url=made.service.url, headers=headers, timeout=PATIENCE_S
-    ) as client:
+    async with _client(made, headers) as client, _client(made, made.headers) as admin:
         for number in range(mutations):
             sent = _mutated(client, mutator, mutator.random.choice(examples))
             if sent is None:
@@ -107,17 +107,18 @@ async def _fuzz(
                 answer = await client.send(sent)
             except httpx.HTTPError as error:
                 found.add(Finding(name, f"no answer: {error!r}", sent.content))
+                before = await _tidied(made, admin)
                 continue
             took_s = time.process_time() - began_s
             if most_s is not None and took_s > most_s:
                 found.add(Finding(name, f"{took_s:.1f} s of the processor", sent.content))
-            before = await _judge(made, found, name, sent, answer, before)
-            if answer.is_success and headers:
-                await _tidy(made, client)
-                before = await made.state()
-            elif number % 50 == 0:
-                before = await made.state()
+            kept = await _judge(made, found, name, sent, answer, before)
+            before = kept or await _tidied(made, admin)
     return found
+
+
+def _client(made: Bench, headers: Mapping[str, str]) -> httpx.AsyncClient:
+    return httpx.AsyncClient(base_url=made.service.url, headers=headers, timeout=PATIENCE_S)
 
 
 def _mutated(client: httpx.AsyncClient, mutator: Mutator, request: Request) -> httpx.Request | None:
@@ -153,13 +154,16 @@ async def _judge(
     sent: httpx.Request,
     answer: httpx.Response,
     before: tuple[str, int],
-) -> tuple[str, int]:
+) -> tuple[str, int] | None:
+    """Note what is wrong with an answer; the state after a refusal, which must change nothing."""
     if answer.status_code >= 500:
         found.add(Finding(name, f"{answer.status_code} {answer.text[:200]}", sent.content))
     for each in made.tracebacks():
         found.add(Finding(name, f"a traceback: {each[-300:]}", sent.content))
+    if answer.is_success and "authorization" not in sent.headers and not _is_open(sent):
+        found.add(Finding(name, f"{answer.status_code} without a credential", sent.content))
     if answer.is_success or answer.is_redirect:
-        return before
+        return None
     found.refused += 1
     if "problem+json" not in answer.headers.get("content-type", ""):
         found.add(Finding(name, f"{answer.status_code} without a problem document", sent.content))
@@ -171,8 +175,17 @@ async def _judge(
     return after
 
 
-async def _tidy(made: Bench, client: httpx.AsyncClient) -> None:
-    """End what a mutation has begun, so that nothing goes on beside the next one."""
+def _is_open(sent: httpx.Request) -> bool:
+    """Whether anybody may do what it asks for; pages are open, and are no operations."""
+    return not any(
+        each.method == sent.method and each.role is not OPEN
+        for pattern, each in PATTERNS
+        if pattern.match(sent.url.path)
+    )
+
+
+async def _tidied(made: Bench, client: httpx.AsyncClient) -> tuple[str, int]:
+    """The state without what a mutation has begun, so that nothing goes on beside the next one."""
     kept = {made.run, made.paused, made.asking}
     for status in ("running", "paused"):
         for each in (await client.get("/api/runs", params={"status": status})).json():
@@ -182,3 +195,4 @@ async def _tidy(made: Bench, client: httpx.AsyncClient) -> None:
     view = await made.service.runtime.run(made.run)
     if view.status == "running":
         await client.post(f"/api/runs/{made.run}/pause")
+    return await made.state()

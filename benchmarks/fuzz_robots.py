@@ -9,9 +9,9 @@ import httpx
 from fuzz_bench import PATIENCE_S, ROBOT, Bench
 from fuzz_files import Finding, Found
 from fuzz_mutations import Mutator
-from fuzz_said import said
+from fuzz_said import framed, said
 from websockets.asyncio.client import ClientConnection, connect
-from websockets.exceptions import ConnectionClosed
+from websockets.protocol import State
 
 
 def hello(boot: str) -> dict[str, Any]:
@@ -24,6 +24,13 @@ def hello(boot: str) -> dict[str, Any]:
             {"name": "cup", "size": [0.1, 0.1, 0.1], "color": [0.1, 0.2, 0.3]}]},
     }  # fmt: skip
 
+
+NOBODYS, MARK = "nobodys_behavior", "a-boot-of-long-ago"
+MISTAKE = json.dumps({**hello("boot"), "suitability": {NOBODYS: None}})
+"""Is refused as soon as it is read."""
+HELD = {"type": "held", "command": "none"}
+KNOWN_REPORT = json.dumps({"type": "report", "boot": MARK, "seq": 1, "time": 2.0, "body": HELD})
+"""Is acknowledged after all reports before it, and changes nothing once it was sent."""
 
 POSE = [0.1, 0.2, 0.3, 0.0, 0.0, 0.0, 1.0]
 PICTURE = "/9j/2Q=="
@@ -60,6 +67,7 @@ class Robot:
     """What a robot knows of its run, to send messages that are nearly valid."""
 
     boot: str
+    welcome: bool = False
     seq: int = 0
     execution: str = "none"
     command: str = "none"
@@ -81,6 +89,7 @@ class Robot:
     def take(self, text: str) -> None:
         """Remember what the service says."""
         told = json.loads(text)
+        self.welcome |= told["type"] == "welcome"
         if told["type"] in ("ack", "welcome"):
             self.seq = max(self.seq, told.get("seq", told.get("received", 0)))
         if told["type"] == "command":
@@ -102,8 +111,8 @@ async def fuzz_robot(made: Bench, mutations: int, seed: int) -> Found:
             async with connect(
                 made.socket("/ws/robot"), additional_headers=headers, max_size=None
             ) as socket:
-                number = await _one_start(made, found, mutator, robot, socket, client, number,
-                                          mutations)  # fmt: skip
+                start = Start(made, found, mutator, robot, socket)
+                number = await start.go_on(client, number, mutations)
     after = await made.state()
     strangers = [each for each in await made.since(before[1]) if each.run not in made.of_robot]
     if after[0] != before[0]:
@@ -113,36 +122,59 @@ async def fuzz_robot(made: Bench, mutations: int, seed: int) -> Found:
     return found
 
 
-async def _one_start(
-    made: Bench, found: Found, mutator: Mutator, robot: Robot, socket: ClientConnection,
-    client: httpx.AsyncClient, number: int, mutations: int,
-) -> int:  # fmt: skip
+@dataclass
+class Start:
     """One start of the robot's program: a hello, now and then a mutated one, and what follows."""
-    greeting = json.dumps(hello(robot.boot)).encode()
-    if mutator.random.random() < 0.5:
-        greeting = mutator.of_json(hello(robot.boot))
-        found.tried += 1
-        number += 1
-    name = f"robot #{number}"
-    sample = greeting
-    try:
-        for answer in await said(socket, mutator, greeting):
-            robot.take(answer)
-        await _have_a_run(made, client)
-        while number < mutations and mutator.random.random() < 0.97:
-            name, number = f"robot #{number}", number + 1
-            found.tried += 1
-            example = mutator.random.choice(robot.examples())
-            valid = mutator.random.random() < 0.2
-            sample = json.dumps(example).encode() if valid else mutator.of_json(example)
-            for answer in await said(socket, mutator, sample):
-                found.refused += '"type":"error"' in answer
-                robot.take(answer)
-    except ConnectionClosed:
-        found.refused += 1
-    for each in made.tracebacks():
-        found.add(Finding(name, f"a traceback: {each[-400:]}", sample))
-    return number
+
+    made: Bench
+    found: Found
+    mutator: Mutator
+    robot: Robot
+    socket: ClientConnection
+
+    async def go_on(self, client: httpx.AsyncClient, number: int, mutations: int) -> int:
+        """Send mutation after mutation, until one ends the connection; returns the next number."""
+        greeting = json.dumps(hello(self.robot.boot)).encode()
+        if self.mutator.random.random() < 0.5:
+            greeting = self.mutator.of_json(hello(self.robot.boot))
+            self.found.tried += 1
+            number += 1
+        goes_on = await self._tell(f"robot #{number}", greeting)
+        await _have_a_run(self.made, client)
+        while goes_on and number < mutations and self.mutator.random.random() < 0.97:
+            self.found.tried += 1
+            example = self.mutator.random.choice(self.robot.examples())
+            valid = self.mutator.random.random() < 0.2
+            sample = json.dumps(example).encode() if valid else self.mutator.of_json(example)
+            goes_on = await self._tell(f"robot #{number}", sample)
+            number += 1
+        return number
+
+    async def _tell(self, name: str, sample: bytes) -> bool:
+        """Send a message and see what comes of it; whether the connection is still there."""
+        try:
+            answers = await self._answers(framed(self.mutator, sample))
+        except TimeoutError:
+            self.found.add(Finding(name, "after it nothing is answered", sample))
+            return False
+        refused = [each for each in answers if '"type":"error"' in each]
+        ended = self.socket.state is not State.OPEN
+        self.found.refused += len(refused) or ended
+        for each in self.made.tracebacks():
+            self.found.add(Finding(name, f"a traceback: {each[-400:]}", sample))
+        return not ended
+
+    async def _answers(self, sample: bytes | str) -> list[str]:
+        """What is answered to a message, also late: a report is, once it is on the disk."""
+        read = await said(self.socket, [sample, MISTAKE], lambda told: NOBODYS in str(told))
+        for each in read:
+            self.robot.take(each)
+        if not self.robot.welcome:
+            return read
+        worked_off = await said(self.socket, [KNOWN_REPORT], lambda told: told.get("boot") == MARK)
+        for each in worked_off:
+            self.robot.take(each)
+        return read + worked_off
 
 
 async def _have_a_run(made: Bench, client: httpx.AsyncClient) -> None:

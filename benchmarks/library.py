@@ -14,6 +14,7 @@ import argparse
 import asyncio
 import math
 import os
+import sys
 import time
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
@@ -22,11 +23,13 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "doubles"))
+
+from untruths import Rest
 from watched_world import where_parts_rest
 
 from server.journal import events as ev
 from server.journal.sqlite import IN_MEMORY
-from server.journal.untruths import Rest
 from server.runtime.requests import RunRequest
 from server.runtime.views import RunStatus
 from server.settings import Settings

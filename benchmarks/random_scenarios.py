@@ -33,14 +33,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 from uuid import UUID
 
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "doubles"))
+
 import numpy as np
+from broken_constraints import broken_constraints
 from dialogue_judge import DialogueJudge
+from untruths import Rest, find_untruths, kinds_of
 from watched_world import WatchedWorld, where_parts_rest
 
 from server.journal import events as ev
-from server.journal.audit import audit
 from server.journal.sqlite import IN_MEMORY
-from server.journal.untruths import Rest, find_untruths, kinds_of
 from server.runtime.requests import RunRequest
 from server.runtime.views import RunStatus, RunView
 from server.settings import Settings
@@ -226,7 +228,7 @@ async def run_once(
         wall_s=wall_s,
         simulated_s=view.time,
         missing=len(view.result.missing) if view.result else 0,
-        violations=audit(events, kinds_of(started)),
+        violations=broken_constraints(events, kinds_of(started)),
         untruths=_untruths(events, watched, where_parts_rest(started, snapshot))
         if view.status.ended
         else [],

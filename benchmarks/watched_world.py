@@ -5,10 +5,10 @@ from collections.abc import Sequence
 from typing import Any
 
 from dialogue_record import Moment
+from untruths import Rest
 
 from server.journal import events as ev
 from server.journal.journal import Entry, Journal
-from server.journal.untruths import Rest
 
 
 class WatchedWorld:

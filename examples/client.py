@@ -8,21 +8,22 @@ import asyncio
 import os
 import sys
 
-from server.client import MendClient
-from server.journal.events import Prompt, RunAborted, RunFailed, RunFinished
+from server.client import ENDS, MendClient
+from server.journal.events import Prompt
 from server.runtime.requests import RunRequest
 from server.runtime.views import Snapshot
-
-ENDS = (RunFinished, RunFailed, RunAborted)
 
 
 async def main(url: str) -> int:
     """Build the EKET base and help wherever the robot asks."""
     async with MendClient(url, token=os.environ.get("MEND_TOKEN")) as client:
         await client.wait_until_ready()
-        run = await client.start_run(RunRequest(tree="eket", world="tabletop", speed="max"))
-        async with client.follow(helper="example", after=run.seq) as stream:
-            async for event in stream:
+        async with client.follow(helper="example") as stream:
+            messages = aiter(stream)
+            # Once the first snapshot is here, no event of the run can be missed.
+            await anext(messages)
+            run = await client.start_run(RunRequest(tree="eket", world="tabletop", speed="max"))
+            async for event in messages:
                 if isinstance(event, Snapshot) or event.run != run.id:
                     continue
                 print(f"{event.time:8.1f} s  {type(event).__name__}")

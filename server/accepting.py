@@ -122,12 +122,10 @@ class Acceptor:
 
     def _turn_away(self, connection: socket.socket, beyond: Beyond) -> None:
         """Say why, where that can be said without waiting, and hang up."""
-        status = HTTPStatus.SERVICE_UNAVAILABLE
-        if beyond.limit == "strangers_per_address":
-            status = HTTPStatus.TOO_MANY_REQUESTS
+        unavailable = HTTPStatus.SERVICE_UNAVAILABLE
         with suppress(OSError):
             if self._tls is None:
-                connection.send(raw_problem(status, beyond.sentence, retry_after_s=10))
+                connection.send(raw_problem(unavailable, beyond.sentence, retry_after_s=10))
                 connection.shutdown(socket.SHUT_WR)
         connection.close()
 

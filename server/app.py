@@ -1,5 +1,6 @@
 """The application: every route, and the gate before them."""
 
+import asyncio
 import time
 from collections.abc import AsyncIterator, Callable
 from contextlib import AbstractAsyncContextManager, asynccontextmanager
@@ -41,6 +42,7 @@ from server.api.repeats import Repeats
 from server.documents import DocumentLibrary
 from server.models import RobotModels
 from server.off_loop import OffLoop
+from server.pace import Sleep
 from server.poses.feed import PoseSource
 from server.public_url import host_of
 from server.refusals import Refusals
@@ -117,6 +119,7 @@ def create_app(
         speech_abilities,
         refusals,
         off_loop or OffLoop(settings.limits),
+        wall_time_s,
     )
     app.add_middleware(Gate, access=access, limits=settings.limits, refusals=refusals)
     return app
@@ -130,6 +133,8 @@ def build_access(
     own_robots: OwnRobots | None = None,
     refusals: Refusals | None = None,
     wall_time_s: Callable[[], float] = time.time,
+    now: Callable[[], float] = time.monotonic,
+    sleep: Sleep = asyncio.sleep,
 ) -> Access:
     """Who may come in, as the settings and the file of principals say.
 
@@ -148,6 +153,8 @@ def build_access(
         limits=settings.limits,
         refusals=refusals,
         wall_time_s=wall_time_s,
+        now=now,
+        sleep=sleep,
     )
 
 

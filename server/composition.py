@@ -130,6 +130,7 @@ async def _open(
         WorldChecks(adapters),
         settings.limits,
         off_loop,
+        utc_now=lambda: datetime.now(UTC),
     )
     models = RobotModels(adapters.values())
     poses = PoseFeed(registry.show_poses, models.address, _pose_records(settings))

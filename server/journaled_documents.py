@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from datetime import UTC, datetime
+from datetime import datetime
 from functools import partial
 from typing import Any, TypeVar
 
@@ -129,6 +129,7 @@ class JournaledDocuments:
     """A `DocumentLibrary` that keeps what is uploaded in the journal.
 
     All that is uploaded has at most `most_chars` characters.
+    `utc_now` tells when something is kept or deleted.
     `needs` are the kinds that a check looks up; `users` hold documents that may use these ones.
     """
 
@@ -140,10 +141,10 @@ class JournaledDocuments:
         checker: DocumentChecker,
         most_chars: int = Limits().uploaded_chars,
         *,
+        utc_now: Callable[[], datetime],
         needs: Iterable[DocumentKind] = (),
         users: "Sequence[JournaledDocuments]" = (),
         summarize: Summarize | None = None,
-        utc_now: Callable[[], datetime] = lambda: datetime.now(UTC),
         uploads: Uploads | None = None,
         off_loop: OffLoop | None = None,
     ) -> None:

@@ -1,7 +1,8 @@
 """Everything that runs name, by kind: for the API, and as the runtime takes it."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from datetime import datetime
 from typing import Any
 
 from server.document_checks import ScenarioChecker, SceneFileChecker, TreeChecker
@@ -53,8 +54,10 @@ def build_library(
     worlds: WorldChecks,
     limits: Limits | None = None,
     off_loop: OffLoop | None = None,
+    *,
+    utc_now: Callable[[], datetime],
 ) -> Library:
-    """The documents that are fixed, and those that a journal keeps."""
+    """The documents that are fixed, and those that a journal keeps, since `utc_now` said."""
     limits = limits or Limits()
     most = limits.uploaded_chars
     off_loop = off_loop or OffLoop(limits)
@@ -66,6 +69,7 @@ def build_library(
         fixed[scenario],
         ScenarioChecker(fixed, worlds),
         most,
+        utc_now=utc_now,
         needs=(tree, scene),
         summarize=_about_scenario,
         uploads=uploads,
@@ -77,6 +81,7 @@ def build_library(
         fixed[tree],
         TreeChecker(fixed, worlds),
         most,
+        utc_now=utc_now,
         needs=(scene,),
         users=[scenarios],
         uploads=uploads,
@@ -88,6 +93,7 @@ def build_library(
         fixed[scene],
         SceneFileChecker(fixed, worlds),
         most,
+        utc_now=utc_now,
         users=[trees, scenarios],
         summarize=_about_scene,
         uploads=uploads,

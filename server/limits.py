@@ -7,7 +7,7 @@ from pydantic import BaseModel, ConfigDict, Field
 AtLeastOne = Annotated[int, Field(ge=1, le=2**31 - 1)]
 Seconds = Annotated[float, Field(gt=0.0, le=86_400.0, allow_inf_nan=False)]
 
-LimitName = Literal[
+SetLimitName = Literal[
     "answers",
     "world_options",
     "option_chars",
@@ -33,6 +33,30 @@ LimitName = Literal[
     "helper_messages_per_s",
     "requests_per_s",
 ]
+"""Those that can be set, as `Limits` has them."""
+
+FixedLimitName = Literal[
+    "body_bytes",
+    "body_values",
+    "helper_message_chars",
+    "sound_bytes",
+    "stranger_message_bytes",
+    "first_message_s",
+    "message_bytes",
+    "message_parts",
+    "pings",
+    "robot_numbers",
+    "unasked_reports",
+    "new_boots",
+    "untaken_commands",
+    "waiting_interventions",
+    "claims",
+    "extensions",
+    "sign_ins",
+]
+"""Those that are fixed, and counted when something is beyond them."""
+
+LimitName = Literal[SetLimitName, FixedLimitName]
 """The limits by name: whoever refuses something says for which of them."""
 
 

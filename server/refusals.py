@@ -2,15 +2,16 @@
 
 from collections.abc import Mapping
 from types import MappingProxyType
+from typing import get_args
 
-from server.limits import LimitName, Limits
+from server.limits import LimitName
 
 
 class Refusals:
     """How often something was beyond each limit, since the service started."""
 
     def __init__(self) -> None:
-        self._counts: dict[str, int] = dict.fromkeys(Limits.model_fields, 0)
+        self._counts: dict[str, int] = dict.fromkeys(get_args(LimitName), 0)
 
     @property
     def counts(self) -> Mapping[str, int]:

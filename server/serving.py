@@ -21,7 +21,7 @@ from server.settings import Settings
 from server.visitors import STATE_KEY, Visitor, Visitors
 from server.websocket_protocol import WebSocketProtocol
 
-MAX_SOCKET_MESSAGE_BYTES = 4 * 1024 * 1024
+MAX_SOCKET_MESSAGE_BYTES = 1024 * 1024
 """Robots send pictures; helpers get an `error` message for anything above 64 KiB."""
 
 

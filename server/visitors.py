@@ -1,7 +1,6 @@
 """Every connection to the service: how many there may be, and how long each may take for what."""
 
 import logging
-from collections import Counter
 from collections.abc import Callable, Container
 from dataclasses import dataclass
 from enum import StrEnum
@@ -50,13 +49,17 @@ End = Callable[[Beyond], None]
 
 
 class Visitor:
-    """One connection. It is a stranger until it is admitted; `end` ends it."""
+    """One connection. It is a stranger until it is admitted; `end` ends it.
+
+    `shown` is the fingerprint of the token that it was admitted with last, if it was one.
+    """
 
     def __init__(self, visitors: "Visitors", household: str | None, end: End) -> None:
         self.household = household
         self.end = end
         self.is_admitted = False
         self.principal: str | None = None
+        self.shown: str | None = None
         self.phase = Phase.HEAD
         self.since = visitors.now()
         self._visitors = visitors
@@ -74,11 +77,15 @@ class Visitor:
         if phase is not self.phase:
             self.phase, self.since = phase, self._visitors.now()
 
-    def admit(self, principal: str | None = None) -> None:
+    def admit(self, principal: str | None = None, shown: str | None = None) -> None:
         """It is no stranger any more, but whoever `principal` stands for, if they have a share."""
-        self.is_admitted = True
+        self.is_admitted, self.shown = True, shown
         self._visitors.no_stranger(self)
         self._visitors.belongs(self, principal)
+
+    def note(self, beyond: Beyond) -> None:
+        """Something that came on it was beyond a limit."""
+        self._visitors.note(beyond)
 
     def leave(self) -> None:
         """The connection is gone. Saying so twice does nothing."""
@@ -113,10 +120,10 @@ class Visitors:
         self._proxies = proxies
         self._rare_log = RareLog(log, now)
         self._ending = Endless("ending a connection", now)
-        # Both in the order in which they came.
+        # All in the order in which they came.
         self._here: dict[Visitor, None] = {}
         self._strangers: dict[Visitor, None] = {}
-        self._by_household: Counter[str] = Counter()
+        self._by_household: dict[str, dict[Visitor, None]] = {}
         self._by_principal: dict[str, dict[Visitor, None]] = {}
 
     def __len__(self) -> int:
@@ -125,42 +132,37 @@ class Visitors:
     def come(self, address: str, end: End) -> Visitor | Beyond:
         """Somebody has connected: a stranger, unless there is no room.
 
-        Where there are as many strangers as there may be, the one who has been here longest is
-        ended: so whoever shows the token at once comes in, however many others only wait.
+        Where there are as many strangers as there may be, in all or of one household, the one of
+        them who has been here longest is ended: so whoever shows the token at once comes in,
+        however many others only wait.
         """
-        household = None if address in self._proxies else household_of(address)
-        beyond = self._no_room(household)
-        if beyond is not None:
-            self._note(beyond)
+        most = self._limits.connections
+        if len(self._here) >= most:
+            beyond = Beyond("connections", f"the service has {most} connections and takes no more")
+            self.note(beyond)
             return beyond
-        if len(self._strangers) >= self._limits.strangers:
-            self._end(next(iter(self._strangers)), self._too_many_strangers())
+        household = None if address in self._proxies else household_of(address)
+        self._make_room(household)
         visitor = Visitor(self, household, end)
         self._here[visitor] = self._strangers[visitor] = None
         if household is not None:
-            self._by_household[household] += 1
+            self._by_household.setdefault(household, {})[visitor] = None
         return visitor
 
-    def _no_room(self, household: str | None) -> Beyond | None:
-        limits = self._limits
-        if len(self._here) >= limits.connections:
-            return Beyond(
-                "connections", f"the service has {limits.connections} connections and takes no more"
+    def _make_room(self, household: str | None) -> None:
+        """Let there be room for one more stranger of this household."""
+        most = self._limits.strangers_per_address
+        neighbours = () if household is None else self._by_household.get(household, ())
+        if len(neighbours) >= most:
+            sentence = (
+                f"more than {most} connections from {household} had not shown the token: the "
+                "oldest was ended"
             )
-        if household is None or self._by_household[household] < limits.strangers_per_address:
-            return None
-        return Beyond(
-            "strangers_per_address",
-            f"{limits.strangers_per_address} connections from {household} have not shown the "
-            "token yet, and no more are taken from there",
-        )
-
-    def _too_many_strangers(self) -> Beyond:
+            self._end(next(iter(neighbours)), Beyond("strangers_per_address", sentence))
         most = self._limits.strangers
-        return Beyond(
-            "strangers",
-            f"more than {most} connections had not shown the token: the oldest was ended",
-        )
+        if len(self._strangers) >= most:
+            sentence = f"more than {most} connections had not shown the token: the oldest was ended"
+            self._end(next(iter(self._strangers)), Beyond("strangers", sentence))
 
     def no_stranger(self, visitor: Visitor) -> None:
         """It is not counted as one any more."""
@@ -168,8 +170,9 @@ class Visitors:
             return
         del self._strangers[visitor]
         if visitor.household is not None:
-            self._by_household[visitor.household] -= 1
-            if self._by_household[visitor.household] == 0:
+            neighbours = self._by_household[visitor.household]
+            del neighbours[visitor]
+            if not neighbours:
                 del self._by_household[visitor.household]
 
     def belongs(self, visitor: Visitor, principal: str | None) -> None:
@@ -227,7 +230,7 @@ class Visitors:
         return None
 
     def _end(self, visitor: Visitor, beyond: Beyond) -> None:
-        self._note(beyond)
+        self.note(beyond)
         # So that it is ended once.
         visitor.enter(Phase.SERVICE)
         self.no_stranger(visitor)
@@ -235,7 +238,8 @@ class Visitors:
         with self._ending.one_pass():
             visitor.end(beyond)
 
-    def _note(self, beyond: Beyond) -> None:
+    def note(self, beyond: Beyond) -> None:
+        """Count what was beyond a limit, and say so now and then."""
         self._refusals.note(beyond.limit)
         self._rare_log.warn(beyond.limit, f"{beyond.limit}: {beyond.sentence}")
 

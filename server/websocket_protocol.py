@@ -3,10 +3,12 @@
 import asyncio
 
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
+from websockets.exceptions import PayloadTooBig
 from websockets.frames import Frame
 from websockets.protocol import State
 
-from server.visitors import STATE_KEY, Visitor
+from server.limits import LimitName
+from server.visitors import STATE_KEY, Beyond, Visitor
 
 STRANGER_MESSAGE_BYTES = 64 * 1024
 """Long enough for a token."""
@@ -63,7 +65,8 @@ class WebSocketProtocol(WebSocketsSansIOProtocol):
         if self._has_ended:
             return
         if len(self.frames) >= MOST_FRAGMENTS:
-            self._end(TOO_BIG, f"a message comes in at most {MOST_FRAGMENTS} parts")
+            reason = f"a message comes in at most {MOST_FRAGMENTS} parts"
+            self._end(TOO_BIG, Beyond("message_parts", reason))
             return
         super().handle_cont(event)
 
@@ -75,7 +78,8 @@ class WebSocketProtocol(WebSocketsSansIOProtocol):
         refilled = self._pings_left + (now_s - self._pinged_at_s) * PINGS_PER_S
         self._pings_left, self._pinged_at_s = min(refilled, PINGS_AT_ONCE) - 1.0, now_s
         if self._pings_left < 0.0:
-            self._end(POLICY_VIOLATION, f"at most {PINGS_PER_S:g} pings a second")
+            reason = f"at most {PINGS_PER_S:g} pings a second"
+            self._end(POLICY_VIOLATION, Beyond("pings", reason))
         elif self.writable.is_set():
             super().handle_ping()
         else:
@@ -92,14 +96,24 @@ class WebSocketProtocol(WebSocketsSansIOProtocol):
 
         Uvicorn would call it a mistake of the application.
         """
+        if isinstance(self.conn.parser_exc, PayloadTooBig):
+            most = self.conn.max_message_size
+            stranger = most != self.config.ws_max_size
+            limit: LimitName = "stranger_message_bytes" if stranger else "message_bytes"
+            self._note(Beyond(limit, f"a message was longer than {most} bytes"))
         super().handle_parser_exception()
         self.close_sent = False
 
-    def _end(self, code: int, reason: str) -> None:
+    def _note(self, beyond: Beyond) -> None:
+        if self._visitor is not None:
+            self._visitor.note(beyond)
+
+    def _end(self, code: int, beyond: Beyond) -> None:
         """End the connection, as uvicorn does for what is no WebSocket."""
+        self._note(beyond)
         self.frames = []
         if self.conn.state is State.OPEN:
-            self.conn.send_close(code, reason)
+            self.conn.send_close(code, beyond.sentence)
             self.handle_parser_exception()
         else:
             self.transport.abort()

@@ -1,6 +1,6 @@
 """A pretend robot for Mend: pick_and_place by timers, after docs/robot_protocol.md alone.
 
-    python examples/robot/robot.py --url ws://127.0.0.1:8000/ws/robot --robot demo
+    python examples/robot/robot.py --url ws://127.0.0.1:8080/ws/robot --robot demo
 
 Needs Python 3.11 and the `websockets` package. With --credential FILE it shows its own credential,
 which it fetches the first time with --code (from `mend access enrol`); else MEND_TOKEN, if set.
@@ -166,7 +166,7 @@ def credential(url, name, file, code):
 
 
 parser = argparse.ArgumentParser(description="A pretend robot for Mend.")
-parser.add_argument("--url", default="ws://127.0.0.1:8000/ws/robot")
+parser.add_argument("--url", default="ws://127.0.0.1:8080/ws/robot")
 parser.add_argument("--robot", default="demo")
 parser.add_argument("--outbox", default=":memory:", help="an SQLite file that outlives it")
 parser.add_argument("--step-s", type=float, default=0.2, help="how long a step takes")

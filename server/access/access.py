@@ -3,9 +3,11 @@
 import asyncio
 import ipaddress
 import math
+import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
+from functools import partial
 from urllib.parse import urlsplit
 
 from starlette.requests import HTTPConnection
@@ -19,6 +21,7 @@ from server.access.tokens import bytes_of, fingerprint, fits
 from server.access.wrong_tokens import WrongTokens
 from server.household import household_of
 from server.limits import Limits
+from server.pace import BURST_S, Paces, Sleep
 from server.refusals import Refusals
 from server.robots.passes import OneRobot, OwnRobots, Pass
 from server.visitors import visitor_of
@@ -30,7 +33,8 @@ class Access:
     """The rules of admission.
 
     Without a token and without principals everybody may come in who can reach the service.
-    `failed` is told the address of whoever shows something wrong.
+    `failed` is told the address of whoever shows something wrong. `now` is any monotonic clock in
+    seconds: by it everybody is held to their pace, and sign-ins are counted.
     """
 
     def __init__(
@@ -46,9 +50,12 @@ class Access:
         limits: Limits | None = None,
         refusals: Refusals | None = None,
         wall_time_s: Callable[[], float],
+        now: Callable[[], float] = time.monotonic,
+        sleep: Sleep = asyncio.sleep,
     ) -> None:
+        limits, refusals = limits or Limits(), refusals or Refusals()
         self.principals = principals or KnownPrincipals(None, wall_time_s)
-        self.sessions = Sessions(session_key or new_session_key(), wall_time_s)
+        self.sessions = Sessions(session_key or new_session_key(), wall_time_s, now)
         self._holder = (
             None
             if token is None
@@ -57,8 +64,10 @@ class Access:
         self._own_robots = own_robots or OwnRobots()
         self._wall_time_s = wall_time_s
         self._failed = failed
-        self._wrong = WrongTokens((limits or Limits()).wrong_tokens, wall_time_s)
-        self._refusals = refusals or Refusals()
+        self._wrong = WrongTokens(limits.wrong_tokens, wall_time_s)
+        self._refusals = refusals
+        too_fast = partial(refusals.note, "requests_per_s")
+        self._paces = Paces(limits.requests_per_s, now, too_fast, sleep)
         self._hosts = {"localhost", *(host.lower() for host in allowed_hosts)}
         self._origins = {origin.lower().rstrip("/") for origin in allowed_origins}
         self._watched: dict[int, tuple[Caller, asyncio.Event]] = {}
@@ -111,36 +120,69 @@ class Access:
         """By the token that somebody shows on a connection, wherever in it.
 
         While an address has to wait, what it shows is not even read; else guessing would be as
-        quick as before. Whoever is in already stays in: on a connection that was admitted it is.
+        quick as before. Whoever is in already stays in, with what their connection came in with.
         """
         if self.required:
-            wait_s = self.wait_s(shown, connection)
-            if wait_s > 0:
-                return Admission(None, wait_s)
+            waiting = self.waiting(shown, connection)
+            if waiting.wait_s:
+                return waiting
         principal = self.of_token(shown)
         if principal is None:
             self.wrong(shown, connection)
             return REFUSED
-        return _welcomed(Caller(principal, address_of(connection)), connection)
+        return _welcomed(Caller(principal, address_of(connection)), connection, shown)
 
-    def wait_s(self, shown: str, connection: HTTPConnection) -> int:
-        """How many seconds nothing new that this address shows is read; 0 if it is read now.
+    def waiting(self, shown: str, connection: HTTPConnection) -> Admission:
+        """Nobody, and how many seconds nothing new that this address shows is read; 0: it is now.
 
         What was wrong before is no other guess, and may be read again: the file of principals can
         have changed since.
         """
         household = household_of(address_of(connection))
-        if _is_in(connection) or self._wrong.is_known(household, bytes_of(shown)):
-            return 0
+        if self._is_in(shown, connection) or self._wrong.is_known(household, bytes_of(shown)):
+            return REFUSED
         wait_s = math.ceil(self._wrong.wait_s(household))
-        if wait_s > 0:
-            self._refusals.note("wrong_tokens")
-        return wait_s
+        if wait_s == 0:
+            return REFUSED
+        self._refusals.note("wrong_tokens")
+        too_many = f"too many wrong tokens came from this address: try again in {wait_s} s"
+        return Admission(None, wait_s, too_many)
+
+    def _is_in(self, shown: str, connection: HTTPConnection) -> bool:
+        """Whether the connection, one client's alone, was admitted with this, and it is still good.
+
+        Anything else that comes on it is a guess like any other.
+        """
+        visitor = visitor_of(connection.scope)
+        if visitor is None or visitor.household is None or visitor.shown is None:
+            return False
+        return fits(shown, visitor.shown) and self.of_token(shown) is not None
 
     def wrong(self, shown: str, connection: HTTPConnection) -> None:
         """Somebody has shown a wrong token or code."""
         self._wrong.add(household_of(address_of(connection)), bytes_of(shown))
         self._failed(address_of(connection))
+
+    async def in_time(self, admission: Admission) -> Admission:
+        """The same as soon as they may ask for the next thing, or how long they have to wait.
+
+        No more of theirs wait than are answered in that time, also of clients that hang up. Those
+        who share the one token are not held to a share of it.
+        """
+        caller = admission.caller
+        if caller is None or not caller.principal.named:
+            return admission
+        wait_s = await self._paces.of(caller.principal.key).keep(patience_s=BURST_S)
+        if wait_s > BURST_S:
+            too_fast = "you ask faster than 'requests_per_s' allows"
+            return Admission(None, math.ceil(wait_s), too_fast)
+        return admission if wait_s == 0.0 else await self._anew(caller)
+
+    async def _anew(self, caller: Caller) -> Admission:
+        """Who it is after some time, in which they may have been revoked."""
+        await self.look()
+        caller_now = self.renewed(caller)
+        return REFUSED if caller_now is None else Admission(caller_now)
 
     def session(self, connection: HTTPConnection) -> Session | None:
         """The session of a connection's cookie, if it is a good one."""
@@ -270,23 +312,20 @@ def address_of(connection: HTTPConnection) -> str | None:
     return None if connection.client is None else connection.client.host
 
 
-def _welcomed(caller: Caller, connection: HTTPConnection) -> Admission:
+def _welcomed(caller: Caller, connection: HTTPConnection, token: str | None = None) -> Admission:
     principal = caller.principal
-    _admit(connection, principal.key if principal.named else None)
+    shown = None if token is None else fingerprint(token)
+    _admit(connection, principal.key if principal.named else None, shown)
     return Admission(caller)
 
 
-def _admit(connection: HTTPConnection, principal: str | None = None) -> None:
+def _admit(
+    connection: HTTPConnection, principal: str | None = None, shown: str | None = None
+) -> None:
     """Whoever made this connection is no stranger any more; who has one token has no share."""
     visitor = visitor_of(connection.scope)
     if visitor is not None:
-        visitor.admit(principal)
-
-
-def _is_in(connection: HTTPConnection) -> bool:
-    """Whether the connection was admitted before, and is one client's alone."""
-    visitor = visitor_of(connection.scope)
-    return visitor is not None and visitor.is_admitted and visitor.household is not None
+        visitor.admit(principal, shown)
 
 
 def _is_ip(name: str) -> bool:

@@ -7,20 +7,19 @@ from server.access.principal import Caller
 
 @dataclass(frozen=True, slots=True)
 class Admission:
-    """Who may come in; nobody without a `caller`. `wait_s`: so long no token of theirs is read."""
+    """Who may come in; nobody without a `caller`.
+
+    `wait_s`: so long nothing of theirs is read; `too_many` is the sentence that says why.
+    """
 
     caller: Caller | None
     wait_s: int = 0
+    too_many: str = ""
 
     @property
     def retry_after(self) -> dict[str, str]:
         """The headers that say so."""
         return {"Retry-After": str(self.wait_s)}
-
-    @property
-    def too_many(self) -> str:
-        """The sentence that says so."""
-        return f"too many wrong tokens came from this address: try again in {self.wait_s} s"
 
 
 REFUSED = Admission(None)

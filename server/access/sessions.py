@@ -4,6 +4,7 @@ import base64
 import hashlib
 import hmac
 import secrets
+import time
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -36,12 +37,18 @@ class Sessions:
     """Signs and reads cookies with a `key` that survives a restart, and knows which have ended.
 
     A signature holds the principal's key too, so that a session ends with the credential that
-    began it.
+    began it. `now` is any monotonic clock in seconds: by it sign-ins are counted.
     """
 
-    def __init__(self, key: bytes, wall_time_s: Callable[[], float]) -> None:
+    def __init__(
+        self,
+        key: bytes,
+        wall_time_s: Callable[[], float],
+        now: Callable[[], float] = time.monotonic,
+    ) -> None:
         self._key = key
         self._wall_time_s = wall_time_s
+        self._now = now
         self._ended: dict[str, int] = {}
         self._begun: dict[str, deque[float]] = {}
 
@@ -91,7 +98,7 @@ class Sessions:
             self._ended[number] = expires
 
     def _count(self, principal: Principal) -> None:
-        now = self._wall_time_s()
+        now = self._now()
         self._begun = {key: each for key, each in self._begun.items() if now - each[-1] < HOUR_S}
         begun = self._begun.get(principal.key, deque(maxlen=SESSIONS_AN_HOUR))
         if len(begun) == SESSIONS_AN_HOUR and now - begun[0] < HOUR_S:

@@ -1,9 +1,7 @@
 """The gate before every HTTP request: Host, Origin, token, role and the size of the body."""
 
 import asyncio
-import math
-import time
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 
 from starlette.datastructures import MutableHeaders
 from starlette.exceptions import HTTPException
@@ -13,11 +11,10 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from server.access.access import Access
 from server.access.permissions import needed_for_request
-from server.access.principal import Caller
+from server.access.roles import Role
 from server.api.problems import forbidden, problem, problem_response
 from server.api.safe_headers import OVER_TLS, SAFE_HEADERS
 from server.limits import Limits
-from server.pace import BURST_S, Paces
 from server.refusals import Refusals
 
 MAX_BODY_BYTES = 8 * 1024 * 1024
@@ -26,105 +23,75 @@ SAFE_METHODS = ("GET", "HEAD", "OPTIONS")
 
 
 class Gate:
-    """ASGI middleware that refuses what must not even be parsed.
+    """ASGI middleware that refuses what must not even be parsed."""
 
-    `now` is any monotonic clock in seconds: by it everybody is held to their pace.
-    """
-
-    def __init__(
-        self,
-        app: ASGIApp,
-        access: Access,
-        limits: Limits,
-        refusals: Refusals,
-        now: Callable[[], float] = time.monotonic,
-    ) -> None:
+    def __init__(self, app: ASGIApp, access: Access, limits: Limits, refusals: Refusals) -> None:
         self._app = app
         self._access = access
         self._strangers_bytes = min(limits.stranger_body_bytes, MAX_BODY_BYTES)
         self._refusals = refusals
-        self._paces = Paces(limits.requests_per_s, now)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         if scope["type"] != "http":
             await self._app(scope, receive, send)
             return
-        connection = HTTPConnection(scope)
-        if scope["path"].startswith(PROTECTED):
-            await self._access.look()
-        refusal = self._refusal(scope, connection)
+        refusal = await self._refusal(scope, HTTPConnection(scope))
         guarded = _guarded(
             send,
             private=scope["path"].startswith(PROTECTED),
             encrypted=scope["scheme"] == "https",
         )
-        # Whoever is refused has asked all the same.
-        refusal = await self._too_fast(scope) or refusal
         if refusal is None:
             await self._app(scope, self._limited(scope, receive), guarded)
         else:
             await refusal(scope, receive, guarded)
 
-    def _refusal(self, scope: Scope, connection: HTTPConnection) -> Response | None:
-        path: str = scope["path"]
+    async def _refusal(self, scope: Scope, connection: HTTPConnection) -> Response | None:
         if not self._access.host_allowed(connection):
             return _refused(
                 421, "this Host is not one of the service's names: add it to 'allowed_hosts'"
             )
         if scope["method"] not in SAFE_METHODS and not self._access.origin_allowed(connection):
             return _refused(403, "pages of this Origin may not do that: see 'allowed_origins'")
-        if path.startswith(PROTECTED):
-            refusal = self._stranger(scope, connection)
-            if refusal is not None:
-                return refusal
+        refusal = await self._stranger(scope, connection)
+        if refusal is not None:
+            return refusal
         if _declared_length(connection) > self._most_bytes(scope):
             return _refused(413, self._too_large(scope))
         return None
 
-    def _stranger(self, scope: Scope, connection: HTTPConnection) -> Response | None:
-        """Why who it is may not do that; what strangers show at an open door is not looked at."""
-        needed = needed_for_request(scope["method"], scope["path"])
-        if needed is None:
-            return None
-        admission = self._access.by_request(connection)
+    async def _stranger(self, scope: Scope, connection: HTTPConnection) -> Response | None:
+        """Why who it is may not do that, or not yet.
+
+        Whoever shows something is held to their pace at open doors, too, and so are those who are
+        refused then.
+        """
+        await self._access.look()
+        admission = await self._access.in_time(self._access.by_request(connection))
         if admission.wait_s:
             return _refused(429, admission.too_many, admission.retry_after)
-        if admission.caller is None:
+        caller, needed = admission.caller, _needed(scope)
+        state = scope.setdefault("state", {})
+        state["known"] = caller
+        if needed is None:
+            return None
+        if caller is None:
             detail = "show the token: 'Authorization: Bearer ...', or sign in"
             return _refused(401, detail, {"WWW-Authenticate": "Bearer"})
-        scope.setdefault("state", {})["caller"] = admission.caller
-        role = admission.caller.principal.role
+        state["caller"] = caller
+        role = caller.principal.role
         return None if role.may(needed) else problem_response(forbidden(needed, role))
-
-    async def _too_fast(self, scope: Scope) -> Response | None:
-        """Let who asks too fast wait; refuse them where they would have to wait for long.
-
-        So no more of theirs wait than are answered in that time, also of clients that hang up.
-        Those who share the one token are not held to a share of it.
-        """
-        caller: Caller | None = scope.get("state", {}).get("caller")
-        if caller is None or not caller.principal.named:
-            return None
-        wait_s = self._paces.of(caller.principal.key).take(patience_s=BURST_S)
-        if wait_s == 0.0:
-            return None
-        self._refusals.note("requests_per_s")
-        if wait_s > BURST_S:
-            again = {"Retry-After": str(math.ceil(wait_s))}
-            return _refused(429, "you ask faster than 'requests_per_s' allows", again)
-        await asyncio.sleep(wait_s)
-        return None
 
     def _most_bytes(self, scope: Scope) -> int:
         """How large a body may be; much smaller where nobody had to say who they are."""
-        admitted = "caller" in scope.get("state", {})
-        return MAX_BODY_BYTES if admitted else self._strangers_bytes
+        return self._strangers_bytes if _needed(scope) is None else MAX_BODY_BYTES
 
     def _too_large(self, scope: Scope) -> str:
         most = self._most_bytes(scope)
         if most < MAX_BODY_BYTES:
             self._refusals.note("stranger_body_bytes")
             return f"the body is larger than {most} bytes"
+        self._refusals.note("body_bytes")
         return f"the body is larger than {MAX_BODY_BYTES // 1024**2} MiB"
 
     def _limited(self, scope: Scope, receive: Receive) -> Receive:
@@ -153,6 +120,12 @@ class Gate:
             return message
 
         return limited
+
+
+def _needed(scope: Scope) -> Role | None:
+    """The role that a request needs; None if anybody may send it."""
+    path: str = scope["path"]
+    return needed_for_request(scope["method"], path) if path.startswith(PROTECTED) else None
 
 
 def _refused(status: int, detail: str, headers: Mapping[str, str] | None = None) -> Response:

@@ -5,9 +5,10 @@ from typing import Literal
 from fastapi import APIRouter
 from pydantic import BaseModel
 
-from server.api.parts import WithParts
-from server.api.problems import documented
-from server.journal.journal import JournalWriteError
+from server.access.roles import Role
+from server.api.parts import ObservedJournal, WithCallerIfKnown, WithParts
+from server.api.problems import ProblemError, documented
+from server.journal.journal import JournalReadError, JournalWriteError
 
 router = APIRouter(tags=["health"])
 
@@ -19,16 +20,17 @@ class Health(BaseModel):
 
 
 class Readiness(BaseModel):
-    """`degraded`: it works, but some of what was kept is damaged; `damage` has a sentence for each.
+    """`degraded`: it works, but some of what was kept is damaged, in so many `damaged` places.
 
     `unreadable_runs` says how many runs cannot be read, `unreadable_events` how many events that
-    belong to no run.
+    belong to no run. `damage` has a sentence for each damaged place, for whoever may view.
     """
 
     status: Literal["ok", "degraded"]
     unreadable_runs: int
     unreadable_events: int
-    damage: list[str]
+    damaged: int
+    damage: list[str] | None
 
 
 @router.get("/healthz", operation_id="healthz", responses=documented(421))
@@ -38,18 +40,31 @@ async def healthz() -> Health:
 
 
 @router.get("/readyz", operation_id="readyz", responses=documented(421, 503))
-async def readyz(parts: WithParts) -> Readiness:
-    """The journal can be read and written, so runs can be started and watched."""
-    await parts.journal.look()
-    if parts.journal.trouble.reason is not None:
-        raise JournalWriteError(parts.journal.trouble.reason)
-    await parts.journal.read_records(parts.journal.head, 1)
-    unreadable = await parts.journal.index.count_unreadable()
-    events = len(parts.deeds.unreadable)
-    damage = [each.sentence for each in parts.journal.damage]
+async def readyz(parts: WithParts, caller: WithCallerIfKnown) -> Readiness:
+    """The journal can be read and written, so runs can be started and watched.
+
+    Strangers hear whether that is so; why it is not is told to whoever may view.
+    """
+    told = caller is not None and caller.principal.role.may(Role.VIEWER)
+    try:
+        await _look(parts.journal)
+        unreadable = await parts.journal.index.count_unreadable()
+    except (JournalReadError, JournalWriteError) as error:
+        why = str(error) if told else "the journal cannot be read or written"
+        raise ProblemError(503, why) from error
+    events, damage = len(parts.deeds.unreadable), parts.journal.damage
     return Readiness(
         status="degraded" if unreadable or events or damage else "ok",
         unreadable_runs=unreadable,
         unreadable_events=events,
-        damage=damage,
+        damaged=len(damage),
+        damage=[each.sentence for each in damage] if told else None,
     )
+
+
+async def _look(journal: ObservedJournal) -> None:
+    """Raises `JournalReadError` or `JournalWriteError` where it cannot be read or written."""
+    await journal.look()
+    if journal.trouble.reason is not None:
+        raise JournalWriteError(journal.trouble.reason)
+    await journal.read_records(journal.head, 1)

@@ -6,6 +6,7 @@ import time
 from abc import ABC, abstractmethod
 from collections.abc import Coroutine
 from contextlib import suppress
+from functools import partial
 from typing import Any, Generic, TypeVar
 
 from pydantic import BaseModel, ConfigDict, TypeAdapter, ValidationError
@@ -58,7 +59,9 @@ class HelperConnection(ABC, Generic[Query]):
         self._query = query
         self._max_message_chars = max_message_chars
         self._parts: Parts = parts_of(websocket)
-        self._pace = Pace(self._parts.settings.limits.helper_messages_per_s, time.monotonic)
+        held_back = partial(self._parts.refusals.note, "helper_messages_per_s")
+        most = self._parts.settings.limits.helper_messages_per_s
+        self._pace = Pace(most, time.monotonic, held_back)
 
     async def run(self) -> None:
         """Let the helper in and serve them, until either side has had enough."""
@@ -108,7 +111,7 @@ class HelperConnection(ABC, Generic[Query]):
             await websocket.close(POLICY_VIOLATION, "this Host or Origin may not connect")
             return None
         await access.look()
-        admission = access.by_request(websocket)
+        admission = await access.in_time(access.by_request(websocket))
         if admission.wait_s:
             refusal = problem(429, admission.too_many)
             await websocket.send_denial_response(problem_response(refusal, admission.retry_after))
@@ -120,7 +123,8 @@ class HelperConnection(ABC, Generic[Query]):
         if admission.caller is None:
             token = await self._first_token()
             await access.look()
-            admission = REFUSED if token is None else access.by_token(token, websocket)
+            shown = REFUSED if token is None else access.by_token(token, websocket)
+            admission = await access.in_time(shown)
         if admission.wait_s:
             await self._turn_away(problem(429, admission.too_many), TRY_AGAIN_LATER)
         elif admission.caller is None:
@@ -133,8 +137,9 @@ class HelperConnection(ABC, Generic[Query]):
             async with asyncio.timeout(FIRST_MESSAGE_S):
                 first = await self._receive()
         except TimeoutError:
+            self._parts.refusals.note("first_message_s")
             return None
-        if not isinstance(first, str) or len(first) > self._max_message_chars:
+        if not isinstance(first, str) or self._is_too_long(first):
             return None
         try:
             return Auth.model_validate_json(first).token
@@ -163,18 +168,19 @@ class HelperConnection(ABC, Generic[Query]):
             raise WebSocketDisconnect(frame.get("code", THE_END))
         text: str | None = frame.get("text")
         received = bytes(frame.get("bytes") or b"") if text is None else text
-        await self._keep_pace(received)
+        await self._pace.keep(len(received))
         return received
 
-    async def _keep_pace(self, received: str | bytes) -> None:
-        wait_s = self._pace.take(len(received))
-        if wait_s > 0.0:
-            self._parts.refusals.note("helper_messages_per_s")
-            await asyncio.sleep(wait_s)
+    def _is_too_long(self, text: str) -> bool:
+        """Whether a message is longer than it may be, which is counted."""
+        too_long = len(text) > self._max_message_chars
+        if too_long:
+            self._parts.refusals.note("helper_message_chars")
+        return too_long
 
     async def _read(self, text: str, shape: TypeAdapter[Message]) -> Message | None:
         """What a text message says; None for one that was refused, also for want of a role."""
-        if len(text) > self._max_message_chars:
+        if self._is_too_long(text):
             limit = f"a message may have {self._max_message_chars} characters"
             await self._refuse(problem(413, limit))
             return None

@@ -28,7 +28,7 @@ from server.api.helper_messages import (
     client_message,
 )
 from server.api.parts import MAX_SEQ
-from server.api.problems import problem, problem_of
+from server.api.problems import count_refusal, problem, problem_of
 from server.journal.events import NO_RUN
 from server.journal.journal import JournalClosedError
 from server.journal.subscriptions import PrunedEventsError, SubscriptionOverflowError
@@ -140,6 +140,7 @@ class HelperSocket(HelperConnection[EventsQuery]):
             refusal = problem_of(error)
             if refusal is None:
                 raise
+            count_refusal(error, self._parts.refusals)
             await self._refuse(refusal, message.id)
         else:
             await self._send(Result(id=message.id, result=result))

@@ -5,8 +5,11 @@ from typing import Any
 from server.access.permissions import ENDPOINTS
 from server.api.problems import documented
 
-ANYWHERE = (413, 421, 500, 503)
-"""A body that is too large, an unknown Host; what cannot be read or written just now."""
+ANYWHERE = (413, 421, 429, 500, 503)
+"""A body that is too large, an unknown Host; who has to wait; what cannot be read or written now.
+
+A door that is open to everybody answers 429 to whoever shows something there all the same.
+"""
 
 WITH_ROLE = (401, 403)
 """Nobody who is known, or somebody who may not do that."""

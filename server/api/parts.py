@@ -1,6 +1,9 @@
 """What the routes work with: the parts of the service, and parameters that many of them take."""
 
+import time
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Annotated, Protocol
 from uuid import UUID
 
@@ -67,6 +70,11 @@ class Parts:
     speech: SpeechAbilities = NO_SPEECH
     refusals: Refusals = field(default_factory=Refusals)
     off_loop: OffLoop = field(default_factory=OffLoop)
+    wall_time_s: Callable[[], float] = time.time
+
+    def utc_now(self) -> datetime:
+        """The date and time by the service's wall clock."""
+        return datetime.fromtimestamp(self.wall_time_s(), UTC)
 
 
 def parts_of(connection: HTTPConnection) -> Parts:
@@ -80,7 +88,14 @@ def known_caller(connection: HTTPConnection) -> Caller:
     return caller
 
 
+def caller_if_known(connection: HTTPConnection) -> Caller | None:
+    """Who it is, at a door that is open to strangers; None for one."""
+    known: Caller | None = connection.state.known
+    return known
+
+
 WithCaller = Annotated[Caller, Depends(known_caller)]
+WithCallerIfKnown = Annotated[Caller | None, Depends(caller_if_known)]
 WithParts = Annotated[Parts, Depends(parts_of)]
 
 RunId = Annotated[UUID, Path(description="The run's id.")]

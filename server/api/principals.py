@@ -2,7 +2,6 @@
 
 import re
 from collections.abc import Callable
-from datetime import UTC, datetime
 from typing import Annotated, Literal, TypeVar
 from uuid import uuid4
 
@@ -102,7 +101,7 @@ class DeedsPage(View):
 @router.get("/principals", operation_id="list_principals", responses=documented(401, 403, 421))
 async def list_principals(parts: WithParts) -> list[PrincipalView]:
     """Every principal and robot that has a token of its own."""
-    now = datetime.now(UTC)
+    now = parts.utc_now()
     return [
         PrincipalView(
             name=each.name,
@@ -120,7 +119,7 @@ async def add_principal(body: NewPrincipal, parts: WithParts, caller: WithCaller
     """Add a principal, and get its token: it is shown only now."""
     role, days = Role(body.role), body.expires_days
     token = await edited(
-        parts, caller.author, lambda editor: editor.add(body.name, role, datetime.now(UTC), days)
+        parts, caller.author, lambda editor: editor.add(body.name, role, parts.utc_now(), days)
     )
     return TokenView(name=body.name, token=token)
 
@@ -133,7 +132,7 @@ async def rotate_principal(
     token = await edited(
         parts,
         caller.author,
-        lambda editor: editor.rotate(name, datetime.now(UTC), body.expires_days),
+        lambda editor: editor.rotate(name, parts.utc_now(), body.expires_days),
     )
     return TokenView(name=name, token=token)
 
@@ -146,7 +145,7 @@ async def revoke_principal(name: Name, parts: WithParts, caller: WithCaller) -> 
 
     That is also done where it cannot be journaled now, and then answered with 503.
     """
-    await _edited(parts, caller.author, lambda editor: editor.revoke(name, datetime.now(UTC)))
+    await _edited(parts, caller.author, lambda editor: editor.revoke(name, parts.utc_now()))
 
 
 @router.post("/enrolments", operation_id="open_enrolment", status_code=201, responses=CHANGES)
@@ -155,7 +154,7 @@ async def open_enrolment(body: NewEnrolment, parts: WithParts, caller: WithCalle
     code = await edited(
         parts,
         caller.author,
-        lambda editor: editor.open_enrolment(body.robot, datetime.now(UTC), body.minutes),
+        lambda editor: editor.open_enrolment(body.robot, parts.utc_now(), body.minutes),
     )
     return CodeView(robot=body.robot, code=code)
 

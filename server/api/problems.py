@@ -30,6 +30,8 @@ from server.errors import (
     UnreadableError,
 )
 from server.journal.journal import JournalClosedError, JournalReadError, JournalWriteError
+from server.limits import LimitName
+from server.refusals import Refusals
 
 log = logging.getLogger(__name__)
 
@@ -64,12 +66,20 @@ class Problem(BaseModel):
 
 
 class ProblemError(Exception):
-    """A refusal that the API itself decides on."""
+    """A refusal that the API itself decides on; `limit` is the one that was reached, if any."""
 
-    def __init__(self, status: int, detail: str, headers: Mapping[str, str] | None = None) -> None:
+    def __init__(
+        self,
+        status: int,
+        detail: str,
+        headers: Mapping[str, str] | None = None,
+        *,
+        limit: LimitName | None = None,
+    ) -> None:
         super().__init__(detail)
         self.status = status
         self.headers = headers
+        self.limit = limit
 
 
 def problem(status: int, detail: str, **more: Any) -> Problem:
@@ -93,6 +103,12 @@ def problem_of(error: Exception) -> Problem | None:
     return problem(status, str(error))
 
 
+def count_refusal(error: Exception, refusals: Refusals) -> None:
+    """Count what was refused because a limit was reached."""
+    if isinstance(error, ServiceError | ProblemError) and error.limit is not None:
+        refusals.note(error.limit)
+
+
 def problem_text(refusal: Problem) -> bytes:
     """The document itself."""
     # What a client sent may come back in a message, lone surrogates included.
@@ -111,14 +127,11 @@ def problem_response(refusal: Problem, headers: Mapping[str, str] | None = None)
 
 
 def documented(*statuses: int) -> dict[int | str, dict[str, Any]]:
-    """The refusals of an operation, for its OpenAPI description.
-
-    Whoever may be asked for the token (401) may also be asked to wait with it (429).
-    """
+    """The refusals of an operation, for its OpenAPI description."""
     content = {MEDIA_TYPE: {"schema": {"$ref": "#/components/schemas/Problem"}}}
     return {
         status: {"description": HTTPStatus(status).phrase, "content": content}
-        for status in sorted({*statuses, *([429] if 401 in statuses else [])})
+        for status in sorted(statuses)
     }
 
 
@@ -157,16 +170,16 @@ async def _validation_error(_request: Request, error: Exception) -> Response:
     return problem_response(problem(422, detail, errors=sentences))
 
 
-async def _problem_error(_request: Request, error: Exception) -> Response:
+async def _problem_error(request: Request, error: Exception) -> Response:
     assert isinstance(error, ProblemError)
+    count_refusal(error, parts_of(request).refusals)
     return problem_response(problem(error.status, str(error)), error.headers)
 
 
 async def _service_error(request: Request, error: Exception) -> Response:
     refusal = problem_of(error)
     assert refusal is not None, "every service error has a status"
-    if isinstance(error, ServiceError) and error.limit is not None:
-        parts_of(request).refusals.note(error.limit)
+    count_refusal(error, parts_of(request).refusals)
     later = {"Retry-After": f"{error.retry_after_s}"} if isinstance(error, BusyError) else None
     return problem_response(refusal, later)
 

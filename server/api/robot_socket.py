@@ -1,7 +1,6 @@
 """The WebSocket route on which robots connect: `/ws/robot`."""
 
 import asyncio
-from collections.abc import Collection
 from contextlib import suppress
 from dataclasses import dataclass
 
@@ -21,8 +20,6 @@ from server.robots.session import LAST_WORD_S
 
 ROBOT_PATH = "/ws/robot"
 
-MAX_MESSAGE_BYTES = 1 << 20
-
 DEAF = "nothing more of it is listened to"
 REVOKED = "this credential is good no longer: enrol the robot again"
 NO_CREDENTIAL = (
@@ -30,7 +27,6 @@ NO_CREDENTIAL = (
 )
 
 CLOSED_NORMALLY = 1000
-MESSAGE_TOO_BIG = 1009
 
 
 class StarletteChannel:
@@ -63,9 +59,6 @@ class StarletteChannel:
         text = message.get("text")
         # A binary frame is a mistake like any other: it is read, not understood, and answered.
         content: str = text if text is not None else message["bytes"].decode(errors="replace")
-        if len(content) > MAX_MESSAGE_BYTES:
-            await self._close(MESSAGE_TOO_BIG)
-            raise ChannelClosedError("a message was too big")
         return content
 
     async def _next_message(self) -> Message:
@@ -80,35 +73,26 @@ class StarletteChannel:
             self._patience = None
 
     async def close(self) -> None:
-        await self._close(CLOSED_NORMALLY)
-
-    async def _close(self, code: int) -> None:
         if self._websocket.application_state is not WebSocketState.CONNECTED:
             return
         if self._websocket.client_state is WebSocketState.CONNECTED:
             try:
-                await self._websocket.close(code)
+                await self._websocket.close(CLOSED_NORMALLY)
             except (WebSocketDisconnect, RuntimeError) as error:
                 raise ChannelClosedError(str(error)) from error
 
 
-def add_robot_route(
-    app: FastAPI,
-    registry: RobotRegistry,
-    access: Access,
-    *,
-    allowed_origins: Collection[str] = (),
-) -> None:
+def add_robot_route(app: FastAPI, registry: RobotRegistry, access: Access) -> None:
     """Serve `/ws/robot`.
 
     A robot has to present its credential as a bearer token, or the service's own token where there
-    is one (else HTTP status 401, or 429 while its address has to wait). A request with an `Origin`
-    comes from a browser and is refused (403) unless that origin is allowed.
+    is one (else HTTP status 401, or 429 while it or its address has to wait). A request with an
+    `Origin` comes from a browser and is refused (403).
     """
 
     async def connect(websocket: WebSocket) -> None:
         await access.look()
-        shown = _shown(websocket, access, allowed_origins)
+        shown = await _shown(websocket, access)
         if isinstance(shown, Response):
             await websocket.send_denial_response(shown)
             return
@@ -145,16 +129,13 @@ class _Shown:
     caller: Caller | None
 
 
-def _shown(
-    websocket: WebSocket, access: Access, allowed_origins: Collection[str]
-) -> _Shown | Response:
-    origin = websocket.headers.get("origin")
-    if origin is not None and origin not in allowed_origins:
+async def _shown(websocket: WebSocket, access: Access) -> _Shown | Response:
+    if "origin" in websocket.headers:
         return problem_response(problem(403, "robots connect without an Origin header"))
     own = access.own_robot(websocket)
     if own is not None:
         return _Shown(own, None)
-    admission = access.by_bearer(websocket)
+    admission = await access.in_time(access.by_bearer(websocket))
     if admission.wait_s:
         return problem_response(problem(429, admission.too_many), admission.retry_after)
     robot = None if admission.caller is None else access.robot_pass(admission.caller)

@@ -1,12 +1,9 @@
 """Robots over REST: which there are, and how one fetches its own credential."""
 
-from datetime import UTC, datetime
-
 from fastapi import APIRouter, Request
 from pydantic import BaseModel, ConfigDict, Field
 
 from server.access.access import address_of
-from server.access.admission import Admission
 from server.access.changes import EnrolmentRefusedError
 from server.access.principals_file import RobotName
 from server.access.roles import Role
@@ -51,14 +48,14 @@ async def list_robots(parts: WithParts, limit: Limit = 1000, offset: Offset = 0)
 async def enrol_robot(body: EnrolmentRequest, request: Request, parts: WithParts) -> Credential:
     """Exchange a one-time code for the robot's own credential, which is shown only now."""
     address = address_of(request)
-    wait = Admission(None, parts.access.wait_s(body.code, request))
-    if wait.wait_s:
-        raise ProblemError(429, wait.too_many, wait.retry_after)
+    waiting = parts.access.waiting(body.code, request)
+    if waiting.wait_s:
+        raise ProblemError(429, waiting.too_many, waiting.retry_after)
     try:
         token = await edited(
             parts,
             Author(principal=body.robot, role=Role.ROBOT, address=address),
-            lambda editor: editor.enrol(body.robot, body.code, datetime.now(UTC)),
+            lambda editor: editor.enrol(body.robot, body.code, parts.utc_now()),
         )
     except EnrolmentRefusedError:
         parts.access.wrong(body.code, request)

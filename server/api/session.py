@@ -7,7 +7,7 @@ from server.access.access import SESSION_COOKIE, address_of
 from server.access.principal import Caller
 from server.access.roles import Role
 from server.access.sessions import SESSION_LIFETIME_S, TooManySessionsError
-from server.api.parts import WithParts
+from server.api.parts import WithCallerIfKnown, WithParts
 from server.api.problems import ProblemError, documented
 from server.api.repeatable import SecretRoute
 from server.journal.journal import JournalWriteError
@@ -38,9 +38,8 @@ class SessionView(BaseModel):
 
 
 @router.get("/session", operation_id="get_session", responses=documented(421))
-async def get_session(request: Request, parts: WithParts) -> SessionView:
+async def get_session(caller: WithCallerIfKnown, parts: WithParts) -> SessionView:
     """Whether a token is needed, whether this client has shown one, and whose it is."""
-    caller = parts.access.by_request(request).caller
     principal = None if caller is None else caller.principal
     return SessionView(
         required=parts.access.required,
@@ -69,7 +68,7 @@ async def sign_in(body: SignIn, request: Request, response: Response, parts: Wit
     try:
         _, cookie = parts.access.sessions.new(principal)
     except TooManySessionsError as error:
-        raise ProblemError(429, str(error)) from error
+        raise ProblemError(429, str(error), limit="sign_ins") from error
     await _end_session(request, parts)
     parts.deeds.signed_in(principal, address_of(request))
     response.set_cookie(

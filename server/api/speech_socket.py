@@ -9,7 +9,7 @@ from starlette.websockets import WebSocket
 
 from server.api.helper_connection import HelperConnection, HelperQuery
 from server.api.helper_messages import Auth
-from server.api.problems import problem, problem_of
+from server.api.problems import count_refusal, problem, problem_of
 from server.api.speech_messages import (
     AnySpeechClientMessage,
     Cancel,
@@ -75,10 +75,12 @@ class SpeechSocket(HelperConnection[HelperQuery]):
     # --- from the helper ----------------------------------------------------------------------
 
     async def _take_sound(self, pcm: bytes) -> None:
-        if len(pcm) > MAX_SOUND_BYTES or len(pcm) % 2:
-            status = 413 if len(pcm) > MAX_SOUND_BYTES else 422
+        too_long = len(pcm) > MAX_SOUND_BYTES
+        if too_long:
+            self._parts.refusals.note("sound_bytes")
+        if too_long or len(pcm) % 2:
             shape = f"frames of whole 16-bit samples, at most {MAX_SOUND_BYTES} bytes"
-            await self._refuse(problem(status, f"sound comes in {shape}"))
+            await self._refuse(problem(413 if too_long else 422, f"sound comes in {shape}"))
         elif self._talk is not None:
             self._talk.hear(pcm)
 
@@ -92,6 +94,7 @@ class SpeechSocket(HelperConnection[HelperQuery]):
         except ServiceError as error:
             refusal = problem_of(error)
             assert refusal is not None, "every other service error has a status"
+            count_refusal(error, self._parts.refusals)
             await self._refuse(refusal, message.id)
 
     async def _do(self, message: AnySpeechClientMessage) -> None:

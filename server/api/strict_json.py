@@ -34,7 +34,7 @@ class StrictJsonRequest(Request):
         except NotJsonError as error:
             raise ProblemError(400, str(error)) from None
         except TooManyValuesError as error:
-            raise ProblemError(413, str(error)) from None
+            raise ProblemError(413, str(error), limit="body_values") from None
 
 
 class StrictJsonRoute(APIRoute):

@@ -16,7 +16,9 @@ class FileLock:
     """An exclusive lock beside the journal, which the kernel frees when the process dies."""
 
     def __init__(self, journal: Path) -> None:
-        path = journal.with_name(journal.name + ".lock")
+        # Whatever it is called by: another name of the file must not have a lock of its own.
+        file = journal.resolve()
+        path = file.with_name(file.name + ".lock")
         keep_to_owner(path)
         self._file = path.open("a+")
         try:

@@ -1,13 +1,13 @@
 """One robot that the service knows: what it is, what it was told, who owns it."""
 
 import asyncio
-import base64
 import logging
 from collections import OrderedDict
 from collections.abc import Callable, Coroutine
 from typing import Any
 from uuid import uuid4
 
+from robots.link.jpeg import NotJpegError, read_jpeg
 from robots.link.messages import (
     PROTOCOL_VERSION,
     Ack,
@@ -27,8 +27,10 @@ from robots.link.messages import (
 )
 from server.errors import ConflictError, NotFoundError
 from server.journal.journal import DuplicateReceiptError, Entry, Journal, Receipt
+from server.limits import LimitName
 from server.pace import CHARS_OF_ONE
 from server.plain_text import plain
+from server.refusals import Refusals
 from server.robots.session import (
     MissingReportError,
     PictureError,
@@ -61,7 +63,7 @@ class ReplacedError(Exception):
 class KnownRobot:
     """Implements `server.robots.session.Receiver`."""
 
-    def __init__(self, name: str, journal: Journal, times: LinkTimes) -> None:
+    def __init__(self, name: str, journal: Journal, times: LinkTimes, refusals: Refusals) -> None:
         self.name = name
         self.hello: Hello | None = None
         self.session: RobotSession | None = None
@@ -70,6 +72,7 @@ class KnownRobot:
         self._ours = False
         self._journal = journal
         self._times = times
+        self._refusals = refusals
         self._sink: RobotSink | None = None
         self._sink_sees_it = False
         self._untaken: OrderedDict[str, Command] = OrderedDict()
@@ -141,7 +144,7 @@ class KnownRobot:
         if self._poses_hz > 0.0:
             self._ask_for_poses()
 
-    def refuse(self, reason: str) -> None:
+    def refuse(self, reason: str, limit: LimitName) -> None:
         """End its connection, and let this start of its program in no more.
 
         What it keeps in its outbox would only come again.
@@ -149,6 +152,7 @@ class KnownRobot:
         assert self.hello is not None, "who sends something has said hello"
         assert self.session is not None, "who sends something is connected"
         log.warning("robot %s is refused: %s", self.name, plain(reason))
+        self._refusals.note(limit)
         self._refused = self.hello.boot, reason
         self.session.end_soon(reason)
 
@@ -250,6 +254,8 @@ class KnownRobot:
         if command_id in self._untaken:
             return
         if len(self._untaken) >= MOST_UNTAKEN_COMMANDS:
+            # Nobody may have asked for it: so it is counted here, and by no one who hears of it.
+            self._refusals.note("untaken_commands")
             raise ConflictError(
                 f"the robot '{self.name}' has not taken its last {MOST_UNTAKEN_COMMANDS} commands"
             )
@@ -296,9 +302,9 @@ class KnownRobot:
 
     def receive_picture(self, picture: Picture) -> None:
         try:
-            jpeg = base64.b64decode(picture.jpeg, validate=True)
-        except ValueError as error:
-            raise PictureError(f"the picture of '{picture.camera}' is not base64") from error
+            jpeg = read_jpeg(picture.jpeg)
+        except NotJpegError as error:
+            raise PictureError(f"the picture of '{picture.camera}' {error}") from error
         self._answer(picture.command, lambda future: future.set_result(jpeg))
 
     def receive_poses(self, poses: Poses) -> None:
@@ -343,13 +349,15 @@ class KnownRobot:
         if self._new_boots > MOST_NEW_BOOTS:
             raise TooManyReportsError(
                 f"the robot '{self.name}' has sent reports of {MOST_NEW_BOOTS} boots that were "
-                "not known since it was last told something"
+                "not known since it was last told something",
+                "new_boots",
             )
         self._unasked_reports += 1 + _picture_chars(report) // CHARS_OF_ONE
         if self._unasked_reports > MOST_UNASKED_REPORTS:
             raise TooManyReportsError(
                 f"the robot '{self.name}' has sent {MOST_UNASKED_REPORTS} reports since it was "
-                "last told something"
+                "last told something",
+                "unasked_reports",
             )
 
     async def _commit(self, report: Report, receipt: Receipt) -> None:

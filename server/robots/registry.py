@@ -119,7 +119,7 @@ class RobotRegistry:
 
     def _known(self, name: str) -> KnownRobot:
         if name not in self._robots:
-            self._robots[name] = KnownRobot(name, self._journal, self._times)
+            self._robots[name] = KnownRobot(name, self._journal, self._times, self._refusals)
         return self._robots[name]
 
     def _forget(self, name: str) -> None:
@@ -146,9 +146,9 @@ class RobotRegistry:
 
     async def serve_stranger(self, channel: Channel, shown: Pass) -> None:
         """Serve one connection of a robot that this service does not run, at a bounded pace."""
-        pace = Pace(self._limits.robot_messages_per_s, self._clock)
         held_back = partial(self._refusals.note, "robot_messages_per_s")
-        await self._serve(PacedChannel(channel, pace, held_back), shown, ours=False)
+        pace = Pace(self._limits.robot_messages_per_s, self._clock, held_back)
+        await self._serve(PacedChannel(channel, pace), shown, ours=False)
 
     async def _serve(self, channel: Channel, shown: Pass, *, ours: bool) -> None:
         try:
@@ -219,6 +219,7 @@ class RobotRegistry:
                         await _complain(channel, sentence(error))
                         continue
                     except NoSenseError as error:
+                        self._refusals.note("robot_numbers")
                         await _complain(channel, str(error))
                         return None
                     if isinstance(message, Hello):

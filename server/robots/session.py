@@ -23,6 +23,7 @@ from robots.link.messages import (
 )
 from server.errors import ServiceError
 from server.journal.journal import JournalClosedError
+from server.limits import LimitName
 from server.robots.silence import Silence
 from server.robots.times import LinkTimes
 
@@ -39,7 +40,11 @@ class MissingReportError(Exception):
 
 
 class TooManyReportsError(Exception):
-    """A robot reports without end; the message says how much."""
+    """A robot reports without end; the message says how much, `limit` which limit was reached."""
+
+    def __init__(self, message: str, limit: LimitName) -> None:
+        super().__init__(message)
+        self.limit: LimitName = limit
 
 
 class PictureError(Exception):
@@ -64,7 +69,7 @@ class Receiver(Protocol):
         """Raises `PictureError`."""
         ...
 
-    def refuse(self, reason: str) -> None:
+    def refuse(self, reason: str, limit: LimitName) -> None:
         """Have no more to do with this start of the robot's program; ends its connection."""
         ...
 
@@ -212,7 +217,7 @@ class RobotSession:
                 except ValidationError as error:
                     self.send(LinkError(detail=sentence(error)))
                 except NoSenseError as error:
-                    self._receiver.refuse(str(error))
+                    self._receiver.refuse(str(error), "robot_numbers")
                     return
 
     async def _take(self, message: AnyRobotMessage) -> None:
@@ -262,7 +267,7 @@ class RobotSession:
             self.send(LinkError(detail=str(error)))
             return
         except TooManyReportsError as error:
-            self._receiver.refuse(str(error))
+            self._receiver.refuse(str(error), error.limit)
             return
         if self._owed is not None and self._owed.boot != ack.boot:
             self._acknowledge()

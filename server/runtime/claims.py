@@ -40,7 +40,8 @@ class Claims:
             raise ConflictError(f"this dialogue is closed ({dialogue.closed})")
         if dialogue.claims >= MOST_CLAIMS:
             raise ConflictError(
-                f"this dialogue was claimed {MOST_CLAIMS} times: it can be answered, not claimed"
+                f"this dialogue was claimed {MOST_CLAIMS} times: it can be answered, not claimed",
+                limit="claims",
             )
         others = held is not None and held.helper != helper
         if held is not None and others and held.until > now and not take_over:

@@ -93,8 +93,8 @@ class DialogueDriver:
             self._looks.let_time_pass(dialogue, side, due)
         return False
 
-    def next_due(self) -> float | None:
-        """When, in the run's clock, the next answer, look or deadline is due."""
+    def next_due(self, after: float) -> float | None:
+        """When, in the run's clock, the next answer, look or deadline after a moment is due."""
         dues = []
         for dialogue in self._context.state.open_dialogues:
             if (ask := dialogue.open_ask) is not None and ask.deadline is not None:
@@ -102,8 +102,7 @@ class DialogueDriver:
                 dues.append(min(ask.deadline, scripted[1]) if scripted else ask.deadline)
             if (look := self._looks.next_watch(dialogue)) is not None:
                 dues.append(look)
-        now = self._context.clock.now()
-        return min((each for each in dues if each > now), default=min(dues, default=None))
+        return min((each for each in dues if each > after), default=None)
 
     async def looked(
         self, dialogue: DialogueState, side: RobotSide, purpose: Purpose, fulfilled: bool
@@ -197,7 +196,8 @@ class DialogueDriver:
         left = dialogue.extensions_left - 1
         if left < 0:
             raise ConflictError(
-                f"this question was given more time {MOST_EXTENSIONS} times already"
+                f"this question was given more time {MOST_EXTENSIONS} times already",
+                limit="extensions",
             )
         make = self._make(dialogue)
         event = make.extended(ask, ask.deadline + length_s, left, helper, author)

@@ -54,7 +54,9 @@ class Inbox:
         return item.done
 
     async def next(self, timeout_s: float | None) -> Item | None:
-        """The next item; None if none comes in time."""
+        """The next item, at once if there is one; None if none comes in time."""
+        if not self._items.empty():
+            return self._items.get_nowait()
         try:
             return await asyncio.wait_for(self._items.get(), timeout_s)
         except TimeoutError:

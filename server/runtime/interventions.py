@@ -31,7 +31,8 @@ class Interventions:
         if len(self._context.state.accepted) >= MOST_WAITING:
             raise ConflictError(
                 f"{MOST_WAITING} interventions of this run are still to be done: wait for one of "
-                "them"
+                "them",
+                limit="waiting_interventions",
             )
         accepted = ev.InterventionAccepted(
             **self._context.stamp(),

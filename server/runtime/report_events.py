@@ -1,9 +1,9 @@
 """From a robot's reports to the events that journal them."""
 
-import base64
 import logging
 from uuid import UUID, uuid4
 
+from robots.link.jpeg import NotJpegError, read_jpeg
 from robots.link.messages import (
     ClipTaken,
     Finished,
@@ -213,6 +213,7 @@ def _decode(jpeg: str | None) -> bytes | None:
     if jpeg is None:
         return None
     try:
-        return base64.b64decode(jpeg, validate=True)
-    except ValueError:
+        return read_jpeg(jpeg)
+    except NotJpegError as error:
+        log.warning("a robot's picture %s", error)
         return None

@@ -7,6 +7,7 @@ whatever the state demands, so that a run that is taken up after a crash goes on
 
 import asyncio
 import logging
+import math
 from functools import partial
 from typing import Any
 from uuid import uuid4
@@ -92,6 +93,7 @@ class Run:
         self._giving_up = GivingUp(context, sides, self._reports, cutting_short)
         self.ended = asyncio.Event()
         self._aborting = False
+        self._settled_s = -math.inf
 
     @property
     def context(self) -> RunContext:
@@ -154,7 +156,8 @@ class Run:
 
     async def _next_item(self) -> Item | None:
         waits = [self._claims.expire_in_s()]
-        due = None if self._hardware.simulated else self._dialogues.next_due()
+        # What was due before has begun, or begins once an item says that it can.
+        due = None if self._hardware.simulated else self._dialogues.next_due(self._settled_s)
         if due is not None and self._context.state.status is RunStatus.RUNNING:
             waits.append(max(0.0, due - self._context.clock.now()))
         timeout_s = min((each for each in waits if each is not None), default=None)
@@ -278,8 +281,11 @@ class Run:
         return next((each for each in dialogues if each.opened.robot == side.robot), None)
 
     async def _settle(self) -> None:
-        while await self._settle_once():
-            pass
+        changed = True
+        while changed:
+            settled_s = self._context.clock.now()
+            changed = await self._settle_once()
+        self._settled_s = settled_s
 
     @property
     def _halted(self) -> bool:

@@ -1,18 +1,24 @@
 """The benchmark of chaos in small, and that the one who compares notices what is wrong."""
 
+import http.client
 import json
 import os
+import socket
 import sqlite3
+import threading
 from collections.abc import Callable
 from contextlib import closing
 from dataclasses import replace
+from http.server import BaseHTTPRequestHandler, HTTPServer
 from pathlib import Path
 
 import pytest
-from chaos_faults import FAULTS
+from chaos import misses, report
 from chaos_ledger import NO_RUN, Ledger
-from chaos_ordeal import Ordeal
+from chaos_lives import Footprint, Lives
+from chaos_ordeal import Findings, Ordeal
 from chaos_place import chaos_place
+from chaos_probe import is_healthy
 from chaos_witness import AnswerAttempt, RunAttempt, Witness
 from full_disk import small_disk
 from made_up_history import write_history
@@ -20,6 +26,16 @@ from made_up_history import write_history
 RUNS = 3
 STEPS = 5
 RUNS_AT_A_TIME = 2
+SEED = 16
+"""Draws faults of every family within so few."""
+
+FAMILIES = (
+    {"full disk", "failing writes", "journal moved away", "service killed on full disk"},
+    {"service killed", "service killed on full disk"},
+    {"robot killed", "robot stopped", "hostile robot"},
+    {"clock jump"},
+    {"descriptors exhausted", "half-sent requests", "stuck helpers", "wrong tokens"},
+)
 
 
 @pytest.mark.slow
@@ -27,18 +43,71 @@ RUNS_AT_A_TIME = 2
 async def test_a_service_among_faults_loses_doubles_and_invents_nothing(tmp_path: Path) -> None:
     told: list[str] = []
     with small_disk(tmp_path / "disk", 256) as disk:
-        async with chaos_place(tmp_path, disk, seed=8, most_stop_s=0.5) as place:
+        async with chaos_place(tmp_path, disk, seed=SEED, most_stop_s=0.5) as place:
             found = await Ordeal(place, RUNS_AT_A_TIME, tell=told.append).go_through(
                 lambda faults: faults < STEPS
             )
     assert found.faults == []
     assert found.counts.total() >= STEPS
-    assert {each.name for each in FAULTS} > set(found.counts)
+    for kinds in FAMILIES:
+        assert kinds & set(found.counts), f"none of {kinds}"
     assert found.runs >= RUNS_AT_A_TIME
     assert found.events > 0
-    assert found.end is not None
-    assert found.end.processes == 1
+    assert len(found.lives.each) > 1
+    assert found.lives.worst is not None
+    assert found.lives.worst.last is not None
+    assert found.lives.worst.last.processes == 1
     assert found.latencies_s
+
+
+def takes(rss_mb: float) -> Footprint:
+    return Footprint(rss_mb, processes=1, descriptors=20, threads=4)
+
+
+def test_growth_is_told_of_the_life_that_grew_most_and_not_over_a_kill() -> None:
+    lives = Lives()
+    for pid, rss_mb, ended, at_s in (
+        (7, 100.0, 0, 0.0), (7, 400.0, 1, 5.0), (7, 450.0, 2, 9.0), (7, 460.0, 2, 10.0),
+        (8, 100.0, 2, 12.0), (8, 200.0, 3, 13.0), (8, 700.0, 5, 42.0), (8, 600.0, 5, 53.0),
+        (9, 100.0, 5, 60.0), (9, 900.0, 5, 61.0),
+    ):  # fmt: skip
+        lives.note(pid, takes(rss_mb), ended, at_s)
+    assert [life.grown_mb for life in lives.each] == [60.0, 400.0, 0.0]
+    assert lives.worst is lives.each[1]
+    assert lives.worst.lasted_s == 40.0
+    assert lives.most_rss_mb == 900.0
+    found = Findings(lives=lives, latencies_s=[0.01])
+    assert misses(found) == ["the process grew by 400 MB within one life of 40 s, 300 are allowed"]
+    assert "none grew by more than 400 MB, which took it 40 s" in report(found)
+
+
+@pytest.mark.parametrize(
+    ("status", "healthy"), [(200, True), (204, False), (429, False), (500, False), (503, False)]
+)
+def test_only_an_answer_of_200_says_that_the_service_is_well(status: int, healthy: bool) -> None:
+    class Answers(BaseHTTPRequestHandler):
+        def do_GET(self) -> None:
+            self.send_response(status)
+            self.end_headers()
+            self.wfile.write(b"" if status == 204 else b"{}")
+
+        def log_message(self, *_: object) -> None:
+            pass
+
+    with HTTPServer(("127.0.0.1", 0), Answers) as server:
+        answering = threading.Thread(target=server.handle_request)
+        answering.start()
+        connection = http.client.HTTPConnection("127.0.0.1", server.server_port)
+        assert is_healthy(connection, {}) is healthy
+        connection.close()
+        answering.join()
+
+
+def test_a_service_that_is_not_there_is_not_well() -> None:
+    with socket.socket() as nobody:
+        nobody.bind(("127.0.0.1", 0))
+        connection = http.client.HTTPConnection("127.0.0.1", nobody.getsockname()[1])
+        assert not is_healthy(connection, {})
 
 
 @pytest.fixture

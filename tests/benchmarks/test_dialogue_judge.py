@@ -9,11 +9,11 @@ from dialogue_judge import DialogueJudge
 from dialogue_record import Moment
 from sample_events import RUN, WALL_TIME
 from task_documents import definition_of
+from untruths import Rest
 
 from dialogue import missing
 from dialogue.script import HelpState
 from server.journal import events as ev
-from server.journal.untruths import Rest
 from sim.tabletop.layout import lay_out
 from tasks.intervention import Act, Intervention
 from tasks.scene import Scene

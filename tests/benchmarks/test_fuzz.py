@@ -9,7 +9,12 @@ from fuzz_helpers import fuzz_helper
 from fuzz_mutations import Mutator
 from fuzz_requests import fuzz_requests, fuzz_strangers
 from fuzz_robots import fuzz_robot
+from fuzz_said import said
+from websockets.asyncio.client import connect
+from websockets.asyncio.server import ServerConnection, serve
 
+from server.access.admission import Admission
+from server.access.principal import ANYBODY, Caller
 from server.cli.failures import CommandLineError
 
 FEW, MANY = 4, 30
@@ -40,6 +45,32 @@ async def test_mutated_requests_and_messages_do_no_harm() -> None:
             assert found.tried > 0.9 * mutations
             assert found.refused > mutations / 3
             assert found.findings == [], str(found.findings[0])
+
+
+@pytest.mark.slow
+async def test_a_service_that_lets_strangers_do_what_others_may_is_found(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("server.access.access.REFUSED", Admission(Caller(ANYBODY)))
+    async with bench() as made:
+        found = await fuzz_strangers(made, 30, 7)
+    assert any("without a credential" in each.sentence for each in found.findings)
+
+
+@pytest.mark.parametrize("ends", [False, True])
+async def test_what_is_answered_late_is_told_of_the_message_that_it_is_for(ends: bool) -> None:
+    async def answer(socket: ServerConnection) -> None:
+        assert [await socket.recv() for _ in range(2)] == ["sample", "question"]
+        await socket.send('{"of": "sample"}')
+        if not ends:
+            await socket.send('{"of": "question"}')
+            await socket.wait_closed()
+
+    async with serve(answer, "127.0.0.1", 0) as server:
+        port = next(iter(server.sockets)).getsockname()[1]
+        async with connect(f"ws://127.0.0.1:{port}") as socket:
+            told = await said(socket, ["sample", "question"], lambda each: each["of"] == "question")
+    assert told == ['{"of": "sample"}']
 
 
 def test_the_same_seed_draws_the_same() -> None:

@@ -1,5 +1,6 @@
 """A robot for tests of the link: its behaviors are `steps` steps of a second each."""
 
+import base64
 from collections import deque
 from typing import Any
 
@@ -25,8 +26,8 @@ from robots.link.messages import (
     TakePicture,
 )
 
-JPEG = "cGljdHVyZQ=="
-"""The word "picture", which is enough of one for the link."""
+JPEG = base64.b64encode(b"\xff\xd8\xff picture \xff\xd9").decode()
+"""What begins and ends as a picture does, which is enough of one for the link."""
 
 
 class CountingAgent:
@@ -87,9 +88,7 @@ class CountingAgent:
                 self._report(Holding(execution=self._execution, at="in_place"))
                 self._execution = None
             case TakePicture():
-                self._emit_picture(
-                    Picture(command=command_id, camera=body.camera, jpeg="cGljdHVyZQ==")
-                )
+                self._emit_picture(Picture(command=command_id, camera=body.camera, jpeg=JPEG))
             case Shutdown():
                 self.shut_down = True
             case Hold():

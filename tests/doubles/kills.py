@@ -9,11 +9,11 @@ from typing import Any
 from uuid import UUID
 
 import numpy as np
+from broken_constraints import broken_constraints
 from service_process import ServiceProcess
 
 from server.client import ENDS, MendClient
 from server.journal import events as ev
-from server.journal.audit import audit
 from server.journal.reader import JournalReader
 from server.runtime.requests import RunRequest
 from server.runtime.views import RunStatus, Snapshot
@@ -218,7 +218,9 @@ class Ordeal:
         view, findings = await client.run(run), self._findings
         findings.broken += [
             f"run {run}: {sentence}"
-            for sentence in audit(events, {each.node: each.kind for each in view.nodes})
+            for sentence in broken_constraints(
+                events, {each.node: each.kind for each in view.nodes}
+            )
         ]
         if view.status is RunStatus.FINISHED and view.result is not None:
             findings.finished += 1

@@ -12,6 +12,7 @@ from fastapi import FastAPI
 from server.access.access import Access
 from server.api.robot_socket import ROBOT_PATH, add_robot_route
 from server.robots.registry import RobotRegistry
+from server.serving import MAX_SOCKET_MESSAGE_BYTES
 from server.websocket_protocol import WebSocketProtocol
 
 
@@ -29,15 +30,20 @@ async def served(
     token: str | None = None,
     port: int = 0,
     *,
-    allowed_origins: tuple[str, ...] = (),
     access: Access | None = None,
 ) -> AsyncIterator[str]:
     """Serve robots; gives the URL that they connect to."""
     app = FastAPI()
     access = access or Access(token, wall_time_s=time.time)
-    add_robot_route(app, registry, access, allowed_origins=allowed_origins)
+    add_robot_route(app, registry, access)
     listener = socket.create_server(("127.0.0.1", port))
-    config = uvicorn.Config(app, log_level="warning", ws=WebSocketProtocol, lifespan="off")
+    config = uvicorn.Config(
+        app,
+        log_level="warning",
+        ws=WebSocketProtocol,
+        ws_max_size=MAX_SOCKET_MESSAGE_BYTES,
+        lifespan="off",
+    )
     server = _Server(config)
     task = asyncio.create_task(server.serve(sockets=[listener]))
     try:

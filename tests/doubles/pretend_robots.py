@@ -38,6 +38,8 @@ from server.journal.journal import Receipt
 from server.runtime.dialogue_looks import FIRST_LOOK_S
 from tasks.intervention import Act
 
+FIRST_JPEG, SECOND_JPEG = b"\xff\xd8\xff first \xff\xd9", b"\xff\xd8\xff second \xff\xd9"
+
 
 class Sink(Protocol):
     async def robot_connected(self, robot: str, hello: Hello) -> None: ...
@@ -272,7 +274,7 @@ class PretendRobots:
         if robot.films:
             pictures = [
                 ClipPicture(before_s=before_s, jpeg=base64.b64encode(jpeg).decode())
-                for before_s, jpeg in ((1.5, b"first"), (0.5, b"second"))
+                for before_s, jpeg in ((1.5, FIRST_JPEG), (0.5, SECOND_JPEG))
             ]
             clip = ClipTaken(execution=start.execution, issue=kind, pictures=pictures)
             await self.report(robot, clip)

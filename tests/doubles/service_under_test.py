@@ -27,6 +27,7 @@ from server.library import build_library
 from server.limits import LimitName
 from server.listening import listen
 from server.models import RobotModels
+from server.pace import Sleep
 from server.poses.feed import PoseFeed
 from server.poses.record import PoseRecords
 from server.refusals import Refusals
@@ -93,6 +94,8 @@ def build(
     records: PoseRecords | None = None,
     models: Sequence[Any] = (),
     wall_time_s: Callable[[], float] = time.time,
+    now: Callable[[], float] = time.monotonic,
+    sleep: Sleep = asyncio.sleep,
     **settings: Any,
 ) -> ServiceUnderTest:
     """A service on an empty journal in memory; `models` are adapters that provide some."""
@@ -100,11 +103,20 @@ def build(
     runs = runs_in(journal)
     folder = Path(tempfile.mkdtemp())
     chosen = Settings(port=0, **{"data_dir": folder, **settings})
-    deeds = DeedLog(journal, lambda: datetime.now(UTC))
+
+    def utc_now() -> datetime:
+        return datetime.fromtimestamp(wall_time_s(), UTC)
+
+    deeds = DeedLog(journal, utc_now)
     refusals = Refusals()
-    access = build_access(chosen, deeds, refusals=refusals, wall_time_s=wall_time_s)
-    library = build_library(journal, fixed_documents(GivenFiles(), None), WorldChecks({}))
-    trees = JournaledDocuments(DocumentKind.TREE, journal, NamedTexts(TREES), FakeTreeChecker())
+    access = build_access(
+        chosen, deeds, refusals=refusals, wall_time_s=wall_time_s, now=now, sleep=sleep
+    )
+    fixed = fixed_documents(GivenFiles(), None)
+    library = build_library(journal, fixed, WorldChecks({}), utc_now=utc_now)
+    trees = JournaledDocuments(
+        DocumentKind.TREE, journal, NamedTexts(TREES), FakeTreeChecker(), utc_now=utc_now
+    )
     poses = PoseFeed(lambda *_: None, lambda _: None, records)
     app = create_app(
         runs,
@@ -120,6 +132,7 @@ def build(
         deeds=deeds,
         speech_abilities=speech,
         refusals=refusals,
+        wall_time_s=wall_time_s,
     )
     service = ServiceUnderTest(app, runs, journal, chosen, poses, access, deeds)
     weakref.finalize(service, shutil.rmtree, folder)
@@ -133,7 +146,7 @@ async def serving(
     **arguments: Any,
 ) -> AsyncIterator[ServiceUnderTest]:
     """A service behind a real socket on a free port; by `now` connections are ended."""
-    service = build(speech, **arguments)
+    service = build(speech, now=now, **arguments)
     config = serve_config(service.app, service.settings)
     server = Server(config, service.settings, service.refusals, now=now)
     service.served_by = server

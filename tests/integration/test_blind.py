@@ -5,10 +5,10 @@ from typing import Any
 
 import pytest
 import yaml
+from broken_constraints import broken_constraints
 
 from server.composition import open_service
 from server.journal import events as ev
-from server.journal.audit import audit
 from server.runtime.requests import RunRequest
 from server.runtime.views import RunStatus, RunView
 from server.settings import Settings
@@ -39,7 +39,7 @@ async def build(
         run = await service.runtime.start_run(RunRequest.model_validate(asked))
         view = await service.runtime.wait_for_end(run.id)
         events = await service.journal.read(0, 100_000, run.id)
-    assert audit(events, {node.node: node.kind for node in view.nodes}) == []
+    assert broken_constraints(events, {node.node: node.kind for node in view.nodes}) == []
     return view, events
 
 

@@ -41,11 +41,13 @@ async def test_a_message_in_parts_without_end_ends_the_connection(
 ) -> None:
     said = await last_words(service, FIRST_PART + EMPTY_PART * 10 * MOST_FRAGMENTS)
     assert farewell(1009, f"a message comes in at most {MOST_FRAGMENTS} parts") in said
+    assert service.refusals.counts["message_parts"] == 1
 
 
 async def test_pings_without_end_end_the_connection(service: ServiceUnderTest) -> None:
     said = await last_words(service, PING * 20 * PINGS_AT_ONCE)
     assert farewell(1008, "at most 10 pings a second") in said
+    assert service.refusals.counts["pings"] == 1
 
 
 async def test_a_message_in_some_parts_and_some_pings_are_taken(

@@ -74,11 +74,23 @@ async def test_a_run_that_cannot_be_read_is_told_everywhere(folder: Path) -> Non
         ready = await client.get("/readyz")
         assert ready.status_code == 200
         assert (ready.json()["status"], ready.json()["unreadable_runs"]) == ("degraded", 1)
+        assert ready.json()["damaged"] == 1
         assert "not what was committed" in ready.json()["damage"][0]
         metrics = (await client.get("/metrics")).text
         assert "mend_unreadable_runs 1.0" in metrics
         assert "mend_journal_damage 1.0" in metrics
         assert (await client.get("/api/runs", params={"status": "finished"})).status_code == 200
+
+
+async def test_strangers_hear_that_something_is_damaged_and_not_what(folder: Path) -> None:
+    last = str(run_id(RUNS - 1))
+    alter(folder, "UPDATE events SET body = '{}' WHERE type = 'answered' AND run = ?", last)
+    async with service(folder, token="secret") as stranger:
+        counts = {"unreadable_runs": 1, "unreadable_events": 0, "damaged": 1}
+        ready = await stranger.get("/readyz")
+        assert ready.json() == {"status": "degraded", **counts, "damage": None}
+        known = await stranger.get("/readyz", headers={"Authorization": "Bearer secret"})
+        assert "not what was committed" in known.json()["damage"][0]
 
 
 async def test_an_unreadable_event_of_no_run_is_told_and_hides_no_other(folder: Path) -> None:

@@ -3,10 +3,10 @@
 from pathlib import Path
 
 import pytest
+from broken_constraints import broken_constraints
 
 from server.composition import open_service
 from server.journal import events as ev
-from server.journal.audit import audit
 from server.runtime.requests import RunRequest
 from server.runtime.views import RunStatus
 from server.settings import Settings
@@ -41,7 +41,7 @@ async def test_the_base_is_built_through_every_fault(world: str, tmp_path: Path)
     assert view.result is not None
     assert view.status is RunStatus.FINISHED, view.result.reason
     assert view.result.missing == []
-    assert audit(events, {node.node: node.kind for node in view.nodes}) == []
+    assert broken_constraints(events, {node.node: node.kind for node in view.nodes}) == []
     issues = [(each.object, each.issue) for each in events if isinstance(each, ev.IssueRaised)]
     resolutions = [
         (each.object, str(each.resolution)) for each in events if isinstance(each, ev.Resolved)

@@ -10,12 +10,15 @@ from uuid import UUID
 
 import httpx
 import pytest
+from full_disk import failing
 from people import NAMES, People, serving_people
 from service_under_test import TOKEN, ServiceUnderTest, serving, until
 from shown_run import hello, run_state
 from websockets.asyncio.client import ClientConnection, connect
+from websockets.exceptions import InvalidStatus
 
 from server.access.deeds import deeds_in
+from server.access.principals_file import read_principals
 from server.access.roles import Role
 from server.access.sessions import SESSION_LIFETIME_S
 from server.client import MendClient
@@ -77,6 +80,89 @@ async def test_who_asks_without_end_is_answered_at_a_pace_and_nobody_else_waits(
     assert {each.status_code for each in answers} == {403, 429}
     assert all(int(each.headers["Retry-After"]) >= 4 for each in refused)
     assert "requests_per_s" in refused[0].json()["detail"]
+
+
+async def at_once(_: float) -> None:
+    """The clock stands still: who has to wait goes on at once."""
+
+
+STILL: dict[str, Any] = {"now": lambda: 0.0, "sleep": at_once, "limits": Limits(requests_per_s=1)}
+ANSWERED = 8
+"""Four seconds' worth at once, and as many that wait."""
+
+
+@pytest.mark.parametrize("path", ["/api/session", "/healthz", "/readyz", "/"])
+async def test_who_says_who_they_are_has_their_pace_at_open_doors_too(
+    tmp_path: Path, path: str
+) -> None:
+    async with serving_people(tmp_path, **STILL) as served:
+        service, _ = served
+        async with as_a(served, Role.VIEWER) as viewer, as_a(served, Role.HELPER) as other:
+            statuses = [(await viewer.get(path)).status_code for _ in range(ANSWERED + 2)]
+            assert (await other.get(path)).status_code == 200
+        async with httpx.AsyncClient(base_url=service.url) as stranger:
+            assert (await stranger.get(path)).status_code == 200
+    assert statuses == [200] * ANSWERED + [429] * 2
+
+
+async def opened(served: Served) -> int:
+    """What somebody is answered who opens a socket."""
+    service, people = served
+    try:
+        async with connect(service.ws, additional_headers=people.headers(Role.VIEWER)) as socket:
+            assert (await message(socket))["type"] == "snapshot"
+    except InvalidStatus as refused:
+        return refused.response.status_code
+    return 200
+
+
+async def opened_by_a_message(served: Served) -> int:
+    """What they are answered who show their token in the first message."""
+    service, people = served
+    async with connect(service.ws) as socket:
+        await socket.send(json.dumps({"type": "auth", "token": people.tokens[Role.VIEWER]}))
+        answer = await message(socket)
+        if answer["type"] == "snapshot":
+            return 200
+        assert await close_code(socket) == 1013
+    status: int = answer["status"]
+    return status
+
+
+@pytest.mark.parametrize("opening", [opened, opened_by_a_message])
+async def test_to_open_sockets_is_to_ask_too(tmp_path: Path, opening: Any) -> None:
+    async with serving_people(tmp_path, **STILL) as served:
+        statuses = [await opening(served) for _ in range(ANSWERED + 1)]
+        assert served[0].refusals.counts["requests_per_s"] == 5
+        async with as_a(served, Role.VIEWER) as viewer:
+            assert (await viewer.get("/api/runs")).status_code == 429
+    assert statuses == [200] * ANSWERED + [429]
+
+
+@pytest.mark.parametrize("path", ["/api/runs", "/ws/helper"])
+async def test_who_is_revoked_while_they_have_to_wait_is_not_let_in(
+    tmp_path: Path, path: str
+) -> None:
+    waited: list[float] = []
+
+    async def revoked_meanwhile(seconds: float) -> None:
+        served[1].revoke(Role.OPERATOR)
+        waited.append(seconds)
+
+    settings = {**STILL, "sleep": revoked_meanwhile}
+    async with serving_people(tmp_path, **settings) as served, as_a(served, Role.OPERATOR) as olga:
+        for _ in range(4):
+            assert (await olga.get("/api/runs")).status_code == 200
+        if path == "/api/runs":
+            assert (await olga.post(path, json=RUN)).status_code == 401
+        else:
+            with pytest.raises(InvalidStatus):
+                await connect(
+                    served[0].ws,
+                    additional_headers={"Authorization": olga.headers["Authorization"]},
+                )
+        assert len(waited) == 1
+        assert served[0].journal.head == 0
 
 
 # --- Sessions -------------------------------------------------------------------------------------
@@ -264,6 +350,43 @@ async def test_what_an_operator_does_names_them(served: Served) -> None:
         "run_started", "run_paused", "run_resumed", "intervention_accepted", "run_aborted",
         "document_kept", "document_kept", "document_deleted",
     ]  # fmt: skip
+
+
+async def test_what_is_done_to_access_is_in_the_journal_when_it_is_answered(
+    served: Served,
+) -> None:
+    service, people = served
+    nina = {"name": "nina", "role": "helper"}
+    async with as_a(served, Role.ADMIN) as admin:
+        assert (await admin.post("/api/access/principals", json=nina)).status_code == 201
+        (added,) = await of_type(service, ev.AccessChanged)
+        assert (added.what, added.principal) == ("added", "nina")
+        failing(service.journal).error = "disk I/O error"
+        refused = await admin.delete("/api/access/principals/nina")
+        assert refused.status_code == 503
+        assert "it is done, but the journal has yet to be told" in refused.json()["detail"]
+        # From now on it is known that nothing can be journaled.
+        otto = {"name": "otto", "role": "viewer"}
+        assert (await admin.post("/api/access/principals", json=otto)).status_code == 503
+    names = [each.name for each in read_principals(people.file).principals]
+    assert not {"nina", "otto"} & set(names)
+
+
+async def test_a_session_that_cannot_be_ended_lasts(served: Served) -> None:
+    service, people = served
+    async with httpx.AsyncClient(base_url=service.url) as client:
+        cookie = await sign_in(client, people.tokens[Role.HELPER])
+        connection = failing(service.journal)
+        connection.error = "disk I/O error"
+        refused = await client.delete("/api/session")
+        assert refused.status_code == 503
+        assert "the session lasts" in refused.json()["detail"]
+        assert await with_cookie(service, cookie) == 200
+        connection.error = None
+        assert (await client.delete("/api/session")).status_code == 204
+        (ended,) = await of_type(service, ev.SignedOut)
+        assert ended.author.principal == "henri"
+    assert await with_cookie(service, cookie) == 401
 
 
 async def test_the_audit_is_for_admins_and_tells_who_did_what_from_where(served: Served) -> None:

@@ -18,9 +18,10 @@ from service_under_test import TOKEN, ServiceUnderTest, serving, until
 from websockets.asyncio.client import connect
 from websockets.exceptions import InvalidStatus
 
-from robots.link.channel import LinkRefusedError
+from robots.link.channel import ChannelClosedError, LinkRefusedError
 from robots.link.enrolment import robot_credential
 from robots.link.messages import Hello, LinkError, Welcome, service_message
+from robots.link.websocket import websocket_channel
 from server.access.access import Access
 from server.access.roles import PEOPLE, Role
 from server.api.robot_socket import ROBOT_PATH, add_robot_route
@@ -71,6 +72,27 @@ async def said_to(url: str, robot: str, token: str | None) -> Welcome | LinkErro
         answer = service_message.validate_json(await socket.recv())
     assert isinstance(answer, Welcome | LinkError)
     return answer
+
+
+async def at_once(_: float) -> None:
+    """The clock stands still: who has to wait goes on at once."""
+
+
+async def test_a_robot_that_connects_without_end_has_to_come_again(tmp_path: Path) -> None:
+    people = People(tmp_path)
+    limits = Limits(requests_per_s=1)
+    async with serving(
+        principals=people.file, now=lambda: 0.0, sleep=at_once, limits=limits
+    ) as service:
+        registry = RobotRegistry(service.journal, time.monotonic)
+        add_robot_route(service.app, registry, service.access)
+        url, token = service.url.replace("http", "ws", 1) + ROBOT_PATH, people.tokens[Role.ROBOT]
+        # Four seconds' worth at once, and as many that wait.
+        for _ in range(8):
+            await (await websocket_channel(url, token)).close()
+        with pytest.raises(ChannelClosedError, match="faster than 'requests_per_s' allows"):
+            await websocket_channel(url, token)
+        registry.close()
 
 
 async def test_a_robot_comes_in_with_its_own_credential(robots: Robots) -> None:

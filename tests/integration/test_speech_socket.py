@@ -210,6 +210,14 @@ async def test_what_cannot_be_done_gets_an_error_and_the_connection_stays(
         assert (await exchange(socket, '{"type": "spoken", "id": 3}'))["id"] == 3
 
 
+async def test_what_is_too_long_is_counted(service: ServiceUnderTest) -> None:
+    async with microphone(service) as socket:
+        for message in ("x" * 5000, b"\0" * 17_000):
+            await exchange(socket, message)
+    counts = service.refusals.counts
+    assert (counts["helper_message_chars"], counts["sound_bytes"]) == (1, 1)
+
+
 async def test_a_prompt_that_is_not_the_open_one_is_refused(
     service: ServiceUnderTest, question: DialogueView
 ) -> None:

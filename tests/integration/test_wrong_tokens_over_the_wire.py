@@ -6,10 +6,12 @@ import hmac
 import json
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from pathlib import Path
 from typing import Any
 
 import httpx
 import pytest
+from people import serving_people
 from service_under_test import TOKEN, ServiceUnderTest, serving
 from websockets.asyncio.client import connect
 from websockets.exceptions import InvalidStatus
@@ -17,6 +19,7 @@ from websockets.exceptions import InvalidStatus
 from robots.link.channel import ChannelClosedError, LinkRefusedError
 from robots.link.enrolment import enrol
 from robots.link.websocket import websocket_channel
+from server.access.roles import Role
 from server.api.robot_socket import ROBOT_PATH, add_robot_route
 from server.client import MendClient
 from server.client_errors import UnreachableError
@@ -24,6 +27,7 @@ from server.limits import Limits
 from server.robots.registry import RobotRegistry
 
 LIMITS = Limits(wrong_tokens=2)
+ONE_CONNECTION = httpx.Limits(max_connections=1)
 RIGHT = {"Authorization": f"Bearer {TOKEN}"}
 
 
@@ -86,7 +90,20 @@ async def by_robot(service: ServiceUnderTest, token: str) -> tuple[int, str | No
     return await by_socket(service.url.replace("http", "ws", 1) + ROBOT_PATH, token)
 
 
-DOORS = [(by_rest, 401, 200), (by_sign_in, 401, 204), (by_helper, 403, 200), (by_robot, 401, 200)]
+async def by_look(service: ServiceUnderTest, token: str) -> tuple[int, str | None]:
+    """At a door that is open to everybody."""
+    headers = {"Authorization": f"Bearer {token}"}
+    response = await once(service, "/api/session", headers=headers)
+    return response.status_code, response.headers.get("retry-after")
+
+
+DOORS = [
+    (by_rest, 401, 200),
+    (by_look, 200, 200),
+    (by_sign_in, 401, 204),
+    (by_helper, 403, 200),
+    (by_robot, 401, 200),
+]
 
 
 @pytest.mark.parametrize(("door", "refused", "welcome"), DOORS)
@@ -182,6 +199,40 @@ async def test_who_is_in_stays_in(service: ServiceUnderTest) -> None:
         await make_wait(service)
         assert (await once(service, "/api/runs", headers=cookie)).status_code == 200
         assert (await program.get("/api/runs")).status_code == 200
+
+
+async def asked(client: httpx.AsyncClient, token: str) -> int:
+    headers = {"Authorization": f"Bearer {token}"}
+    return (await client.get("/api/runs", headers=headers)).status_code
+
+
+async def test_who_is_in_guesses_no_faster_than_others(
+    service: ServiceUnderTest, clock: Clock
+) -> None:
+    async with httpx.AsyncClient(base_url=service.url, limits=ONE_CONNECTION) as client:
+        assert await asked(client, TOKEN) == 200
+        guesses = [await asked(client, f"guess {number}") for number in range(5)]
+        assert guesses == [401, 401, 401, 429, 429]
+        code = {"robot": "arm-1", "code": "ABCD-EFGH"}
+        assert (await client.post("/api/robots/enrol", json=code)).status_code == 429
+        assert (await client.post("/api/session", json={"token": "guess"})).status_code == 429
+        assert await asked(client, TOKEN) == 200
+        clock.now += 1.0
+        assert [await asked(client, f"guess {number}") for number in (5, 6)] == [401, 429]
+
+
+async def test_a_connection_of_somebody_revoked_waits_like_any_other(
+    tmp_path: Path, clock: Clock
+) -> None:
+    settings = {"token": TOKEN, "limits": LIMITS, "wall_time_s": clock}
+    async with serving_people(tmp_path, **settings) as (service, people):
+        token = people.tokens[Role.VIEWER]
+        async with httpx.AsyncClient(base_url=service.url, limits=ONE_CONNECTION) as client:
+            assert await asked(client, token) == 200
+            people.revoke(Role.VIEWER)
+            guesses = [await asked(client, f"guess {number}") for number in range(4)]
+            assert guesses == [401, 401, 401, 429]
+            assert [await asked(client, each) for each in (token, TOKEN)] == [429, 429]
 
 
 async def test_a_forged_cookie_tells_nothing_about_the_token(service: ServiceUnderTest) -> None:

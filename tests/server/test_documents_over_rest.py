@@ -6,6 +6,7 @@ from collections.abc import AsyncIterator
 
 import httpx
 import pytest
+from noon import at_noon
 from service_under_test import build
 
 from server.documents import MOST_MISTAKES, DocumentKind
@@ -77,7 +78,8 @@ class IdleWorld:
 
 def library(**worlds) -> Library:
     checks = WorldChecks(worlds)
-    return build_library(SqliteJournal(":memory:"), fixed_documents(GivenFiles(), None), checks)
+    fixed = fixed_documents(GivenFiles(), None)
+    return build_library(SqliteJournal(":memory:"), fixed, checks, utc_now=at_noon)
 
 
 @contextlib.asynccontextmanager
@@ -349,7 +351,7 @@ async def test_all_that_is_uploaded_of_one_kind_has_a_limit() -> None:
     checks, fixed = WorldChecks({}), fixed_documents(GivenFiles(), None)
     journal = SqliteJournal(":memory:")
     limits = Limits(uploaded_chars=len(SCENE) + 10)
-    scenes = build_library(journal, fixed, checks, limits).scenes
+    scenes = build_library(journal, fixed, checks, limits, utc_now=at_noon).scenes
     await scenes.save("bench", SCENE)
     with pytest.raises(ConflictError, match="no room for the scene 'other'"):
         await scenes.save("other", SCENE)

@@ -1,6 +1,7 @@
 """What the service does again and again goes on, whatever one pass of it meets."""
 
 import asyncio
+import errno
 import logging
 import socket
 from collections.abc import AsyncIterator, Callable
@@ -130,3 +131,21 @@ async def test_what_keeps_one_look_at_who_may_come_in_from_being_made_keeps_no_o
     await asyncio.sleep(0)
     assert not watching.done()
     watching.cancel()
+
+
+async def test_without_descriptors_it_is_not_tried_again_and_again(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    tries = 0
+
+    async def accept(_: socket.socket) -> Any:
+        nonlocal tries
+        tries += 1
+        raise OSError(errno.EMFILE, "too many open files")
+
+    monkeypatch.setattr("server.accepting.TRY_AGAIN_S", 3600.0)
+    monkeypatch.setattr(asyncio.get_running_loop(), "sock_accept", accept)
+    async with accepting(Visitors(Limits(), Refusals(), lambda: 0.0)):
+        for _ in range(100):
+            await asyncio.sleep(0)
+    assert tries == 1

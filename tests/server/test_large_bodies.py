@@ -76,11 +76,12 @@ async def test_of_an_endless_key_the_beginning_is_told(operator: httpx.AsyncClie
 
 @pytest.mark.parametrize("count", [12_000, 500_000])
 async def test_a_body_of_too_many_values_is_refused_before_its_mistakes_are_sought(
-    operator: httpx.AsyncClient, count: int
+    service: ServiceUnderTest, operator: httpx.AsyncClient, count: int
 ) -> None:
     refused = await operator.post("/api/runs", json=unknown_keys(count))
     assert refused.status_code == 413
     assert refused.json()["detail"] == "the body has too many values: it may have 11100"
+    assert service.refusals.counts["body_values"] == 1
 
 
 async def test_punctuation_within_a_text_is_no_value(operator: httpx.AsyncClient) -> None:

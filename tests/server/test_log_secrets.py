@@ -4,9 +4,10 @@ import io
 import logging
 
 import pytest
+from uvicorn.logging import AccessFormatter
 
 from server.app import described_app
-from server.log_secrets import LONGEST_CHARS, SECRETS, HideSecrets
+from server.log_secrets import ACCESS, LONGEST_CHARS, SECRETS, HideSecrets
 from server.serving import serve_config
 from server.settings import Settings
 
@@ -49,3 +50,12 @@ def test_a_line_of_the_log_is_no_longer_than_it_has_to_be() -> None:
     asked = logging.LogRecord("", logging.INFO, "", 0, "GET /%s 404", ("a" * 60_000,), None)
     HideSecrets().filter(asked)
     assert asked.getMessage() == f"GET /{'a' * (LONGEST_CHARS - 5)}... (60009 characters)"
+
+
+def test_a_long_request_is_logged_by_its_beginning_as_uvicorn_writes_requests() -> None:
+    args = ("127.0.0.1:5", "GET", "/" + "a" * 60_000, "1.1", 404)
+    asked = logging.LogRecord(ACCESS, logging.INFO, "", 0, '%s - "%s %s HTTP/%s" %d', args, None)
+    HideSecrets().filter(asked)
+    written = AccessFormatter("%(client_addr)s %(request_line)s %(status_code)s", use_colors=False)
+    line = f"/{'a' * (LONGEST_CHARS - 1)}... (60001 characters)"
+    assert written.format(asked) == f"127.0.0.1:5 GET {line} HTTP/1.1 404 Not Found"

@@ -3,7 +3,9 @@
 import asyncio
 import os
 import signal
+import sys
 from collections.abc import AsyncIterator
+from pathlib import Path
 
 import psutil
 import pytest
@@ -89,3 +91,36 @@ async def test_its_process_ends_with_it() -> None:
     worker = psutil.Process(await off_loop.run(MUCH_CHARS, os.getpid))
     off_loop.close()
     worker.wait(60)
+
+
+HAS_A_PROCESS = """
+import asyncio, os, signal
+from server.off_loop import MUCH_CHARS, OffLoop
+
+async def work():
+    off_loop = OffLoop()
+    print(await off_loop.run(MUCH_CHARS, os.getpid), flush=True)
+    await off_loop.run(MUCH_CHARS, signal.pause)
+
+if __name__ == "__main__":
+    asyncio.run(work())
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux ends a process with its parent")
+async def test_its_process_ends_with_a_service_that_is_killed(tmp_path: Path) -> None:
+    program = tmp_path / "service.py"
+    program.write_text(HAS_A_PROCESS)
+    service = await asyncio.create_subprocess_exec(
+        sys.executable, str(program), stdout=asyncio.subprocess.PIPE
+    )
+    assert service.stdout is not None
+    async with asyncio.timeout(60):
+        worker = psutil.Process(int(await service.stdout.readline()))
+    service.kill()
+    await service.wait()
+    try:
+        await asyncio.to_thread(worker.wait, 60)
+    except psutil.TimeoutExpired:
+        worker.kill()
+        raise

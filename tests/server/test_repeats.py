@@ -1,7 +1,12 @@
 """What is remembered of requests under keys, where the journal has nothing of it."""
 
-from server.api.repeats import Repeats
-from server.journal.keyed_request import FirstAnswer, KeyedRequest
+import pytest
+from sample_events import paused
+
+from server.access.roles import Role
+from server.api.repeats import MOST_KEPT_BYTES, MOST_REMEMBERED_BYTES, Repeats
+from server.journal.journal import Entry
+from server.journal.keyed_request import FirstAnswer, KeptRequest, KeyedAuthor, KeyedRequest
 from server.journal.sqlite import SqliteJournal
 from server.limits import Limits
 from server.refusals import Refusals
@@ -54,3 +59,37 @@ async def test_a_key_that_is_used_anew_is_not_the_first_to_go() -> None:
     assert not await remembering.knows("second")
     assert remembering.refusals.counts["idempotency_keys"] == 1
     remembering.journal.close()
+
+
+async def _kept(chars: int, *, secret: bool) -> KeptRequest | None:
+    remembering = Remembering()
+    answer = FirstAnswer(201, [], b"x" * chars)
+    await remembering.repeats.keep(_request("one"), answer, secret=secret)
+    kept = await remembering.repeats.find(_request("one"))
+    remembering.journal.close()
+    return kept
+
+
+@pytest.mark.parametrize(("more", "is_kept"), [(0, True), (1, False)])
+async def test_of_a_long_answer_that_is_kept_in_memory_only_the_request_is(
+    more: int, is_kept: bool
+) -> None:
+    kept = await _kept(MOST_REMEMBERED_BYTES + more, secret=True)
+    assert kept is not None
+    assert (kept.answer is not None) is is_kept
+
+
+@pytest.mark.parametrize(("more", "is_kept"), [(0, True), (1, False)])
+async def test_of_a_long_answer_only_the_request_is_in_the_journal(
+    more: int, is_kept: bool
+) -> None:
+    journal = SqliteJournal(":memory:")
+    repeats = Repeats(journal, Limits(), Refusals(), lambda: 1000.0)
+    author = KeyedAuthor(principal="anna", role=Role.OPERATOR, request=_request("one"))
+    await journal.append(Entry(events=[paused(0.0).model_copy(update={"author": author})]))
+    answer = FirstAnswer(201, [], b"x" * (MOST_KEPT_BYTES + more))
+    await repeats.keep(_request("one"), answer, secret=False)
+    kept = await journal.find_request("anna", "one", 0.0)
+    assert kept is not None
+    assert (kept.answer is not None) is is_kept
+    journal.close()

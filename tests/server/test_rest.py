@@ -3,13 +3,16 @@
 import errno
 import os
 from collections.abc import AsyncIterator
+from pathlib import Path
 from typing import Any
 from uuid import UUID
 
 import httpx
 import pytest
+from people import People
 from service_under_test import ServiceUnderTest, build
 
+from server.access.roles import Role
 from server.journal import events as ev
 from server.journal.run_index import RunPage
 from server.runtime.requests import RunRequest
@@ -314,7 +317,9 @@ async def test_camera_picture_is_a_jpeg(client: httpx.AsyncClient) -> None:
     assert (await client.get(f"/api/runs/{run}/cameras/foot")).status_code == 404
 
 
-async def test_body_above_the_limit_is_refused(client: httpx.AsyncClient) -> None:
+async def test_body_above_the_limit_is_refused(
+    client: httpx.AsyncClient, service: ServiceUnderTest
+) -> None:
     yaml = {"content-type": "application/yaml"}
     declared = await client.post("/api/trees", content=b"then" * (3 * 1024**2), headers=yaml)
     assert declared.status_code == 413
@@ -327,13 +332,15 @@ async def test_body_above_the_limit_is_refused(client: httpx.AsyncClient) -> Non
     streamed = await client.post("/api/trees", content=endless(), headers=yaml)
     assert streamed.status_code == 413
     problem_in(streamed)
+    assert service.refusals.counts["body_bytes"] == 2
 
 
 async def test_health_scenarios_robots_and_metrics(client: httpx.AsyncClient) -> None:
     await start(client)
     assert (await client.get("/healthz")).json() == {"status": "ok"}
     ready = (await client.get("/readyz")).json()
-    assert ready == {"status": "ok", "unreadable_runs": 0, "unreadable_events": 0, "damage": []}
+    counts = {"unreadable_runs": 0, "unreadable_events": 0, "damaged": 0}
+    assert ready == {"status": "ok", **counts, "damage": []}
     scenarios = (await client.get("/api/scenarios")).json()
     assert [each["name"] for each in scenarios] == SCENARIOS.names()
     assert all(each["built_in"] and each["tree"] == "eket" for each in scenarios)
@@ -364,6 +371,22 @@ async def test_readiness_says_why_the_journal_cannot_be_written(
     assert "mend_journal_writable 0.0" in (await client.get("/metrics")).text
     service.journal.trouble.ended(probed=True)
     assert (await client.get("/readyz")).status_code == 200
+
+
+async def test_readiness_tells_strangers_and_robots_not_why(tmp_path: Path) -> None:
+    people = People(tmp_path)
+    service, why = build(principals=people.file), "/home/mend/journal.db was deleted"
+    # Without a try to write, which would end the trouble.
+    service.journal.trouble.reason = why
+    for headers in ({}, people.headers(Role.ROBOT)):
+        async with service.client(headers=headers) as client:
+            response = await client.get("/readyz")
+        assert response.status_code == 503
+        assert problem_in(response)["detail"] == "the journal cannot be read or written"
+    async with service.client(headers=people.headers(Role.VIEWER)) as client:
+        told = await client.get("/readyz")
+    service.journal.close()
+    assert (told.status_code, problem_in(told)["detail"]) == (503, why)
 
 
 async def test_an_abort_that_is_not_kept_yet_is_accepted(

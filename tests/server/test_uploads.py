@@ -5,6 +5,7 @@ from collections.abc import AsyncIterator
 
 import httpx
 import pytest
+from noon import at_noon
 from service_under_test import build
 
 from server.documents import DocumentKind
@@ -36,7 +37,9 @@ async def journal() -> AsyncIterator[SqliteJournal]:
 
 @pytest.fixture
 def library(journal: SqliteJournal) -> Library:
-    return build_library(journal, fixed_documents(GivenFiles(), None), WorldChecks({}))
+    return build_library(
+        journal, fixed_documents(GivenFiles(), None), WorldChecks({}), utc_now=at_noon
+    )
 
 
 async def kept(journal: SqliteJournal, **trees_and_scenes: dict[str, str]) -> Uploads:
@@ -112,7 +115,9 @@ async def test_who_uploads_when_too_much_waits_is_asked_to_come_back(
     journal: SqliteJournal,
 ) -> None:
     limits = Limits(waiting_chars=2 * len(BENCH))
-    library = build_library(journal, fixed_documents(GivenFiles(), None), WorldChecks({}), limits)
+    library = build_library(
+        journal, fixed_documents(GivenFiles(), None), WorldChecks({}), limits, utc_now=at_noon
+    )
     saved = await asyncio.gather(
         *(library.scenes.save(f"b{n}", BENCH) for n in range(3)), return_exceptions=True
     )

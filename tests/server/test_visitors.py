@@ -54,11 +54,17 @@ class Waiting:
 
 def test_one_address_has_only_so_many_strangers() -> None:
     house = House()
-    first, _ = house.come("10.0.0.1"), house.come("10.0.0.1")
-    assert house.why_not("10.0.0.1") == "strangers_per_address"
-    house.come("10.0.0.2")
-    first.admit()
+    other, *neighbours = [house.come(f"10.0.0.{number}") for number in (2, 1, 1)]
+    late = house.come("10.0.0.1")
+    assert [(visitor, beyond.limit) for visitor, beyond in house.ended] == [
+        (neighbours[0], "strangers_per_address")
+    ]
+    assert house.refusals.counts["strangers_per_address"] == 1
+    neighbours[0].leave()
+    late.admit()
     house.come("10.0.0.1")
+    assert len(house.ended) == 1
+    assert other in (visitor for visitor, _ in house.after(10))
 
 
 @pytest.mark.parametrize(
@@ -73,17 +79,15 @@ def test_one_address_has_only_so_many_strangers() -> None:
 )
 def test_addresses_of_one_customer_count_together(one: str, other: str, same: bool) -> None:
     house = House(Limits(strangers_per_address=1))
-    house.come(one)
-    if same:
-        assert house.why_not(other) == "strangers_per_address"
-    else:
-        house.come(other)
+    first, _ = house.come(one), house.come(other)
+    assert [visitor for visitor, _ in house.ended] == ([first] if same else [])
 
 
 def test_who_comes_through_a_trusted_proxy_is_not_counted_by_address() -> None:
     house = House(proxies=("10.0.0.1",))
     for _ in range(3):
         house.come("10.0.0.1")
+    assert house.ended == []
 
 
 def test_the_oldest_stranger_makes_room_for_the_next() -> None:

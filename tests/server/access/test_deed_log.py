@@ -1,19 +1,22 @@
 """What people do to the service is journaled, and nobody can flood the journal with sign-ins."""
 
+import asyncio
 from collections.abc import AsyncIterator
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
+from typing import cast
 from uuid import uuid4
 
 import pytest
 
+from server.access.changes import PrincipalsEditor
 from server.access.deed_log import DeedLog
 from server.access.principal import Caller, Principal
-from server.access.principals_file import KEPT_CHANGES, Change
+from server.access.principals_file import KEPT_CHANGES, Change, read_principals
 from server.access.roles import Role
 from server.access.sessions import Sessions
 from server.journal import events as ev
-from server.journal.journal import Entry, UnreadableEvent
+from server.journal.journal import Entry, Journal, UnreadableEvent
 from server.journal.sqlite import SqliteJournal
 
 ANNA = Principal("anna", Role.HELPER, "key")
@@ -181,3 +184,34 @@ async def test_a_clock_that_is_set_back_keeps_nothing_from_being_told(
     await deeds.written()
     told = await journal.read(0, 10, ev.NO_RUN)
     assert [each.times for each in told if isinstance(each, ev.SignInFailed)] == [1, 1]
+
+
+async def test_a_service_that_stops_waits_only_so_long_for_a_journal_that_takes_nothing(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    class Stuck:
+        async def append(self, *_: object, **__: object) -> None:
+            await asyncio.Event().wait()
+
+    monkeypatch.setattr("server.access.deed_log.LAST_WORDS_S", 0.01)
+    deeds = DeedLog(cast(Journal, Stuck()), Clock())
+    deeds.failed("10.0.0.1")
+    async with asyncio.timeout(60):
+        await deeds.close()
+
+
+async def test_a_change_that_a_kill_kept_from_the_journal_is_journaled_at_the_next_start_once(
+    journal: SqliteJournal, tmp_path: Path
+) -> None:
+    clock, path = Clock(), tmp_path / "principals.yaml"
+    # What the API does is in the file first, and the service is killed then.
+    PrincipalsEditor(path, "ada", Role.ADMIN, "10.0.0.1").add("bert", Role.VIEWER, clock.now)
+    for _ in range(2):
+        deeds = DeedLog(journal, clock)
+        await deeds.recover(Sessions(b"k" * 32, clock.now.timestamp))
+        deeds.take_changes(read_principals(path).changes)
+        await deeds.close()
+    (told,) = await journal.read(0, 10)
+    assert isinstance(told, ev.AccessChanged)
+    assert (told.what, told.principal) == ("added", "bert")
+    assert told.author == ev.Author(principal="ada", role=Role.ADMIN, address="10.0.0.1")

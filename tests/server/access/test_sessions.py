@@ -24,7 +24,7 @@ class Clock:
 
 def test_a_cookie_is_that_of_its_principal_for_its_time() -> None:
     clock = Clock()
-    sessions = Sessions(b"k" * 32, clock)
+    sessions = Sessions(b"k" * 32, clock, clock)
     _, cookie = sessions.new(ANNA)
     session = sessions.read(cookie)
     assert session is not None
@@ -58,7 +58,7 @@ def test_a_session_that_was_ended_is_read_no_more() -> None:
 
 def test_nobody_signs_in_without_end() -> None:
     clock = Clock()
-    sessions = Sessions(b"k" * 32, clock)
+    sessions = Sessions(b"k" * 32, clock, clock)
     for _ in range(SESSIONS_AN_HOUR):
         sessions.new(ANNA)
     with pytest.raises(TooManySessionsError, match="has signed in 600 times within an hour"):
@@ -68,9 +68,21 @@ def test_nobody_signs_in_without_end() -> None:
     sessions.new(ANNA)
 
 
+def test_a_clock_that_is_set_back_keeps_nobody_from_signing_in_for_longer() -> None:
+    wall, clock = Clock(), Clock()
+    sessions = Sessions(b"k" * 32, wall, clock)
+    for _ in range(SESSIONS_AN_HOUR):
+        sessions.new(ANNA)
+    wall.now -= 24 * 3600
+    with pytest.raises(TooManySessionsError):
+        sessions.new(ANNA)
+    clock.now += 3600
+    sessions.new(ANNA)
+
+
 def test_who_has_not_signed_in_for_an_hour_is_not_remembered() -> None:
     clock = Clock()
-    sessions = Sessions(b"k" * 32, clock)
+    sessions = Sessions(b"k" * 32, clock, clock)
     for number in range(100):
         sessions.new(Principal(f"robot {number}", Role.HELPER, f"key-{number}"))
         clock.now += 360

@@ -4,6 +4,7 @@ import asyncio
 import json
 import math
 from collections.abc import AsyncIterator
+from contextlib import suppress
 from typing import Any
 
 import pytest
@@ -12,6 +13,7 @@ from recording_sink import RecordingSink
 from robots.link.channel import ChannelClosedError, memory_channel
 from server.journal.sqlite import SqliteJournal
 from server.limits import Limits
+from server.refusals import Refusals
 from server.robots.registry import RobotRegistry
 from server.robots.times import LinkTimes
 
@@ -110,6 +112,20 @@ async def test_a_number_beyond_all_bounds_ends_the_connection_and_says_where(
     with pytest.raises(ChannelClosedError):
         await robot.hear()
     assert sink.reports == []
+
+
+async def test_numbers_beyond_all_bounds_are_counted(journal: SqliteJournal) -> None:
+    refusals = Refusals()
+    registry = RobotRegistry(journal, lambda: 0.0, TIMES, refusals=refusals)
+    for hello in ({**HELLO, "time": 1e308}, HELLO):
+        robot = RawRobot(registry)
+        await robot.say(hello)
+        await robot.say({**REPORT, "time": 1e308})
+        with suppress(ChannelClosedError):
+            while True:
+                await robot.hear()
+    registry.close()
+    assert refusals.counts["robot_numbers"] == 2
 
 
 async def test_the_run_is_told_why_such_a_robot_is_gone(

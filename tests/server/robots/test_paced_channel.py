@@ -82,7 +82,7 @@ async def all_of(channel: Channel) -> AsyncIterator[str]:
 
 async def read_all(messages: list[str], clock: Clock, held_back: list[int]) -> None:
     ours, theirs = memory_channel()
-    paced = PacedChannel(theirs, Pace(10, clock), lambda: held_back.append(1), clock.sleep)
+    paced = PacedChannel(theirs, Pace(10, clock, lambda: held_back.append(1), clock.sleep))
     for text in messages:
         await ours.send(text)
     assert [await paced.receive() for _ in messages] == messages
@@ -134,7 +134,8 @@ async def test_who_reports_without_end_is_ended_and_let_in_no_more_until_started
     journal: SqliteJournal, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("server.robots.known_robot.MOST_UNASKED_REPORTS", 5)
-    registry = RobotRegistry(journal, lambda: 0.0, TIMES)
+    refusals = Refusals()
+    registry = RobotRegistry(journal, lambda: 0.0, TIMES, refusals=refusals)
     sink = RecordingSink(journal)
     registry.assign("arm", sink)
     ours, theirs = memory_channel()
@@ -151,6 +152,7 @@ async def test_who_reports_without_end_is_ended_and_let_in_no_more_until_started
     assert isinstance(last, LinkError)
     assert last.detail == "the robot 'arm' has sent 5 reports since it was last told something"
     assert len(sink.reports) == 10
+    assert refusals.counts["unasked_reports"] == 1
     await serving
     assert await journal.received("arm", "b1") == 10
     ours, theirs = memory_channel()

@@ -41,8 +41,11 @@ from server.limits import Limits
 from server.refusals import Refusals
 from server.robots.passes import Anyone
 from server.robots.registry import RobotRegistry
+from server.robots.session import ACK_AT_LEAST_EVERY, WAITING_REPORTS
 from server.robots.times import LinkTimes
 
+A_PICTURE = b"\xff\xd8\xff a picture \xff\xd9"
+PICTURE_OF_NOTHING = '{"type": "picture", "command": "c", "camera": "head", "jpeg": "PGh0bWw+"}'
 QUICK = LinkTimes(heartbeat_s=0.001, silence_s=10.0, absence_s=0.001)
 
 
@@ -101,8 +104,15 @@ def clock() -> TickingClock:
 
 
 @pytest.fixture
-async def registry(journal: SqliteJournal, clock: TickingClock) -> AsyncIterator[RobotRegistry]:
-    registry = RobotRegistry(journal, clock, QUICK)
+def refusals() -> Refusals:
+    return Refusals()
+
+
+@pytest.fixture
+async def registry(
+    journal: SqliteJournal, clock: TickingClock, refusals: Refusals
+) -> AsyncIterator[RobotRegistry]:
+    registry = RobotRegistry(journal, clock, QUICK, refusals=refusals)
     yield registry
     registry.close()
 
@@ -229,13 +239,14 @@ async def test_commands_for_an_earlier_boot_are_dropped(registry: RobotRegistry)
 
 
 async def test_a_robot_that_takes_no_commands_is_not_sent_more_and_more(
-    registry: RobotRegistry,
+    registry: RobotRegistry, refusals: Refusals
 ) -> None:
     for n in range(1000):
         registry.send("arm", f"c{n}", Look())
     registry.send("arm", "c7", Look())
     with pytest.raises(ConflictError, match="has not taken its last 1000 commands"):
         registry.send("arm", "one more", Look())
+    assert refusals.counts["untaken_commands"] == 1
 
 
 async def test_a_robot_has_one_owner(
@@ -463,6 +474,7 @@ async def test_a_robot_that_beats_is_not_cut_off(
         ('{"type": "report", "seq": 1, "time": 1, "body": {}}', "at report"),
         ('{"type": "picture", "command": "c", "camera": "head", "jpeg": "!"}', "is not base64"),
         ('{"type": "picture", "command": "c", "camera": "head", "jpeg": "é"}', "is not base64"),
+        (PICTURE_OF_NOTHING, "is not a JPEG"),
         ("[" * 100_000, "the message was not understood"),
     ],
 )
@@ -516,9 +528,9 @@ async def test_a_picture_is_asked_for_and_comes(registry: RobotRegistry) -> None
     asked = asyncio.create_task(registry.take_picture("arm", "head"))
     command = await robot.hear()
     assert isinstance(command, Command)
-    jpeg = base64.b64encode(b"a picture").decode()
+    jpeg = base64.b64encode(A_PICTURE).decode()
     await robot.say(Picture(command=command.id, camera="head", jpeg=jpeg))
-    assert await asked == b"a picture"
+    assert await asked == A_PICTURE
 
 
 async def test_a_picture_that_does_not_come_is_a_conflict(registry: RobotRegistry) -> None:
@@ -620,7 +632,10 @@ async def test_a_robot_that_only_says_that_it_is_simulated_is_not_forgotten(
 
 
 async def test_a_robot_that_makes_up_boots_is_ended(
-    registry: RobotRegistry, journal: SqliteJournal, monkeypatch: pytest.MonkeyPatch
+    registry: RobotRegistry,
+    journal: SqliteJournal,
+    refusals: Refusals,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr("server.robots.known_robot.MOST_NEW_BOOTS", 3)
     robot = PlayedRobot(registry)
@@ -633,6 +648,7 @@ async def test_a_robot_that_makes_up_boots_is_ended(
     assert "has sent reports of 3 boots that were not known" in last.detail
     assert await journal.received("arm", "made-up-2") == 1
     assert await journal.received("arm", "made-up-3") == 0
+    assert refusals.counts["new_boots"] == 1
 
 
 async def test_a_closed_registry_ends_every_connection(registry: RobotRegistry) -> None:
@@ -700,7 +716,7 @@ async def test_a_robot_that_shows_nothing_is_never_asked_for_poses(
 async def test_who_comes_again_as_another_goes_is_not_forgotten(
     journal: SqliteJournal, turns: int
 ) -> None:
-    registry = RobotRegistry(journal, TickingClock(), QUICK, Limits(departed_robots=1))
+    registry = RobotRegistry(journal, TickingClock(), limits=Limits(departed_robots=1))
     gone, other = PlayedRobot(registry), PlayedRobot(registry)
     await gone.greet(hello("arm"))
     await gone.channel.close()
@@ -729,3 +745,47 @@ async def test_who_comes_while_the_journal_cannot_be_read_has_to_come_again(
         await robot.serving
     assert not registry.connected("arm")
     await PlayedRobot(registry).greet(hello())
+
+
+async def test_a_robot_whose_reports_wait_for_the_journal_is_not_called_silent(
+    journal: SqliteJournal, clock: TickingClock
+) -> None:
+    registry = RobotRegistry(journal, clock, replace(QUICK, silence_s=0.01))
+    sink = StuckSink(journal)
+    registry.assign("arm", sink)
+    robot = PlayedRobot(registry)
+    await robot.greet(hello())
+    many = WAITING_REPORTS + 2
+    for seq in range(1, many + 1):
+        await robot.say(report(seq))
+    async with asyncio.timeout(60):
+        await sink.stuck.wait()
+    # What it says is not read any more, for many times as long as it may say nothing.
+    clock.step_s = QUICK.heartbeat_s
+    await clock.looked_at(100)
+    assert registry.connected("arm")
+    clock.step_s = 0.0
+    sink.go_on.set()
+    while await robot.hear() != Ack(seq=many):
+        pass
+    assert sink.lost == []
+    registry.close()
+
+
+async def test_a_robot_that_reports_without_a_pause_is_acknowledged_now_and_then(
+    registry: RobotRegistry, journal: SqliteJournal
+) -> None:
+    sink = StuckSink(journal)
+    registry.assign("arm", sink)
+    robot = PlayedRobot(registry)
+    await robot.greet(hello())
+    many = 2 * ACK_AT_LEAST_EVERY + 5
+    for seq in range(1, many + 1):
+        await robot.say(report(seq))
+    await sink.stuck.wait()
+    async with asyncio.timeout(60):
+        while not robot.channel._outgoing.empty():  # noqa: ASYNC110 - a queue tells nobody
+            await asyncio.sleep(0)
+    sink.go_on.set()
+    acks = [await robot.hear() for _ in range(3)]
+    assert acks == [Ack(seq=seq) for seq in (ACK_AT_LEAST_EVERY, 2 * ACK_AT_LEAST_EVERY, many)]

@@ -122,8 +122,10 @@ async def test_no_more_are_accepted_than_may_wait(tmp_path: Path) -> None:
         run = await start(service)
         for _ in range(MOST_WAITING):
             await service.runtime.intervene(run.id, STEAL)
-        with pytest.raises(ConflictError, match="100 interventions of this run are still to be"):
+        too_many = "100 interventions of this run are still to be"
+        with pytest.raises(ConflictError, match=too_many) as refused:
             await service.runtime.intervene(run.id, STEAL)
+        assert refused.value.limit == "waiting_interventions"
         assert len(await interventions(service, run)) == MOST_WAITING
     async with service_with(journal=path, boot=2) as service:
         await service.runtime.wait_for_end(run.id)

@@ -3,12 +3,12 @@
 from typing import Any
 
 import pytest
+from broken_constraints import broken_constraints
 from pretend_service import pretend_service
 from task_documents import definition_of
+from untruths import find_untruths
 
 from server.journal import events as ev
-from server.journal.audit import audit
-from server.journal.untruths import find_untruths
 from server.runtime.context import RunSettings
 from server.runtime.views import RunStatus, RunView
 from sim.tabletop.layout import lay_out
@@ -32,7 +32,7 @@ async def run_with(
         stubborn=True,
     ) as service:
         view, events = await service.run_to_end(answers=answers)
-    assert audit(events, {node.node: node.kind for node in view.nodes}) == []
+    assert broken_constraints(events, {node.node: node.kind for node in view.nodes}) == []
     return view, events
 
 

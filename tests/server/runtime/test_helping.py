@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from answer_races import ONE_PART, race
+from pretend_robots import FIRST_JPEG, SECOND_JPEG
 from pretend_service import PretendService, pretend_service
 
 from robots.link.messages import ClipPicture, ClipTaken
@@ -88,8 +89,9 @@ async def test_nobody_fills_the_journal_with_claims(
     await service.runtime.claim(question.dialogue, "bob")
     head = service.journal.head
     for take_over in (False, True):
-        with pytest.raises(ConflictError, match="can be answered, not claimed"):
+        with pytest.raises(ConflictError, match="can be answered, not claimed") as refused:
             await service.runtime.claim(question.dialogue, "bob", take_over=take_over)
+        assert refused.value.limit == "claims"
     assert service.journal.head == head
     await service.runtime.answer(question.dialogue, prompt_in(question).prompt, "yes", "ann")
 
@@ -142,8 +144,9 @@ async def test_more_time_is_given_ten_times_and_no_more(service: PretendService)
     for _ in range(10):
         await service.runtime.extend(view.dialogue, prompt_in(view).prompt, "ann")
     head = service.journal.head
-    with pytest.raises(ConflictError, match="10 times"):
+    with pytest.raises(ConflictError, match="10 times") as refused:
         await service.runtime.extend(view.dialogue, prompt_in(view).prompt, "bob")
+    assert refused.value.limit == "extensions"
     assert service.journal.head == head
 
 
@@ -213,7 +216,7 @@ async def test_the_clip_of_a_fault_is_kept_after_the_question_and_belongs_to_it(
     assert [each.time for each in clip] == pytest.approx(
         [max(0.0, raised.time - 1.5), max(0.0, raised.time - 0.5)]
     )
-    assert pictures == [b"first", b"second"]
+    assert pictures == [FIRST_JPEG, SECOND_JPEG]
     assert recorded.pictures == clip
 
 
@@ -236,7 +239,9 @@ async def test_a_second_clip_of_one_issue_is_not_kept() -> None:
         events = await service.journal.read(0, 1000)
         raised = next(each for each in events if isinstance(each, ev.IssueRaised))
         (robot,) = service.robots.robots.values()
-        picture = ClipPicture(before_s=0.1, jpeg=base64.b64encode(b"third").decode())
+        picture = ClipPicture(
+            before_s=0.1, jpeg=base64.b64encode(b"\xff\xd8\xff third \xff\xd9").decode()
+        )
         again = ClipTaken(execution=str(raised.execution), issue="missed", pictures=[picture])
         await service.robots.report(robot, again)
         kept = await service.journal.read(0, 1000)

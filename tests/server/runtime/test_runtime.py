@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from broken_constraints import broken_constraints
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from pretend_service import NoHardware, PretendService, PretendWorlds, pretend_service
@@ -20,7 +21,6 @@ from server.errors import (
     UnreadableError,
 )
 from server.journal import events as ev
-from server.journal.audit import audit
 from server.journal.journal import Entry
 from server.journal.run_index import RunPage
 from server.runtime.presence import MAX_RESTARTS
@@ -55,7 +55,7 @@ def of_type(events: list[ev.Event], kind: type[ev.Event]) -> list[Any]:
 
 
 def check(view: RunView, events: list[ev.Event]) -> None:
-    assert audit(events, {node.node: node.kind for node in view.nodes}) == []
+    assert broken_constraints(events, {node.node: node.kind for node in view.nodes}) == []
 
 
 async def test_a_task_without_faults_is_done_in_order() -> None:

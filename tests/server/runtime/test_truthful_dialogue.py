@@ -3,13 +3,13 @@
 from typing import Any
 
 import pytest
+from broken_constraints import broken_constraints
 from pretend_service import pretend_service
 from task_documents import definition_of
 
 from server.dialogues import answers as answering
 from server.dialogues.escalation import EscalationPolicy
 from server.journal import events as ev
-from server.journal.audit import audit
 from server.runtime.views import RunStatus, RunView
 from sim.tabletop.layout import lay_out
 from tasks.resolution import Resolution
@@ -33,7 +33,7 @@ async def run_with(
     assert [each.told for each in alarms] == [
         each.told for each in of_type(events, ev.SuspectedFalseAlarm)
     ]
-    assert audit(events, {node.node: node.kind for node in view.nodes}) == []
+    assert broken_constraints(events, {node.node: node.kind for node in view.nodes}) == []
     return view, events
 
 

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from broken_constraints import broken_constraints
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from pretend_robots import PretendRobot
@@ -13,7 +14,6 @@ from task_documents import definition_of
 
 from dialogue.registry import load_scripts
 from server.journal import events as ev
-from server.journal.audit import audit
 from server.runtime.context import RunSettings
 from server.runtime.run_state import RunState
 from server.runtime.views import RunStatus, RunView
@@ -35,12 +35,12 @@ async def run_with(
     hidden: frozenset[str] = frozenset(),
     **fields: Any,
 ) -> tuple[RunView, list[ev.Event]]:
-    """A run in which parts are gone once another one has been placed; its audit finds nothing."""
+    """A run in which parts are gone once another one has been placed; its events break nothing."""
     async with pretend_service(
         definition_of(tree), scene=SCENE, settings=settings, thefts=thefts, hidden_at_place=hidden
     ) as service:
         view, events = await service.run_to_end(**fields)
-    assert audit(events, {node.node: node.kind for node in view.nodes}) == []
+    assert broken_constraints(events, {node.node: node.kind for node in view.nodes}) == []
     return view, events
 
 
@@ -151,7 +151,7 @@ async def test_a_run_does_not_end_with_a_table_that_is_not_seen() -> None:
     async with pretend_service(definition_of({"then": LEAVES[:2]}), scene=SCENE) as service:
         service.robots.make = lambda name: PretendRobot(name, blinded_by="part_2")
         view, events = await service.run_to_end(answers=["yes"])
-    assert audit(events, {node.node: node.kind for node in view.nodes}) == []
+    assert broken_constraints(events, {node.node: node.kind for node in view.nodes}) == []
     assert view.status is RunStatus.FINISHED
     assert story(events)[-3:] == ["undone 2", *in_turn(2)]
     [undone] = [each for each in events if isinstance(each, ev.NodeUndone)]
@@ -188,7 +188,7 @@ async def test_what_another_robot_builds_on_it_is_cut_short() -> None:
         view, events = await asyncio.wait_for(
             service.run_to_end(world="live", robots=["fast", "slow"]), timeout=10
         )
-    assert audit(events, {node.node: node.kind for node in view.nodes}) == []
+    assert broken_constraints(events, {node.node: node.kind for node in view.nodes}) == []
     assert view.status is RunStatus.FINISHED
     cut = [each for each in events if isinstance(each, ev.NodeReset)]
     assert [(each.robot, each.reason, each.failed_attempt) for each in cut] == [
@@ -223,7 +223,7 @@ async def test_what_was_left_out_and_comes_back_counts_as_there() -> None:
 
         service.robots.make = make
         view, events = await service.run_to_end(answers=["no", "no", "yes"], max_attempts=1)
-    assert audit(events, {node.node: node.kind for node in view.nodes}) == []
+    assert broken_constraints(events, {node.node: node.kind for node in view.nodes}) == []
     assert view.status is RunStatus.FINISHED
     assert view.result is not None
     assert (view.result.reason, view.result.missing) == ("the task is done", [])
@@ -248,14 +248,14 @@ async def test_nobody_is_asked_again_about_what_was_left_out_and_only_comes_afte
     assert left_out == ["script", "script"]
 
 
-# --- What the audit finds -----------------------------------------------------------------------
+# --- What is found in its events ----------------------------------------------------------------
 
 
 async def broken(tree: Any, thefts: dict[str, list[str]], change: Any) -> list[str]:
-    """What the audit says of a run whose events were tampered with."""
+    """What is said of a run whose events were tampered with."""
     view, events = await run_with(tree, thefts, answers=["yes"])
     tampered = [each for event in events for each in change(event)]
-    return audit(tampered, {node.node: node.kind for node in view.nodes})
+    return broken_constraints(tampered, {node.node: node.kind for node in view.nodes})
 
 
 async def test_the_audit_finds_what_was_built_on_something_gone() -> None:
@@ -360,7 +360,7 @@ def test_every_run_ends_and_finishes_only_with_everything_there(
             return view, events, set(robot.stolen)
 
     view, events, gone = asyncio.run(run())
-    assert audit(events, {node.node: node.kind for node in view.nodes}) == []
+    assert broken_constraints(events, {node.node: node.kind for node in view.nodes}) == []
     assert seen_of(folded_directly(events)) == seen_of(folded(events).tree)
     if answers == "yes":
         assert view.status is RunStatus.FINISHED

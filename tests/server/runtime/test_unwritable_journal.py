@@ -6,13 +6,13 @@ from contextlib import asynccontextmanager
 from pathlib import Path
 
 import pytest
+from broken_constraints import broken_constraints
 from full_disk import FailingConnection, Passing, SmallDisk, small_disk
 from pretend_service import PretendService, pretend_service
 from task_documents import definition_of
 
 from robots.link.messages import Interrupt, Start
 from server.journal import events as ev
-from server.journal.audit import audit
 from server.journal.journal import JournalWriteError
 from server.journal.run_index import RunPage
 from server.runtime.requests import RunRequest
@@ -78,7 +78,7 @@ async def check_end(service: PretendService, run: RunView, status: RunStatus) ->
     assert ended.status is status
     events = await service.journal.read(0, 10_000, run.id)
     assert [each.seq for each in events] == list(range(1, len(events) + 1))
-    assert audit(events, {node.node: node.kind for node in ended.nodes}) == []
+    assert broken_constraints(events, {node.node: node.kind for node in ended.nodes}) == []
     return events
 
 

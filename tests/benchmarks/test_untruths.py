@@ -7,9 +7,9 @@ import pytest
 from pretend_service import pretend_service
 from recorded_service import recorded_events
 from task_documents import definition_of
+from untruths import Rest, find_untruths
 
 from server.journal import events as ev
-from server.journal.untruths import Rest, find_untruths
 from sim.tabletop.layout import lay_out
 from tasks.intervention import Act, Intervention
 from tasks.scene import Scene

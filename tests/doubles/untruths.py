@@ -1,7 +1,7 @@
 """Untruths: what a run's last event says that its other events, or the world, contradict.
 
-Like the audit it knows nothing of the runtime's code: it works from the events alone. Where things
-really are it is told by somebody who may know, the judge of a simulated world.
+Like `broken_constraints` it knows nothing of the runtime's code: it works from the events alone.
+Where things really are it is told by somebody who may know, the judge of a simulated world.
 """
 
 import math
@@ -251,7 +251,7 @@ def leaves_of(started: ev.RunStarted) -> dict[str, BehaviorNode]:
 
 
 def kinds_of(started: ev.RunStarted) -> dict[str, str]:
-    """Every node's kind by its path, as the audit wants them."""
+    """Every node's kind by its path, as `broken_constraints` wants them."""
     definition = TaskTreeDefinition.model_validate(started.tree)
     pairs = zip(_paths(definition), definition.nodes, strict=True)
     return {path: str(each.kind) for path, each in pairs}

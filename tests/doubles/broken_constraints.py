@@ -1,4 +1,4 @@
-"""The audit: reads a run's events and says which constraint they broke, if any.
+"""Reads a run's events and says which constraint they broke, if any.
 
 It knows nothing of the task tree's code: it works from the kinds of the nodes and the paths alone,
 so that it can find fault with both the tree and the runtime.
@@ -11,12 +11,12 @@ from uuid import UUID
 from server.journal import events as ev
 
 
-def audit(events: Sequence[ev.Event], kinds: Mapping[str, str]) -> list[str]:
+def broken_constraints(events: Sequence[ev.Event], kinds: Mapping[str, str]) -> list[str]:
     """One sentence per broken constraint of one run; `kinds` has every node's kind by its path."""
-    return _Audit(kinds).read(events)
+    return _Reader(kinds).read(events)
 
 
-class _Audit:
+class _Reader:
     def __init__(self, kinds: Mapping[str, str]) -> None:
         self._kinds = kinds
         self._children: dict[str, list[str]] = {path: [] for path in kinds}

@@ -1,0 +1,41 @@
+"""The example clients, as a user runs them, against a service in a process of its own."""
+
+import asyncio
+import os
+import sys
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import pytest
+from example_robot import ROBOT
+from service_process import service_process
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+ARGUMENTS: Mapping[str, Sequence[str]] = {"demo_client.py": ("--world", "tabletop")}
+"""The demo's own world is the one that takes long."""
+
+TIME_S = 120.0
+"""Patience with a run, on a machine that is busy."""
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.mark.parametrize("client", sorted(each.name for each in EXAMPLES.glob("*.py")))
+async def test_an_example_client_sees_its_run_to_the_end(tmp_path: Path, client: str) -> None:
+    async with service_process(tmp_path) as service, asyncio.timeout(TIME_S):
+        process = await asyncio.create_subprocess_exec(
+            sys.executable, str(EXAMPLES / client), service.url, *ARGUMENTS.get(client, ()),
+            env={**os.environ, "MEND_TOKEN": ""},
+            stdout=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.PIPE,
+        )  # fmt: skip
+        told, complaints = await process.communicate()
+    assert (process.returncode, complaints) == (0, b"")
+    assert told.endswith(b"has finished\n")
+
+
+def test_the_example_robot_calls_where_a_service_listens_unless_told() -> None:
+    from server.settings import Settings
+
+    assert f"127.0.0.1:{Settings.model_fields['port'].default}/ws/robot" in ROBOT.read_text()
+    assert "8000" not in ROBOT.read_text()
