@@ -28,7 +28,7 @@ def main() -> None:
     """Print the median of each."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "principals.yaml"
-        editor = PrincipalsEditor(path, by="benchmark", keep_changes=False)
+        editor = PrincipalsEditor(path, by="benchmark")
         tokens = [
             editor.add(f"helper {number}", Role.HELPER, datetime.now(UTC))
             for number in range(PRINCIPALS)

@@ -137,7 +137,7 @@ async def chaos_place(
     clock = folder / "clock"
     clock.write_text("0")
     program = (sys.executable, str(Path(__file__).with_name("chaos_clock.py")), str(clock))
-    editor = PrincipalsEditor(folder / "principals.yaml", by="chaos", keep_changes=False)
+    editor = PrincipalsEditor(folder / "principals.yaml", by="chaos")
     credentials = {name: _enrolled(editor, name) for name in (*ROBOTS, *HOSTILE)}
     service = ServiceProcess(
         disk.folder, descriptors=DESCRIPTORS, program=program, token=TOKEN,

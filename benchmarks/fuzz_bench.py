@@ -103,7 +103,7 @@ async def bench() -> AsyncIterator[Bench]:
     root.addHandler(complaints)
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        editor = PrincipalsEditor(folder / "principals.yaml", by="root", keep_changes=False)
+        editor = PrincipalsEditor(folder / "principals.yaml", by="root")
         token = editor.add("ada", Role.ADMIN, datetime.now(UTC))
         robot_token = editor.enrol(
             ROBOT, editor.open_enrolment(ROBOT, datetime.now(UTC), 5), datetime.now(UTC)

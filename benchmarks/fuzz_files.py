@@ -222,7 +222,7 @@ def _principals(folder: Path) -> bytes:
     from server.access.roles import Role
 
     path = folder / "example.yaml"
-    editor = PrincipalsEditor(path, by="root", keep_changes=True)
+    editor = PrincipalsEditor(path, by="root")
     now = datetime(2026, 5, 4, 12, tzinfo=UTC)
     editor.add("anna", Role.HELPER, now, 90)
     editor.add("ada", Role.ADMIN, now)

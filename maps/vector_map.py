@@ -11,6 +11,10 @@ from numpy.typing import ArrayLike, NDArray
 Matrix = NDArray[np.float64]
 
 
+FARTHEST_M = 10_000.0
+"""No building is as large; farther out what is reckoned with squares would lose its accuracy."""
+
+
 class VectorMapError(Exception):
     """A vector map that makes no sense, or a file that holds none; one sentence per line."""
 
@@ -34,6 +38,12 @@ class VectorMap:
         if len(wrong):
             raise VectorMapError(
                 f"segment {wrong[0] + 1} of the vector map has a coordinate that is not finite"
+            )
+        far = np.flatnonzero((np.abs(segments) > FARTHEST_M).any(axis=1))
+        if len(far):
+            raise VectorMapError(
+                f"segment {far[0] + 1} of the vector map is more than {FARTHEST_M / 1000:g} km "
+                "from its origin: coordinates are metres; are these millimetres?"
             )
         segments.setflags(write=False)
         object.__setattr__(self, "segments", segments)

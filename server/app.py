@@ -10,7 +10,6 @@ from typing import Any
 from fastapi import FastAPI
 
 from server.access.access import Access
-from server.access.changes import PrincipalsEditor
 from server.access.deed_log import DeedLog
 from server.access.known_principals import KnownPrincipals
 from server.api import (
@@ -116,7 +115,6 @@ def create_app(
         settings,
         access,
         deeds,
-        PrincipalsEditor(settings.principals_path, by="", keep_changes=False),
         Repeats(journal, settings.limits, refusals, wall_time_s),
         speech_abilities,
         refusals,

@@ -1,9 +1,9 @@
 """What is done to the file of principals: adding, rotating, revoking, and enrolling robots."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import datetime, timedelta
 from pathlib import Path
-from uuid import uuid4
+from uuid import UUID, uuid4
 
 from server.access.principal import RESERVED
 from server.access.principals_file import (
@@ -30,16 +30,20 @@ class EnrolmentRefusedError(ServiceError):
 
 @dataclass(frozen=True, slots=True)
 class PrincipalsEditor:
-    """Changes the file at `path`, on behalf of `by`.
+    """Changes the file at `path`, on behalf of `by`, who has a `role` and comes from an `address`.
 
-    With `keep_changes` the file remembers what was done, for the service to journal; a service
-    that does it journals it itself. Everything raises `PrincipalsFileError` where the file has
-    mistakes and `OSError` where it cannot be written.
+    The file remembers what was done, for the service to journal: also when that is killed before
+    it can. A `change_id` is for one change alone; `made` has those that were made. Everything
+    raises `PrincipalsFileError` where the file has mistakes and `OSError` where it cannot be
+    written.
     """
 
     path: Path
     by: str
-    keep_changes: bool
+    role: Role = Role.ADMIN
+    address: str | None = None
+    change_id: UUID | None = None
+    made: list[Change] = field(default_factory=list)
 
     def add(self, name: str, role: Role, now: datetime, expires_days: float | None = None) -> str:
         """Add a principal and return its token.
@@ -142,9 +146,17 @@ class PrincipalsEditor:
     def _noted(
         self, principals: Principals, now: datetime, what: What, name: str, role: Role
     ) -> Principals:
-        if not self.keep_changes:
-            return principals
-        change = Change(id=uuid4(), when=now, by=self.by, what=what, name=name, role=role)
+        change = Change(
+            id=self.change_id or uuid4(),
+            when=now,
+            by=self.by,
+            by_role=self.role,
+            address=self.address,
+            what=what,
+            name=name,
+            role=role,
+        )
+        self.made.append(change)
         latest = [*principals.changes, change][-KEPT_CHANGES:]
         return principals.model_copy(update={"changes": latest})
 

@@ -2,13 +2,13 @@
 
 import asyncio
 import logging
-from collections.abc import Callable, Sequence, Set
-from contextlib import suppress
+from collections.abc import Callable, Iterator, Sequence, Set
+from contextlib import contextmanager, suppress
 from datetime import datetime, timedelta
 from uuid import UUID
 
 from server.access.principal import Caller, Principal
-from server.access.principals_file import KEPT_CHANGES, Change, What
+from server.access.principals_file import KEPT_CHANGES, Change
 from server.access.roles import Role
 from server.access.sessions import Session, Sessions
 from server.access.tally import Tally
@@ -18,6 +18,7 @@ from server.journal.journal import (
     Journal,
     JournalClosedError,
     JournalReadError,
+    JournalWriteError,
     UnreadableEvent,
 )
 
@@ -42,29 +43,57 @@ class DeedLog:
         self._failed = Tally()
         self._told: dict[tuple[str, Role] | None, datetime] = {}
         self._journaled: dict[UUID, None] = {}
+        self._ending: dict[str, asyncio.Task[list[ev.Event]]] = {}
         self._writing: set[asyncio.Task[None]] = set()
         self._unreadable: list[str] = []
 
     # --- What is done -------------------------------------------------------------------------
 
-    def access_changed(self, what: What, name: str, role: Role, author: ev.Author) -> None:
-        """Somebody was given access or lost it, through the API."""
-        self._add_later(
-            ev.AccessChanged(
-                wall_time=self._utc_now(), what=what, principal=name, role=role, author=author
-            )
-        )
+    @contextmanager
+    def changing(self, change: UUID) -> Iterator[None]:
+        """Whoever makes a change of this id journals it, and `take_changes` need not.
 
-    def signed_out(self, session: Session, caller: Caller) -> None:
-        """A session was ended."""
-        self._add_later(
-            ev.SignedOut(
+        If that fails it is taken from the file after all, should it be there.
+        """
+        self._journaled[change] = None
+        try:
+            yield
+        except BaseException:
+            self._journaled.pop(change, None)
+            raise
+
+    async def access_changed(self, change: Change, author: ev.Author) -> None:
+        """Somebody was given access or lost it, through the API; returns once it is journaled.
+
+        Raises `JournalWriteError` where it cannot be now: it is as soon as it can be.
+        """
+        event = _access_changed(change, author)
+        try:
+            await self._journal.append(Entry(events=[event]))
+        except JournalWriteError as error:
+            self._add_later(event)
+            raise JournalWriteError(
+                "it is done, but the journal has yet to be told; a token or code that was made is "
+                f"shown to nobody, so make another: {error}"
+            ) from error
+
+    async def signed_out(self, session: Session, caller: Caller, end: Callable[[], None]) -> None:
+        """Journal that a session is over, and `end` it; who comes meanwhile waits for the same.
+
+        Raises `JournalWriteError`: the session then lasts.
+        """
+        if session.id not in self._ending:
+            event = ev.SignedOut(
                 wall_time=self._utc_now(),
                 session=session.id,
                 expires=session.expires,
                 author=caller.author,
             )
-        )
+            appended = self._journal.append(Entry(events=[event]), lambda _: end())
+            task = self._ending[session.id] = asyncio.create_task(appended)
+            task.add_done_callback(lambda _: self._ending.pop(session.id))
+        # Whoever goes away takes nothing from the others.
+        await asyncio.shield(self._ending[session.id])
 
     def signed_in(self, principal: Principal, address: str | None) -> None:
         """Somebody has shown a right token to begin a session."""
@@ -137,20 +166,15 @@ class DeedLog:
         return tuple(self._unreadable)
 
     def take_changes(self, changes: Sequence[Change]) -> None:
-        """Journal what was done to the file on this machine, each change once."""
+        """Journal what was done to the file and is not in the journal, each change once.
+
+        That is what was done on this machine, and what a kill kept the service from journaling.
+        """
         for change in changes:
             if change.id not in self._journaled:
                 self._journaled[change.id] = None
-                self._add_later(
-                    ev.AccessChanged(
-                        wall_time=change.when,
-                        what=change.what,
-                        principal=change.name,
-                        role=change.role,
-                        author=ev.Author(principal=change.by, role=Role.ADMIN),
-                        change=change.id,
-                    )
-                )
+                by = ev.Author(principal=change.by, role=change.by_role, address=change.address)
+                self._add_later(_access_changed(change, by))
         if len(self._journaled) > 2 * KEPT_CHANGES:
             self._forget_old({each.id for each in changes})
 
@@ -185,3 +209,14 @@ class DeedLog:
         for task in self._writing:
             task.cancel()
         await asyncio.gather(*self._writing, return_exceptions=True)
+
+
+def _access_changed(change: Change, author: ev.Author) -> ev.AccessChanged:
+    return ev.AccessChanged(
+        wall_time=change.when,
+        what=change.what,
+        principal=change.name,
+        role=change.role,
+        author=author,
+        change=change.id,
+    )

@@ -91,11 +91,17 @@ What = Literal["added", "rotated", "revoked", "enrolment_opened", "enrolled"]
 
 
 class Change(FileModel):
-    """What was done to the file on this machine, `by` whom (a user of the operating system)."""
+    """What was done to the file, and `by` whom.
+
+    That is a user of the operating system, who counts as an admin, or through the API a principal,
+    with the role that it had and its `address`.
+    """
 
     id: UUID
     when: AwareDatetime
     by: str
+    by_role: Role = Role.ADMIN
+    address: str | None = None
     what: What
     name: RobotName
     role: Role

@@ -19,6 +19,7 @@ from server.refusals import Refusals
 
 MAX_BODY_BYTES = 8 * 1024 * 1024
 PROTECTED = ("/api/", "/metrics")
+SHOW_TOKEN = "show the token: 'Authorization: Bearer ...', or sign in"
 SAFE_METHODS = ("GET", "HEAD", "OPTIONS")
 
 
@@ -76,8 +77,7 @@ class Gate:
         if needed is None:
             return None
         if caller is None:
-            detail = "show the token: 'Authorization: Bearer ...', or sign in"
-            return _refused(401, detail, {"WWW-Authenticate": "Bearer"})
+            return _refused(401, SHOW_TOKEN, {"WWW-Authenticate": "Bearer"})
         state["caller"] = caller
         role = caller.principal.role
         return None if role.may(needed) else problem_response(forbidden(needed, role))
@@ -113,13 +113,27 @@ class Gate:
             if message["type"] == "http.disconnect" and not complete:
                 # Nobody reads this, but it ends the request without a defect in the log.
                 raise HTTPException(400, "the connection ended before the body had come")
-            complete = not message.get("more_body", False)
             received += len(message.get("body", b""))
             if received > most:
                 raise HTTPException(413, self._too_large(scope))
+            if not (complete or message.get("more_body", False)):
+                complete = True
+                await self._look_again(scope)
             return message
 
         return limited
+
+    async def _look_again(self, scope: Scope) -> None:
+        """Refuse whoever may not do it any more, once the body has come: that took its time."""
+        caller, needed = scope.get("state", {}).get("caller"), _needed(scope)
+        if caller is None or needed is None:
+            return
+        await self._access.look()
+        now = self._access.renewed(caller)
+        if now is None:
+            raise HTTPException(401, SHOW_TOKEN, {"WWW-Authenticate": "Bearer"})
+        if not now.principal.role.may(needed):
+            raise HTTPException(403, forbidden(needed, now.principal.role).detail)
 
 
 def _needed(scope: Scope) -> Role | None:

@@ -12,7 +12,6 @@ from pydantic import Field
 from starlette.requests import HTTPConnection
 
 from server.access.access import Access
-from server.access.changes import PrincipalsEditor
 from server.access.deed_log import DeedLog
 from server.access.principal import Caller
 from server.documents import DocumentLibrary
@@ -67,7 +66,6 @@ class Parts:
     settings: Settings
     access: Access
     deeds: DeedLog
-    editor: PrincipalsEditor
     repeats: "Repeats"
     speech: SpeechAbilities = NO_SPEECH
     refusals: Refusals = field(default_factory=Refusals)

@@ -3,20 +3,21 @@
 import re
 from collections.abc import Callable
 from typing import Annotated, Literal, TypeVar
+from uuid import uuid4
 
 from fastapi import APIRouter, Path, Query
 from pydantic import AwareDatetime, BaseModel, ConfigDict, Field
 from starlette.concurrency import run_in_threadpool
 
-from server.access.changes import LONGEST_DAYS
+from server.access.changes import LONGEST_DAYS, PrincipalsEditor
 from server.access.deeds import DEEDS, Deed, deed_of
 from server.access.principals_file import PrincipalName, RobotName
 from server.access.roles import Role
 from server.api.parts import After, Limit, Parts, WithCaller, WithParts
 from server.api.problems import ProblemError, documented
 from server.api.repeatable import SecretRoute
-from server.errors import NotFoundError
-from server.journal.journal import JournalReadError
+from server.journal.events import Author
+from server.journal.journal import JournalReadError, JournalWriteError
 from server.journal.subscriptions import Record
 from server.runtime.journaled_tree import read_without_tree
 
@@ -116,11 +117,10 @@ async def list_principals(parts: WithParts) -> list[PrincipalView]:
 @router.post("/principals", operation_id="add_principal", status_code=201, responses=CHANGES)
 async def add_principal(body: NewPrincipal, parts: WithParts, caller: WithCaller) -> TokenView:
     """Add a principal, and get its token: it is shown only now."""
+    role, days = Role(body.role), body.expires_days
     token = await edited(
-        parts,
-        lambda: parts.editor.add(body.name, Role(body.role), parts.utc_now(), body.expires_days),
+        parts, caller.author, lambda editor: editor.add(body.name, role, parts.utc_now(), days)
     )
-    parts.deeds.access_changed("added", body.name, Role(body.role), caller.author)
     return TokenView(name=body.name, token=token)
 
 
@@ -129,11 +129,11 @@ async def rotate_principal(
     name: Name, body: Rotation, parts: WithParts, caller: WithCaller
 ) -> TokenView:
     """Give a principal a new token; the old one and its sessions end."""
-    role = _role(parts, name)
     token = await edited(
-        parts, lambda: parts.editor.rotate(name, parts.utc_now(), body.expires_days)
+        parts,
+        caller.author,
+        lambda editor: editor.rotate(name, parts.utc_now(), body.expires_days),
     )
-    parts.deeds.access_changed("rotated", name, role, caller.author)
     return TokenView(name=name, token=token)
 
 
@@ -141,9 +141,11 @@ async def rotate_principal(
     "/principals/{name}", operation_id="revoke_principal", status_code=204, responses=CHANGES
 )
 async def revoke_principal(name: Name, parts: WithParts, caller: WithCaller) -> None:
-    """End a principal: its token, its sessions and its connections."""
-    role = await edited(parts, lambda: parts.editor.revoke(name, parts.utc_now()))
-    parts.deeds.access_changed("revoked", name, role, caller.author)
+    """End a principal: its token, its sessions and its connections.
+
+    That is also done where it cannot be journaled now, and then answered with 503.
+    """
+    await _edited(parts, caller.author, lambda editor: editor.revoke(name, parts.utc_now()))
 
 
 @router.post("/enrolments", operation_id="open_enrolment", status_code=201, responses=CHANGES)
@@ -151,9 +153,9 @@ async def open_enrolment(body: NewEnrolment, parts: WithParts, caller: WithCalle
     """Make a code with which a robot fetches its own credential, once."""
     code = await edited(
         parts,
-        lambda: parts.editor.open_enrolment(body.robot, parts.utc_now(), body.minutes),
+        caller.author,
+        lambda editor: editor.open_enrolment(body.robot, parts.utc_now(), body.minutes),
     )
-    parts.deeds.access_changed("enrolment_opened", body.robot, Role.ROBOT, caller.author)
     return CodeView(robot=body.robot, code=code)
 
 
@@ -179,22 +181,30 @@ async def list_deeds(
     return DeedsPage(deeds=deeds, seq=last, more=last < parts.journal.head)
 
 
-async def edited(parts: Parts, change: Callable[[], Done]) -> Done:
-    """Change the file beside the event loop, and know at once what is new in it."""
-    try:
-        done = await run_in_threadpool(change)
-    except OSError as error:
-        why = error.strerror or str(error)
-        raise ProblemError(503, f"the file of principals cannot be written: {why}") from error
-    await parts.access.look()
+async def edited(parts: Parts, author: Author, change: Callable[[PrincipalsEditor], Done]) -> Done:
+    """Make one change to the file, on behalf of somebody; returns once it is journaled.
+
+    Raises `JournalWriteError`: nothing is changed where it is known that it cannot be journaled.
+    """
+    if parts.journal.trouble.reason is not None:
+        raise JournalWriteError(parts.journal.trouble.reason)
+    return await _edited(parts, author, change)
+
+
+async def _edited(parts: Parts, author: Author, change: Callable[[PrincipalsEditor], Done]) -> Done:
+    """Change the file beside the event loop, know at once what is new in it, and journal it."""
+    path, change_id = parts.settings.principals_path, uuid4()
+    editor = PrincipalsEditor(path, author.principal, author.role, author.address, change_id)
+    with parts.deeds.changing(change_id):
+        try:
+            done = await run_in_threadpool(change, editor)
+        except OSError as error:
+            why = error.strerror or str(error)
+            raise ProblemError(503, f"the file of principals cannot be written: {why}") from error
+        await parts.access.look()
+    for made in editor.made:
+        await parts.deeds.access_changed(made, author)
     return done
-
-
-def _role(parts: Parts, name: str) -> Role:
-    found = next((each for each in parts.access.principals.all() if each.name == name), None)
-    if found is None:
-        raise NotFoundError(f"there is no principal '{name}'")
-    return found.role
 
 
 async def _page_of_deeds(parts: Parts, after: int) -> list[tuple[int, Deed | None]]:

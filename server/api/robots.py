@@ -53,11 +53,11 @@ async def enrol_robot(body: EnrolmentRequest, request: Request, parts: WithParts
         raise ProblemError(429, waiting.too_many, waiting.retry_after)
     try:
         token = await edited(
-            parts, lambda: parts.editor.enrol(body.robot, body.code, parts.utc_now())
+            parts,
+            Author(principal=body.robot, role=Role.ROBOT, address=address),
+            lambda editor: editor.enrol(body.robot, body.code, parts.utc_now()),
         )
     except EnrolmentRefusedError:
         parts.access.wrong(body.code, request)
         raise
-    author = Author(principal=body.robot, role=Role.ROBOT, address=address)
-    parts.deeds.access_changed("enrolled", body.robot, Role.ROBOT, author)
     return Credential(robot=body.robot, token=token)

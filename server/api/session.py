@@ -10,6 +10,7 @@ from server.access.sessions import SESSION_LIFETIME_S, TooManySessionsError
 from server.api.parts import WithCallerIfKnown, WithParts
 from server.api.problems import ProblemError, documented
 from server.api.repeatable import SecretRoute
+from server.journal.journal import JournalWriteError
 
 router = APIRouter(prefix="/api", tags=["session"], route_class=SecretRoute)
 
@@ -50,7 +51,7 @@ async def get_session(caller: WithCallerIfKnown, parts: WithParts) -> SessionVie
 
 @router.post(
     "/session", operation_id="sign_in", status_code=204,
-    responses=documented(400, 401, 403, 413, 421, 422, 429),
+    responses=documented(400, 401, 403, 413, 421, 422, 429, 503),
 )  # fmt: skip
 async def sign_in(body: SignIn, request: Request, response: Response, parts: WithParts) -> None:
     """Show a token and get a session cookie for it; a session that was there before ends."""
@@ -68,7 +69,7 @@ async def sign_in(body: SignIn, request: Request, response: Response, parts: Wit
         _, cookie = parts.access.sessions.new(principal)
     except TooManySessionsError as error:
         raise ProblemError(429, str(error), limit="sign_ins") from error
-    _end_session(request, parts)
+    await _end_session(request, parts)
     parts.deeds.signed_in(principal, address_of(request))
     response.set_cookie(
         SESSION_COOKIE,
@@ -80,19 +81,31 @@ async def sign_in(body: SignIn, request: Request, response: Response, parts: Wit
     )
 
 
-@router.delete("/session", operation_id="sign_out", status_code=204, responses=documented(403, 421))
+@router.delete(
+    "/session", operation_id="sign_out", status_code=204, responses=documented(403, 421, 503)
+)
 async def sign_out(request: Request, response: Response, parts: WithParts) -> None:
-    """End the session: its cookie opens nothing any more, wherever else it may be."""
-    _end_session(request, parts)
+    """End the session: its cookie opens nothing any more, wherever else it may be.
+
+    While the journal cannot be written that is refused (503), and the session lasts.
+    """
+    await _end_session(request, parts)
     response.delete_cookie(SESSION_COOKIE, httponly=True, samesite="strict")
 
 
-def _end_session(request: Request, parts: WithParts) -> None:
+async def _end_session(request: Request, parts: WithParts) -> None:
     session = parts.access.session(request)
     if session is None:
         return
     principal = parts.access.of_session(session)
     assert principal is not None, "a good session is somebody's"
-    parts.access.sessions.end(session.id, session.expires)
-    parts.access.let_go()
-    parts.deeds.signed_out(session, Caller(principal, address_of(request), session.id))
+    caller = Caller(principal, address_of(request), session.id)
+
+    def end() -> None:
+        parts.access.sessions.end(session.id, session.expires)
+        parts.access.let_go()
+
+    try:
+        await parts.deeds.signed_out(session, caller, end)
+    except JournalWriteError as error:
+        raise ProblemError(503, f"the session lasts, as it cannot be ended now: {error}") from error

@@ -139,7 +139,7 @@ def audit(
 
 
 def _editor(settings: Settings) -> PrincipalsEditor:
-    return PrincipalsEditor(settings.principals_path, by=local_user(), keep_changes=True)
+    return PrincipalsEditor(settings.principals_path, by=local_user())
 
 
 def _warn_without_admin(settings: Settings) -> None:

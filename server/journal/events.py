@@ -573,8 +573,8 @@ class SignedOut(ServiceEvent):
 class AccessChanged(ServiceEvent):
     """Somebody was given access, or it was taken from them.
 
-    `change` is the id that the file of principals gives it where it was changed on the service's
-    machine; `address` of the author is then None.
+    `change` is the id that the file of principals gives it. `address` of the author is None for
+    what was done on the service's machine.
     """
 
     type: Literal["access_changed"] = "access_changed"

@@ -91,6 +91,7 @@ class Runtime:
         self._poses = poses
         self._states = RunStates(journal, scripts)
         self._runs: dict[UUID, Run] = {}
+        self._writing_json = asyncio.Lock()
         self._tasks: dict[UUID, asyncio.Task[None]] = {}
         self._owners = RobotOwners(robots)
         self._closing = False
@@ -274,7 +275,9 @@ class Runtime:
 
     async def run_json(self, run: UUID) -> list[bytes]:
         """What `run` returns, in JSON, in pieces."""
-        return await self._viewing(await self._states.find(run)).json()
+        # Each passes the loop on after a piece: all at once would make others wait for all of them.
+        async with self._writing_json:
+            return await self._viewing(await self._states.find(run)).json()
 
     def _viewing(self, state: RunState) -> RunViewing:
         leaves = np.asarray(state.tree.leaves, dtype=np.int64)

@@ -25,7 +25,7 @@ class People:
 
     def __init__(self, folder: Path) -> None:
         self.file = folder / "principals.yaml"
-        self.editor = PrincipalsEditor(self.file, by="root", keep_changes=True)
+        self.editor = PrincipalsEditor(self.file, by="root")
         self.tokens = {
             role: self.editor.add(name, role, datetime.now(UTC)) for role, name in NAMES.items()
         }

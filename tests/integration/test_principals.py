@@ -10,6 +10,7 @@ from uuid import UUID
 
 import httpx
 import pytest
+from full_disk import failing
 from people import NAMES, People, serving_people
 from service_under_test import TOKEN, ServiceUnderTest, serving, until
 from shown_run import hello, run_state
@@ -17,6 +18,7 @@ from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import InvalidStatus
 
 from server.access.deeds import deeds_in
+from server.access.principals_file import read_principals
 from server.access.roles import Role
 from server.access.sessions import SESSION_LIFETIME_S
 from server.client import MendClient
@@ -350,6 +352,43 @@ async def test_what_an_operator_does_names_them(served: Served) -> None:
     ]  # fmt: skip
 
 
+async def test_what_is_done_to_access_is_in_the_journal_when_it_is_answered(
+    served: Served,
+) -> None:
+    service, people = served
+    nina = {"name": "nina", "role": "helper"}
+    async with as_a(served, Role.ADMIN) as admin:
+        assert (await admin.post("/api/access/principals", json=nina)).status_code == 201
+        (added,) = await of_type(service, ev.AccessChanged)
+        assert (added.what, added.principal) == ("added", "nina")
+        failing(service.journal).error = "disk I/O error"
+        refused = await admin.delete("/api/access/principals/nina")
+        assert refused.status_code == 503
+        assert "it is done, but the journal has yet to be told" in refused.json()["detail"]
+        # From now on it is known that nothing can be journaled.
+        otto = {"name": "otto", "role": "viewer"}
+        assert (await admin.post("/api/access/principals", json=otto)).status_code == 503
+    names = [each.name for each in read_principals(people.file).principals]
+    assert not {"nina", "otto"} & set(names)
+
+
+async def test_a_session_that_cannot_be_ended_lasts(served: Served) -> None:
+    service, people = served
+    async with httpx.AsyncClient(base_url=service.url) as client:
+        cookie = await sign_in(client, people.tokens[Role.HELPER])
+        connection = failing(service.journal)
+        connection.error = "disk I/O error"
+        refused = await client.delete("/api/session")
+        assert refused.status_code == 503
+        assert "the session lasts" in refused.json()["detail"]
+        assert await with_cookie(service, cookie) == 200
+        connection.error = None
+        assert (await client.delete("/api/session")).status_code == 204
+        (ended,) = await of_type(service, ev.SignedOut)
+        assert ended.author.principal == "henri"
+    assert await with_cookie(service, cookie) == 401
+
+
 async def test_the_audit_is_for_admins_and_tells_who_did_what_from_where(served: Served) -> None:
     service, people = served
     run = await start(served)
@@ -444,7 +483,6 @@ async def test_an_admin_adds_rotates_and_revokes_over_rest(served: Served) -> No
         reserved = {"name": "token", "role": "admin"}
         answer = await admin.post("/api/access/principals", json=reserved)
         assert answer.status_code == 422
-    await service.deeds.written()
     changes = await of_type(service, ev.AccessChanged)
     assert [(each.what, each.principal, each.author.principal) for each in changes] == [
         (what, "nina", "ada") for what in ("added", "rotated", "revoked")
@@ -462,7 +500,6 @@ async def test_the_client_manages_access_and_reads_deeds(served: Served) -> None
         await admin.revoke_principal("nina & co")
         assert await status(service, rotated.token) == 401
         assert (await admin.open_enrolment("arm-7", minutes=1)).robot == "arm-7"
-        await service.deeds.written()
         deeds = (await admin.deeds(who="ada")).deeds
     assert [each.what for each in deeds] == [
         "added 'nina & co' as a viewer",

@@ -3,6 +3,7 @@
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 from typer.testing import CliRunner
 
@@ -74,6 +75,17 @@ def test_a_log_is_no_map_and_a_map_no_log() -> None:
         _run("localize", FLOOR, "--map", FLOOR)
     with pytest.raises(CommandLineError, match="No such file"):
         _run("localize", DRIVE, "--map", EXAMPLE / "nowhere.txt")
+
+
+@pytest.mark.parametrize("method", ["enml", "cgr", "mcl"])
+@pytest.mark.parametrize("far", ["millimetres", "beyond all bounds"])
+def test_a_map_that_cannot_be_in_metres_is_refused(tmp_path: Path, far: str, method: str) -> None:
+    rows = np.loadtxt(FLOOR, delimiter=",")
+    rows = rows * 1000 if far == "millimetres" else np.where(rows == rows.max(), 1e308, rows)
+    path = tmp_path / "far.vectormap.txt"
+    np.savetxt(path, rows, delimiter=",")
+    with pytest.raises(CommandLineError, match="are these millimetres"):
+        _run("localize", DRIVE, "--map", path, "--method", method)
 
 
 def test_without_references_the_start_has_to_be_given(tmp_path: Path) -> None:

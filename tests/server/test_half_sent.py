@@ -1,10 +1,45 @@
-"""Requests whose body is still coming when the service stops."""
+"""Requests whose body is still coming when something else happens."""
 
 import asyncio
+import json
+from collections.abc import Awaitable, Callable
+from pathlib import Path
 from typing import Any
 
 import pytest
-from service_under_test import build
+from people import People
+from service_under_test import TOKEN, ServiceUnderTest, build
+
+from server.access.principals_file import read_principals
+from server.access.roles import Role
+
+Receive = Callable[[], Awaitable[Any]]
+
+
+async def answer_to(
+    service: ServiceUnderTest, path: str, receive: Receive, *headers: tuple[bytes, bytes]
+) -> tuple[int, bytes]:
+    """The status and body of the answer to a POST whose body `receive` gives."""
+    sent: list[Any] = []
+
+    async def send(message: Any) -> None:
+        sent.append(message)
+
+    scope = {
+        "type": "http",
+        "method": "POST",
+        "path": path,
+        "raw_path": path.encode(),
+        "headers": [(b"host", b"localhost"), *headers],
+        "query_string": b"",
+        "http_version": "1.1",
+        "scheme": "http",
+        "root_path": "",
+        "server": ("localhost", 80),
+        "client": ("localhost", 1),
+    }
+    await service.app(scope, receive, send)
+    return sent[0]["status"], sent[1]["body"]
 
 
 @pytest.mark.parametrize(
@@ -12,7 +47,6 @@ from service_under_test import build
 )
 async def test_a_half_sent_body_is_refused_when_the_service_stops(path: str, kind: bytes) -> None:
     service = build()
-    sent: list[Any] = []
     waiting = asyncio.Event()
     parts = [{"type": "http.request", "body": b"{", "more_body": True}]
 
@@ -22,27 +56,36 @@ async def test_a_half_sent_body_is_refused_when_the_service_stops(path: str, kin
         waiting.set()
         await asyncio.Event().wait()
 
-    async def send(message: Any) -> None:
-        sent.append(message)
-
-    headers = [(b"host", b"localhost"), (b"content-type", kind), (b"content-length", b"100")]
-    scope = {
-        "type": "http",
-        "method": "POST",
-        "path": path,
-        "raw_path": path.encode(),
-        "headers": headers,
-        "query_string": b"",
-        "http_version": "1.1",
-        "scheme": "http",
-        "root_path": "",
-        "server": ("localhost", 80),
-        "client": ("localhost", 1),
-    }
-    handling = asyncio.create_task(service.app(scope, receive, send))
+    headers = (b"content-type", kind), (b"content-length", b"100")
+    handling = asyncio.create_task(answer_to(service, path, receive, *headers))
     await asyncio.wait_for(waiting.wait(), timeout=60)
     handling.cancel()
-    await asyncio.wait_for(handling, timeout=60)
-    assert sent[0]["status"] == 503
-    assert b"shutting down" in sent[1]["body"]
+    status, body = await asyncio.wait_for(handling, timeout=60)
+    assert status == 503
+    assert b"shutting down" in body
+    service.journal.close()
+
+
+@pytest.mark.parametrize("late", [True, False])
+async def test_what_was_half_sent_before_a_revocation_is_not_done_after_it(
+    tmp_path: Path, late: bool
+) -> None:
+    people = People(tmp_path)
+    service = build(principals=people.file, token=TOKEN)
+    body = json.dumps({"name": "sleeper", "role": "admin"}).encode()
+    parts = [body[:-1], body[-1:]]
+
+    async def receive() -> Any:
+        part = parts.pop(0)
+        if late and not parts:
+            people.revoke(Role.ADMIN)
+        return {"type": "http.request", "body": part, "more_body": bool(parts)}
+
+    authorization = b"authorization", f"Bearer {people.tokens[Role.ADMIN]}".encode()
+    status, _ = await answer_to(
+        service, "/api/access/principals", receive,
+        authorization, (b"content-type", b"application/json"),
+    )  # fmt: skip
+    assert status == (401 if late else 201)
+    assert (read_principals(people.file).named("sleeper") is None) == late
     service.journal.close()

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from made_up_floor import FLOOR
 
-from maps.vector_map import VectorMap
+from maps.vector_map import VectorMap, VectorMapError
 from robots.localization.cgr.localizer import CgrLocalizer
 from robots.localization.distance_field import distance_field
 from robots.localization.evaluation import Trace, follow, summarize
@@ -140,5 +140,5 @@ def test_the_distance_field_is_the_distance() -> None:
 
 
 def test_a_map_too_large_for_a_field_says_so() -> None:
-    with pytest.raises(ValueError, match="too large for a likelihood field"):
-        MclLocalizer(VectorMap.of([[0, 0, 1e5, 1e5]]))
+    with pytest.raises(VectorMapError, match="too large for a likelihood field"):
+        MclLocalizer(VectorMap.of([[0, 0, 9e3, 9e3]]))

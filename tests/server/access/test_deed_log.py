@@ -9,9 +9,10 @@ from uuid import uuid4
 
 import pytest
 
+from server.access.changes import PrincipalsEditor
 from server.access.deed_log import DeedLog
 from server.access.principal import Caller, Principal
-from server.access.principals_file import KEPT_CHANGES, Change
+from server.access.principals_file import KEPT_CHANGES, Change, read_principals
 from server.access.roles import Role
 from server.access.sessions import Sessions
 from server.journal import events as ev
@@ -69,8 +70,7 @@ async def test_a_session_that_was_ended_stays_so_after_a_restart(journal: Sqlite
     sessions = Sessions(key, wall)
     session, cookie = sessions.new(ANNA)
     deeds = DeedLog(journal, clock)
-    deeds.signed_out(session, Caller(ANNA, "10.0.0.1", session.id))
-    await deeds.close()
+    await deeds.signed_out(session, Caller(ANNA, "10.0.0.1", session.id), lambda: None)
     again = Sessions(key, wall)
     assert again.read(cookie) is not None
     await DeedLog(journal, clock).recover(again)
@@ -136,10 +136,8 @@ async def test_what_cannot_be_read_takes_nothing_else_with_it(journal: SqliteJou
     key, wall = b"k" * 32, clock.now.timestamp
     session, cookie = Sessions(key, wall).new(ANNA)
     deeds = DeedLog(journal, clock)
-    deeds.access_changed("added", "bert", Role.VIEWER, ev.Author(principal="root", role=Role.ADMIN))
-    await deeds.written()
-    deeds.signed_out(session, Caller(ANNA, "10.0.0.1", session.id))
-    await deeds.close()
+    await deeds.access_changed(revoked(clock), ev.Author(principal="root", role=Role.ADMIN))
+    await deeds.signed_out(session, Caller(ANNA, "10.0.0.1", session.id), lambda: None)
     journal._write_connection.execute("UPDATE events SET body = '{}' WHERE seq = 1")
     again = Sessions(key, wall)
     recovered = DeedLog(journal, clock)
@@ -200,3 +198,20 @@ async def test_a_service_that_stops_waits_only_so_long_for_a_journal_that_takes_
     deeds.failed("10.0.0.1")
     async with asyncio.timeout(60):
         await deeds.close()
+
+
+async def test_a_change_that_a_kill_kept_from_the_journal_is_journaled_at_the_next_start_once(
+    journal: SqliteJournal, tmp_path: Path
+) -> None:
+    clock, path = Clock(), tmp_path / "principals.yaml"
+    # What the API does is in the file first, and the service is killed then.
+    PrincipalsEditor(path, "ada", Role.ADMIN, "10.0.0.1").add("bert", Role.VIEWER, clock.now)
+    for _ in range(2):
+        deeds = DeedLog(journal, clock)
+        await deeds.recover(Sessions(b"k" * 32, clock.now.timestamp))
+        deeds.take_changes(read_principals(path).changes)
+        await deeds.close()
+    (told,) = await journal.read(0, 10)
+    assert isinstance(told, ev.AccessChanged)
+    assert (told.what, told.principal) == ("added", "bert")
+    assert told.author == ev.Author(principal="ada", role=Role.ADMIN, address="10.0.0.1")

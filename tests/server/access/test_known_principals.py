@@ -18,7 +18,7 @@ NOW = datetime(2026, 5, 4, 12, tzinfo=UTC)
 
 @pytest.fixture
 def editor(tmp_path: Path) -> PrincipalsEditor:
-    return PrincipalsEditor(tmp_path / "principals.yaml", by="root", keep_changes=True)
+    return PrincipalsEditor(tmp_path / "principals.yaml", by="root")
 
 
 def known(editor: PrincipalsEditor, now: datetime = NOW) -> KnownPrincipals:

@@ -23,7 +23,7 @@ def path(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def editor(path: Path) -> PrincipalsEditor:
-    return PrincipalsEditor(path, by="root", keep_changes=True)
+    return PrincipalsEditor(path, by="root")
 
 
 def test_where_there_is_no_file_there_is_nobody(path: Path) -> None:
@@ -197,6 +197,6 @@ def test_an_id_that_looks_like_a_number_is_none() -> None:
 def test_a_name_that_reads_as_another_or_names_no_address_is_refused(
     name: str, tmp_path: Path
 ) -> None:
-    editor = PrincipalsEditor(tmp_path / "principals.yaml", by="root", keep_changes=False)
+    editor = PrincipalsEditor(tmp_path / "principals.yaml", by="root")
     with pytest.raises(InvalidError):
         editor.add(name, Role.VIEWER, datetime.now(UTC))

@@ -97,6 +97,24 @@ async def test_others_have_their_turn_while_a_run_is_viewed_and_written() -> Non
 
 
 @pytest.mark.usefixtures("_short_turns")
+async def test_of_many_who_want_a_large_run_one_is_served_after_the_other() -> None:
+    async with pretend_service(many_alternatives()) as service:
+        run = await service.runtime.start_run(RunRequest(tree="tree", world="tabletop"))
+        await service.runtime.wait_for_end(run.id)
+        _, alone = await turns_of_others(lambda: service.runtime.run_json(run.id))
+
+        async def the_first_of_many() -> None:
+            many = [asyncio.create_task(service.runtime.run_json(run.id)) for _ in range(20)]
+            await asyncio.wait(many, return_when=asyncio.FIRST_COMPLETED)
+            assert sum(each.done() for each in many) == 1
+            await asyncio.gather(*many)
+
+        _, turns = await turns_of_others(the_first_of_many)
+    # Together they would take as many turns as one, each of them twenty times as long.
+    assert turns >= 10 * alone
+
+
+@pytest.mark.usefixtures("_short_turns")
 async def test_others_have_their_turn_while_a_tree_is_read() -> None:
     text = many_alternatives().model_dump_json()
     nodes, turns = await turns_of_others(lambda: read_nodes(text))
