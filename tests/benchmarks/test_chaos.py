@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 from chaos import misses, report
-from chaos_ledger import NO_RUN, Ledger
+from chaos_ledger import NO_RUN, Ledger, Row, _broken_leaves
 from chaos_lives import Footprint, Lives
 from chaos_ordeal import Findings, Ordeal
 from chaos_place import chaos_place
@@ -246,3 +246,18 @@ def test_what_clients_saw_otherwise_is_noticed(
     witness = witness_of(journal)
     change(witness)
     assert any(told in each for each in other_faults(journal, witness))
+
+
+@pytest.mark.parametrize(
+    ("kinds", "told"),
+    [
+        (["node_started", "node_done", "node_undone", "node_started"], 0),
+        (["node_started", "node_reset", "node_started", "node_done"], 0),
+        (["node_started", "node_left_out", "node_undone", "node_started"], 0),
+        (["node_started", "node_started"], 1),
+        (["node_done"], 1),
+    ],
+)
+def test_a_leaf_is_started_only_while_it_is_not_active(kinds: list[str], told: int) -> None:
+    rows = [Row(seq, "r", kind, 0.0, 1, "", {"node": "/0"}) for seq, kind in enumerate(kinds)]
+    assert len(list(_broken_leaves("r", rows))) == told
