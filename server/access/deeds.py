@@ -3,14 +3,12 @@
 from collections.abc import Iterator, Sequence
 from datetime import datetime
 from pathlib import Path
-from typing import Self
 from uuid import UUID
 
 from pydantic import BaseModel, ConfigDict
 
 from server.access.roles import Role, with_article
 from server.journal import events as ev
-from server.journal.chain import Seal
 from server.journal.journal import UnreadableEvent
 from server.journal.reader import JournalReader
 
@@ -19,8 +17,6 @@ class Deed(BaseModel):
     """One deed. `who` None: nobody who is known; `seq` is its event, `run` None: of no run.
 
     `when` is None where the event cannot be read; `deed` is then `unreadable`, and `what` says why.
-    `link` is that of the chain after the transaction that committed it, in hex, None where it is in
-    none. `damaged`: what is kept of that transaction is not what was committed.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
@@ -33,13 +29,6 @@ class Deed(BaseModel):
     deed: str
     what: str
     run: UUID | None
-    link: str | None = None
-    damaged: bool = False
-
-    def sealed(self, seal: Seal | None) -> Self:
-        """The same deed, with what the chain says of it."""
-        link = None if seal is None else seal.link.hex()
-        return self.model_copy(update={"link": link, "damaged": seal is None or not seal.whole})
 
 
 DEEDS: frozenset[str] = frozenset(
@@ -65,7 +54,7 @@ def deeds_in(journal: Path) -> Iterator[Deed]:
         for event in reader.of_types(sorted(DEEDS)):
             deed = deed_of(event)
             if deed is not None:
-                yield deed.sealed(reader.seal_of(deed.seq))
+                yield deed
 
 
 def deed_of(event: ev.Event | UnreadableEvent) -> Deed | None:

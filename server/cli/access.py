@@ -12,12 +12,10 @@ import typer
 from server.access.changes import LONGEST_DAYS, PrincipalsEditor
 from server.access.principals_file import read_principals
 from server.access.roles import Role
-from server.cli.failures import NOT_FINISHED, CommandLineError, told_plainly
+from server.cli.failures import told_plainly
 from server.cli.local_user import local_user
 from server.cli.output import print_rows
 from server.settings import Settings, load_settings
-
-DAMAGED = " (damaged)"
 
 access_app = typer.Typer(
     name="access",
@@ -114,10 +112,7 @@ def audit(
     as_json: Annotated[bool, typer.Option("--json", help="One JSON object per line.")] = False,
     config: Config = None,
 ) -> None:
-    """List what people did: when, who, from where, what. The service may be running.
-
-    What is not as it was committed is marked, and the exit code is then 1.
-    """
+    """List what people did: when, who, from where, what. The service may be running."""
     # Imported only here: events bring half of the service with them.
     from server.access.deeds import Deed, deeds_in
 
@@ -126,35 +121,21 @@ def audit(
 
     with told_plainly():
         path = journal or load_settings(config).journal_path
-        damaged = 0
         if as_json:
             for each in found(path):
-                damaged += each.damaged
                 sys.stdout.write(each.model_dump_json() + "\n")
-            _tell_damage(damaged)
             return
-        deeds = list(found(path))
         rows: list[tuple[str, ...]] = [
             (
                 "" if each.when is None else f"{each.when:%Y-%m-%d %H:%M:%S}",
                 each.who or "",
                 str(each.role or ""),
                 each.address or "",
-                f"{each.what}{DAMAGED if each.damaged else ''}",
+                each.what,
             )
-            for each in deeds
+            for each in found(path)
         ]
         print_rows(rows, ("when (UTC)", "who", "role", "from", "what"))
-        _tell_damage(sum(each.damaged for each in deeds))
-
-
-def _tell_damage(deeds: int) -> None:
-    if deeds:
-        raise CommandLineError(
-            f"{deeds} of them are damaged: what is kept with them is not what was committed; "
-            "'mend journal check' says more",
-            exit_code=NOT_FINISHED,
-        )
 
 
 def _editor(settings: Settings) -> PrincipalsEditor:

@@ -53,14 +53,6 @@ class Break:
     runs: frozenset[str] = frozenset()
 
 
-@dataclass(frozen=True, slots=True)
-class Seal:
-    """What the batch of an event was committed with; `whole`: all of it is as it was then."""
-
-    link: bytes
-    whole: bool
-
-
 class Chain:
     """What the journal's writer adds to the chain; used by its thread alone."""
 
@@ -140,20 +132,6 @@ def batch_of(connection: sqlite3.Connection, seq: int) -> Batch | None:
     """The batch that an event was committed with."""
     found = next(batches(connection, seq - 1), None)
     return found if found is not None and found.first <= seq else None
-
-
-def seal_of(connection: sqlite3.Connection, seq: int) -> Seal | None:
-    """The seal of the batch that an event was committed with; None if it is in none."""
-    batch = batch_of(connection, seq)
-    if batch is None:
-        return None
-    before = connection.execute(
-        "SELECT link FROM batches WHERE last < ? ORDER BY last DESC LIMIT 1", (batch.first,)
-    ).fetchone()
-    link = FIRST_LINK if before is None else before[0]
-    linked = batch.written is None or batch.link == _linked(link, batch.written)
-    whole = digest_of(rows_of(connection, batch.first, batch.last)) == batch.expected
-    return Seal(batch.link, linked and whole)
 
 
 def rows_of(connection: sqlite3.Connection, first: int, last: int) -> list[Row]:

@@ -7,7 +7,6 @@ from types import TracebackType
 from typing import Any, Self
 from uuid import UUID
 
-from server.journal.chain import Seal, seal_of
 from server.journal.events import Event
 from server.journal.journal import JournalReadError, UnreadableEvent
 from server.journal.migrations import MIGRATIONS, JournalSchemaError
@@ -84,13 +83,6 @@ class JournalReader:
             tuple(types),
         )
         return (event_of(seq, run, body, version) for seq, run, body, version in rows)
-
-    def seal_of(self, seq: int) -> Seal | None:
-        """What the chain says of an event. Raises `JournalReadError`."""
-        try:
-            return seal_of(self._connection, seq)
-        except SQLITE_ERRORS as error:
-            raise JournalReadError(f"'{self._path}' could not be read: {error}") from error
 
     def pictures(self, pictures: Iterable[UUID]) -> dict[UUID, bytes]:
         """Those of the pictures (JPEG) that the journal has."""

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 from uuid import UUID
 
-from server.journal.chain import Break, Row, Seal, is_whole, seal_of
+from server.journal.chain import Break, Row, is_whole
 from server.journal.events import Event
 from server.journal.journal import (
     Document,
@@ -351,9 +351,6 @@ class SqliteJournal:
 
     async def is_whole(self, run: UUID) -> bool:
         return await self._pages.query(partial(is_whole, run=str(run)))
-
-    async def seals_of(self, seqs: Sequence[int]) -> list[Seal | None]:
-        return await self._pages.query(lambda connection: [seal_of(connection, n) for n in seqs])
 
     async def pruned_through(self) -> int:
         return await self._look_ups.query(pruned_through)

@@ -2,10 +2,8 @@
 
 import json
 import os
-import sqlite3
 import sys
 from collections.abc import Callable
-from contextlib import closing
 from datetime import UTC, datetime
 from pathlib import Path
 from uuid import uuid4
@@ -17,7 +15,6 @@ from server.access.roles import Role
 from server.cli import main
 from server.cli.output import print_rows
 from server.journal import events as ev
-from server.journal.chain import chain_anew
 from server.journal.journal import Entry
 from server.journal.sqlite import SqliteJournal
 
@@ -135,54 +132,6 @@ async def test_audit_lists_deeds_and_exports_them_as_json_lines(mend: Mend, data
         ("run_paused", str(run)),
     ]
     journal.close()
-
-
-async def test_audit_marks_what_is_not_as_it_was_committed(mend: Mend, data_dir: Path) -> None:
-    olga = ev.Author(principal="olga", role=Role.OPERATOR, address="10.0.0.7")
-    now = datetime(2026, 5, 4, 12, tzinfo=UTC)
-    journal = SqliteJournal(data_dir / "journal.db")
-    for name in ("one", "two", "three"):
-        deed = ev.DocumentDeleted(wall_time=now, kind="tree", name=name, author=olga)
-        await journal.append(Entry(events=[deed]))
-    journal.close()
-    _, before, _ = mend("audit", "--json")
-    links = [json.loads(line)["link"] for line in before.splitlines()]
-    assert len(set(links)) == 3
-    with closing(sqlite3.connect(data_dir / "journal.db")) as connection, connection:
-        forge = "UPDATE events SET body = replace(body, 'olga', 'otto') WHERE seq = 2"
-        connection.execute(forge)
-    code, listed, err = mend("audit")
-    assert code == 1
-    assert "1 of them are damaged" in err
-    marked = ["(damaged)" in line for line in listed.splitlines()]
-    assert marked == [False, True, False]
-    code, exported, _ = mend("audit", "--json")
-    assert code == 1
-    lines = [json.loads(line) for line in exported.splitlines()]
-    assert [each["damaged"] for each in lines] == [False, True, False]
-    assert [each["link"] for each in lines] == links, "an earlier export has the same"
-
-
-@pytest.mark.parametrize("make_chain_anew", [False, True])
-async def test_an_export_is_told_from_a_history_that_was_made_anew(
-    mend: Mend, data_dir: Path, make_chain_anew: bool
-) -> None:
-    now = datetime(2026, 5, 4, 12, tzinfo=UTC)
-    journal = SqliteJournal(data_dir / "journal.db")
-    for times in (1, 2):
-        failed = ev.SignInFailed(wall_time=now, times=times, addresses=[])
-        await journal.append(Entry(events=[failed]))
-    journal.close()
-    _, before, _ = mend("audit", "--json")
-    with closing(sqlite3.connect(data_dir / "journal.db")) as connection, connection:
-        if make_chain_anew:
-            connection.execute("UPDATE events SET body = replace(body, '12:00', '13:00')")
-            connection.execute("DELETE FROM batches")
-            chain_anew(connection)
-    code, after, _ = mend("audit", "--json")
-    assert code == 0
-    links = [[json.loads(line)["link"] for line in each.splitlines()] for each in (before, after)]
-    assert (links[0] == links[1]) != make_chain_anew
 
 
 def test_a_table_shows_what_is_not_printed_spelt_out(capsys: pytest.CaptureFixture[str]) -> None:
