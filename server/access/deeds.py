@@ -1,6 +1,7 @@
 """Deeds: what people did, when and from where, as the audit lists it."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
+from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 from uuid import UUID
@@ -9,6 +10,7 @@ from pydantic import BaseModel, ConfigDict
 
 from server.access.roles import Role, with_article
 from server.journal import events as ev
+from server.journal.chain import Seal
 from server.journal.journal import UnreadableEvent
 from server.journal.reader import JournalReader
 
@@ -17,6 +19,8 @@ class Deed(BaseModel):
     """One deed. `who` None: nobody who is known; `seq` is its event, `run` None: of no run.
 
     `when` is None where the event cannot be read; `deed` is then `unreadable`, and `what` says why.
+    `digest` and `link` are what the journal's chain has of its batch, in hex, as they were
+    written. `damaged` says why it may not be what was committed; None where the chain holds.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
@@ -29,6 +33,29 @@ class Deed(BaseModel):
     deed: str
     what: str
     run: UUID | None
+    digest: str | None = None
+    link: str | None = None
+    damaged: str | None = None
+
+    def sealed(self, seal: Seal | None) -> "Deed":
+        """With what the chain says of its event; as it is where there is no chain."""
+        if seal is None:
+            return self
+        return self.model_copy(
+            update={"digest": _hex(seal.digest), "link": _hex(seal.link), "damaged": seal.wrong}
+        )
+
+
+def _hex(digest: bytes | None) -> str | None:
+    return None if digest is None else digest.hex()
+
+
+@dataclass(frozen=True, slots=True)
+class Audit:
+    """Every deed in a journal, in order, and a sentence for each place where it is damaged."""
+
+    deeds: Sequence[Deed]
+    damage: Sequence[str]
 
 
 DEEDS: frozenset[str] = frozenset(
@@ -45,16 +72,19 @@ UNREADABLE = "unreadable"
 """In the place of a type: the event cannot be read."""
 
 
-def deeds_in(journal: Path) -> Iterator[Deed]:
-    """Every deed in a journal's file, in order; it may be in use.
+def audit_of(journal: Path) -> Audit:
+    """The audit of a journal's file, which may be in use, with a look at its whole chain.
 
     Raises `FileNotFoundError`, `JournalSchemaError` and `JournalReadError`.
     """
-    with JournalReader(journal) as reader:
-        for event in reader.of_types(sorted(DEEDS)):
-            deed = deed_of(event)
-            if deed is not None:
-                yield deed
+    with JournalReader(journal) as reader, reader.at_one_moment():
+        seals = reader.seals()
+        deeds = [
+            deed.sealed(None if seals is None else seals.of(deed.seq))
+            for deed in map(deed_of, reader.of_types(sorted(DEEDS)))
+            if deed is not None
+        ]
+        return Audit(deeds, reader.damage())
 
 
 def deed_of(event: ev.Event | UnreadableEvent) -> Deed | None:

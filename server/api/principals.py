@@ -166,7 +166,10 @@ async def list_deeds(
     limit: Limit = 100,
     who: Annotated[str | None, Query(max_length=128, description="Only this one's.")] = None,
 ) -> DeedsPage:
-    """Who did what, when, and from where; go on with `seq` as `after` while there is `more`."""
+    """Who did what, when, and from where; go on with `seq` as `after` while there is `more`.
+
+    A deed that may not be what was committed says so in `damaged`.
+    """
     deeds: list[Deed] = []
     last = after
     while last - after < MOST_SCANNED:
@@ -175,10 +178,10 @@ async def list_deeds(
             if deed is not None and who in (None, deed.who):
                 deeds.append(deed)
             if len(deeds) == limit:
-                return DeedsPage(deeds=deeds, seq=last, more=last < parts.journal.head)
+                return await _deeds_page(parts, deeds, last)
         if not page:
             break
-    return DeedsPage(deeds=deeds, seq=last, more=last < parts.journal.head)
+    return await _deeds_page(parts, deeds, last)
 
 
 async def edited(parts: Parts, author: Author, change: Callable[[PrincipalsEditor], Done]) -> Done:
@@ -205,6 +208,15 @@ async def _edited(parts: Parts, author: Author, change: Callable[[PrincipalsEdit
     for made in editor.made:
         await parts.deeds.access_changed(made, author)
     return done
+
+
+async def _deeds_page(parts: Parts, deeds: list[Deed], last: int) -> DeedsPage:
+    """The deeds as the journal's chain has them; it is looked at where they are alone."""
+    more = last < parts.journal.head
+    seals = await parts.journal.seals([each.seq for each in deeds])
+    return DeedsPage(
+        deeds=[each.sealed(seals.get(each.seq)) for each in deeds], seq=last, more=more
+    )
 
 
 async def _page_of_deeds(parts: Parts, after: int) -> list[tuple[int, Deed | None]]:

@@ -1,7 +1,7 @@
 """`mend access`: who may do what, and who did what."""
 
 import sys
-from collections.abc import Iterator
+from collections.abc import Sequence
 from datetime import UTC, datetime
 from enum import StrEnum
 from pathlib import Path
@@ -12,10 +12,12 @@ import typer
 from server.access.changes import LONGEST_DAYS, PrincipalsEditor
 from server.access.principals_file import read_principals
 from server.access.roles import Role
-from server.cli.failures import told_plainly
+from server.cli.failures import NOT_FINISHED, CommandLineError, told_plainly
 from server.cli.local_user import local_user
 from server.cli.output import print_rows
 from server.settings import Settings, load_settings
+
+MOST_DAMAGE_TOLD = 20
 
 access_app = typer.Typer(
     name="access",
@@ -112,30 +114,47 @@ def audit(
     as_json: Annotated[bool, typer.Option("--json", help="One JSON object per line.")] = False,
     config: Config = None,
 ) -> None:
-    """List what people did: when, who, from where, what. The service may be running."""
-    # Imported only here: events bring half of the service with them.
-    from server.access.deeds import Deed, deeds_in
+    """List what people did: when, who, from where, what. The service may be running.
 
-    def found(path: Path) -> Iterator[Deed]:
-        return (each for each in deeds_in(path) if who in (None, each.who))
+    Where the journal is not what was committed the deeds concerned are marked as DAMAGED, and the
+    exit code is 1.
+    """
+    # Imported only here: events bring half of the service with them.
+    from server.access.deeds import audit_of
 
     with told_plainly():
-        path = journal or load_settings(config).journal_path
-        if as_json:
-            for each in found(path):
-                sys.stdout.write(each.model_dump_json() + "\n")
-            return
+        audit = audit_of(journal or load_settings(config).journal_path)
+    found = [each for each in audit.deeds if who in (None, each.who)]
+    if as_json:
+        for each in found:
+            sys.stdout.write(each.model_dump_json() + "\n")
+    else:
         rows: list[tuple[str, ...]] = [
             (
                 "" if each.when is None else f"{each.when:%Y-%m-%d %H:%M:%S}",
                 each.who or "",
                 str(each.role or ""),
                 each.address or "",
-                each.what,
+                each.what if each.damaged is None else f"DAMAGED: {each.what}",
             )
-            for each in found(path)
+            for each in found
         ]
         print_rows(rows, ("when (UTC)", "who", "role", "from", "what"))
+    sys.stdout.flush()
+    if audit.damage:
+        marked = sum(each.damaged is not None for each in found)
+        raise CommandLineError(_damaged(audit.damage, marked), NOT_FINISHED)
+
+
+def _damaged(damage: Sequence[str], marked: int) -> str:
+    told = list(damage[:MOST_DAMAGE_TOLD])
+    if len(damage) > len(told):
+        told.append(f"and {len(damage) - len(told)} more places: 'mend journal check' tells all")
+    first = (
+        "the journal is not what was committed: deeds may be missing, and of those that are listed "
+        f"{marked} may not be true ('damaged')"
+    )
+    return "\n".join([first, *told])
 
 
 def _editor(settings: Settings) -> PrincipalsEditor:

@@ -8,9 +8,11 @@ touching a link: the digest of what is left is kept beside the one that was writ
 import hashlib
 import sqlite3
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 from server.journal.events import NO_RUN
+from server.journal.sqlite_errors import SQLITE_ERRORS
 
 DIGEST_BYTES = 16
 FIRST_LINK = bytes(DIGEST_BYTES)
@@ -51,6 +53,18 @@ class Break:
     last: int
     sentence: str
     runs: frozenset[str] = frozenset()
+
+
+@dataclass(frozen=True, slots=True)
+class Seal:
+    """What the chain says of an event: the digest and the link of its batch, as they were written.
+
+    `wrong`: why the event may not be what was committed; None where they hold.
+    """
+
+    digest: bytes | None
+    link: bytes | None
+    wrong: str | None
 
 
 class Chain:
@@ -157,6 +171,60 @@ def is_whole(connection: sqlite3.Connection, run: str) -> bool:
     return True
 
 
+class Seals:
+    """Looks at the batches of events that are asked for, which is quick where they are in order.
+
+    Of other batches only the links beside them are read.
+    """
+
+    def __init__(self, connection: sqlite3.Connection) -> None:
+        self._connection = connection
+        self._batch: Batch | None = None
+        self._seal = Seal(None, None, None)
+
+    def of(self, seq: int) -> Seal:
+        """What the chain says of an event that is in the journal."""
+        if self._batch is None or not self._batch.first <= seq <= self._batch.last:
+            self._batch = None
+            try:
+                self._seal = self._look(seq)
+            except (*SQLITE_ERRORS, ValueError, TypeError) as error:
+                return Seal(None, None, f"the batch of event {seq} cannot be read: {error}")
+        return self._seal
+
+    def _look(self, seq: int) -> Seal:
+        batch = batch_of(self._connection, seq)
+        if batch is None:
+            return Seal(None, None, f"event {seq} belongs to no batch")
+        broken = next(_breaks_of(self._connection, batch, self._link_before(batch)), None)
+        after = next(batches(self._connection, batch.last), None)
+        wrong = None
+        if broken is not None:
+            wrong = broken.sentence
+        elif after is not None and not _follows(after, batch.link):
+            # Where digest and link were made anew for one batch alone the next one tells it.
+            wrong = f"the chain is broken after event {batch.last}: a batch was removed or changed"
+        self._batch = batch
+        return Seal(batch.written, batch.link, wrong)
+
+    def _link_before(self, batch: Batch) -> bytes:
+        row = self._connection.execute(
+            "SELECT link FROM batches WHERE last < ? ORDER BY last DESC LIMIT 1", (batch.first,)
+        ).fetchone()
+        return FIRST_LINK if row is None else row[0]
+
+
+@contextmanager
+def at_one_moment(connection: sqlite3.Connection) -> Iterator[None]:
+    """Read everything as it was when the first of it was read, whatever others write."""
+    connection.execute("BEGIN")
+    try:
+        yield
+    finally:
+        if connection.in_transaction:
+            connection.execute("ROLLBACK")
+
+
 def breaks(connection: sqlite3.Connection, last_batches: int | None = None) -> Iterator[Break]:
     """Where the chain does not hold, in its whole length or in so many of its last batches."""
     before: Batch | None = None
@@ -167,17 +235,25 @@ def breaks(connection: sqlite3.Connection, last_batches: int | None = None) -> I
     for batch in batches(connection, after):
         link = FIRST_LINK if before is None else before.link
         yield from _breaks_between(connection, 0 if before is None else before.last, batch.first)
-        if batch.written is not None and batch.link != _linked(link, batch.written):
-            yield Break(
-                batch.first, batch.last,
-                f"the chain is broken before event {batch.first}: a batch was removed or changed",
-            )  # fmt: skip
-        rows = rows_of(connection, batch.first, batch.last)
-        if digest_of(rows) != batch.expected:
-            runs = _runs_of(rows)
-            yield Break(batch.first, batch.last, _changed(batch), runs)
+        yield from _breaks_of(connection, batch, link)
         before = batch
     yield from _after_the_end(connection, 0 if before is None else before.last)
+
+
+def _breaks_of(connection: sqlite3.Connection, batch: Batch, before: bytes) -> Iterator[Break]:
+    """Where a batch does not hold: its link after that of the one `before`, and its digest."""
+    if not _follows(batch, before):
+        yield Break(
+            batch.first, batch.last,
+            f"the chain is broken before event {batch.first}: a batch was removed or changed",
+        )  # fmt: skip
+    rows = rows_of(connection, batch.first, batch.last)
+    if digest_of(rows) != batch.expected:
+        yield Break(batch.first, batch.last, _changed(batch), _runs_of(rows))
+
+
+def _follows(batch: Batch, before: bytes) -> bool:
+    return batch.written is None or batch.link == _linked(before, batch.written)
 
 
 def _before_the_last(connection: sqlite3.Connection, count: int) -> Batch | None:

@@ -11,14 +11,11 @@ from server.errors import ServiceError
 from server.journal import events as ev
 from server.journal.chain import SELECT_ROWS, Row, breaks
 from server.journal.journal import JournalReadError
-from server.journal.migrations import MIGRATIONS
+from server.journal.migrations import MIGRATIONS, WITH_CHAIN
 from server.journal.run_index import ENDINGS, UNREADABLE
 from server.journal.stored_event import read_event
 
 MOST_PAGE_FINDINGS = 20
-WITH_CHAIN = 3
-"""The first schema version that has an index and a chain."""
-
 FoldRun = Callable[[UUID, Iterable[ev.Event]], None]
 """Folds all events of a run. Raises a `ServiceError` where that cannot be done."""
 

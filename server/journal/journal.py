@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from typing import Any, Protocol
 from uuid import UUID
 
-from server.journal.chain import Break
+from server.journal.chain import Break, Seal
 from server.journal.events import Event
 from server.journal.keyed_request import FirstAnswer, KeptRequest, KeyedRequest
 from server.journal.run_index import RunIndex
@@ -148,6 +148,10 @@ class Journal(Protocol):
 
     async def is_whole(self, run: UUID) -> bool:
         """Whether what a run's events were committed with is still as it was written."""
+        ...
+
+    async def seals(self, seqs: Sequence[int]) -> dict[int, Seal]:
+        """What the chain says of events that are in the journal, and whether it holds there."""
         ...
 
     async def pruned_through(self) -> int:

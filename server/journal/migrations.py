@@ -115,6 +115,9 @@ class Migration:
     then: Callable[[sqlite3.Connection], None] | None = None
 
 
+WITH_CHAIN = 3
+"""The first schema version that has an index and a chain."""
+
 MIGRATIONS = (
     Migration(VERSION_1),
     Migration(VERSION_2),

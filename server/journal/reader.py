@@ -2,14 +2,16 @@
 
 import sqlite3
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 from uuid import UUID
 
+from server.journal.chain import Seals, at_one_moment, breaks
 from server.journal.events import Event
 from server.journal.journal import JournalReadError, UnreadableEvent
-from server.journal.migrations import MIGRATIONS, JournalSchemaError
+from server.journal.migrations import MIGRATIONS, WITH_CHAIN, JournalSchemaError
 from server.journal.readable import event_of
 from server.journal.sqlite_errors import SQLITE_ERRORS
 from server.journal.stored_event import read_event
@@ -39,6 +41,7 @@ class JournalReader:
             version = int(row[0] or 0)
         except (*SQLITE_ERRORS, ValueError, TypeError) as error:
             raise JournalSchemaError(f"'{path}' is not a journal ({error})") from error
+        self._version = version
         if version > len(MIGRATIONS):
             raise JournalSchemaError(
                 f"'{path}' has schema version {version}, this Mend knows up to {len(MIGRATIONS)}: "
@@ -83,6 +86,27 @@ class JournalReader:
             tuple(types),
         )
         return (event_of(seq, run, body, version) for seq, run, body, version in rows)
+
+    @contextmanager
+    def at_one_moment(self) -> Iterator[None]:
+        """All that is read meanwhile is as it was when the first of it was read."""
+        with at_one_moment(self._connection):
+            yield
+
+    def seals(self) -> Seals | None:
+        """What the chain says of events; None for a journal of an older Mend, without a chain."""
+        return Seals(self._connection) if self._version >= WITH_CHAIN else None
+
+    def damage(self) -> list[str]:
+        """A sentence for each place where the chain does not hold, in its whole length."""
+        if self._version < WITH_CHAIN:
+            return []
+        found: list[str] = []
+        try:
+            found += (each.sentence for each in breaks(self._connection))
+        except (*SQLITE_ERRORS, ValueError, TypeError) as error:
+            found.append(f"a part of the journal cannot be read at all: {error}")
+        return found
 
     def pictures(self, pictures: Iterable[UUID]) -> dict[UUID, bytes]:
         """Those of the pictures (JPEG) that the journal has."""

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 from uuid import UUID
 
-from server.journal.chain import Break, Row, is_whole
+from server.journal.chain import Break, Row, Seal, Seals, at_one_moment, is_whole
 from server.journal.events import Event
 from server.journal.journal import (
     Document,
@@ -59,6 +59,9 @@ PROVEN_S = 5.0
 PROBE = "probe"
 PROBE_BYTES = 64 * 1024
 """Room for so much is room for most of what waits to be written."""
+
+SEALS_AT_ONCE = 50
+"""Of so many events the batches are looked at in one go."""
 
 EMPTY_TREE = '"tree":{}'
 """How an event's JSON has a tree that was left empty, before any other object."""
@@ -352,6 +355,15 @@ class SqliteJournal:
     async def is_whole(self, run: UUID) -> bool:
         return await self._pages.query(partial(is_whole, run=str(run)))
 
+    async def seals(self, seqs: Sequence[int]) -> dict[int, Seal]:
+        found: dict[int, Seal] = {}
+        # In parts, as others wait for their pages meanwhile.
+        for begin in range(0, len(seqs), SEALS_AT_ONCE):
+            found |= await self._pages.query(
+                partial(_seals, seqs=seqs[begin : begin + SEALS_AT_ONCE])
+            )
+        return found
+
     async def pruned_through(self) -> int:
         return await self._look_ups.query(pruned_through)
 
@@ -392,6 +404,13 @@ def _fold(committed: _Committed, waiting: "asyncio.Future[Any]") -> None:
             log.exception("events that nobody waits for any more could not be folded")
         else:
             waiting.set_exception(error)
+
+
+def _seals(connection: sqlite3.Connection, seqs: Sequence[int]) -> dict[int, Seal]:
+    # What is pruned between two looks would seem to be missing.
+    with at_one_moment(connection):
+        seals = Seals(connection)
+        return {seq: seals.of(seq) for seq in seqs}
 
 
 def _write_document(document: Document, connection: sqlite3.Connection) -> None:

@@ -17,7 +17,7 @@ from shown_run import hello, run_state
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import InvalidStatus
 
-from server.access.deeds import deeds_in
+from server.access.deeds import audit_of
 from server.access.principals_file import read_principals
 from server.access.roles import Role
 from server.access.sessions import SESSION_LIFETIME_S
@@ -517,7 +517,7 @@ async def test_the_audit_of_a_journal_that_is_in_use_is_read_from_its_file(tmp_p
             async for record in subscription:
                 if record.seq == len(NAMES):
                     break
-        deeds = list(deeds_in(settings.journal_path))
+        deeds = audit_of(settings.journal_path).deeds
     assert [(each.who, each.what) for each in deeds] == [
         ("root", f"added '{name}' as {'an' if name in ('olga', 'ada') else 'a'} {role}")
         for role, name in NAMES.items()
