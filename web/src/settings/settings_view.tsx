@@ -1,4 +1,5 @@
 // What a helper can set on this device.
+import { useState } from "preact/hooks";
 import { principal } from "../state/access";
 import { helperName, soundOn, type Theme, theme } from "../state/preferences";
 import { call, signOut, tokenRequired } from "../state/service";
@@ -70,13 +71,29 @@ export function SettingsView() {
           ))}
         </div>
       </fieldset>
-      {tokenRequired.value && (
-        <p>
-          <button class="button" type="button" onClick={() => void signOut()}>
-            Sign out
-          </button>
+      {tokenRequired.value && <SignOut />}
+    </section>
+  );
+}
+
+function SignOut() {
+  const [mistake, setMistake] = useState<string | null>(null);
+  const leave = () => {
+    setMistake(null);
+    signOut().catch((error: Error) => setMistake(error.message));
+  };
+  return (
+    <>
+      <p>
+        <button class="button" type="button" onClick={leave}>
+          Sign out
+        </button>
+      </p>
+      {mistake !== null && (
+        <p class="mistake" role="alert">
+          {mistake}
         </p>
       )}
-    </section>
+    </>
   );
 }

@@ -67,11 +67,15 @@ export async function signIn(token: string): Promise<void> {
   await begin();
 }
 
+/** Rejects, and stays signed in, where the service cannot end the session now. */
 export async function signOut(): Promise<void> {
   socket?.close();
   socket = null;
-  await rest.signOut();
-  await begin();
+  try {
+    await rest.signOut();
+  } finally {
+    await begin();
+  }
 }
 
 /** Be called `name` from now on. */
