@@ -113,7 +113,7 @@ async def test_an_unreadable_event_of_no_run_is_told_and_hides_no_other(folder: 
         assert (ready["status"], ready["unreadable_events"]) == ("degraded", 1)
         assert "mend_unreadable_events 1.0" in (await client.get("/metrics")).text
     outcome = CliRunner().invoke(app, ["access", "audit", "--journal", str(folder / "journal.db")])
-    assert outcome.exit_code == 0
+    assert outcome.exit_code == 1
     assert f"event {second} cannot be read" in " ".join(outcome.output.split())
 
 
