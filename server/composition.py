@@ -169,6 +169,7 @@ async def _open(
         monotonic=time.monotonic,
         utc_now=lambda: datetime.now(UTC),
         poses=poses,
+        refusals=refusals,
     )
     speech = _speech(settings)
     app = create_app(

@@ -48,6 +48,7 @@ FixedLimitName = Literal[
     "robot_numbers",
     "unasked_reports",
     "new_boots",
+    "fruitless_commands",
     "untaken_commands",
     "waiting_interventions",
     "claims",

@@ -10,6 +10,7 @@ from uuid import UUID
 from server.journal.events import Event
 from server.journal.journal import Entry, Journal, Receipt
 from server.limits import Limits
+from server.refusals import Refusals
 from server.runtime.clock import RunClock
 from server.runtime.run_state import RunState
 
@@ -44,11 +45,13 @@ class RunContext:
         journal: Journal,
         settings: RunSettings,
         utc_now: Callable[[], datetime],
+        refusals: Refusals,
     ) -> None:
         self.state = state
         self.clock = clock
         self.settings = settings
         self.utc_now = utc_now
+        self.refusals = refusals
         self._journal = journal
         self.patient = True
         self._noting: asyncio.Task[list[Event]] | None = None

@@ -1,6 +1,7 @@
 """Which of a run's robots are there: connected, lost, waited for, and at last given up."""
 
 import asyncio
+import logging
 from collections.abc import Callable, Mapping
 
 from robots.link.messages import Hello
@@ -11,10 +12,13 @@ from server.runtime.failure import fail_run
 from server.runtime.hardware import Hardware
 from server.runtime.inbox import Task
 from server.runtime.interventions import Interventions
+from server.runtime.livelock import MOST_FRUITLESS_COMMANDS
 from server.runtime.pose_sink import PoseSink
 from server.runtime.report_events import ReportEvents
 from server.runtime.robot_side import Doing, RobotSide
 from server.runtime.run_state import Execution
+
+log = logging.getLogger(__name__)
 
 MAX_RESTARTS = 20
 """So often a simulated robot is started again without having begun a step since."""
@@ -64,6 +68,8 @@ class Presence:
             timer.cancel()
 
     async def connected(self, side: RobotSide, hello: Hello) -> None:
+        if side.gone_for_good:
+            return
         state, robot = self._context.state, side.robot
         if timer := self._timers.pop(robot, None):
             timer.cancel()
@@ -103,6 +109,8 @@ class Presence:
     async def lost(self, side: RobotSide, reason: str) -> None:
         state, robot = self._context.state, side.robot
         side.disconnect()
+        if side.gone_for_good:
+            return
         if robot not in state.lost:
             await self._context.commit(
                 [ev.RobotLost(**self._context.stamp(), robot=robot, reason=reason)]
@@ -111,7 +119,7 @@ class Presence:
         if self._hardware.simulated and side.restarts <= MAX_RESTARTS:
             await self._hardware.restart(robot)
         elif self._hardware.simulated:
-            await self._given_up(side, f"its process keeps ending: {reason}")
+            await self._stay_lost(side, f"its process keeps ending: {reason}")
         else:
             self._wait_for(side)
 
@@ -120,12 +128,25 @@ class Presence:
         timeout_s = self._context.settings.robot_lost_timeout_s
         reason = f"it was not there for {timeout_s:g} s"
         self._timers[side.robot] = asyncio.get_running_loop().call_later(
-            timeout_s, lambda: self._tell(lambda: self._given_up(side, reason))
+            timeout_s, lambda: self._tell(lambda: self._stay_lost(side, reason))
         )
 
-    async def _given_up(self, side: RobotSide, reason: str) -> None:
-        if side.doing is not Doing.ABSENT:
-            return
+    async def _stay_lost(self, side: RobotSide, reason: str) -> None:
+        if side.doing is Doing.ABSENT:
+            await self._give_up(side, f"is lost: {reason}")
+
+    async def give_up_in_livelock(self, side: RobotSide) -> None:
+        """Have no more to do with a robot that is told one thing after the other for nothing."""
+        log.warning("robot %s is given up: nothing comes of what it is told", side.robot)
+        self._context.refusals.note("fruitless_commands")
+        side.retreat()
+        await self._give_up(
+            side,
+            f"is given up: it was told {MOST_FRUITLESS_COMMANDS} things one after the other, and "
+            "nothing was done and nobody answered meanwhile",
+        )
+
+    async def _give_up(self, side: RobotSide, why: str) -> None:
         side.gone_for_good = True
         state = self._context.state
         execution = state.executions.get(side.robot)
@@ -134,10 +155,8 @@ class Presence:
             if dialogue := state.dialogue_of(execution.leaf):
                 events.append(self._dialogues.abort(dialogue))
             events.append(
-                self._reports.reset(
-                    execution.leaf, side.robot, f"its robot is lost: {reason}", failed=False
-                )
+                self._reports.reset(execution.leaf, side.robot, f"its robot {why}", failed=False)
             )
         await self._context.commit(events)
         if all(each.gone_for_good for each in self._sides.values()):
-            await fail_run(self._context, f"the robot '{side.robot}' is lost: {reason}")
+            await fail_run(self._context, f"the robot '{side.robot}' {why}")

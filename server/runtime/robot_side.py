@@ -21,6 +21,7 @@ from robots.link.messages import (
     Start,
     WasDone,
 )
+from server.runtime.livelock import Livelock
 from server.runtime.run_state import Execution
 from tasks.intervention import Intervention
 from tasks.potential import Point
@@ -73,6 +74,7 @@ class RobotSide:
     hello: Hello | None = None
     gone_for_good: bool = False
     restarts: int = 0
+    livelock: Livelock = field(default_factory=Livelock)
     command: str | None = None
     purpose: Purpose | None = None
     holds_execution: bool = False

@@ -306,10 +306,21 @@ class Run:
         if await self._giving_up.give_up_what_cannot_be_done():
             return True
         for side in self._sides.values():
-            available = side.free or side.interruptible
-            if available and self._dialogue_of(side) is None and await self._occupy(side):
+            available = (side.free or side.interruptible) and not side.gone_for_good
+            if available and self._dialogue_of(side) is None and await self._go_on_with(side):
                 return True
         return False
+
+    async def _go_on_with(self, side: RobotSide) -> bool:
+        """Give an idle robot something to do, unless nothing ever comes of that."""
+        if side.livelock.lasts(self._context.state.progress):
+            await self._presence.give_up_in_livelock(side)
+            return True
+        last = side.command
+        changed = await self._occupy(side)
+        if side.command != last:
+            side.livelock.tell(self._context.state.progress)
+        return changed
 
     async def _occupy(self, side: RobotSide) -> bool:
         """Give an idle robot something to do; True if that changed the state."""

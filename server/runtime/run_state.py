@@ -85,6 +85,12 @@ class RunState:
         """What was raised about each leaf, in order."""
         self.suspected: set[int] = set()
         """Leaves about which a false alarm is suspected."""
+        self.progress = 0
+        """Grows when the task comes on or a person does something: a robot alone cannot make it
+        grow without end.
+        """
+        self._done_once: set[tuple[int, int]] = set()
+        """Leaves that were done, each with how often it had been gone before."""
         self.asks = 0
         self.helps = 0
         self.seq = started.seq
@@ -168,6 +174,11 @@ class RunState:
         self.dialogues[event.dialogue].fold(event)
 
     @_apply.register
+    def _(self, event: ev.Answered) -> None:
+        self.dialogues[event.dialogue].fold(event)
+        self.progress += 1
+
+    @_apply.register
     def _(self, event: ev.ClipRecorded) -> None:
         self.dialogues[event.dialogue].fold(event)
 
@@ -203,6 +214,7 @@ class RunState:
     @_apply.register
     def _(self, event: ev.InterventionAccepted) -> None:
         self.accepted[event.command] = event
+        self.progress += 1
 
     @_apply.register
     def _(self, event: ev.InterventionDone) -> None:
@@ -225,6 +237,8 @@ class RunState:
         self.taken_back.pop(leaf, None)
         self.to_leave_out.pop(leaf, None)
         self._end_execution(leaf)
+        self.progress += (leaf, self.times_gone[leaf]) not in self._done_once
+        self._done_once.add((leaf, self.times_gone[leaf]))
 
     @_apply.register
     def _(self, event: ev.NodeReturned) -> None:
@@ -266,6 +280,7 @@ class RunState:
     def _(self, _event: ev.RunResumed) -> None:
         self.status = RunStatus.RUNNING
         self.tree.running = True
+        self.progress += 1
 
     @_apply.register
     def _(self, event: ev.RunFinished) -> None:

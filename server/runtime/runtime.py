@@ -25,6 +25,7 @@ from server.errors import (
 from server.journal import events as ev
 from server.journal.journal import Entry, Journal
 from server.journal.run_index import UNREADABLE, IndexedRun, RunPage
+from server.refusals import Refusals
 from server.runtime.choosing import potentials_for
 from server.runtime.clock import RunClock, SimulatedClock, WallClock
 from server.runtime.context import RunContext, RunSettings
@@ -78,6 +79,7 @@ class Runtime:
         monotonic: Callable[[], float],
         utc_now: Callable[[], datetime],
         poses: Poses,
+        refusals: Refusals | None = None,
     ) -> None:
         self._journal = journal
         self._robots = robots
@@ -89,6 +91,7 @@ class Runtime:
         self._monotonic = monotonic
         self._utc_now = utc_now
         self._poses = poses
+        self._refusals = refusals or Refusals()
         self._states = RunStates(journal, scripts)
         self._runs: dict[UUID, Run] = {}
         self._writing_json = asyncio.Lock()
@@ -196,7 +199,9 @@ class Runtime:
         clock: RunClock = (
             WallClock(self._monotonic, state.time) if live else SimulatedClock(state.time)
         )
-        context = RunContext(state, clock, self._journal, self._settings, self._utc_now)
+        context = RunContext(
+            state, clock, self._journal, self._settings, self._utc_now, self._refusals
+        )
         try:
             self._take_up(context, live=live)
         except Exception as error:
