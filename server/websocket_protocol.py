@@ -2,6 +2,7 @@
 
 import asyncio
 
+from uvicorn._types import ASGISendEvent
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 from websockets.exceptions import PayloadTooBig
 from websockets.frames import Frame
@@ -85,6 +86,15 @@ class WebSocketProtocol(WebSocketsSansIOProtocol):
         else:
             # The pong that was made for it.
             self.conn.data_to_send()
+
+    async def send(self, message: ASGISendEvent) -> None:
+        """Send on; a refusal answers the handshake as well.
+
+        Uvicorn would say in the log that the application had forgotten it.
+        """
+        await super().send(message)
+        if message["type"] == "websocket.http.response.body" and not message.get("more_body"):
+            self.handshake_complete = True
 
     @property
     def _has_ended(self) -> bool:

@@ -1,11 +1,13 @@
 """A server can end whatever its clients are just doing."""
 
 import asyncio
+import logging
 import socket
 
 import pytest
 import uvicorn
 from starlette.applications import Starlette
+from starlette.responses import PlainTextResponse
 from starlette.routing import WebSocketRoute
 from starlette.websockets import WebSocket
 from uvicorn.protocols.utils import ClientDisconnected
@@ -89,6 +91,31 @@ async def test_who_is_just_sending_to_a_client_that_was_sent_away_hears_that_it_
         await connection.send({"type": "websocket.send", "text": "late"})
     client.transport.abort()
     await server.shutdown(sockets=[listening])
+
+
+async def test_a_refused_handshake_is_no_error_in_the_log(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    async def refuse(websocket: WebSocket) -> None:
+        await websocket.send_denial_response(PlainTextResponse("not you", 401))
+
+    listening = socket.create_server(("127.0.0.1", 0))
+    config = uvicorn.Config(
+        Starlette(routes=[WebSocketRoute("/", refuse)]), ws=WebSocketProtocol, lifespan="off",
+        log_config=None,
+    )  # fmt: skip
+    config.load()
+    server = uvicorn.Server(config)
+    server.lifespan = config.lifespan_class(config)
+    await server.startup(sockets=[listening])
+    reader, writer = await asyncio.open_connection(*listening.getsockname())
+    writer.write(HELLO)
+    answer = await reader.read()
+    writer.close()
+    await server.shutdown(sockets=[listening])
+    assert answer.startswith(b"HTTP/1.1 401 ")
+    assert answer.endswith(b"not you")
+    assert [each.message for each in caplog.records if each.levelno >= logging.WARNING] == []
 
 
 class StubLoop:
