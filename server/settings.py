@@ -22,6 +22,7 @@ from server.proxies import ProxyNetwork
 from server.public_url import PublicUrl
 from server.retention import KeepSettings
 from server.speech.voice import VoiceChoice
+from tasks.plain_mistakes import what_it_must_be
 
 Seconds = Annotated[float, Field(gt=0, le=86_400, allow_inf_nan=False)]
 HostName = Annotated[str, Field(min_length=1, max_length=253)]
@@ -228,12 +229,13 @@ def _refuse_unknown_variables(names: Iterable[str]) -> None:
 
 def _sentence(error: Any) -> str:
     where = ".".join(str(part) for part in error["loc"])
-    message = str(error["msg"]).removeprefix("Value error, ")
+    message = what_it_must_be(error)
     if not where:
         return f"The settings do not fit together: {message}."
     if error["type"] == "extra_forbidden":
         return f"There is no setting '{where}'."
-    return f"The setting '{where}' is wrong: {message[0].lower()}{message[1:]}."
+    said = message if error["type"] == "value_error" else f"it {message}"
+    return f"The setting '{where}' is wrong: {said}."
 
 
 def _short(sentence: str) -> str:

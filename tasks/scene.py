@@ -7,12 +7,13 @@ from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from tasks.plain_mistakes import NAME
 from tasks.unit import Unit
 
 Metres = Annotated[float, Field(ge=-100.0, le=100.0, allow_inf_nan=False), Unit("metres")]
 Length = Annotated[float, Field(gt=0.0, le=10.0, allow_inf_nan=False), Unit("metres")]
 Radians = Annotated[float, Field(ge=-6.2832, le=6.2832, allow_inf_nan=False), Unit("radians")]
-Name = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_\-]{0,63}$")]
+Name = Annotated[str, Field(pattern=NAME)]
 Channel = Annotated[float, Field(ge=0.0, le=1.0, allow_inf_nan=False)]
 
 RESTS_M = 0.006

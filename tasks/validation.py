@@ -1,7 +1,6 @@
 """What pydantic finds wrong with a part of a document, as problems with lines and sentences."""
 
 import json
-import re
 from collections.abc import Iterable, Sequence
 from typing import Any, TypeVar
 
@@ -9,13 +8,15 @@ from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
 from tasks.document import LinedMapping, LinedSequence
+from tasks.plain_mistakes import what_it_must_be
 from tasks.problem import Problem, list_names
 from tasks.unit import unit_at, unit_of_name
 
 _MAX_VALUE_CHARACTERS = 60
 _OF_NUMBERS = ("greater_", "less_", "float_", "int_", "finite_")
 """How pydantic's types of mistakes begin that only a number can have."""
-_SUBJECT = re.compile(r"^\w+ should ")
+_TELLS_ITSELF = ("too_short", "too_long", "string_too_long", "string_too_short", "value_error")
+"""What is too long to be taken tells nothing."""
 
 Model = TypeVar("Model", bound=BaseModel)
 
@@ -44,15 +45,8 @@ def describe_mistake(mistake: ErrorDetails, model: type[BaseModel]) -> str:
         known = _known_keys(mistake, model)
         return f"unknown key '{where}'" + (f"; known are {known}" if known else "")
     if mistake["type"] == "value_error":
-        message = mistake["msg"].removeprefix("Value error, ")
+        message = what_it_must_be(mistake)
         return f"'{where}': {message}" if where else message
-    if mistake["type"] == "too_short":
-        least, known = mistake["ctx"]["min_length"], mistake["ctx"]["actual_length"]
-        entries = "entry" if least == 1 else "entries"
-        return f"'{where}' must have at least {least} {entries}, but it has {known}"
-    if mistake["type"] == "string_pattern_mismatch":
-        must = "must be a name: a letter, then at most 63 letters, digits, '_' or '-'"
-        return f"'{where}' {must}, but it is {_show(mistake['input'])}"
     unit = unit_at(model, mistake["loc"]) or unit_of_name(mistake["loc"])
     return f"'{where}' {what_is_right([mistake], unit)}"
 
@@ -60,11 +54,12 @@ def describe_mistake(mistake: ErrorDetails, model: type[BaseModel]) -> str:
 def what_is_right(mistakes: Sequence[ErrorDetails], unit: str | None) -> str:
     """What a value must be, in its unit, and what it is; `mistakes`: one for each of its types."""
     first = mistakes[0]
-    said = " or ".join(_SUBJECT.sub("must ", each["msg"]) for each in mistakes)
+    said, *others = dict.fromkeys(what_it_must_be(each) for each in mistakes)
+    for other in others:
+        said += f" or {other.removeprefix('must be ')}"
     if unit is not None and first["type"].startswith(_OF_NUMBERS):
         said += f" (in {unit})"
-    # What is too long to be taken tells nothing.
-    is_told = "input" in first and first["type"] != "string_too_long"
+    is_told = "input" in first and first["type"] not in _TELLS_ITSELF
     return f"{said}, but it is {_show(first['input'])}" if is_told else said
 
 

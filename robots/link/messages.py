@@ -14,14 +14,18 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, TypeAdapter
 
+from robots.link.shown_name import SHOWN
 from tasks.intervention import Intervention
+from tasks.plain_mistakes import SEEN_CHARACTERS_OR_NONE
 
 PROTOCOL_VERSION = 1
 
 Identifier = Annotated[
-    str, Field(min_length=1, max_length=128, pattern=r"^[^\x00-\x1f\x7f-\x9f\u2028\u2029]*$")
+    str,
+    Field(min_length=1, max_length=128, pattern=SEEN_CHARACTERS_OR_NONE),
+    SHOWN,
 ]
-"""A name without control characters: it is written to logs and terminals as it is."""
+"""It is written to logs and terminals as it is."""
 
 Word = Annotated[str, Field(max_length=128)]
 """A name or an id."""

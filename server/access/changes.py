@@ -5,6 +5,7 @@ from datetime import datetime, timedelta
 from pathlib import Path
 from uuid import UUID, uuid4
 
+from robots.link.shown_name import can_be_shown
 from server.access.principal import RESERVED
 from server.access.principals_file import (
     KEPT_CHANGES,
@@ -164,12 +165,12 @@ class PrincipalsEditor:
 def _refuse_name(name: str, longest: int) -> None:
     if name.strip().casefold() in RESERVED:
         raise InvalidError(f"nobody can be called '{name}': that is what the service calls others")
-    if not 0 < len(name) <= longest or not name.isprintable():
-        raise InvalidError(f"a name has 1 to {longest} characters, and no control characters")
-    if name != name.strip() or "/" in name or name in (".", ".."):
+    if not 0 < len(name) <= longest or not can_be_shown(name):
         raise InvalidError(
-            f"nobody can be called '{name}': a name begins and ends with no blank, and has no '/'"
+            f"a name has 1 to {longest} characters that can be seen, and no blank at its ends"
         )
+    if "/" in name or name in (".", ".."):
+        raise InvalidError(f"nobody can be called '{name}': a name has no '/'")
 
 
 def _enrolment(robot: str, code: str, expires: datetime) -> Enrolment:

@@ -23,9 +23,11 @@ from pydantic import (
 )
 from pydantic_core import ErrorDetails
 
+from robots.link.shown_name import SHOWN
 from server.access.principal import RESERVED
 from server.access.roles import Role
 from server.journal.file_mode import OWNERS_FOLDER, keep_to_owner
+from tasks.plain_mistakes import SEEN_CHARACTERS, SHA256, SHORT_ID, what_it_must_be
 from tasks.validation import what_is_right
 
 HEADING = "# Written by `mend access`. Tokens are not in here, only their hashes.\n"
@@ -44,12 +46,12 @@ KEY_CHARS = 100
 LOADER: type[Any] = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
 PrincipalName = Annotated[
-    str, StringConstraints(min_length=1, max_length=64, pattern=r"^[^\x00-\x1f\x7f]+$")
+    str, StringConstraints(min_length=1, max_length=64, pattern=SEEN_CHARACTERS), SHOWN
 ]
 RobotName = Annotated[
-    str, StringConstraints(min_length=1, max_length=128, pattern=r"^[^\x00-\x1f\x7f]+$")
+    str, StringConstraints(min_length=1, max_length=128, pattern=SEEN_CHARACTERS), SHOWN
 ]
-Sha256 = Annotated[str, StringConstraints(pattern=r"^[0-9a-f]{64}$")]
+Sha256 = Annotated[str, StringConstraints(pattern=SHA256)]
 
 
 class PrincipalsFileError(Exception):
@@ -69,7 +71,7 @@ class KeptPrincipal(FileModel):
 
     name: RobotName
     role: Role
-    id: Annotated[str, StringConstraints(pattern=r"^[0-9a-f]{8}$")]
+    id: Annotated[str, StringConstraints(pattern=SHORT_ID)]
     sha256: Sha256
     added: AwareDatetime
     expires: AwareDatetime | None = None
@@ -190,12 +192,10 @@ def _refuse_depth(text: str, source: str) -> None:
 
 def _sentence(source: str, mistake: ErrorDetails) -> str:
     where = ".".join(str(each)[:KEY_CHARS] for each in mistake["loc"])
-    if mistake["type"] == "extra_forbidden":
-        return f"{source}: {where}: is not known here."
-    if mistake["type"] == "missing":
-        return f"{source}: {where}: is missing."
-    if mistake["type"] == "value_error":
-        return f"{source}: {str(mistake['msg']).removeprefix('Value error, ')}."
+    if mistake["type"] in ("extra_forbidden", "missing"):
+        return f"{source}: {where}: {what_it_must_be(mistake)}."
+    if mistake["type"] == "value_error" and not where:
+        return f"{source}: {what_it_must_be(mistake)}."
     return f"{source}: {where}: {what_is_right([mistake], None)}."
 
 

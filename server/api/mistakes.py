@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from tasks.plain_mistakes import what_it_must_be
 from tasks.unit import unit_of_name
 from tasks.validation import what_is_right
 
@@ -55,12 +56,10 @@ def _where(mistake: Any, body: Any) -> tuple[int | str, ...]:
 def _what_is_wrong(where: Sequence[int | str], mistakes: Sequence[Any]) -> str:
     first = mistakes[0]
     match first["type"]:
-        case "missing":
-            return "is missing"
-        case "extra_forbidden":
-            return "is not known here"
+        case "missing" | "extra_forbidden" | "value_error":
+            return what_it_must_be(first)
         case "json_invalid":
             return f"is not JSON: {first['ctx']['error']}"
-        case "value_error":
-            return str(first["msg"]).removeprefix("Value error, ")
+        case "model_attributes_type" if isinstance(first["input"], bytes):
+            return "must be JSON that is sent with 'Content-Type: application/json'"
     return what_is_right(mistakes, unit_of_name(where))

@@ -11,6 +11,7 @@ from fastapi import Depends, Path, Query
 from pydantic import Field
 from starlette.requests import HTTPConnection
 
+from robots.link.shown_name import SHOWN
 from server.access.access import Access
 from server.access.deed_log import DeedLog
 from server.access.principal import Caller
@@ -26,6 +27,7 @@ from server.runtime.service import RunService
 from server.runtime.views import WorldView
 from server.settings import Settings
 from server.speech.abilities import NO_SPEECH, SpeechAbilities
+from tasks.plain_mistakes import NAME, SEEN_CHARACTERS
 
 if TYPE_CHECKING:
     # It refuses with problem documents, which know the parts.
@@ -100,7 +102,7 @@ WithParts = Annotated[Parts, Depends(parts_of)]
 
 RunId = Annotated[UUID, Path(description="The run's id.")]
 DialogueId = Annotated[UUID, Path(description="The dialogue's id.")]
-DocumentName = Annotated[str, Path(pattern=r"^[A-Za-z][A-Za-z0-9_\-]{0,63}$", examples=["eket"])]
+DocumentName = Annotated[str, Path(pattern=NAME, examples=["eket"])]
 After = Annotated[int, Query(ge=0, le=MAX_SEQ, description="Only what comes after this `seq`.")]
 Limit = Annotated[int, Query(ge=1, le=1000, description="At most so many.")]
 Offset = Annotated[int, Query(ge=0, le=MAX_SEQ, description="Skip so many.")]
@@ -109,8 +111,9 @@ HelperName = Annotated[
     Field(
         min_length=1,
         max_length=64,
-        pattern=r"^[^\x00-\x1f\x7f]+$",
+        pattern=SEEN_CHARACTERS,
         description="The helper's name; the others see it.",
         examples=["anna"],
     ),
+    SHOWN,
 ]

@@ -14,6 +14,7 @@ from server.journal.run_index import RunPage
 from server.runtime.requests import RunRequest
 from server.runtime.views import RunStatus, RunSummary, RunView
 from tasks.intervention import Intervention
+from tasks.plain_mistakes import CAMERA
 
 router = APIRouter(prefix="/api/runs", tags=["runs"], route_class=RepeatableRoute)
 
@@ -23,7 +24,7 @@ Statuses = Annotated[
 Before = Annotated[
     UUID | None, Query(description="Only runs that began before this one: the cursor of a page.")
 ]
-Camera = Annotated[str, Path(pattern=r"^[a-z][a-z0-9_]{0,31}$", examples=["head", "forearm"])]
+Camera = Annotated[str, Path(pattern=CAMERA, examples=["head", "forearm"])]
 
 RUN_EXAMPLES = [
     {"tree": "eket", "world": "workcell", "speed": 1.0, "seed": 7, "scenario": "eket_paper"},

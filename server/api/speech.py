@@ -14,6 +14,7 @@ from server.speech.ear import NoEars
 from server.speech.phrases import FIXED, effect_text, help_text
 from server.speech.question import find_prompt
 from server.speech.voice import NoVoice, VoiceError
+from tasks.plain_mistakes import PHRASE
 
 router = APIRouter(tags=["speech"])
 
@@ -69,7 +70,7 @@ async def get_speech(parts: WithParts) -> SpeechView:
     responses={**WAV, **REFUSALS},
 )
 async def get_phrase_speech(
-    name: Annotated[str, Path(pattern=r"^[a-z_]{1,32}$", examples=["sorry"])], parts: WithParts
+    name: Annotated[str, Path(pattern=PHRASE, examples=["sorry"])], parts: WithParts
 ) -> Response:
     """One of the fixed phrases."""
     if name not in FIXED:

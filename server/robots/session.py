@@ -26,6 +26,7 @@ from server.journal.journal import JournalClosedError
 from server.limits import LimitName
 from server.robots.silence import Silence
 from server.robots.times import LinkTimes
+from tasks.plain_mistakes import what_it_must_be
 
 log = logging.getLogger(__name__)
 
@@ -103,9 +104,11 @@ def read_message(text: str) -> AnyRobotMessage:
 
 def sentence(error: ValidationError) -> str:
     """What is wrong with a message, and where."""
-    first = error.errors(include_url=False, include_input=False, include_context=False)[0]
+    first = error.errors(include_url=False, include_input=False)[0]
     where = ".".join(str(each) for each in first["loc"])
-    return f"the message was not understood{f' at {where}' if where else ''}: {first['msg']}"
+    return (
+        f"the message was not understood{f' at {where}' if where else ''}: {what_it_must_be(first)}"
+    )
 
 
 class RobotSession:

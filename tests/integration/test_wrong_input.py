@@ -5,6 +5,7 @@ from collections.abc import Iterator
 import pytest
 import schemathesis
 from hypothesis import HealthCheck, settings
+from plain_problems import told_plainly
 from schemathesis.checks import not_a_server_error
 from schemathesis.specs.openapi.checks import (
     content_type_conformance,
@@ -34,5 +35,6 @@ def test_rest(case: schemathesis.Case) -> None:
             status_code_conformance,
             content_type_conformance,
             response_schema_conformance,
+            told_plainly,
         ]
     )

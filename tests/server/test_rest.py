@@ -168,9 +168,11 @@ async def test_body_that_is_no_good_json_is_a_problem(
         ),
         (
             {"speed": 2000},
-            "body.speed: must be less than or equal to 1000 or must be 'max', but it is 2000",
+            "body.speed: must be less than or equal to 1000 or 'max', but it is 2000",
         ),
         ({"tree": "t" * 65}, "body.tree: must have at most 64 characters"),
+        ({"robots": ["r"] * 65}, "body.robots: must have at most 64 entries, but it has 65"),
+        ({"answers": 7}, "body.answers: must be a list or 'random', 'none' or 'live', but it is 7"),
         ({"sped": 1}, "body.sped: is not known here"),
     ],
 )
@@ -194,6 +196,10 @@ async def test_a_body_that_is_not_json_or_lacks_a_field_is_told(client: httpx.As
     headers = {"content-type": "application/json"}
     response = await client.post("/api/runs", content=b"{", headers=headers)
     assert problem_in(response)["detail"].startswith("body: is not JSON: ")
+    response = await client.post("/api/runs", content=b"{")
+    assert problem_in(response)["detail"] == (
+        "body: must be JSON that is sent with 'Content-Type: application/json'"
+    )
     response = await client.post("/api/runs", json={})
     assert problem_in(response)["detail"] == "body.tree: is missing"
 

@@ -36,7 +36,7 @@ from sim.world_options import WorldOptionError, read_options
             TabletopOptions,
             {"reach_m": "far"},
             "an option of the world 'cell' is wrong: "
-            "'reach_m' must be a valid number, unable to parse string as a number (in metres), "
+            "'reach_m' must be a number (in metres), "
             'but it is "far"',
         ),
         (NoOptions, {"fog": True}, "the world 'cell' has no options, but 'fog' is given"),

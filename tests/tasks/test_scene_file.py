@@ -49,7 +49,7 @@ def test_every_mistake_is_told_with_its_line() -> None:
     assert lines == [
         "s:2: unknown key 'light'; known are 'name', 'objects', 'places', 'scatter', 'table'",
         "s:5: 'objects.cup.color.1' must be less than or equal to 1, but it is 2",
-        "s:7: 'objects.cup.pose.x' must be a valid number (in metres), but it is \"left\"",
+        "s:7: 'objects.cup.pose.x' must be a number (in metres), but it is \"left\"",
         "s:9: 'places.7th' must be a name: a letter, then at most 63 letters, digits, '_' or '-', "
         'but it is "7th"',
     ]
@@ -129,7 +129,7 @@ def test_a_grid_stands_for_its_rows_and_columns() -> None:
 
 def test_mistakes_in_several_poses_are_told_with_their_lines() -> None:
     assert told(ROW.replace("{x: 0.5, y: 0.2}", "{x: left, y: 0.2}")) == [
-        "s:8: 'objects.bolt_2.pose.x' must be a valid number (in metres), but it is \"left\""
+        "s:8: 'objects.bolt_2.pose.x' must be a number (in metres), but it is \"left\""
     ]
     assert told(ROW.replace("rows: 2", "rows: 0")) == [
         "s:11: the grid of 'bolt': 'rows' must be greater than or equal to 1, but it is 0"

@@ -116,7 +116,7 @@ author: me
         ("5", "a node is a mapping with one of"),
         ("{behavior: jump}", "unknown behavior 'jump'; there are 'pick_and_place'"),
         ("{behavior: pick_and_place, object: a}", "'place' is missing"),
-        ("{behavior: pick_and_place, object: 5, place: b}", "'object' must be a valid string"),
+        ("{behavior: pick_and_place, object: 5, place: b}", "'object' must be text"),
         (
             "{behavior: pick_and_place, object: a, place: b, spee: 1}",
             "unknown key 'spee'; 'pick_and_place' may have 'needs_help', 'object', 'place'",

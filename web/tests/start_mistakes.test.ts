@@ -3,10 +3,10 @@ import { atTheirFields } from "../src/run/start/start_mistakes";
 
 describe("a refused start", () => {
   it.each([
-    ["body.seed: Input should be greater than or equal to 0", "seed"],
-    ["body.max_attempts: Input should be a valid integer", "max_attempts"],
-    ["body.speed.float: Input should be greater than 0", "speed"],
-    ["body.robots.0: Input should be a valid string", "robots"],
+    ["body.seed: must be greater than or equal to 0", "seed"],
+    ["body.max_attempts: must be a whole number", "max_attempts"],
+    ["body.speed: must be greater than 0 or 'max'", "speed"],
+    ["body.robots.0: must be text", "robots"],
     ["there is no world 'moon'; there are 'tabletop'", "world"],
     ["a run in the world 'live' needs 'robots': the ids of connected ones", "robots"],
     ["the robot 'r1' is busy with run 7", "robots"],

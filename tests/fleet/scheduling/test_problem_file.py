@@ -121,7 +121,7 @@ PLACES = "'attic', 'hall', 'lab', 'lobby'"
         ("aboard: ben", "aboard: eve", "f:21: there is no robot 'eve'; there are 'ada', 'ben'"),
         ("capacity: 2", "capacity: -2", "f:14: 'robots.0.capacity' must be greater than or equal "
          "to 0, but it is -2"),
-        ("capacity: 2", "capacity: .nan", "f:14: 'robots.0.capacity' must be a valid number, but "
+        ("capacity: 2", "capacity: .nan", "f:14: 'robots.0.capacity' must be a number, but "
          'it is ".nan"'),
         ("  - {name: cup, aboard: ben,", "  - {name: cup,", "f:21: 'items.1': an item must have "
          "either 'pickup' or 'aboard'"),

@@ -145,8 +145,7 @@ ENTRY = f"role: helper, id: '01234567', sha256: '{HASH}', added: 2026-01-01T00:0
         ("people: 2026-99-99", "f.yaml: a value in it cannot be read."),
         (
             "principals: &a [*a]",
-            "f.yaml: principals.0: must be a valid dictionary or instance of "
-            "KeptPrincipal, but it is nested too deeply to be shown.",
+            "f.yaml: principals.0: must be a mapping, but it is nested too deeply to be shown.",
         ),
         ("- anna", "f.yaml: a file of principals has the key 'principals'."),
         ("people: []", "f.yaml: people: is not known here."),
@@ -200,3 +199,11 @@ def test_a_name_that_reads_as_another_or_names_no_address_is_refused(
     editor = PrincipalsEditor(tmp_path / "principals.yaml", by="root")
     with pytest.raises(InvalidError):
         editor.add(name, Role.VIEWER, datetime.now(UTC))
+
+
+@pytest.mark.parametrize("name", ["\u202eann", "an\u200bn", " ", "ann ", "\u2028"])
+def test_a_name_that_could_be_taken_for_another_is_refused(name: str, tmp_path: Path) -> None:
+    file = tmp_path / "principals.yaml"
+    with pytest.raises(InvalidError, match="characters that can be seen"):
+        PrincipalsEditor(file, by="root").add(name, Role.HELPER, datetime.now(UTC))
+    assert not file.exists()
