@@ -696,9 +696,7 @@ def test_an_option_beyond_its_limit_is_told_with_what_would_be_right(mend: Mend)
     outcome = mend("run", "eket", "--max-attempts", "101", "--speed", "2000")
     assert outcome.code == 2
     assert "--max-attempts must be less than or equal to 100, but it is 101" in outcome.err
-    assert "--speed must be less than or equal to 1000 or 'max', but it is 2000" in (
-        outcome.err
-    )
+    assert "--speed must be less than or equal to 1000 or 'max', but it is 2000" in (outcome.err)
 
 
 def test_a_scene_may_be_named(mend: Mend, service: Callable[..., RecordedService]) -> None:

@@ -171,7 +171,10 @@ async def test_a_hello_with_such_a_number_is_refused(registry: RobotRegistry) ->
     assert registry.known() == []
 
 
-@pytest.mark.parametrize("name", ["a\nb", "\x1b[31mred", "", "x" * 129, "a\u2028b", "\x9b1m", "\u202eann", "an\u200bn", " "])
+@pytest.mark.parametrize(
+    "name",
+    ["a\nb", "\x1b[31mred", "", "x" * 129, "a\u2028b", "\x9b1m", "\u202eann", "an\u200bn", " "],
+)
 async def test_a_robot_has_a_name_that_can_be_written(registry: RobotRegistry, name: str) -> None:
     robot = RawRobot(registry)
     await robot.say({**HELLO, "robot": name})
