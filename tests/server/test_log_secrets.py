@@ -5,6 +5,7 @@ import logging
 
 import pytest
 from uvicorn.logging import AccessFormatter
+from websockets.frames import Frame, Opcode
 
 from server.app import described_app
 from server.log_secrets import ACCESS, LONGEST_CHARS, SECRETS, HideSecrets
@@ -18,15 +19,6 @@ from server.settings import Settings
         ("< authorization: Bearer abc", "< authorization: ***"),
         ("< Cookie: mend_session=1.ab; theme=dark", "< Cookie: ***"),
         ("> Set-Cookie: mend_session=1.ab; HttpOnly", "> Set-Cookie: ***"),
-        (
-            """< TEXT '{"type": "auth", "token": "abc"}' [33 bytes]""",
-            """< TEXT '{"type": "auth", "token": "***"}' [33 bytes]""",
-        ),
-        ("""'{"token":"abc","type":"auth"}'""", """'{"token":"***","type":"auth"}'"""),
-        ("""'{"token" : "abc"}'""", """'{"token" : "***"}'"""),
-        ("""'{"token":  "abc"}'""", """'{"token":  "***"}'"""),
-        (repr('{"token"\n:\t"abc"}'), r"""'{"token"\n:\t"***"}'"""),
-        (r"""'{"token": "abc\"def"}'""", """'{"token": "***"}'"""),
         ("< host: localhost", "< host: localhost"),
     ],
 )
@@ -41,9 +33,12 @@ def test_the_log_of_the_service_shows_no_token() -> None:
     logger.addHandler(handler)
     try:
         logger.debug("< %s: %s", "authorization", "Bearer abc")
+        # In two parts, as whoever sends it likes.
+        logger.debug("< %s", Frame(Opcode.TEXT, b'{"type": "auth", "to', fin=False))
+        logger.debug("< %s", Frame(Opcode.CONT, b'ken": "abc"}'))
     finally:
         logger.removeHandler(handler)
-    assert written.getvalue() == "< authorization: ***\n"
+    assert written.getvalue() == ("< authorization: ***\n< TEXT [20 bytes]\n< CONT [12 bytes]\n")
 
 
 def test_a_line_of_the_log_is_no_longer_than_it_has_to_be() -> None:
