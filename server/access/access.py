@@ -308,8 +308,9 @@ def bearer_of(connection: HTTPConnection) -> str | None:
 
 
 def address_of(connection: HTTPConnection) -> str | None:
-    """Where a connection comes from."""
-    return None if connection.client is None else connection.client.host
+    """Where a connection comes from; None where it is not known, as by a proxy that makes it up."""
+    host = None if connection.client is None else connection.client.host
+    return host if host is not None and _is_ip(host) else None
 
 
 def _welcomed(caller: Caller, connection: HTTPConnection, token: str | None = None) -> Admission:

@@ -68,3 +68,16 @@ async def test_many_strangers_may_come_through_a_trusted_proxy() -> None:
         for each in clients:
             await each.aclose()
     assert statuses == [200, 200, 200]
+
+
+async def test_what_a_proxy_passes_on_that_is_no_address_is_nobodys() -> None:
+    async with (
+        serving(token=TOKEN, limits=LIMITS, trusted_proxies=PROXY) as service,
+        httpx.AsyncClient(base_url=service.url) as proxy,
+    ):
+        for number in range(2):
+            headers = shows(f"guess {number}", f"made-up-{number}")
+            assert (await proxy.get("/api/runs", headers=headers)).status_code == 401
+        another = await proxy.get("/api/runs", headers=shows(TOKEN, "made-up-2"))
+        real = await proxy.get("/api/runs", headers=shows(TOKEN, "192.0.2.1"))
+    assert [another.status_code, real.status_code] == [429, 200]
