@@ -32,6 +32,7 @@ from server.api import models as models_api
 from server.api import poses as poses_api
 from server.api import principals as principals_api
 from server.api import worlds as worlds_api
+from server.api.absolute_form import AbsoluteForm
 from server.api.gate import Gate
 from server.api.idempotency_key import take_keys
 from server.api.openapi_links import add_links
@@ -122,6 +123,7 @@ def create_app(
         wall_time_s,
     )
     app.add_middleware(Gate, access=access, limits=settings.limits, refusals=refusals)
+    app.add_middleware(AbsoluteForm)
     return app
 
 

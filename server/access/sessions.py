@@ -20,7 +20,11 @@ SESSIONS_AN_HOUR = 600
 
 
 class TooManySessionsError(Exception):
-    """Somebody signs in again and again."""
+    """Somebody signs in again and again; in `wait_s` they may once more."""
+
+    def __init__(self, message: str, wait_s: float) -> None:
+        super().__init__(message)
+        self.wait_s = wait_s
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,7 +108,8 @@ class Sessions:
         if len(begun) == SESSIONS_AN_HOUR and now - begun[0] < HOUR_S:
             raise TooManySessionsError(
                 f"'{principal.name}' has signed in {SESSIONS_AN_HOUR} times within an hour: wait, "
-                "or show the token with each request"
+                "or show the token with each request",
+                begun[0] + HOUR_S - now,
             )
         begun.append(now)
         self._begun[principal.key] = begun

@@ -51,6 +51,11 @@ STATUSES: tuple[tuple[type[Exception], int], ...] = (
 )
 
 
+NOT_NOW = (429, 503)
+SOON = "1"
+"""Seconds after which to try again what may be possible then, where nothing else is known."""
+
+
 class Problem(BaseModel):
     """Why a request was refused. `answered_by` on a lost race, `errors` one per mistake."""
 
@@ -122,7 +127,11 @@ def problem_response(refusal: Problem, headers: Mapping[str, str] | None = None)
         problem_text(refusal),
         refusal.status,
         media_type=MEDIA_TYPE,
-        headers={**SAFE_HEADERS, **(headers or {})},
+        headers={
+            **SAFE_HEADERS,
+            **({"Retry-After": SOON} if refusal.status in NOT_NOW else {}),
+            **(headers or {}),
+        },
     )
 
 
@@ -190,7 +199,7 @@ async def _no_descriptor(_request: Request, error: Exception) -> Response:
     if error.errno not in NO_DESCRIPTOR:
         raise error
     detail = "the service has too many files and connections open just now; try again"
-    return problem_response(problem(503, detail), {"Retry-After": "1"})
+    return problem_response(problem(503, detail))
 
 
 async def _defect(request: Request, error: Exception) -> Response:

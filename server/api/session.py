@@ -1,5 +1,7 @@
 """How a browser signs in: the token once, a cookie from then on."""
 
+import math
+
 from fastapi import APIRouter, Request, Response
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -68,7 +70,8 @@ async def sign_in(body: SignIn, request: Request, response: Response, parts: Wit
     try:
         _, cookie = parts.access.sessions.new(principal)
     except TooManySessionsError as error:
-        raise ProblemError(429, str(error), limit="sign_ins") from error
+        later = {"Retry-After": f"{math.ceil(error.wait_s)}"}
+        raise ProblemError(429, str(error), later, limit="sign_ins") from error
     await _end_session(request, parts)
     parts.deeds.signed_in(principal, address_of(request))
     response.set_cookie(

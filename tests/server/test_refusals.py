@@ -59,11 +59,10 @@ async def test_sign_ins_without_end_are_counted(monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setattr("server.access.sessions.SESSIONS_AN_HOUR", 1)
     service = build(token=TOKEN)
     async with service.client() as client:
-        statuses = [
-            (await client.post("/api/session", json={"token": TOKEN})).status_code for _ in range(2)
-        ]
+        answers = [await client.post("/api/session", json={"token": TOKEN}) for _ in range(2)]
     service.journal.close()
-    assert statuses == [204, 429]
+    assert [each.status_code for each in answers] == [204, 429]
+    assert 3500 < int(answers[1].headers["Retry-After"]) <= 3600
     assert service.refusals.counts["sign_ins"] == 1
 
 
