@@ -80,7 +80,7 @@ class Limits(BaseModel):
     uploaded_chars: AtLeastOne = 32 * 1024**2
     """Characters of all uploaded files of one kind together."""
     waiting_chars: AtLeastOne = 64 * 1024**2
-    """Characters of what waits to be read and checked as it is large."""
+    """Characters of what waits to be read and checked as it is large; one piece each may wait."""
     check_s: Seconds = 120.0
     """How long reading and checking one large piece of that may take."""
     running_runs: AtLeastOne = 16

@@ -34,6 +34,7 @@ NICE = 5
 class OffLoop:
     """Does one piece of long work after the other in a process, which the first one starts.
 
+    Those on whose behalf it is done take turns (`server.asking`).
     `longest_s` is how long one may take.
     """
 

@@ -14,6 +14,7 @@ from server.access.permissions import needed_for_request
 from server.access.roles import Role
 from server.api.problems import forbidden, problem, problem_response
 from server.api.safe_headers import OVER_TLS, SAFE_HEADERS
+from server.asking import NOBODY, asker
 from server.limits import Limits
 from server.refusals import Refusals
 
@@ -74,6 +75,7 @@ class Gate:
         caller, needed = admission.caller, _needed(scope)
         state = scope.setdefault("state", {})
         state["known"] = caller
+        asker.set(NOBODY if caller is None else caller.principal.name)
         if needed is None:
             return None
         if caller is None:
