@@ -2,7 +2,7 @@
 
 import asyncio
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 from server.documents import DocumentKind, FixedDocuments, Uploaded
 from server.journal.journal import Journal
@@ -66,6 +66,12 @@ class Uploads:
         """
         async with self._reading.turn(0):
             return await self._named_in(texts, kinds)
+
+    def fixed_texts(self, kinds: Iterable[DocumentKind]) -> Iterator[str]:
+        """Names and texts of the fixed documents of these kinds, as they are now."""
+        for fixed in (self._fixed[kind] for kind in kinds if kind in self._fixed):
+            for name in fixed.names():
+                yield from (name, fixed.read(name))
 
     async def _named_in(self, texts: Iterable[str], kinds: Iterable[DocumentKind]) -> Uploaded:
         found: dict[DocumentKind, dict[str, str]] = {}
