@@ -1,6 +1,5 @@
 """The gate before every HTTP request: Host, Origin, token, role and the size of the body."""
 
-import asyncio
 from collections.abc import Callable, Mapping
 
 from starlette.datastructures import MutableHeaders
@@ -100,20 +99,17 @@ class Gate:
     def _limited(self, scope: Scope, receive: Receive, has_room: Callable[[int], bool]) -> Receive:
         """A body without a declared length is counted as it comes.
 
-        One that is still coming when the service stops, or the client hangs up, is refused like
+        One that is still coming when the client hangs up, or the service stops, is refused like
         anything else.
         """
         received, complete, most = 0, False, self._most_bytes(scope)
 
         async def limited() -> Message:
             nonlocal received, complete
-            try:
-                message = await receive()
-            except asyncio.CancelledError:
-                if complete:
-                    raise
-                raise HTTPException(503, "the service is shutting down") from None
-            if message["type"] == "http.disconnect" and not complete:
+            message = await receive()
+            if message["type"] == "http.disconnect":
+                if complete or not _has_body(scope):
+                    return message
                 # Nobody reads this, but it ends the request without a defect in the log.
                 raise HTTPException(400, "the connection ended before the body had come")
             received += len(message.get("body", b""))
@@ -178,6 +174,11 @@ def _guarded(send: Send, *, private: bool, encrypted: bool) -> Send:
         await send(message)
 
     return guarded
+
+
+def _has_body(scope: Scope) -> bool:
+    names = {name for name, _ in scope["headers"]}
+    return not names.isdisjoint({b"content-length", b"transfer-encoding"})
 
 
 def _declared_length(connection: HTTPConnection) -> int:
