@@ -7,5 +7,5 @@ SQLITE_ERRORS = (sqlite3.Error, UnicodeDecodeError)
 
 
 def text_or_marks(raw: bytes) -> str:
-    """Text with marks for whatever is none, which so is found and stops nothing (`text_factory`)."""
+    """Text with marks for whatever is none: a `text_factory` that finds it and stops at nothing."""
     return raw.decode("utf-8", "replace")
