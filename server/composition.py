@@ -215,7 +215,6 @@ async def _open(
         async with AsyncExitStack() as ending:
             ending.callback(config_socket.close)
             ending.callback(simulation_thread.close)
-            ending.callback(off_loop.close)
             ending.push_async_callback(deeds.close)
             ending.push_async_callback(_stop_serving, server, serving)
             ending.push_async_callback(_stop_speech, speech, rendering)
@@ -224,6 +223,8 @@ async def _open(
             ending.push_async_callback(_cancel, watching)
             ending.push_async_callback(runtime.close)
             ending.push_async_callback(_cancel, pruning)
+            # Nobody's end waits for what takes long: who asked for it is told to come again.
+            ending.callback(off_loop.close)
             # First: a report that no run takes any more must not be acknowledged.
             ending.callback(registry.close)
 

@@ -13,6 +13,7 @@ from server.raw_answers import raw_problem
 from server.visitors import STATE_KEY, Beyond, Phase, Visitor
 
 TOO_LATE = ("head_s", "body_s")
+SHUTTING_DOWN = "the service is shutting down"
 
 
 class HttpProtocol(H11Protocol):
@@ -69,17 +70,38 @@ class HttpProtocol(H11Protocol):
         """Whether there is a part of a request that could not be read yet."""
         return bool(self.conn.trailing_data[0])
 
+    def shutdown(self) -> None:
+        """End the connection because the server ends, once what was asked for is answered.
+
+        What has not come by now is not waited for.
+        """
+        if self.conn.their_state is h11.SEND_BODY:
+            self.cut_off()
+        else:
+            super().shutdown()
+
+    def cut_off(self) -> None:
+        """End the connection now because the server ends, whatever is under way on it."""
+        self._cut_off(HTTPStatus.SERVICE_UNAVAILABLE, SHUTTING_DOWN)
+
     def _end(self, beyond: Beyond) -> None:
         """End the connection; a client that is only slow is told why."""
+        if beyond.limit in TOO_LATE:
+            self._cut_off(HTTPStatus.REQUEST_TIMEOUT, beyond.sentence)
+        else:
+            self.transport.abort()
+
+    def _cut_off(self, status: HTTPStatus, why: str) -> None:
+        """End the connection in the middle of a request; why is said where an answer is owed."""
         owed = self.conn.our_state in (h11.IDLE, h11.SEND_RESPONSE)
-        if self.transport.is_closing() or beyond.limit not in TOO_LATE or not owed:
+        if self.transport.is_closing() or not owed:
             self.transport.abort()
             return
         if self.cycle is not None:
             # The application hears that the client is gone, and can answer nothing more.
             self.cycle.disconnected = True
             self.cycle.message_event.set()
-        self._answer(HTTPStatus.REQUEST_TIMEOUT, beyond.sentence)
+        self._answer(status, why)
 
     def _answer(self, status: HTTPStatus, detail: str) -> None:
         self.transport.write(raw_problem(status, detail))

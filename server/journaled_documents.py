@@ -1,6 +1,6 @@
 """Documents of one kind: the built-in ones, and those that were uploaded into the journal."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from functools import partial
@@ -23,7 +23,8 @@ from server.errors import ConflictError, InvalidError, NotFoundError
 from server.journal.events import Author, DocumentDeleted, DocumentKept
 from server.journal.journal import Document, Entry, Journal
 from server.limits import Limits
-from server.off_loop import OffLoop
+from server.off_loop import MUCH_CHARS, OffLoop
+from server.remembered_views import RememberedViews
 from server.rendered import Rendered
 from server.uploads import Uploads
 
@@ -128,7 +129,7 @@ class _Reading:
 class JournaledDocuments:
     """A `DocumentLibrary` that keeps what is uploaded in the journal.
 
-    All that is uploaded has at most `most_chars` characters.
+    `limits` say how much may be uploaded of it, and wait to be seen.
     `utc_now` tells when something is kept or deleted.
     `needs` are the kinds that a check looks up; `users` hold documents that may use these ones.
     """
@@ -139,7 +140,7 @@ class JournaledDocuments:
         journal: Journal,
         built_in: FixedDocuments,
         checker: DocumentChecker,
-        most_chars: int = Limits().uploaded_chars,
+        limits: Limits | None = None,
         *,
         utc_now: Callable[[], datetime],
         needs: Iterable[DocumentKind] = (),
@@ -153,11 +154,13 @@ class JournaledDocuments:
         self._utc_now = utc_now
         self._built_in = built_in
         self._reading = _Reading(kind, built_in, checker, summarize)
-        self._most_chars = most_chars
+        limits = limits or Limits()
+        self._most_chars = limits.uploaded_chars
         self._needs = tuple(needs)
         self._users = users
         self._uploads = uploads or Uploads(journal, {kind: built_in})
         self._off_loop = off_loop or OffLoop()
+        self._views: RememberedViews[DocumentView] = RememberedViews(limits)
 
     async def summaries(self, offset: int = 0, limit: int = 1000) -> Sequence[DocumentSummary]:
         alone = self._reading.summarize is None
@@ -172,7 +175,20 @@ class JournaledDocuments:
 
     async def get(self, name: str) -> Rendered[DocumentView]:
         text, uploaded = await self._document(name)
-        return await self._read(text, uploaded, partial(self._reading.view, name, text))
+        make = partial(self._read, text, uploaded, partial(self._reading.view, name, text))
+        chars = len(text) + _chars(uploaded)
+        if chars < MUCH_CHARS:
+            return await make()
+        return await self._views.of(chars, partial(self._read_for, name, text, uploaded), make)
+
+    def _read_for(self, name: str, text: str, uploaded: Uploaded) -> Iterator[str]:
+        """All that the view of a document depends on."""
+        # Of two with one name the built-in one counts.
+        yield from (name, text, str(name in self._built_in.names()))
+        for kind in sorted(uploaded):
+            for each, named in sorted(uploaded[kind].items()):
+                yield from (kind, each, named)
+        yield from self._uploads.fixed_texts(self._needs)
 
     async def kept(self, name: str) -> Rendered[KeptDocument]:
         text, uploaded = await self._document(name)

@@ -59,7 +59,6 @@ def build_library(
 ) -> Library:
     """The documents that are fixed, and those that a journal keeps, since `utc_now` said."""
     limits = limits or Limits()
-    most = limits.uploaded_chars
     off_loop = off_loop or OffLoop(limits)
     uploads = Uploads(journal, fixed, limits)
     tree, scene, scenario = DocumentKind.TREE, DocumentKind.SCENE, DocumentKind.SCENARIO
@@ -68,7 +67,7 @@ def build_library(
         journal,
         fixed[scenario],
         ScenarioChecker(fixed, worlds),
-        most,
+        limits,
         utc_now=utc_now,
         needs=(tree, scene),
         summarize=_about_scenario,
@@ -80,7 +79,7 @@ def build_library(
         journal,
         fixed[tree],
         TreeChecker(fixed, worlds),
-        most,
+        limits,
         utc_now=utc_now,
         needs=(scene,),
         users=[scenarios],
@@ -92,7 +91,7 @@ def build_library(
         journal,
         fixed[scene],
         SceneFileChecker(fixed, worlds),
-        most,
+        limits,
         utc_now=utc_now,
         users=[trees, scenarios],
         summarize=_about_scene,

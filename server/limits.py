@@ -25,6 +25,7 @@ SetLimitName = Literal[
     "head_s",
     "body_s",
     "stuck_client_s",
+    "incoming_bytes",
     "stranger_body_bytes",
     "wrong_tokens",
     "idempotency_keys",
@@ -81,7 +82,7 @@ class Limits(BaseModel):
     uploaded_chars: AtLeastOne = 32 * 1024**2
     """Characters of all uploaded files of one kind together."""
     waiting_chars: AtLeastOne = 64 * 1024**2
-    """Characters of what waits to be read and checked as it is large."""
+    """Characters of what waits to be read and checked as it is large; one piece each may wait."""
     check_s: Seconds = 120.0
     """How long reading and checking one large piece of that may take."""
     running_runs: AtLeastOne = 16
@@ -100,6 +101,8 @@ class Limits(BaseModel):
     """How long the body may take after that."""
     stuck_client_s: Seconds = 30.0
     """How long a client may take nothing of what is sent to it."""
+    incoming_bytes: AtLeastOne = 64 * 1024**2
+    """Bytes of bodies that come at once, beyond 64 KiB of each; one of everybody may have more."""
     stranger_body_bytes: AtLeastOne = 16 * 1024
     """Bytes of the body of a request that anybody may send."""
     wrong_tokens: AtLeastOne = 5

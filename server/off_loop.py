@@ -34,6 +34,7 @@ NICE = 5
 class OffLoop:
     """Does one piece of long work after the other in a process, which the first one starts.
 
+    Those on whose behalf it is done take turns (`server.asking`).
     `longest_s` is how long one may take.
     """
 
@@ -42,13 +43,14 @@ class OffLoop:
         self.longest_s = limits.check_s
         self._turns = OneByOne(limits.waiting_chars)
         self._pool: ProcessPoolExecutor | None = None
+        self._closed = False
 
     async def run(self, chars: int, work: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
         """Do what there is to do with so many characters of text.
 
         `work` and what it is given have to be picklable, and so has what it returns or raises.
-        Raises what it raises, and `BusyError` where too much waits, where it takes too long, and
-        where its process has died.
+        Raises what it raises, and `BusyError` where too much waits, where it takes too long, where
+        its process has died, and once this is closed.
         """
         if chars < MUCH_CHARS:
             return await asyncio.to_thread(work, *args, **kwargs)
@@ -56,13 +58,17 @@ class OffLoop:
             return await self._run(partial(work, *args, **kwargs))
 
     async def _run(self, work: Callable[[], T]) -> T:
+        if self._closed:
+            raise _shutting_down()
         pool = self._pool or self._start()
         limit = asyncio.timeout(self.longest_s)
         try:
             async with limit:
                 return await asyncio.wrap_future(pool.submit(work))
         except BrokenProcessPool:
-            self.close()
+            if self._closed:
+                raise _shutting_down() from None
+            self._end()
             raise BusyError(
                 "the process that does large pieces of work has died, as where there is too little "
                 "memory: try it again"
@@ -70,14 +76,14 @@ class OffLoop:
         except TimeoutError:
             if not limit.expired():
                 raise
-            self.close()
+            self._end()
             raise BusyError(
                 f"reading and checking this takes longer than {self.longest_s:g} s",
                 limit="check_s",
             ) from None
         except asyncio.CancelledError:
             # Else whoever is next would wait for what nobody wants any more.
-            self.close()
+            self._end()
             raise
 
     def _start(self) -> ProcessPoolExecutor:
@@ -86,6 +92,11 @@ class OffLoop:
         return self._pool
 
     def close(self) -> None:
+        """End the process, whatever is under way in it, and do no more in one."""
+        self._closed = True
+        self._end()
+
+    def _end(self) -> None:
         """End the process; what is under way in it is of no use any more. The next starts anew."""
         pool, self._pool = self._pool, None
         if pool is None:
@@ -94,6 +105,10 @@ class OffLoop:
         pool.shutdown(wait=False, cancel_futures=True)
         for process in processes:
             process.kill()
+
+
+def _shutting_down() -> BusyError:
+    return BusyError("the service is shutting down")
 
 
 def _prepare() -> None:

@@ -6,10 +6,11 @@ import ssl
 import sys
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 
 import uvicorn
 from fastapi import FastAPI
+from starlette.types import ASGIApp, Receive, Scope, Send
 from uvicorn.config import STARTUP_FAILURE
 
 from server.accepting import Acceptor
@@ -24,12 +25,15 @@ from server.websocket_protocol import WebSocketProtocol
 MAX_SOCKET_MESSAGE_BYTES = 1024 * 1024
 """Robots send pictures; helpers get an `error` message for anything above 64 KiB."""
 
+GRACE_S = 0.5
+"""So long the service waits for answers that are being made or sent when it is to end."""
+
 
 def serve_config(app: FastAPI, settings: Settings) -> uvicorn.Config:
     """How uvicorn serves the application."""
     proxies = TrustedProxies(settings.trusted_proxies)
     config = uvicorn.Config(
-        app,
+        _until_cut_off(app),
         host=settings.host,
         port=settings.port,
         log_level=settings.log_level,
@@ -38,6 +42,7 @@ def serve_config(app: FastAPI, settings: Settings) -> uvicorn.Config:
         ws_max_size=MAX_SOCKET_MESSAGE_BYTES,
         # Compressing the same event again for every client costs more than it saves.
         ws_per_message_deflate=False,
+        # For what has not ended though it was cut off.
         timeout_graceful_shutdown=5,
         server_header=False,
         # Anybody can send such headers: they are believed of configured proxies only.
@@ -47,6 +52,16 @@ def serve_config(app: FastAPI, settings: Settings) -> uvicorn.Config:
     # After the configuration, which sets up uvicorn's loggers.
     hide_secrets()
     return config
+
+
+def _until_cut_off(app: FastAPI) -> ASGIApp:
+    """The application, which may be cancelled: uvicorn would call that a mistake of it."""
+
+    async def answer(scope: Scope, receive: Receive, send: Send) -> None:
+        with suppress(asyncio.CancelledError):
+            await app(scope, receive, send)
+
+    return answer
 
 
 class Server(uvicorn.Server):
@@ -85,6 +100,23 @@ class Server(uvicorn.Server):
             acceptor.start(self.config.backlog)
         self.servers = acceptors  # type: ignore[assignment]
         self.started = True
+
+    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+        """Take no more connections, and end those there are, soon whatever is under way on them."""
+        cutting = asyncio.get_running_loop().call_later(GRACE_S, self._cut_off)
+        try:
+            await super().shutdown(sockets)
+        finally:
+            cutting.cancel()
+
+    def _cut_off(self) -> None:
+        for connection in list(self.server_state.connections):
+            if isinstance(connection, HttpProtocol):
+                connection.cut_off()
+            else:
+                connection.transport.abort()
+        for task in self.server_state.tasks:
+            task.cancel()
 
     def _protocol(self, visitor: Visitor) -> asyncio.Protocol:
         state = self.lifespan.state | {STATE_KEY: visitor}

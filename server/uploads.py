@@ -2,7 +2,7 @@
 
 import asyncio
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 from server.documents import DocumentKind, FixedDocuments, Uploaded
 from server.journal.journal import Journal
@@ -30,10 +30,11 @@ class Uploads:
     ) -> None:
         self._journal = journal
         self._fixed = fixed
+        most_chars = (limits or Limits()).waiting_chars
         # All of a kind is read at a time, and most of it dropped again: that is there once, and
         # what is kept of it then waits where there is a limit to that.
-        self._reading = asyncio.Lock()
-        self.changes = OneByOne((limits or Limits()).waiting_chars)
+        self._reading = OneByOne(most_chars)
+        self.changes = OneByOne(most_chars)
         """Who changes a document has a turn: what it was checked with is to stay as it is."""
 
     async def of(self, kind: DocumentKind) -> dict[str, str]:
@@ -44,7 +45,7 @@ class Uploads:
         self, kind: DocumentKind, name: str, needs: Iterable[DocumentKind]
     ) -> tuple[str, Uploaded] | None:
         """One document, and of these kinds what it may name; None if there is none."""
-        async with self._reading:
+        async with self._reading.turn(0):
             text = (await self.of(kind)).get(name)
             return None if text is None else (text, await self._named_in([text], needs))
 
@@ -52,7 +53,7 @@ class Uploads:
         self, kind: DocumentKind, names: slice, others: Iterable[str], needs: Iterable[DocumentKind]
     ) -> tuple[list[str], Uploaded]:
         """Some names of a kind in their order, among the `others`; what they are, and may name."""
-        async with self._reading:
+        async with self._reading.turn(0):
             uploaded = await self.of(kind)
             chosen = sorted({*others, *uploaded})[names]
             own = {each: uploaded[each] for each in chosen if each in uploaded}
@@ -63,8 +64,14 @@ class Uploads:
 
         Each kind only names kinds that come later.
         """
-        async with self._reading:
+        async with self._reading.turn(0):
             return await self._named_in(texts, kinds)
+
+    def fixed_texts(self, kinds: Iterable[DocumentKind]) -> Iterator[str]:
+        """Names and texts of the fixed documents of these kinds, as they are now."""
+        for fixed in (self._fixed[kind] for kind in kinds if kind in self._fixed):
+            for name in fixed.names():
+                yield from (name, fixed.read(name))
 
     async def _named_in(self, texts: Iterable[str], kinds: Iterable[DocumentKind]) -> Uploaded:
         found: dict[DocumentKind, dict[str, str]] = {}

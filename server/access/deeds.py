@@ -77,7 +77,7 @@ def audit_of(journal: Path) -> Audit:
 
     Raises `FileNotFoundError`, `JournalSchemaError` and `JournalReadError`.
     """
-    with JournalReader(journal) as reader, reader.at_one_moment():
+    with JournalReader(journal, marks=True) as reader, reader.at_one_moment():
         seals = reader.seals()
         deeds = [
             deed.sealed(None if seals is None else seals.of(deed.seq))

@@ -132,12 +132,17 @@ def needed_for_request(method: str, path: str) -> Role | None:
 
     What has no row needs an admin, so that nothing is open because it was forgotten.
     """
-    of_path = [each for pattern, each in PATTERNS if pattern.match(path)]
-    found = next((each for each in of_path if each.method == method), None)
+    found = endpoint_of(method, path)
     if found is not None:
         return found.role
     # Of the right path and another method: the service says itself that it cannot be done.
-    return Role.VIEWER if of_path else Role.ADMIN
+    return Role.VIEWER if any(pattern.match(path) for pattern, _ in PATTERNS) else Role.ADMIN
+
+
+def endpoint_of(method: str, path: str) -> Endpoint | None:
+    """What a request asks for, if it has a row."""
+    of_method = (each for each in PATTERNS if each[1].method == method)
+    return next((endpoint for pattern, endpoint in of_method if pattern.match(path)), None)
 
 
 def needed_for_message(socket: str, kind: str) -> Role | None:

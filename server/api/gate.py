@@ -1,7 +1,6 @@
 """The gate before every HTTP request: Host, Origin, token, role and the size of the body."""
 
-import asyncio
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 from starlette.datastructures import MutableHeaders
 from starlette.exceptions import HTTPException
@@ -12,13 +11,15 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from server.access.access import Access
 from server.access.permissions import needed_for_request
 from server.access.roles import Role
+from server.api.body_sizes import LARGE_BODY_BYTES, IncomingBodies, most_bytes
 from server.api.problems import forbidden, problem, problem_response
 from server.api.safe_headers import OVER_TLS, SAFE_HEADERS
+from server.asking import NOBODY, asker
 from server.limits import Limits
 from server.refusals import Refusals
 
-MAX_BODY_BYTES = 8 * 1024 * 1024
 PROTECTED = ("/api/", "/metrics")
+TOO_MANY_BODIES = "too many large bodies of requests come at once: send this one again later"
 SHOW_TOKEN = "show the token: 'Authorization: Bearer ...', or sign in"
 SAFE_METHODS = ("GET", "HEAD", "OPTIONS")
 
@@ -29,7 +30,8 @@ class Gate:
     def __init__(self, app: ASGIApp, access: Access, limits: Limits, refusals: Refusals) -> None:
         self._app = app
         self._access = access
-        self._strangers_bytes = min(limits.stranger_body_bytes, MAX_BODY_BYTES)
+        self._strangers_bytes = min(limits.stranger_body_bytes, LARGE_BODY_BYTES)
+        self._incoming = IncomingBodies(limits.incoming_bytes)
         self._refusals = refusals
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -42,10 +44,11 @@ class Gate:
             private=scope["path"].startswith(PROTECTED),
             encrypted=scope["scheme"] == "https",
         )
-        if refusal is None:
-            await self._app(scope, self._limited(scope, receive), guarded)
-        else:
+        if refusal is not None:
             await refusal(scope, receive, guarded)
+            return
+        with self._incoming.body() as has_room:
+            await self._app(scope, self._limited(scope, receive, has_room), guarded)
 
     async def _refusal(self, scope: Scope, connection: HTTPConnection) -> Response | None:
         if not self._access.host_allowed(connection):
@@ -74,6 +77,7 @@ class Gate:
         caller, needed = admission.caller, _needed(scope)
         state = scope.setdefault("state", {})
         state["known"] = caller
+        asker.set(NOBODY if caller is None else caller.principal.name)
         if needed is None:
             return None
         if caller is None:
@@ -84,38 +88,36 @@ class Gate:
 
     def _most_bytes(self, scope: Scope) -> int:
         """How large a body may be; much smaller where nobody had to say who they are."""
-        return self._strangers_bytes if _needed(scope) is None else MAX_BODY_BYTES
+        if _needed(scope) is None:
+            return self._strangers_bytes
+        return most_bytes(scope["method"], scope["path"])
 
     def _too_large(self, scope: Scope) -> str:
-        most = self._most_bytes(scope)
-        if most < MAX_BODY_BYTES:
-            self._refusals.note("stranger_body_bytes")
-            return f"the body is larger than {most} bytes"
-        self._refusals.note("body_bytes")
-        return f"the body is larger than {MAX_BODY_BYTES // 1024**2} MiB"
+        self._refusals.note("stranger_body_bytes" if _needed(scope) is None else "body_bytes")
+        return f"the body is larger than {_spoken(self._most_bytes(scope))}"
 
-    def _limited(self, scope: Scope, receive: Receive) -> Receive:
+    def _limited(self, scope: Scope, receive: Receive, has_room: Callable[[int], bool]) -> Receive:
         """A body without a declared length is counted as it comes.
 
-        One that is still coming when the service stops, or the client hangs up, is refused like
+        One that is still coming when the client hangs up, or the service stops, is refused like
         anything else.
         """
         received, complete, most = 0, False, self._most_bytes(scope)
 
         async def limited() -> Message:
             nonlocal received, complete
-            try:
-                message = await receive()
-            except asyncio.CancelledError:
-                if complete:
-                    raise
-                raise HTTPException(503, "the service is shutting down") from None
-            if message["type"] == "http.disconnect" and not complete:
+            message = await receive()
+            if message["type"] == "http.disconnect":
+                if complete or not _has_body(scope):
+                    return message
                 # Nobody reads this, but it ends the request without a defect in the log.
                 raise HTTPException(400, "the connection ended before the body had come")
             received += len(message.get("body", b""))
             if received > most:
                 raise HTTPException(413, self._too_large(scope))
+            if not has_room(received):
+                self._refusals.note("incoming_bytes")
+                raise HTTPException(503, TOO_MANY_BODIES, {"Retry-After": "5"})
             if not (complete or message.get("more_body", False)):
                 complete = True
                 await self._look_again(scope)
@@ -142,6 +144,13 @@ def _needed(scope: Scope) -> Role | None:
     return needed_for_request(scope["method"], path) if path.startswith(PROTECTED) else None
 
 
+def _spoken(size: int) -> str:
+    for unit, count in (("MiB", 1024**2), ("KiB", 1024)):
+        if size % count == 0 and size >= count:
+            return f"{size // count} {unit}"
+    return f"{size} bytes"
+
+
 def _refused(status: int, detail: str, headers: Mapping[str, str] | None = None) -> Response:
     return problem_response(problem(status, detail), headers)
 
@@ -165,6 +174,11 @@ def _guarded(send: Send, *, private: bool, encrypted: bool) -> Send:
         await send(message)
 
     return guarded
+
+
+def _has_body(scope: Scope) -> bool:
+    names = {name for name, _ in scope["headers"]}
+    return not names.isdisjoint({b"content-length", b"transfer-encoding"})
 
 
 def _declared_length(connection: HTTPConnection) -> int:

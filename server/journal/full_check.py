@@ -13,6 +13,7 @@ from server.journal.chain import SELECT_ROWS, Row, breaks
 from server.journal.journal import JournalReadError
 from server.journal.migrations import MIGRATIONS, WITH_CHAIN
 from server.journal.run_index import ENDINGS, UNREADABLE
+from server.journal.sqlite_errors import text_or_marks
 from server.journal.stored_event import read_event
 
 MOST_PAGE_FINDINGS = 20
@@ -47,16 +48,11 @@ def check_journal(path: Path, fold: FoldRun) -> JournalCheck:
     if not path.is_file():
         return JournalCheck(findings=[Finding(f"'{path}' is no file, and so no journal")])
     connection = sqlite3.connect(f"{path.resolve().as_uri()}?mode=ro", uri=True)
-    # Text that is none must be found, not stop the search.
-    connection.text_factory = _decoded
+    connection.text_factory = text_or_marks
     try:
         return _Check(connection).done(fold)
     finally:
         connection.close()
-
-
-def _decoded(raw: bytes) -> str:
-    return raw.decode("utf-8", "replace")
 
 
 class _Check:

@@ -59,6 +59,7 @@ def _open_file(path: Path, busy_timeout_s: float, check_s: float, lock: FileLock
     try:
         _refuse_emptied(path, lock)
         keep_to_owner(path)
+        lock.lock_file()
         opened = _connected(str(path), busy_timeout_s, check_s, SameFile(path), lock)
         lock.say_made()
     except (sqlite3.OperationalError, OSError) as error:

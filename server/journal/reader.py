@@ -13,22 +13,25 @@ from server.journal.events import Event
 from server.journal.journal import JournalReadError, UnreadableEvent
 from server.journal.migrations import MIGRATIONS, WITH_CHAIN, JournalSchemaError
 from server.journal.readable import event_of
-from server.journal.sqlite_errors import SQLITE_ERRORS
+from server.journal.sqlite_errors import SQLITE_ERRORS, text_or_marks
 from server.journal.stored_event import read_event
 
 
 class JournalReader:
     """A journal opened for reading only, without its lock.
 
-    Raises `JournalSchemaError` for a file that is no journal, or one of a newer Mend, and
-    `FileNotFoundError`.
+    With `marks` text that is none is read, with a mark in its place, for those who look at the
+    chain, which tells of it; else it is a `JournalReadError`. Raises `JournalSchemaError` for a
+    file that is no journal, or one of a newer Mend, and `FileNotFoundError`.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, *, marks: bool = False) -> None:
         if not path.is_file():
             raise FileNotFoundError(2, "there is no such journal", str(path))
         self._path = path
         self._connection = sqlite3.connect(f"{path.resolve().as_uri()}?mode=ro", uri=True)
+        if marks:
+            self._connection.text_factory = text_or_marks
         try:
             self._check_schema(path)
         except BaseException:

@@ -53,8 +53,9 @@ class CommitStatistics:
 class GroupCommitWriter:
     """Runs work in one thread on one connection, as many pieces per transaction as are waiting.
 
-    `on_begin`, `before_commit` and `on_rollback` are called in the writer's thread; nothing is
-    committed if one of the first two raises. In the event loop of those who wait, in the order of
+    `on_begin`, `before_work`, `before_commit` and `on_rollback` are called in the writer's thread,
+    the second and third within the transaction; nothing is committed if one of the first three
+    raises. In the event loop of those who wait, in the order of
     the commits, `on_commit` is called with what was committed, and `on_failure` with why nothing
     could be.
     """
@@ -65,6 +66,7 @@ class GroupCommitWriter:
         lock: threading.Lock,
         *,
         on_begin: Callable[[], None],
+        before_work: Callable[[], None],
         before_commit: Callable[[sqlite3.Connection], None],
         on_rollback: Callable[[], None],
         on_commit: Callable[[list[Done]], None],
@@ -73,6 +75,7 @@ class GroupCommitWriter:
         self._connection = connection
         self._lock = lock
         self._on_begin = on_begin
+        self._before_work = before_work
         self._before_commit = before_commit
         self._on_rollback = on_rollback
         self._on_commit = on_commit
@@ -144,6 +147,7 @@ class GroupCommitWriter:
             with self._lock:
                 self._on_begin()
                 self._connection.execute("BEGIN IMMEDIATE")
+                self._before_work()
                 for work, future in batch:
                     try:
                         done.append(self._do(work, future))

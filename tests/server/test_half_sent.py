@@ -1,6 +1,5 @@
 """Requests whose body is still coming when something else happens."""
 
-import asyncio
 import json
 from collections.abc import Awaitable, Callable
 from pathlib import Path
@@ -40,30 +39,6 @@ async def answer_to(
     }
     await service.app(scope, receive, send)
     return sent[0]["status"], sent[1]["body"]
-
-
-@pytest.mark.parametrize(
-    ("path", "kind"), [("/api/runs", b"application/json"), ("/api/trees", b"application/yaml")]
-)
-async def test_a_half_sent_body_is_refused_when_the_service_stops(path: str, kind: bytes) -> None:
-    service = build()
-    waiting = asyncio.Event()
-    parts = [{"type": "http.request", "body": b"{", "more_body": True}]
-
-    async def receive() -> Any:
-        if parts:
-            return parts.pop()
-        waiting.set()
-        await asyncio.Event().wait()
-
-    headers = (b"content-type", kind), (b"content-length", b"100")
-    handling = asyncio.create_task(answer_to(service, path, receive, *headers))
-    await asyncio.wait_for(waiting.wait(), timeout=60)
-    handling.cancel()
-    status, body = await asyncio.wait_for(handling, timeout=60)
-    assert status == 503
-    assert b"shutting down" in body
-    service.journal.close()
 
 
 @pytest.mark.parametrize("late", [True, False])

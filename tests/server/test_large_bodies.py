@@ -47,7 +47,7 @@ async def test_what_anybody_may_send_is_short(
 ) -> None:
     declared = await stranger.post(path, content=b" " * (MOST + 1))
     assert declared.status_code == 413
-    assert declared.json()["detail"] == f"the body is larger than {MOST} bytes"
+    assert declared.json()["detail"] == f"the body is larger than {MOST // 1024} KiB"
 
     async def in_pieces() -> AsyncIterator[bytes]:
         for _ in range(MOST // 1024 + 1):

@@ -93,6 +93,20 @@ async def test_its_process_ends_with_it() -> None:
     worker.wait(60)
 
 
+async def test_what_is_under_way_or_waits_when_it_is_closed_is_abandoned() -> None:
+    off_loop = OffLoop()
+    worker = psutil.Process(await off_loop.run(MUCH_CHARS, os.getpid))
+    asked = [asyncio.create_task(off_loop.run(MUCH_CHARS, signal.pause)) for _ in range(3)]
+    await asyncio.sleep(0)
+    off_loop.close()
+    async with asyncio.timeout(60):
+        told = await asyncio.gather(*asked, return_exceptions=True)
+    assert [str(each) for each in told] == ["the service is shutting down"] * 3
+    worker.wait(60)
+    with pytest.raises(BusyError, match="shutting down"):
+        await off_loop.run(MUCH_CHARS, os.getpid)
+
+
 HAS_A_PROCESS = """
 import asyncio, os, signal
 from server.off_loop import MUCH_CHARS, OffLoop

@@ -140,6 +140,25 @@ async def test_a_batch_that_cannot_be_read_takes_no_other_deed_with_it(tmp_path:
     assert told == {1: None, 3: None, 4: None}
 
 
+@pytest.mark.parametrize(
+    ("column", "value"),
+    [
+        ("body", "CAST(x'ff' AS TEXT)"),
+        ("body", "CAST(replace(body, 'olga', CAST(x'ff' AS TEXT)) AS TEXT)"),
+        ("run", "CAST(x'ff' AS TEXT)"),
+    ],
+)
+def test_a_deed_whose_text_is_none_is_marked_and_takes_no_other_with_it(
+    path: Path, column: str, value: str
+) -> None:
+    alter(path, f"UPDATE events SET {column} = {value} WHERE seq = 2", FORGE.replace("?", "4"))
+    said = why_it_ended(audit(path))
+    assert "event 2: not what was committed" in said
+    assert "event 4: not what was committed" in said
+    assert [each["seq"] for each in exported(path)] == [1, 2, 3, 4]
+    assert marked(path) == [2, 4]
+
+
 async def test_nothing_that_is_left_of_a_pruned_journal_is_called_damaged(path: Path) -> None:
     write_history(path, 8)
     with closing(sqlite3.connect(path)) as connection, connection:
