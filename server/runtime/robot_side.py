@@ -133,6 +133,7 @@ class RobotSide:
 
     def _tell(self, doing: Doing, command: str, body: CommandBody) -> None:
         self.doing, self.command = doing, command
+        self.livelock.tell()
         self.link.send(self.robot, command, body)
 
     def look(self, purpose: Purpose, **fields: Any) -> None:

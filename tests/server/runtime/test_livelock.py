@@ -37,6 +37,7 @@ class ToldRobot:
     def __init__(self, service: LiveService, name: str) -> None:
         self.boots = 0
         self.told = 0
+        self.asks = False
         self._service = service
         self._name = name
         self._tasks: list[asyncio.Task[None]] = []
@@ -81,10 +82,10 @@ class ToldRobot:
         self._seq += 1
         await self._say(type="report", seq=self._seq, body=body)
 
-    async def look(self, command: str, **fields: Any) -> None:
+    async def look(self, command: str, x: float = 0.5, **fields: Any) -> None:
         """What it sees: everything, and everything that is to be there."""
         seen = {
-            part: {"x": 0.5, "y": 0.1, "z": 0.7, "yaw": 0.0, "time": time.monotonic()}
+            part: {"x": x, "y": 0.1, "z": 0.7, "yaw": 0.0, "time": time.monotonic()}
             for part in PARTS
         }
         await self.report(type="looked", command=command, objects=seen, gripper=GRIPPER, **fields)
@@ -140,6 +141,38 @@ async def goes_backwards(robot: ToldRobot, command: str, body: Body) -> None:
         await robot.report(type="holding", at="in_place", **about)
 
 
+async def _misses(robot: ToldRobot, body: Body) -> None:
+    about = {"execution": body["execution"]}
+    await robot.report(type="issue", issue="missed", step=1, interrupts=True, **about)
+    await robot.report(type="holding", at="neutral", **about)
+    robot.asks = True
+
+
+async def rejects_looks_while_it_asks(robot: ToldRobot, command: str, body: Body) -> None:
+    if body["type"] == "start":
+        await _misses(robot, body)
+    elif robot.asks:
+        await robot.report(type="rejected", command=command, reason="I would rather not")
+    else:
+        await robot.look(command)
+
+
+async def sees_its_part_wander_while_it_asks(robot: ToldRobot, command: str, body: Body) -> None:
+    if body["type"] == "start":
+        await _misses(robot, body)
+    elif body["type"] == "look":
+        await robot.look(command, x=0.3 + 0.1 * (robot.told % 5))
+
+
+async def floods(robot: ToldRobot, command: str, body: Body) -> None:
+    """It makes as much as it may of each thing that it is told."""
+    if body["type"] == "look":
+        await robot.look(command)
+    elif body["type"] in ("start", "resume"):
+        for _ in range(MOST_FRUITLESS_COMMANDS):
+            await robot.report(type="holding", execution=body["execution"], at="in_place")
+
+
 async def boots_at_each_start(robot: ToldRobot, command: str, body: Body) -> None:
     if body["type"] == "look":
         await robot.look(command)
@@ -182,11 +215,17 @@ async def end_of(
 
 @pytest.mark.parametrize(
     "obey",
-    [rejects_looks, holds, knows_an_unknown_issue, goes_backwards, boots_at_each_start],
+    [
+        rejects_looks,
+        holds,
+        knows_an_unknown_issue,
+        goes_backwards,
+        boots_at_each_start,
+        rejects_looks_while_it_asks,
+        sees_its_part_wander_while_it_asks,
+    ],
 )
-async def test_a_robot_with_which_nothing_comes_on_is_given_up(
-    obey: Obey,
-) -> None:
+async def test_a_robot_with_which_nothing_comes_on_is_given_up(obey: Obey) -> None:
     journal = SqliteJournal(":memory:")
     ended, robot, events = await end_of(obey, journal)
     journal.close()
