@@ -10,15 +10,17 @@ from uuid import UUID
 
 import pytest
 from live_service import LiveService, live_service
-from pretend_service import BARE, OneTree
+from pretend_service import BARE, OneTree, pretend_service
 from task_documents import definition_of
 
 from robots.link.channel import Channel, ChannelClosedError, memory_channel
 from robots.link.messages import Command, service_message
+from server.dialogues.escalation import EscalationPolicy
 from server.journal.sqlite import SqliteJournal
 from server.runtime.livelock import MOST_FRUITLESS_COMMANDS
 from server.runtime.requests import RunRequest
 from server.runtime.views import RunStatus, RunView
+from sim.tabletop.layout import lay_out
 
 PARTS = ("green_leg", "blue_leg", "pink_bar", "yellow_bar")
 TREE = {
@@ -38,7 +40,9 @@ class ToldRobot:
         self.boots = 0
         self.told = 0
         self.asks = False
-        self._service = service
+        self.service = service
+        self.run: asyncio.Future[UUID] = asyncio.get_running_loop().create_future()
+        self.executing = ""
         self._name = name
         self._tasks: list[asyncio.Task[None]] = []
 
@@ -47,7 +51,7 @@ class ToldRobot:
         self.boots += 1
         self._seq = 0
         self._channel, theirs = memory_channel()
-        self._serving = asyncio.create_task(self._service.registry.serve(theirs))
+        self._serving = asyncio.create_task(self.service.registry.serve(theirs))
         await self._say(
             type="hello", protocol=1, robot=self._name, boot=f"boot {self.boots}",
             behaviors=["pick_and_place"], cameras=[],
@@ -198,6 +202,7 @@ async def at_work(
         while not all(map(service.registry.connected, names)):  # noqa: ASYNC110
             await asyncio.sleep(0.01)
         run = await service.runtime.start_run(RunRequest(tree="one", world="live", robots=names))
+        robot.run.set_result(run.id)
         yield service, robot, run.id
         await robot.stop()
         await another.stop()
@@ -269,3 +274,51 @@ async def test_a_robot_whose_program_is_killed_again_and_again_goes_on_while_it_
     journal.close()
     assert ended.status is RunStatus.FINISHED
     assert robot.told > 2 * most
+
+
+async def test_a_run_that_people_pause_and_resume_goes_on(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    most = 10
+    monkeypatch.setattr("server.runtime.livelock.MOST_FRUITLESS_COMMANDS", most)
+    resumed = 0
+
+    async def pauses(robot: ToldRobot, command: str, body: Body) -> None:
+        nonlocal resumed
+        if body["type"] == "look":
+            await robot.look(command, there=body["finished"])
+        elif body["type"] == "interrupt":
+            await robot.report(type="holding", execution=robot.executing, at="in_place")
+            await robot.service.runtime.resume(await robot.run)
+        elif body["type"] == "resume" and resumed >= most:
+            await robot.finish(body)
+        elif body["type"] in ("start", "resume"):
+            robot.executing = body["execution"]
+            resumed += 1
+            await robot.service.runtime.pause(await robot.run)
+
+    journal = SqliteJournal(":memory:")
+    ended, robot, _ = await end_of(pauses, journal)
+    journal.close()
+    assert ended.status is RunStatus.FINISHED
+    assert robot.told > 3 * most
+
+
+async def test_a_robot_that_asks_for_an_hour_is_not_given_up() -> None:
+    """Its part stands before it, and it looks every other second whether that changes."""
+    parts = [("part_1", "spot_1")]
+    leaf = {"behavior": "pick_and_place", "object": "part_1", "place": "spot_1"}
+    hour = EscalationPolicy(answer_within_s=1800.0)
+    async with pretend_service(
+        definition_of({"then": [leaf]}),
+        {"part_1": [("missed", 4)]},
+        policy=hour,
+        scene=lay_out(parts, seed=1),
+        wrong=True,
+    ) as service:
+        ended, events = await service.run_to_end(answers="none")
+        [robot] = service.robots.robots.values()
+    looks = [each for each in robot.commands if each.type == "look"]
+    assert ended.status is RunStatus.FINISHED
+    assert events[-1].time > 3600.0
+    assert len(looks) > 5 * MOST_FRUITLESS_COMMANDS
