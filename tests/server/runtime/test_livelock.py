@@ -59,6 +59,10 @@ class ToldRobot:
         )  # fmt: skip
         self._tasks.append(asyncio.create_task(self._work(self._channel, obey)))
 
+    async def ended(self) -> None:
+        """Its connection has come to its end."""
+        await self._serving
+
     async def end(self) -> None:
         """Its program ends, and the service has noticed."""
         await self._channel.close()
@@ -169,11 +173,11 @@ async def sees_its_part_wander_while_it_asks(robot: ToldRobot, command: str, bod
 
 
 async def floods(robot: ToldRobot, command: str, body: Body) -> None:
-    """It makes as much as it may of each thing that it is told."""
+    """It makes as much as it likes of each thing that it is told."""
     if body["type"] == "look":
         await robot.look(command)
     elif body["type"] in ("start", "resume"):
-        for _ in range(MOST_FRUITLESS_COMMANDS):
+        for _ in range(40):
             await robot.report(type="holding", execution=body["execution"], at="in_place")
 
 
@@ -242,6 +246,19 @@ async def test_a_robot_with_which_nothing_comes_on_is_given_up(obey: Obey) -> No
     )
     assert MOST_FRUITLESS_COMMANDS <= robot.told <= MOST_FRUITLESS_COMMANDS + 5
     assert events <= 4 * MOST_FRUITLESS_COMMANDS
+
+
+async def test_a_robot_reports_no_more_for_being_told_the_same_again(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    most = 100
+    monkeypatch.setattr("server.robots.known_robot.MOST_UNASKED_REPORTS", most)
+    journal = SqliteJournal(":memory:")
+    async with at_work(floods, journal, with_another=False) as (_, robot, run):
+        await robot.ended()
+        events = await journal.read(0, 100_000, run)
+    journal.close()
+    assert len(events) <= most + 10
 
 
 async def test_another_robot_goes_on_without_one_that_is_given_up() -> None:
