@@ -81,3 +81,16 @@ async def test_what_a_proxy_passes_on_that_is_no_address_is_nobodys() -> None:
         another = await proxy.get("/api/runs", headers=shows(TOKEN, "made-up-2"))
         real = await proxy.get("/api/runs", headers=shows(TOKEN, "192.0.2.1"))
     assert [another.status_code, real.status_code] == [429, 200]
+
+
+async def test_of_ipv6_whoever_has_a_network_is_one_guesser() -> None:
+    async with (
+        serving(token=TOKEN, limits=LIMITS, trusted_proxies=PROXY) as service,
+        httpx.AsyncClient(base_url=service.url) as proxy,
+    ):
+        for number in range(2):
+            headers = shows(f"guess {number}", f"2001:db8::{number}")
+            assert (await proxy.get("/api/runs", headers=headers)).status_code == 401
+        same = await proxy.get("/api/runs", headers=shows(TOKEN, "2001:db8::ffff:7"))
+        other = await proxy.get("/api/runs", headers=shows(TOKEN, "2001:db8:0:1::1"))
+    assert [same.status_code, other.status_code] == [429, 200]

@@ -1,6 +1,8 @@
 """What becomes of tests that fail: one in a browser is run once more."""
 
 import importlib.util
+import subprocess
+import sys
 from pathlib import Path
 from types import ModuleType
 
@@ -49,3 +51,16 @@ def test_only_tests_in_a_browser_get_a_second_try(
     assert all(each in asked[-1] for each in failed) == (runs == 2 or not failed)
     said = capsys.readouterr().out
     assert (f"flaky, passed when run once more:\n  {BROWSER}" in said) == (codes == [1, 0])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("waits", ["await asyncio.Event().wait()", "threading.Event().wait()"])
+def test_a_test_that_waits_for_ever_fails(waits: str, tmp_path: Path) -> None:
+    test = tmp_path / "test_waiting.py"
+    test.write_text(f"import asyncio, threading\n\nasync def test_it() -> None:\n    {waits}\n")
+    root = SCRIPT.parent.parent
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider"]
+    options = ["-c", str(root / "pyproject.toml"), "-o", "timeout=1", str(test)]
+    done = subprocess.run([*command, *options], cwd=root, capture_output=True, text=True)
+    assert done.returncode == 1
+    assert "Timeout" in done.stdout

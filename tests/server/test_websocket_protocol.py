@@ -1,8 +1,11 @@
-"""A server can end whatever its clients are just doing."""
+"""A server can end whatever its clients are just doing, and reads and answers only so much."""
 
 import asyncio
 import logging
 import socket
+from collections.abc import AsyncIterator, Awaitable, Callable
+from contextlib import asynccontextmanager
+from typing import Any
 
 import pytest
 import uvicorn
@@ -13,19 +16,29 @@ from starlette.websockets import WebSocket
 from uvicorn.protocols.utils import ClientDisconnected
 from websockets.frames import Close, Frame, Opcode
 
-from server.websocket_protocol import WebSocketProtocol
+from server.websocket_protocol import READ_BYTES, WebSocketProtocol
 
 HELLO = (
     b"GET / HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
     b"Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Version: 13\r\n\r\n"
 )
 MORE_THAN_IS_BUFFERED = 32 << 20
+IN_TIME_S = 20.0
 
 
 async def flood(websocket: WebSocket) -> None:
     await websocket.accept()
     await websocket.send_bytes(bytes(MORE_THAN_IS_BUFFERED))
     await websocket.receive()
+
+
+async def wait(websocket: WebSocket) -> None:
+    await websocket.accept()
+    await websocket.receive()
+
+
+async def refuse(websocket: WebSocket) -> None:
+    await websocket.send_denial_response(PlainTextResponse("not you", 401))
 
 
 async def connected(port: int) -> asyncio.StreamWriter:
@@ -36,86 +49,121 @@ async def connected(port: int) -> asyncio.StreamWriter:
     return writer
 
 
-@pytest.mark.parametrize("closing", [False, True])
-async def test_a_server_ends_while_a_client_closes_and_has_not_read_all(closing: bool) -> None:
+@asynccontextmanager
+async def server_with(
+    endpoint: Callable[[WebSocket], Awaitable[None]], **settings: Any
+) -> AsyncIterator[tuple[uvicorn.Server, socket.socket]]:
+    """A started server and the socket on which it listens; whoever wants it ended does that."""
     listening = socket.create_server(("127.0.0.1", 0))
-    config = uvicorn.Config(
-        Starlette(routes=[WebSocketRoute("/", flood)]),
-        ws=WebSocketProtocol,
-        lifespan="off",
-        log_level="critical",
-        timeout_graceful_shutdown=30,
-    )
+    how = {"ws": WebSocketProtocol, "lifespan": "off", "log_level": "critical", **settings}
+    config = uvicorn.Config(Starlette(routes=[WebSocketRoute("/", endpoint)]), **how)
     config.load()
     server = uvicorn.Server(config)
     server.lifespan = config.lifespan_class(config)
     await server.startup(sockets=[listening])
-    clients = [await connected(listening.getsockname()[1]) for _ in range(2)]
-    connections = list(server.server_state.connections)
-    if closing:
-        frame = Frame(Opcode.CLOSE, Close(1000, "").serialize())
-        clients[0].write(frame.serialize(mask=True))
-        while not any(each.transport.is_closing() for each in connections):  # noqa: ASYNC110
-            await asyncio.sleep(0)
-    ending = asyncio.create_task(server.shutdown(sockets=[listening]))
-    while not all(each.transport.is_closing() for each in connections):
-        assert not ending.done()
-        await asyncio.sleep(0)
-    for client in clients:
+    yield server, listening
+
+
+@asynccontextmanager
+async def one_client(
+    endpoint: Callable[[WebSocket], Awaitable[None]],
+) -> AsyncIterator[tuple[WebSocketProtocol, asyncio.StreamWriter]]:
+    """The server's end of the only connection, after the handshake, and the client's."""
+    async with server_with(endpoint) as (server, listening):
+        client = await connected(listening.getsockname()[1])
+        (connection,) = server.server_state.connections
+        assert isinstance(connection, WebSocketProtocol)
+        yield connection, client
         client.transport.abort()
-    await ending
+        await server.shutdown(sockets=[listening])
+
+
+@pytest.mark.parametrize("closing", [False, True])
+async def test_a_server_ends_while_a_client_closes_and_has_not_read_all(closing: bool) -> None:
+    async with server_with(flood, timeout_graceful_shutdown=30) as (server, listening):
+        clients = [await connected(listening.getsockname()[1]) for _ in range(2)]
+        connections = list(server.server_state.connections)
+        if closing:
+            frame = Frame(Opcode.CLOSE, Close(1000, "").serialize())
+            clients[0].write(frame.serialize(mask=True))
+            while not any(each.transport.is_closing() for each in connections):  # noqa: ASYNC110
+                await asyncio.sleep(0)
+        ending = asyncio.create_task(server.shutdown(sockets=[listening]))
+        while not all(each.transport.is_closing() for each in connections):
+            assert not ending.done()
+            await asyncio.sleep(0)
+        for client in clients:
+            client.transport.abort()
+        await ending
     assert not server.server_state.connections
 
 
 async def test_who_is_just_sending_to_a_client_that_was_sent_away_hears_that_it_is_gone() -> None:
-    async def wait(websocket: WebSocket) -> None:
-        await websocket.accept()
-        await websocket.receive()
-
-    listening = socket.create_server(("127.0.0.1", 0))
-    config = uvicorn.Config(
-        Starlette(routes=[WebSocketRoute("/", wait)]),
-        ws=WebSocketProtocol, lifespan="off", log_level="critical",
-    )  # fmt: skip
-    config.load()
-    server = uvicorn.Server(config)
-    server.lifespan = config.lifespan_class(config)
-    await server.startup(sockets=[listening])
-    client = await connected(listening.getsockname()[1])
-    (connection,) = server.server_state.connections
-    assert isinstance(connection, WebSocketProtocol)
-    connection._pings_left, connection._pinged_at_s = 0.0, connection.loop.time()
-    connection.handle_ping()
-    # In the same turn of the loop: the connection is not lost yet.
-    with pytest.raises(ClientDisconnected):
-        await connection.send({"type": "websocket.send", "text": "late"})
-    client.transport.abort()
-    await server.shutdown(sockets=[listening])
+    async with one_client(wait) as (connection, _):
+        connection._pings_left, connection._pinged_at_s = 0.0, connection.loop.time()
+        connection.handle_ping()
+        # In the same turn of the loop: the connection is not lost yet.
+        with pytest.raises(ClientDisconnected):
+            await connection.send({"type": "websocket.send", "text": "late"})
 
 
 async def test_a_refused_handshake_is_no_error_in_the_log(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
-    async def refuse(websocket: WebSocket) -> None:
-        await websocket.send_denial_response(PlainTextResponse("not you", 401))
-
-    listening = socket.create_server(("127.0.0.1", 0))
-    config = uvicorn.Config(
-        Starlette(routes=[WebSocketRoute("/", refuse)]), ws=WebSocketProtocol, lifespan="off",
-        log_config=None,
-    )  # fmt: skip
-    config.load()
-    server = uvicorn.Server(config)
-    server.lifespan = config.lifespan_class(config)
-    await server.startup(sockets=[listening])
-    reader, writer = await asyncio.open_connection(*listening.getsockname())
-    writer.write(HELLO)
-    answer = await reader.read()
-    writer.close()
-    await server.shutdown(sockets=[listening])
+    async with server_with(refuse, log_config=None, log_level=None) as (server, listening):
+        reader, writer = await asyncio.open_connection(*listening.getsockname())
+        writer.write(HELLO)
+        async with asyncio.timeout(IN_TIME_S):
+            answer = await reader.read()
+        writer.close()
+        await server.shutdown(sockets=[listening])
     assert answer.startswith(b"HTTP/1.1 401 ")
     assert answer.endswith(b"not you")
     assert [each.message for each in caplog.records if each.levelno >= logging.WARNING] == []
+
+
+async def test_little_is_read_at_a_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    read: list[int] = []
+    done = asyncio.Event()
+    async with one_client(wait) as (connection, client):
+
+        def note(data: bytes) -> None:
+            read.append(len(data))
+            if sum(read) == 40 * READ_BYTES:
+                done.set()
+
+        monkeypatch.setattr(connection, "data_received", note)
+        client.write(bytes(40 * READ_BYTES))
+        async with asyncio.timeout(IN_TIME_S):
+            await done.wait()
+    assert max(read) <= READ_BYTES
+
+
+@pytest.mark.parametrize("full", [False, True])
+async def test_a_client_for_whom_much_waits_already_gets_no_pong(
+    full: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    written: list[bytes] = []
+    answered = asyncio.Event()
+    async with one_client(wait) as (connection, client):
+        monkeypatch.setattr(connection.transport, "write", written.append)
+        handle = connection.handle_ping
+
+        def handle_ping() -> None:
+            handle()
+            answered.set()
+
+        monkeypatch.setattr(connection, "handle_ping", handle_ping)
+        if full:
+            connection.writable.clear()
+        client.write(Frame(Opcode.PING, b"are you there?").serialize(mask=True))
+        async with asyncio.timeout(IN_TIME_S):
+            await answered.wait()
+        connection.writable.set()
+        sent, late = list(written), connection.conn.data_to_send()
+    pong = Frame(Opcode.PONG, b"are you there?").serialize(mask=False)
+    assert sent == ([] if full else [pong])
+    assert late == []
 
 
 class StubLoop:
