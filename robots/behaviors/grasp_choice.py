@@ -33,8 +33,11 @@ _HARDLY_M = 0.0015
 """Sides that differ by no more are now and then taken for one another by the head camera."""
 
 _SMALL_M = 0.018
-_TURNS_RAD = tuple(math.radians(each) for each in (5.0, -5.0, 10.0, -10.0, 15.0, -15.0))
+_MOST_TURN_RAD = math.radians(15.0)
 """So far is a part that is no longer now and then seen turned; closing fingers turn it straight."""
+_ANY_TURN_RAD = math.radians(45.0)
+"""Of one that is hardly not square as well nobody can tell how it is turned."""
+_TURN_STEP_RAD = math.radians(2.5)
 
 MARGIN_M = 0.0005
 """The least between the gripper and what stands beside an object, as it is seen: hardly more than
@@ -178,9 +181,12 @@ def _turned(errand: Errand, ways_round: Sequence[Location | None]) -> list[Locat
     part = errand.part
     if part is None or errand.held_by is not None or max(part.size[:2]) > _SMALL_M:
         return []
+    most = _ANY_TURN_RAD if part.off_square_m <= _HARDLY_M else _MOST_TURN_RAD
+    steps = round(most / _TURN_STEP_RAD)
+    turns = [sign * step * _TURN_STEP_RAD for step in range(1, steps + 1) for sign in (1, -1)]
     return [
         found.model_copy(update={"yaw": half_turn(found.yaw + turn)})
-        for turn in _TURNS_RAD
+        for turn in turns
         for found in ways_round
         if found is not None
     ]
