@@ -82,6 +82,9 @@ class OffLoop:
                 limit="check_s",
             ) from None
         except asyncio.CancelledError:
+            if self._closed and not _is_cancelled():
+                # What had not begun yet was taken out of the process's hands.
+                raise _shutting_down() from None
             # Else whoever is next would wait for what nobody wants any more.
             self._end()
             raise
@@ -105,6 +108,12 @@ class OffLoop:
         pool.shutdown(wait=False, cancel_futures=True)
         for process in processes:
             process.kill()
+
+
+def _is_cancelled() -> bool:
+    """Whether it is the current task that is to end, and not only what it waits for."""
+    task = asyncio.current_task()
+    return task is not None and task.cancelling() > 0
 
 
 def _shutting_down() -> BusyError:

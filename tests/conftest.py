@@ -3,13 +3,17 @@
 import os
 from collections.abc import Iterator
 
+import httpx
 import pytest
 import trustme
 from hypothesis import settings
 
-# No property fails for how long it takes.
+# No property fails for how long it takes, and no request within a minute.
 settings.register_profile("busy", deadline=None)
 settings.load_profile("busy")
+for client in (httpx.AsyncClient, httpx.Client):
+    assert client.__init__.__kwdefaults__ is not None
+    client.__init__.__kwdefaults__["timeout"] = httpx.Timeout(60.0)
 
 
 @pytest.hookimpl(trylast=True)

@@ -45,7 +45,7 @@ log = logging.getLogger(__name__)
 MOST_UNTAKEN_COMMANDS = 1000
 
 MOST_UNASKED_REPORTS = 10_000
-"""What a robot has to report of one command is far less, so that more fills the journal only."""
+"""What a robot has to report until its task comes on is far less: more fills the journal only."""
 
 MOST_NEW_BOOTS = 100
 """Of each start of its program the journal keeps a number for ever."""
@@ -249,8 +249,11 @@ class KnownRobot:
 
     # --- What it is told ----------------------------------------------------------------------
 
-    def command(self, command_id: str, body: CommandBody) -> None:
-        """Send a command, now or when the robot is back. Raises `ConflictError`: too many wait."""
+    def command(self, command_id: str, body: CommandBody, *, renews: bool = True) -> None:
+        """Send a command, now or when the robot is back. Raises `ConflictError`: too many wait.
+
+        `renews`: it is no mere repetition, so that as much may be reported of it as of all before.
+        """
         if command_id in self._untaken:
             return
         if len(self._untaken) >= MOST_UNTAKEN_COMMANDS:
@@ -259,7 +262,8 @@ class KnownRobot:
             raise ConflictError(
                 f"the robot '{self.name}' has not taken its last {MOST_UNTAKEN_COMMANDS} commands"
             )
-        self._unasked_reports = self._new_boots = 0
+        if renews:
+            self._unasked_reports = self._new_boots = 0
         command = self._untaken[command_id] = Command(id=command_id, body=body)
         if self.session is not None:
             self.session.send(command)
@@ -349,14 +353,14 @@ class KnownRobot:
         if self._new_boots > MOST_NEW_BOOTS:
             raise TooManyReportsError(
                 f"the robot '{self.name}' has sent reports of {MOST_NEW_BOOTS} boots that were "
-                "not known since it was last told something",
+                "not known since it was last told something new",
                 "new_boots",
             )
         self._unasked_reports += 1 + _picture_chars(report) // CHARS_OF_ONE
         if self._unasked_reports > MOST_UNASKED_REPORTS:
             raise TooManyReportsError(
                 f"the robot '{self.name}' has sent {MOST_UNASKED_REPORTS} reports since it was "
-                "last told something",
+                "last told something new",
                 "unasked_reports",
             )
 

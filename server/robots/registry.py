@@ -65,13 +65,13 @@ class RobotRegistry:
             self._robots[robot].unassign()
             self._forget(robot)
 
-    def send(self, robot: str, command_id: str, body: CommandBody) -> None:
+    def send(self, robot: str, command_id: str, body: CommandBody, *, renews: bool = True) -> None:
         """Send a command, when connected; again after a reconnect, until the robot has taken it.
 
         Dropped when the robot comes back with a new boot. A command id that is still waiting is
-        sent once. Raises `ConflictError` when too many wait.
+        sent once. `renews`: see `KnownRobot.command`. Raises `ConflictError` when too many wait.
         """
-        self._known(robot).command(command_id, body)
+        self._known(robot).command(command_id, body, renews=renews)
 
     def show_poses(self, robot: str, rate_hz: float) -> None:
         """Have a robot send its poses at most so often, also on its later connections; 0: never."""

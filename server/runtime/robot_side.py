@@ -61,7 +61,9 @@ FRESH_S = 1.0
 class CommandSender(Protocol):
     """The service's end of the robot link."""
 
-    def send(self, robot: str, command_id: str, body: CommandBody) -> None: ...
+    def send(
+        self, robot: str, command_id: str, body: CommandBody, *, renews: bool = True
+    ) -> None: ...
 
 
 @dataclass(slots=True)
@@ -133,7 +135,7 @@ class RobotSide:
 
     def _tell(self, doing: Doing, command: str, body: CommandBody) -> None:
         self.doing, self.command = doing, command
-        self.link.send(self.robot, command, body)
+        self.link.send(self.robot, command, body, renews=self.livelock.tell())
 
     def look(self, purpose: Purpose, **fields: Any) -> None:
         """Look, for a purpose; `fields` are those of the `look` command."""

@@ -300,6 +300,8 @@ class Run:
         results = list(results_of(state))
         for side in self._sides.values():
             side.finished = results
+            if await self._gave_up_in_livelock(side):
+                return True
         for dialogue in state.open_dialogues:
             if await self._dialogues.drive(dialogue, self._sides[dialogue.opened.robot]):
                 return True
@@ -307,20 +309,19 @@ class Run:
             return True
         for side in self._sides.values():
             available = (side.free or side.interruptible) and not side.gone_for_good
-            if available and self._dialogue_of(side) is None and await self._go_on_with(side):
+            if available and self._dialogue_of(side) is None and await self._occupy(side):
                 return True
         return False
 
-    async def _go_on_with(self, side: RobotSide) -> bool:
-        """Give an idle robot something to do, unless nothing ever comes of that."""
-        if side.livelock.lasts(self._context.state.progress):
-            await self._presence.give_up_in_livelock(side)
-            return True
-        last = side.command
-        changed = await self._occupy(side)
-        if side.command != last:
-            side.livelock.tell(self._context.state.progress)
-        return changed
+    async def _gave_up_in_livelock(self, side: RobotSide) -> bool:
+        """Give an idle robot up if nothing ever comes of what it is told; whether it did."""
+        asks = self._dialogue_of(side) is not None
+        side.livelock.see(self._context.state.progress, self._context.clock.now() if asks else None)
+        idle = (side.free or side.interruptible) and not side.gone_for_good
+        if not idle or not side.livelock.lasts:
+            return False
+        await self._presence.give_up_in_livelock(side)
+        return True
 
     async def _occupy(self, side: RobotSide) -> bool:
         """Give an idle robot something to do; True if that changed the state."""

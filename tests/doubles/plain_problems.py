@@ -3,7 +3,7 @@
 import re
 from typing import Any
 
-JARGON = re.compile(r"\b(Input|String|List|Value error|Unable|should|valid \w+|pattern|regex)\b")
+JARGON = re.compile(r"\b(Input|String|List|Value) should\b|Value error|Unable to|String pattern")
 
 
 def told_plainly(_context: Any, response: Any, _case: Any) -> None:

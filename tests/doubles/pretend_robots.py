@@ -142,7 +142,14 @@ class PretendRobots:
         if robot in self._wake:
             self._wake[robot].set()
 
-    def send(self, robot: str, command_id: str, body: CommandBody) -> None:
+    def send(
+        self,
+        robot: str,
+        command_id: str,
+        body: CommandBody,
+        *,
+        renews: bool = True,  # noqa: ARG002
+    ) -> None:
         if robot in self._sinks:
             self.robots[robot].commands.append(body)
             self._queues[robot].append((command_id, body))

@@ -150,7 +150,7 @@ async def test_who_reports_without_end_is_ended_and_let_in_no_more_until_started
         await ours.send(report(seq))
     *_, last = [service_message.validate_json(each) async for each in all_of(ours)]
     assert isinstance(last, LinkError)
-    assert last.detail == "the robot 'arm' has sent 5 reports since it was last told something"
+    assert last.detail == "the robot 'arm' has sent 5 reports since it was last told something new"
     assert len(sink.reports) == 10
     assert refusals.counts["unasked_reports"] == 1
     await serving

@@ -10,15 +10,17 @@ from uuid import UUID
 
 import pytest
 from live_service import LiveService, live_service
-from pretend_service import BARE, OneTree
+from pretend_service import BARE, OneTree, pretend_service
 from task_documents import definition_of
 
 from robots.link.channel import Channel, ChannelClosedError, memory_channel
 from robots.link.messages import Command, service_message
+from server.dialogues.escalation import EscalationPolicy
 from server.journal.sqlite import SqliteJournal
 from server.runtime.livelock import MOST_FRUITLESS_COMMANDS
 from server.runtime.requests import RunRequest
 from server.runtime.views import RunStatus, RunView
+from sim.tabletop.layout import lay_out
 
 PARTS = ("green_leg", "blue_leg", "pink_bar", "yellow_bar")
 TREE = {
@@ -37,7 +39,10 @@ class ToldRobot:
     def __init__(self, service: LiveService, name: str) -> None:
         self.boots = 0
         self.told = 0
-        self._service = service
+        self.asks = False
+        self.service = service
+        self.run: asyncio.Future[UUID] = asyncio.get_running_loop().create_future()
+        self.executing = ""
         self._name = name
         self._tasks: list[asyncio.Task[None]] = []
 
@@ -46,13 +51,17 @@ class ToldRobot:
         self.boots += 1
         self._seq = 0
         self._channel, theirs = memory_channel()
-        self._serving = asyncio.create_task(self._service.registry.serve(theirs))
+        self._serving = asyncio.create_task(self.service.registry.serve(theirs))
         await self._say(
             type="hello", protocol=1, robot=self._name, boot=f"boot {self.boots}",
             behaviors=["pick_and_place"], cameras=[],
             reach={"x": 0.0, "y": 0.0, "min_m": 0.2, "max_m": 0.8},
         )  # fmt: skip
         self._tasks.append(asyncio.create_task(self._work(self._channel, obey)))
+
+    async def ended(self) -> None:
+        """Its connection has come to its end."""
+        await self._serving
 
     async def end(self) -> None:
         """Its program ends, and the service has noticed."""
@@ -81,10 +90,10 @@ class ToldRobot:
         self._seq += 1
         await self._say(type="report", seq=self._seq, body=body)
 
-    async def look(self, command: str, **fields: Any) -> None:
+    async def look(self, command: str, x: float = 0.5, **fields: Any) -> None:
         """What it sees: everything, and everything that is to be there."""
         seen = {
-            part: {"x": 0.5, "y": 0.1, "z": 0.7, "yaw": 0.0, "time": time.monotonic()}
+            part: {"x": x, "y": 0.1, "z": 0.7, "yaw": 0.0, "time": time.monotonic()}
             for part in PARTS
         }
         await self.report(type="looked", command=command, objects=seen, gripper=GRIPPER, **fields)
@@ -140,6 +149,38 @@ async def goes_backwards(robot: ToldRobot, command: str, body: Body) -> None:
         await robot.report(type="holding", at="in_place", **about)
 
 
+async def _misses(robot: ToldRobot, body: Body) -> None:
+    about = {"execution": body["execution"]}
+    await robot.report(type="issue", issue="missed", step=1, interrupts=True, **about)
+    await robot.report(type="holding", at="neutral", **about)
+    robot.asks = True
+
+
+async def rejects_looks_while_it_asks(robot: ToldRobot, command: str, body: Body) -> None:
+    if body["type"] == "start":
+        await _misses(robot, body)
+    elif robot.asks:
+        await robot.report(type="rejected", command=command, reason="I would rather not")
+    else:
+        await robot.look(command)
+
+
+async def sees_its_part_wander_while_it_asks(robot: ToldRobot, command: str, body: Body) -> None:
+    if body["type"] == "start":
+        await _misses(robot, body)
+    elif body["type"] == "look":
+        await robot.look(command, x=0.3 + 0.1 * (robot.told % 5))
+
+
+async def floods(robot: ToldRobot, command: str, body: Body) -> None:
+    """It makes as much as it likes of each thing that it is told."""
+    if body["type"] == "look":
+        await robot.look(command)
+    elif body["type"] in ("start", "resume"):
+        for _ in range(40):
+            await robot.report(type="holding", execution=body["execution"], at="in_place")
+
+
 async def boots_at_each_start(robot: ToldRobot, command: str, body: Body) -> None:
     if body["type"] == "look":
         await robot.look(command)
@@ -165,6 +206,7 @@ async def at_work(
         while not all(map(service.registry.connected, names)):  # noqa: ASYNC110
             await asyncio.sleep(0.01)
         run = await service.runtime.start_run(RunRequest(tree="one", world="live", robots=names))
+        robot.run.set_result(run.id)
         yield service, robot, run.id
         await robot.stop()
         await another.stop()
@@ -182,11 +224,17 @@ async def end_of(
 
 @pytest.mark.parametrize(
     "obey",
-    [rejects_looks, holds, knows_an_unknown_issue, goes_backwards, boots_at_each_start],
+    [
+        rejects_looks,
+        holds,
+        knows_an_unknown_issue,
+        goes_backwards,
+        boots_at_each_start,
+        rejects_looks_while_it_asks,
+        sees_its_part_wander_while_it_asks,
+    ],
 )
-async def test_a_robot_with_which_nothing_comes_on_is_given_up(
-    obey: Obey,
-) -> None:
+async def test_a_robot_with_which_nothing_comes_on_is_given_up(obey: Obey) -> None:
     journal = SqliteJournal(":memory:")
     ended, robot, events = await end_of(obey, journal)
     journal.close()
@@ -198,6 +246,19 @@ async def test_a_robot_with_which_nothing_comes_on_is_given_up(
     )
     assert MOST_FRUITLESS_COMMANDS <= robot.told <= MOST_FRUITLESS_COMMANDS + 5
     assert events <= 4 * MOST_FRUITLESS_COMMANDS
+
+
+async def test_a_robot_reports_no_more_for_being_told_the_same_again(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    most = 100
+    monkeypatch.setattr("server.robots.known_robot.MOST_UNASKED_REPORTS", most)
+    journal = SqliteJournal(":memory:")
+    async with at_work(floods, journal, with_another=False) as (_, robot, run):
+        await robot.ended()
+        events = await journal.read(0, 100_000, run)
+    journal.close()
+    assert len(events) <= most + 10
 
 
 async def test_another_robot_goes_on_without_one_that_is_given_up() -> None:
@@ -230,3 +291,51 @@ async def test_a_robot_whose_program_is_killed_again_and_again_goes_on_while_it_
     journal.close()
     assert ended.status is RunStatus.FINISHED
     assert robot.told > 2 * most
+
+
+async def test_a_run_that_people_pause_and_resume_goes_on(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    most = 10
+    monkeypatch.setattr("server.runtime.livelock.MOST_FRUITLESS_COMMANDS", most)
+    resumed = 0
+
+    async def pauses(robot: ToldRobot, command: str, body: Body) -> None:
+        nonlocal resumed
+        if body["type"] == "look":
+            await robot.look(command, there=body["finished"])
+        elif body["type"] == "interrupt":
+            await robot.report(type="holding", execution=robot.executing, at="in_place")
+            await robot.service.runtime.resume(await robot.run)
+        elif body["type"] == "resume" and resumed >= most:
+            await robot.finish(body)
+        elif body["type"] in ("start", "resume"):
+            robot.executing = body["execution"]
+            resumed += 1
+            await robot.service.runtime.pause(await robot.run)
+
+    journal = SqliteJournal(":memory:")
+    ended, robot, _ = await end_of(pauses, journal)
+    journal.close()
+    assert ended.status is RunStatus.FINISHED
+    assert robot.told > 3 * most
+
+
+async def test_a_robot_that_asks_for_an_hour_is_not_given_up() -> None:
+    """Its part stands before it, and it looks every other second whether that changes."""
+    parts = [("part_1", "spot_1")]
+    leaf = {"behavior": "pick_and_place", "object": "part_1", "place": "spot_1"}
+    hour = EscalationPolicy(answer_within_s=1800.0)
+    async with pretend_service(
+        definition_of({"then": [leaf]}),
+        {"part_1": [("missed", 4)]},
+        policy=hour,
+        scene=lay_out(parts, seed=1),
+        wrong=True,
+    ) as service:
+        ended, events = await service.run_to_end(answers="none")
+        [robot] = service.robots.robots.values()
+    looks = [each for each in robot.commands if each.type == "look"]
+    assert ended.status is RunStatus.FINISHED
+    assert events[-1].time > 3600.0
+    assert len(looks) > 5 * MOST_FRUITLESS_COMMANDS
