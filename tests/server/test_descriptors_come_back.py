@@ -3,6 +3,7 @@
 import asyncio
 import errno
 import os
+import sys
 import time
 from collections.abc import AsyncIterator
 from typing import Any
@@ -19,7 +20,7 @@ from server.descriptors import (
 )
 from server.journal.sqlite import SqliteJournal
 from server.robots.passes import OwnRobots
-from server.robots.process import InProcessRobot
+from server.robots.process import InProcessRobot, RobotProcess
 from server.robots.registry import RobotRegistry
 from server.robots.simulation_thread import SimulationThread
 from sim.tabletop.adapter import adapter
@@ -88,6 +89,30 @@ async def test_a_robot_within_the_service_starts_once_there_are_descriptors(
     async with asyncio.timeout(60):
         await sink.wait_until(lambda: len(sink.hellos) == 1)
     assert (world.failures, ended) == (0, [])
+    await robot.stop()
+    registry.close()
+
+
+async def test_a_process_of_a_robot_starts_once_there_are_descriptors(
+    journal: SqliteJournal, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("server.descriptors.TRY_AGAIN_S", 0.0)
+    really_start = asyncio.create_subprocess_exec
+    failures = [errno.EMFILE, errno.ENFILE]
+
+    async def start(*_: Any, **how: Any) -> asyncio.subprocess.Process:
+        if failures:
+            raise OSError(failures.pop(), "Too many open files")
+        return await really_start(sys.executable, "-c", "input()", **how)
+
+    monkeypatch.setattr(asyncio, "create_subprocess_exec", start)
+    registry = RobotRegistry(journal, time.monotonic)
+    ended: asyncio.Queue[str] = asyncio.Queue()
+    robot = RobotProcess("tabletop", ended.put_nowait, registry, OwnRobots(), "ws://localhost")
+    scene = lay_out([("part", "spot")], 1)
+    await robot.start(WorldSetup(robot="arm", scene=scene, seed=1, speed=None))
+    async with asyncio.timeout(60):
+        assert await ended.get() == "its process ended with code 0"
     await robot.stop()
     registry.close()
 

@@ -256,6 +256,28 @@ async def test_a_later_principal_of_the_same_name_has_keys_of_their_own(tmp_path
     assert first.json()["id"] != second.json()["id"]
 
 
+@pytest.mark.parametrize(
+    ("address", "replayed"), [("2001:db8::ffff:7", True), ("2001:db8:0:1::1", False)]
+)
+async def test_at_an_open_door_an_ipv6_network_has_keys_of_its_own(
+    address: str, replayed: bool, tmp_path: Path
+) -> None:
+    people = People(tmp_path)
+    service = build(principals=people.file)
+    code = people.editor.open_enrolment("arm-9", datetime.now(UTC), minutes=15)
+    answers = []
+    for came_from in ("2001:db8::1", address):
+        transport = httpx.ASGITransport(service.app, client=(came_from, 1))
+        async with httpx.AsyncClient(transport=transport, base_url=service.url) as client:
+            body = {"robot": "arm-9", "code": code}
+            answers.append(await Served(service, client).post("/api/robots/enrol", body))
+    service.journal.close()
+    first, second = answers
+    assert first.status_code == 201
+    # The code is good for one robot, once.
+    assert (second.content == first.content) is (second.status_code == 201) is replayed
+
+
 async def test_an_answer_with_a_secret_is_given_again_and_not_in_the_journal(
     tmp_path: Path,
 ) -> None:

@@ -66,10 +66,10 @@ async def server_with(
 
 @asynccontextmanager
 async def one_client(
-    endpoint: Callable[[WebSocket], Awaitable[None]],
+    endpoint: Callable[[WebSocket], Awaitable[None]], **settings: Any
 ) -> AsyncIterator[tuple[WebSocketProtocol, asyncio.StreamWriter]]:
     """The server's end of the only connection, after the handshake, and the client's."""
-    async with server_with(endpoint) as (server, listening):
+    async with server_with(endpoint, **settings) as (server, listening):
         client = await connected(listening.getsockname()[1])
         (connection,) = server.server_state.connections
         assert isinstance(connection, WebSocketProtocol)
@@ -166,35 +166,77 @@ async def test_a_client_for_whom_much_waits_already_gets_no_pong(
     assert late == []
 
 
-class StubLoop:
-    """A loop of which only the time and the timers matter."""
+class Timer:
+    """A callback of a stopped loop."""
+
+    def __init__(self, due_s: float, callback: Callable[[], None]) -> None:
+        self.due_s = due_s
+        self.callback = callback
+        self.is_cancelled = False
+
+    def cancel(self) -> None:
+        self.is_cancelled = True
+
+
+class StoppedLoop:
+    """A loop of which only the time and the timers matter, and which goes on when it is told."""
 
     def __init__(self) -> None:
         self.now_s = 0.0
-        self.timers: list[float] = []
+        self._timers: list[Timer] = []
 
     def time(self) -> float:
         return self.now_s
 
-    def call_later(self, delay_s: float, _: object) -> None:
-        self.timers.append(delay_s)
+    def call_later(self, delay_s: float, callback: Callable[[], None]) -> Timer:
+        self._timers.append(Timer(self.now_s + delay_s, callback))
+        return self._timers[-1]
+
+    def go_on_at(self, now_s: float) -> None:
+        """Go on at a time, as if there had been no turn since the last."""
+        self.now_s = now_s
+        due = [each for each in self._timers if each.due_s <= now_s]
+        self._timers = [each for each in self._timers if each.due_s > now_s]
+        for timer in due:
+            if not timer.is_cancelled:
+                timer.callback()
 
 
-def test_a_pong_that_came_while_the_service_stood_still_is_waited_for(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    ended: list[float] = []
-    loop = StubLoop()
-    monkeypatch.setattr(
-        WebSocketProtocol.__mro__[1], "keepalive_timeout", lambda _: ended.append(loop.now_s)
-    )
-    protocol = WebSocketProtocol.__new__(WebSocketProtocol)
-    protocol.loop = loop
-    protocol.ping_timeout = protocol._pong_within_s = 20.0
-    protocol.ping_sent_at = 0.0
-    loop.now_s = 65.0
-    protocol.keepalive_timeout()
-    assert (loop.timers, ended) == ([20.0], [])
-    loop.now_s = 85.0
-    protocol.keepalive_timeout()
-    assert (loop.timers, ended) == ([20.0], [85.0])
+@asynccontextmanager
+async def pinged_client() -> AsyncIterator[tuple[WebSocketProtocol, asyncio.StreamWriter]]:
+    """As `one_client`; at second 0 of a stopped loop it was asked whether it is there."""
+    async with one_client(wait, ws_ping_interval=20.0, ws_ping_timeout=20.0) as (server, client):
+        server.stop_keepalive()
+        running, server.loop = server.loop, StoppedLoop()  # type: ignore[assignment]
+        server.send_keepalive_ping()
+        yield server, client
+        server.stop_keepalive()
+        server.loop = running
+
+
+def go_on_at(connection: WebSocketProtocol, now_s: float) -> bool:
+    """Let the loop of a connection go on; whether the connection is still there then."""
+    assert isinstance(connection.loop, StoppedLoop)
+    connection.loop.go_on_at(now_s)
+    return not connection.transport.is_closing()
+
+
+async def test_a_client_that_answers_no_ping_is_ended() -> None:
+    async with pinged_client() as (connection, _):
+        assert [go_on_at(connection, now_s) for now_s in (19.0, 20.5)] == [True, False]
+
+
+async def test_a_client_that_answers_a_ping_stays() -> None:
+    async with pinged_client() as (connection, client):
+        assert connection.pending_ping_payload is not None
+        pong = Frame(Opcode.PONG, connection.pending_ping_payload)
+        client.write(pong.serialize(mask=True))
+        async with asyncio.timeout(IN_TIME_S):
+            while connection.pending_ping_payload is not None:  # noqa: ASYNC110
+                await asyncio.sleep(0)
+        assert go_on_at(connection, 20.5)
+
+
+async def test_a_pong_that_came_while_the_service_stood_still_is_waited_for() -> None:
+    async with pinged_client() as (connection, _):
+        assert [go_on_at(connection, now_s) for now_s in (65.0, 85.0)] == [True, False]

@@ -1,7 +1,9 @@
 """The robot's voice: which engine is taken, what it renders, and what is kept."""
 
 import asyncio
+import errno
 import io
+import os
 import shutil
 import sys
 import tempfile
@@ -100,6 +102,22 @@ async def test_a_folder_that_cannot_be_made_is_one_sentence(
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "nowhere"))
     with pytest.raises(VoiceError, match=r"speak wrote no sound: .* No such file or directory"):
         await CommandVoice("speak", "speak", lambda path: (path,)).render("hello")
+
+
+async def test_a_folder_that_cannot_be_removed_just_then_takes_no_sound_away(
+    bin_folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    program(bin_folder, "speak", SPEAKS)
+    voice = CommandVoice("speak", str(bin_folder / "speak"), lambda path: (path,))
+
+    def no_descriptor(*_: object, **__: object) -> None:
+        raise OSError(errno.EMFILE, "Too many open files")
+
+    monkeypatch.setattr(tempfile, "tempdir", str(bin_folder))
+    with monkeypatch.context() as patched:
+        patched.setattr(os, "scandir", no_descriptor)
+        sound = await voice.render("Shall I?")
+    assert sound.startswith(b"RIFF")
 
 
 async def test_a_program_that_is_gone_is_one_sentence(tmp_path: Path) -> None:
