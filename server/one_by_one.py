@@ -35,6 +35,12 @@ class OneByOne:
         self._chars += chars
         try:
             async with place, self._turn:
-                yield
+                # What is asked for during the turn stands in no line behind what the same one
+                # asked for before: all others wait for it.
+                before = asker.set(f"{asker.get()} in turn {id(self)}")
+                try:
+                    yield
+                finally:
+                    asker.reset(before)
         finally:
             self._chars -= chars

@@ -35,17 +35,24 @@ class RememberedViews(Generic[V]):
 
         Raises what `make` raises, and `BusyError`.
         """
+        if (kept := self._kept(await asyncio.to_thread(_digest, texts))) is not None:
+            return kept
         # One after the other: who asks many times at once has it made once.
         async with self._turns.turn(chars):
             digest = await asyncio.to_thread(_digest, texts)
-            if digest is not None and digest in self._views:
-                self._views.move_to_end(digest)
-                return self._views[digest]
+            if (kept := self._kept(digest)) is not None:
+                return kept
             view = await make()
             # Of files that changed meanwhile nobody knows which of the two were read.
             if digest is not None and digest == await asyncio.to_thread(_digest, texts):
                 self._keep(digest, view)
             return view
+
+    def _kept(self, digest: bytes | None) -> Rendered[V] | None:
+        if digest is None or digest not in self._views:
+            return None
+        self._views.move_to_end(digest)
+        return self._views[digest]
 
     def _keep(self, digest: bytes, view: Rendered[V]) -> None:
         self._views[digest] = view

@@ -45,6 +45,8 @@ _ONE_KIND = {
     "float_parsing": "a number",
     "finite_number": "a finite number",
     "none_required": "empty",
+    "path_type": "a path",
+    "bytes_type": "text",
     "uuid_type": "a UUID",
     "uuid_parsing": "a UUID",
 }
@@ -60,9 +62,11 @@ def what_it_must_be(mistake: ErrorDetails) -> str:
         case "missing":
             return "is missing"
         case "union_tag_not_found":
-            return f"{context['discriminator']} is missing"
+            return f"lacks {context['discriminator']}"
         case "extra_forbidden":
             return "is not known here"
+        case "json_invalid":
+            return f"is not JSON: {context['error']}"
         case "value_error":
             return mistake["msg"].removeprefix("Value error, ")
         case "string_pattern_mismatch":
@@ -73,8 +77,11 @@ def what_it_must_be(mistake: ErrorDetails) -> str:
             return _at_most(context["max_length"], kind, context)
         case "union_tag_invalid":
             key = context["discriminator"].strip("'")
-            return f"has '{context['tag']}' as '{key}', which must be {context['expected_tags']}"
-    return _SUBJECT.sub("must ", mistake["msg"])
+            return f"has '{context['tag']}' as '{key}', not one of {context['expected_tags']}"
+    told = mistake["msg"]
+    if _SUBJECT.match(told):
+        return _SUBJECT.sub("must ", told)
+    return f"is not right: {told[:1].lower()}{told[1:]}"
 
 
 def _at_least(least: int, kind: str, context: dict[str, Any]) -> str:

@@ -15,7 +15,15 @@ from tasks.unit import unit_at, unit_of_name
 _MAX_VALUE_CHARACTERS = 60
 _OF_NUMBERS = ("greater_", "less_", "float_", "int_", "finite_")
 """How pydantic's types of mistakes begin that only a number can have."""
-_TELLS_ITSELF = ("too_short", "too_long", "string_too_long", "string_too_short", "value_error")
+_TELLS_ITSELF = (
+    "union_tag_not_found",
+    "union_tag_invalid",
+    "too_short",
+    "too_long",
+    "string_too_long",
+    "string_too_short",
+    "value_error",
+)
 """What is too long to be taken tells nothing."""
 
 Model = TypeVar("Model", bound=BaseModel)

@@ -33,6 +33,10 @@ LAST_WORDS_S = 2.0
 PAGE = 1000
 
 
+class ToldLaterError(JournalWriteError):
+    """Something was done that the journal is told of only later; who asks again does it twice."""
+
+
 class DeedLog:
     """The deeds of principals as events of the journal, that belong to no run."""
 
@@ -65,14 +69,14 @@ class DeedLog:
     async def access_changed(self, change: Change, author: ev.Author) -> None:
         """Somebody was given access or lost it, through the API; returns once it is journaled.
 
-        Raises `JournalWriteError` where it cannot be now: it is as soon as it can be.
+        Raises `ToldLaterError` where it cannot be now: it is as soon as it can be.
         """
         event = _access_changed(change, author)
         try:
             await self._journal.append(Entry(events=[event]))
         except JournalWriteError as error:
             self._add_later(event)
-            raise JournalWriteError(
+            raise ToldLaterError(
                 "it is done, but the journal has yet to be told; a token or code that was made is "
                 f"shown to nobody, so make another: {error}"
             ) from error

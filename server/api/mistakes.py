@@ -56,10 +56,8 @@ def _where(mistake: Any, body: Any) -> tuple[int | str, ...]:
 def _what_is_wrong(where: Sequence[int | str], mistakes: Sequence[Any]) -> str:
     first = mistakes[0]
     match first["type"]:
-        case "missing" | "extra_forbidden" | "value_error":
+        case "missing" | "extra_forbidden" | "value_error" | "json_invalid":
             return what_it_must_be(first)
-        case "json_invalid":
-            return f"is not JSON: {first['ctx']['error']}"
         case "model_attributes_type" if isinstance(first["input"], bytes):
             return "must be JSON that is sent with 'Content-Type: application/json'"
     return what_is_right(mistakes, unit_of_name(where))

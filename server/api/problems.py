@@ -14,6 +14,7 @@ from starlette.exceptions import HTTPException
 from starlette.responses import Response
 
 from server.access.changes import EnrolmentRefusedError
+from server.access.deed_log import ToldLaterError
 from server.access.principals_file import PrincipalsFileError
 from server.access.roles import Role, with_article
 from server.api.mistakes import MOST_TOLD, validation_sentences
@@ -51,9 +52,8 @@ STATUSES: tuple[tuple[type[Exception], int], ...] = (
 )
 
 
-NOT_NOW = (429, 503)
-SOON = "1"
-"""Seconds after which to try again what may be possible then, where nothing else is known."""
+SOON = {"Retry-After": "1"}
+"""What may be possible again after a second, where nothing more is known."""
 
 
 class Problem(BaseModel):
@@ -127,11 +127,7 @@ def problem_response(refusal: Problem, headers: Mapping[str, str] | None = None)
         problem_text(refusal),
         refusal.status,
         media_type=MEDIA_TYPE,
-        headers={
-            **SAFE_HEADERS,
-            **({"Retry-After": SOON} if refusal.status in NOT_NOW else {}),
-            **(headers or {}),
-        },
+        headers={**SAFE_HEADERS, **(headers or {})},
     )
 
 
@@ -189,8 +185,15 @@ async def _service_error(request: Request, error: Exception) -> Response:
     refusal = problem_of(error)
     assert refusal is not None, "every service error has a status"
     count_refusal(error, parts_of(request).refusals)
-    later = {"Retry-After": f"{error.retry_after_s}"} if isinstance(error, BusyError) else None
-    return problem_response(refusal, later)
+    return problem_response(refusal, _retry_after(error))
+
+
+def _retry_after(error: Exception) -> Mapping[str, str] | None:
+    """When to ask again; None where that would do something twice, or nothing."""
+    if isinstance(error, BusyError):
+        return {"Retry-After": f"{error.retry_after_s}"}
+    undone = isinstance(error, JournalWriteError | JournalClosedError | JournalReadError)
+    return SOON if undone and not isinstance(error, ToldLaterError) else None
 
 
 async def _no_descriptor(_request: Request, error: Exception) -> Response:
@@ -199,7 +202,7 @@ async def _no_descriptor(_request: Request, error: Exception) -> Response:
     if error.errno not in NO_DESCRIPTOR:
         raise error
     detail = "the service has too many files and connections open just now; try again"
-    return problem_response(problem(503, detail))
+    return problem_response(problem(503, detail), SOON)
 
 
 async def _defect(request: Request, error: Exception) -> Response:

@@ -11,6 +11,7 @@ from server.journal.file_lock import FileLock
 from server.journal.file_mode import OWNERS_FOLDER, keep_to_owner
 from server.journal.journal import JournalDamagedError, JournalOpenError
 from server.journal.migrations import migrate
+from server.journal.other_writers import OtherWriters
 from server.journal.quick_check import DamagedPagesError, quick_check
 from server.journal.same_file import SameFile
 from server.journal.sqlite_errors import SQLITE_ERRORS
@@ -33,6 +34,7 @@ class OpenJournal:
     damage: Sequence[Break]
     file: SameFile | None
     lock: FileLock | None
+    others: OtherWriters
 
 
 def open_journal(path: Path | str, busy_timeout_s: float, check_s: float) -> OpenJournal:
@@ -102,6 +104,8 @@ def _connected(
         migrate(write)
         write.execute("PRAGMA journal_mode=WAL")
         write.execute("PRAGMA synchronous=FULL")
+        # Before anything is read of it: what comes later is somebody else's.
+        others = OtherWriters(write)
         damage, chain = quick_check(write, check_s), Chain(write)
         (head,) = write.execute(
             "SELECT max((SELECT coalesce(max(seq), 0) FROM events),"
@@ -112,4 +116,4 @@ def _connected(
     except BaseException:
         write.close()
         raise
-    return OpenJournal(write, read, look_up, int(head), chain, damage, file, lock)
+    return OpenJournal(write, read, look_up, int(head), chain, damage, file, lock, others)

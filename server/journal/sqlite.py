@@ -37,7 +37,6 @@ from server.journal.keyed_request import (
     note_request,
 )
 from server.journal.opening import IN_MEMORY, open_journal
-from server.journal.other_writers import OtherWriters
 from server.journal.pages import page_of
 from server.journal.pruning import Keep, Pruned, prune, pruned_through
 from server.journal.readable import read_readable
@@ -117,7 +116,7 @@ class SqliteJournal:
         self._next = self._batch_start = opened.head + 1
         self._chain = opened.chain
         self._index = RunIndex(self._pages.select, self._look_ups.select)
-        self._others = OtherWriters(self._write_connection)
+        self._others = opened.others
         self._subscribers = Subscribers()
         self._version = current_version()
         self._closed = False

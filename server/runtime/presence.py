@@ -69,6 +69,7 @@ class Presence:
 
     async def connected(self, side: RobotSide, hello: Hello) -> None:
         if side.gone_for_good:
+            await self._send_away(side, hello)
             return
         state, robot = self._context.state, side.robot
         if timer := self._timers.pop(robot, None):
@@ -101,10 +102,22 @@ class Presence:
         if rebooted:
             self._interventions.tell_again(side)
         if continues and execution is not None and side.doing is Doing.IDLE and not execution.held:
-            # The start may never have arrived; a robot that carried it out ignores it.
-            self._start(side, execution)
+            await self._start_again(side, execution)
         elif continues and not rebooted and was_doing is Doing.RETREATING:
             side.doing = Doing.RETREATING
+
+    async def _start_again(self, side: RobotSide, execution: Execution) -> None:
+        """The start may never have arrived; a robot that carried it out ignores it."""
+        if side.livelock.lasts:
+            await self.give_up_in_livelock(side)
+        else:
+            self._start(side, execution)
+
+    async def _send_away(self, side: RobotSide, hello: Hello) -> None:
+        """Have a robot that was given up let go of what it may still hold or do for the run."""
+        side.connect(hello)
+        if hello.executing is not None:
+            side.retreat()
 
     async def lost(self, side: RobotSide, reason: str) -> None:
         state, robot = self._context.state, side.robot
@@ -151,6 +164,8 @@ class Presence:
         state = self._context.state
         execution = state.executions.get(side.robot)
         events: list[ev.Event] = []
+        if side.robot not in state.lost:
+            events.append(ev.RobotLost(**self._context.stamp(), robot=side.robot, reason=why))
         if execution is not None:
             if dialogue := state.dialogue_of(execution.leaf):
                 events.append(self._dialogues.abort(dialogue))

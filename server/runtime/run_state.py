@@ -90,7 +90,7 @@ class RunState:
         grow without end.
         """
         self._done_once: set[tuple[int, int]] = set()
-        """Leaves that were done, each with how often it had been gone before."""
+        """Leaves that were done, each with how often anything had been gone before."""
         self.asks = 0
         self.helps = 0
         self.seq = started.seq
@@ -237,8 +237,9 @@ class RunState:
         self.taken_back.pop(leaf, None)
         self.to_leave_out.pop(leaf, None)
         self._end_execution(leaf)
-        self.progress += (leaf, self.times_gone[leaf]) not in self._done_once
-        self._done_once.add((leaf, self.times_gone[leaf]))
+        done = leaf, self.times_gone.total()
+        self.progress += done not in self._done_once
+        self._done_once.add(done)
 
     @_apply.register
     def _(self, event: ev.NodeReturned) -> None:
@@ -259,6 +260,8 @@ class RunState:
         leaf = self.tree.index_of(event.node)
         self.tree.put_back(leaf, failed=event.failed_attempt)
         self._end_execution(leaf)
+        # Of one leaf there are only so many failed attempts.
+        self.progress += event.failed_attempt
         if self.tree.attempts(leaf) >= self.request.max_attempts:
             self.exhausted.add(leaf)
 

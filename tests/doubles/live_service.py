@@ -13,7 +13,9 @@ from dialogue.registry import load_scripts
 from server.dialogues.escalation import EscalationPolicy
 from server.journal.sqlite import SqliteJournal
 from server.poses.feed import PoseFeed
+from server.refusals import Refusals
 from server.robots.registry import RobotRegistry
+from server.robots.times import LinkTimes
 from server.runtime.context import RunSettings
 from server.runtime.runtime import Runtime
 
@@ -26,13 +28,21 @@ class LiveService:
     registry: RobotRegistry
     journal: SqliteJournal
     url: str
+    refusals: Refusals
 
 
 @asynccontextmanager
 async def live_service(
-    journal: SqliteJournal, tree: OneTree, *, token: str, port: int = 0
+    journal: SqliteJournal,
+    tree: OneTree,
+    *,
+    token: str,
+    port: int = 0,
+    settings: RunSettings | None = None,
+    times: LinkTimes | None = None,
 ) -> AsyncIterator[LiveService]:
-    registry = RobotRegistry(journal, time.monotonic)
+    refusals = Refusals()
+    registry = RobotRegistry(journal, time.monotonic, times or LinkTimes())
     runtime = Runtime(
         journal=journal,
         robots=registry,
@@ -41,15 +51,16 @@ async def live_service(
         scripts=load_scripts(),
         policy=EscalationPolicy(),
         send_mail=lambda *_: None,
-        settings=RunSettings(),
+        settings=settings or RunSettings(),
         monotonic=time.monotonic,
         utc_now=lambda: datetime.now(UTC),
         poses=PoseFeed(registry.show_poses, lambda _: None),
+        refusals=refusals,
     )
     async with served(registry, token, port) as url:
         await runtime.recover()
         try:
-            yield LiveService(runtime, registry, journal, url)
+            yield LiveService(runtime, registry, journal, url, refusals)
         finally:
             registry.close()
             await runtime.close()

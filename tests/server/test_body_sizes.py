@@ -87,7 +87,8 @@ async def test_bodies_that_come_at_once_have_so_much_room_together(tmp_path: Pat
         return await client.post("/api/trees/check", content=b"#" * size, headers={**YAML, **who})
 
     async with service.client() as client:
-        async with half_sent(client, 4 * SHORT_BODY_BYTES, operator):
+        # All the room there is, but for what is short.
+        async with half_sent(client, 5 * SHORT_BODY_BYTES, operator):
             refused = await check(3 * SHORT_BODY_BYTES, operator)
             assert (refused.status_code, refused.headers["retry-after"]) == (503, "5")
             assert "too many large bodies" in refused.json()["detail"]

@@ -41,6 +41,26 @@ async def test_who_asks_for_much_keeps_nobody_waiting_for_more_than_one_turn() -
     assert shop.served == [each for one in rounds for each in one]
 
 
+async def test_who_has_a_turn_waits_within_it_for_nothing_else_of_their_own() -> None:
+    """Else everybody who waits for that turn would wait for all of it."""
+    shop, office = Shop(), Shop()
+
+    async def sign() -> None:
+        async with office.turns.turn(1):
+            await shop.ask(asker.get(), f"within {asker.get().split()[0]}")
+
+    async def signed(who: str) -> None:
+        asker.set(who)
+        await sign()
+
+    asked = [shop.ask("anna", f"anna {n}") for n in range(4)]
+    await asyncio.sleep(0)
+    signing = [asyncio.create_task(signed(who)) for who in ("anna", "ben")]
+    await asyncio.gather(*asked, *signing)
+    assert shop.served[:3] == ["anna 0", "within anna", "anna 1"]
+    assert shop.served.index("within ben") <= 3
+
+
 async def test_who_goes_away_loses_their_turn_and_nobody_elses() -> None:
     shop = Shop()
     asked = [shop.ask("anna", f"anna {n}") for n in range(4)] + [shop.ask("ben", "ben 0")]

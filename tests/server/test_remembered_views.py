@@ -86,6 +86,23 @@ async def test_a_file_that_a_tree_names_and_that_changes_is_looked_at_again(shel
     assert await shelf.checks_of("serve") == 0
 
 
+async def test_an_uploaded_file_that_a_tree_names_and_that_changes_is_looked_at_again(
+    shelf: Shelf,
+) -> None:
+    shelf.scene.unlink()
+    await shelf.library.scenes.save("bench", BENCH)
+    assert await shelf.checks_of("serve") == 1
+    assert await shelf.checks_of("serve") == 0
+    await shelf.library.scenes.save("bench", BENCH.replace("-0.3", "-0.2"))
+    assert await shelf.checks_of("serve") == 1
+
+
+async def test_who_sees_what_is_kept_waits_for_nobody(shelf: Shelf) -> None:
+    await shelf.tree()
+    async with shelf.library.trees._views._turns.turn(1), asyncio.timeout(20):
+        assert await shelf.checks_of("serve") == 0
+
+
 async def test_what_changes_during_a_check_is_not_remembered(shelf: Shelf) -> None:
     run = shelf.library.off_loop.run
 

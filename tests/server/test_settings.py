@@ -200,3 +200,9 @@ def test_a_file_that_is_no_sensible_one_is_told_in_a_short_sentence(
     with pytest.raises(WrongSettingsError) as wrong:
         load_settings(file)
     assert 0 < len(str(wrong.value)) < 1000
+
+
+def test_a_path_that_is_none_is_told_plainly() -> None:
+    with pytest.raises(WrongSettingsError) as error:
+        load_settings(journal=3)
+    assert str(error.value) == "The setting 'journal' is wrong: it must be a path."

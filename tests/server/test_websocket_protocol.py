@@ -110,13 +110,17 @@ async def test_who_is_just_sending_to_a_client_that_was_sent_away_hears_that_it_
 async def test_a_refused_handshake_is_no_error_in_the_log(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
+    # What uvicorn logs is not passed on once anything has configured it.
+    logger = logging.getLogger("uvicorn.error")
     async with server_with(refuse, log_config=None, log_level=None) as (server, listening):
+        logger.addHandler(caplog.handler)
         reader, writer = await asyncio.open_connection(*listening.getsockname())
         writer.write(HELLO)
         async with asyncio.timeout(IN_TIME_S):
             answer = await reader.read()
         writer.close()
         await server.shutdown(sockets=[listening])
+        logger.removeHandler(caplog.handler)
     assert answer.startswith(b"HTTP/1.1 401 ")
     assert answer.endswith(b"not you")
     assert [each.message for each in caplog.records if each.levelno >= logging.WARNING] == []

@@ -201,7 +201,9 @@ def test_a_name_that_reads_as_another_or_names_no_address_is_refused(
         editor.add(name, Role.VIEWER, datetime.now(UTC))
 
 
-@pytest.mark.parametrize("name", ["\u202eann", "an\u200bn", " ", "ann ", "\u2028"])
+@pytest.mark.parametrize(
+    "name", ["\u202eann", "an\u200bn", " ", "ann ", "\u2028", "\u3164", "an\u034fna", "ann\ufe0f"]
+)
 def test_a_name_that_could_be_taken_for_another_is_refused(name: str, tmp_path: Path) -> None:
     file = tmp_path / "principals.yaml"
     with pytest.raises(InvalidError, match="characters that can be seen"):

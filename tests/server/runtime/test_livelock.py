@@ -1,121 +1,21 @@
 """A robot that is told one thing after the other, and nothing comes of it, is given up."""
 
 import asyncio
-import json
-import time
-from collections.abc import AsyncIterator, Callable
-from contextlib import asynccontextmanager, suppress
-from typing import Any
-from uuid import UUID
+from collections import Counter
 
 import pytest
-from live_service import LiveService, live_service
-from pretend_service import BARE, OneTree, pretend_service
+from pretend_service import pretend_service
 from task_documents import definition_of
+from told_robot import PARTS, Body, Obey, ToldRobot, at_work, end_of, works
 
-from robots.link.channel import Channel, ChannelClosedError, memory_channel
-from robots.link.messages import Command, service_message
 from server.dialogues.escalation import EscalationPolicy
+from server.journal import events as ev
 from server.journal.sqlite import SqliteJournal
+from server.robots.times import LinkTimes
+from server.runtime.context import RunSettings
 from server.runtime.livelock import MOST_FRUITLESS_COMMANDS
-from server.runtime.requests import RunRequest
-from server.runtime.views import RunStatus, RunView
+from server.runtime.views import RunStatus
 from sim.tabletop.layout import lay_out
-
-PARTS = ("green_leg", "blue_leg", "pink_bar", "yellow_bar")
-TREE = {
-    "then": [
-        {"behavior": "pick_and_place", "object": part, "place": f"place_of_{part}"}
-        for part in PARTS
-    ]
-}
-GRIPPER = {"x": 0.3, "y": 0.0, "z": 1.0}
-Body = dict[str, Any]
-
-
-class ToldRobot:
-    """A robot over a channel in this process; what it does with a command is up to the test."""
-
-    def __init__(self, service: LiveService, name: str) -> None:
-        self.boots = 0
-        self.told = 0
-        self.asks = False
-        self.service = service
-        self.run: asyncio.Future[UUID] = asyncio.get_running_loop().create_future()
-        self.executing = ""
-        self._name = name
-        self._tasks: list[asyncio.Task[None]] = []
-
-    async def boot(self, obey: "Obey") -> None:
-        """Start its program (again)."""
-        self.boots += 1
-        self._seq = 0
-        self._channel, theirs = memory_channel()
-        self._serving = asyncio.create_task(self.service.registry.serve(theirs))
-        await self._say(
-            type="hello", protocol=1, robot=self._name, boot=f"boot {self.boots}",
-            behaviors=["pick_and_place"], cameras=[],
-            reach={"x": 0.0, "y": 0.0, "min_m": 0.2, "max_m": 0.8},
-        )  # fmt: skip
-        self._tasks.append(asyncio.create_task(self._work(self._channel, obey)))
-
-    async def ended(self) -> None:
-        """Its connection has come to its end."""
-        await self._serving
-
-    async def end(self) -> None:
-        """Its program ends, and the service has noticed."""
-        await self._channel.close()
-        await self._serving
-
-    async def stop(self) -> None:
-        await self.end()
-        for task in self._tasks:
-            task.cancel()
-        await asyncio.gather(*self._tasks, return_exceptions=True)
-
-    async def _work(self, channel: Channel, obey: "Obey") -> None:
-        with suppress(ChannelClosedError):
-            while True:
-                message = service_message.validate_json(await channel.receive())
-                if isinstance(message, Command):
-                    self.told += 1
-                    await channel.send(_json(type="taken", command=message.id))
-                    await obey(self, message.id, message.body.model_dump())
-
-    async def _say(self, **message: Any) -> None:
-        await self._channel.send(_json(time=time.monotonic(), **message))
-
-    async def report(self, **body: Any) -> None:
-        self._seq += 1
-        await self._say(type="report", seq=self._seq, body=body)
-
-    async def look(self, command: str, x: float = 0.5, **fields: Any) -> None:
-        """What it sees: everything, and everything that is to be there."""
-        seen = {
-            part: {"x": x, "y": 0.1, "z": 0.7, "yaw": 0.0, "time": time.monotonic()}
-            for part in PARTS
-        }
-        await self.report(type="looked", command=command, objects=seen, gripper=GRIPPER, **fields)
-
-    async def finish(self, body: Body) -> None:
-        about = {"execution": body["execution"]}
-        await self.report(type="step_started", step=1, name="above pick", **about)
-        await self.report(type="finished", **about)
-
-
-Obey = Callable[[ToldRobot, str, Body], Any]
-
-
-def _json(**message: Any) -> str:
-    return json.dumps(message)
-
-
-async def works(robot: ToldRobot, command: str, body: Body) -> None:
-    if body["type"] == "look":
-        await robot.look(command, there=body["finished"])
-    elif body["type"] == "start":
-        await robot.finish(body)
 
 
 async def rejects_looks(robot: ToldRobot, command: str, body: Body) -> None:
@@ -181,6 +81,24 @@ async def floods(robot: ToldRobot, command: str, body: Body) -> None:
             await robot.report(type="holding", execution=body["execution"], at="in_place")
 
 
+async def connects_at_each_start(robot: ToldRobot, command: str, body: Body) -> None:
+    """It never says that anything was begun, and so is told to start again."""
+    if body["type"] == "look":
+        await robot.look(command)
+    elif body["type"] == "start":
+        await robot.end()
+        await robot.connect(connects_at_each_start)
+
+
+async def is_blind_at_the_end(robot: ToldRobot, command: str, body: Body) -> None:
+    """Of all that it has done it says that it cannot see it, and does the last again."""
+    last = len(body.get("finished", ())) == len(PARTS)
+    if body["type"] == "look":
+        await robot.look(command, **({"blind": "it is dark"} if last else {}))
+    elif body["type"] == "start":
+        await robot.finish(body)
+
+
 async def boots_at_each_start(robot: ToldRobot, command: str, body: Body) -> None:
     if body["type"] == "look":
         await robot.look(command)
@@ -192,36 +110,6 @@ async def boots_at_each_start(robot: ToldRobot, command: str, body: Body) -> Non
         await robot.boot(boots_at_each_start)
 
 
-@asynccontextmanager
-async def at_work(
-    obey: Obey, journal: SqliteJournal, *, with_another: bool
-) -> AsyncIterator[tuple[LiveService, ToldRobot, UUID]]:
-    tree = OneTree(definition_of(TREE), BARE)
-    async with asyncio.timeout(60), live_service(journal, tree, token="t" * 32) as service:
-        robot = ToldRobot(service, "arm")
-        another = ToldRobot(service, "other arm")
-        await robot.boot(obey)
-        await another.boot(works)
-        names = ["arm", "other arm"] if with_another else ["arm"]
-        while not all(map(service.registry.connected, names)):  # noqa: ASYNC110
-            await asyncio.sleep(0.01)
-        run = await service.runtime.start_run(RunRequest(tree="one", world="live", robots=names))
-        robot.run.set_result(run.id)
-        yield service, robot, run.id
-        await robot.stop()
-        await another.stop()
-
-
-async def end_of(
-    obey: Obey, journal: SqliteJournal, *, with_another: bool = False
-) -> tuple[RunView, ToldRobot, int]:
-    """The run, the robot, and how many events the journal has of it."""
-    async with at_work(obey, journal, with_another=with_another) as (service, robot, run):
-        ended = await service.runtime.wait_for_end(run)
-        events = await journal.read(0, 100_000, run)
-    return ended, robot, len(events)
-
-
 @pytest.mark.parametrize(
     "obey",
     [
@@ -230,13 +118,21 @@ async def end_of(
         knows_an_unknown_issue,
         goes_backwards,
         boots_at_each_start,
+        connects_at_each_start,
+        is_blind_at_the_end,
         rejects_looks_while_it_asks,
         sees_its_part_wander_while_it_asks,
     ],
 )
 async def test_a_robot_with_which_nothing_comes_on_is_given_up(obey: Obey) -> None:
     journal = SqliteJournal(":memory:")
-    ended, robot, events = await end_of(obey, journal)
+    async with at_work(obey, journal) as (service, robot, run):
+        ended = await service.runtime.wait_for_end(run)
+        events = await journal.read(0, 100_000, run)
+        assert service.refusals.counts["fruitless_commands"] == 1
+        while robot.heard[-1]["type"] != "interrupt":  # noqa: ASYNC110
+            await asyncio.sleep(0.01)
+        assert robot.heard[-1]["retreat"]
     journal.close()
     assert ended.status is RunStatus.FAILED
     assert ended.result is not None
@@ -244,8 +140,11 @@ async def test_a_robot_with_which_nothing_comes_on_is_given_up(obey: Obey) -> No
         f"the robot 'arm' is given up: it was told {MOST_FRUITLESS_COMMANDS} things one after the "
         "other, and nothing was done and nobody answered meanwhile"
     )
-    assert MOST_FRUITLESS_COMMANDS <= robot.told <= MOST_FRUITLESS_COMMANDS + 5
-    assert events <= 4 * MOST_FRUITLESS_COMMANDS
+    most = MOST_FRUITLESS_COMMANDS + 3 * len(PARTS) + 5
+    assert MOST_FRUITLESS_COMMANDS <= robot.told <= most
+    assert len(events) <= 4 * MOST_FRUITLESS_COMMANDS
+    # Also where another robot goes on, that is to be read somewhere.
+    assert any(isinstance(each, ev.RobotLost) for each in events)
 
 
 async def test_a_robot_reports_no_more_for_being_told_the_same_again(
@@ -254,7 +153,7 @@ async def test_a_robot_reports_no_more_for_being_told_the_same_again(
     most = 100
     monkeypatch.setattr("server.robots.known_robot.MOST_UNASKED_REPORTS", most)
     journal = SqliteJournal(":memory:")
-    async with at_work(floods, journal, with_another=False) as (_, robot, run):
+    async with at_work(floods, journal) as (_, robot, run):
         await robot.ended()
         events = await journal.read(0, 100_000, run)
     journal.close()
@@ -263,7 +162,7 @@ async def test_a_robot_reports_no_more_for_being_told_the_same_again(
 
 async def test_another_robot_goes_on_without_one_that_is_given_up() -> None:
     journal = SqliteJournal(":memory:")
-    ended, robot, _ = await end_of(holds, journal, with_another=True)
+    ended, robot, _ = await end_of(holds, journal, another_obeys=works)
     journal.close()
     assert ended.status is RunStatus.FINISHED
     assert robot.told <= MOST_FRUITLESS_COMMANDS + len(PARTS) + 5
@@ -339,3 +238,104 @@ async def test_a_robot_that_asks_for_an_hour_is_not_given_up() -> None:
     assert ended.status is RunStatus.FINISHED
     assert events[-1].time > 3600.0
     assert len(looks) > 5 * MOST_FRUITLESS_COMMANDS
+
+
+async def test_a_long_order_that_is_done_again_as_its_beginning_is_gone_is_progress() -> None:
+    parts = [f"part_{number}" for number in range(110)]
+    taken: list[str] = []
+
+    async def obey(robot: ToldRobot, command: str, body: Body) -> None:
+        if body["type"] == "start":
+            await robot.finish(body)
+            return
+        finished = body["finished"]
+        gone = [each for each in finished if each["object"] == parts[0]]
+        if len(finished) == len(parts) and not taken:
+            taken.append(parts[0])
+            there = [each for each in finished if each not in gone]
+            await robot.look(command, there=there, gone=gone)
+        else:
+            await robot.look(command, there=finished)
+
+    journal = SqliteJournal(":memory:")
+    ended, robot, _ = await end_of(obey, journal, parts=parts)
+    journal.close()
+    assert taken
+    assert ended.status is RunStatus.FINISHED, ended.result
+    assert robot.told > 2 * MOST_FRUITLESS_COMMANDS
+
+
+@pytest.mark.parametrize(("attempts", "leaves", "fails"), [(100, 3, 80), (3, 110, 1)])
+async def test_a_leaf_may_be_tried_as_often_as_the_run_says(
+    attempts: int, leaves: int, fails: int
+) -> None:
+    tried: Counter[str] = Counter()
+
+    async def obey(robot: ToldRobot, command: str, body: Body) -> None:
+        if body["type"] == "look":
+            await robot.look(command, there=body["finished"])
+        elif body["type"] == "start":
+            tried[body["node"]] += 1
+            if tried[body["node"]] > fails:
+                await robot.finish(body)
+            else:
+                await robot.report(type="rejected", command=command, reason="not this time")
+
+    parts = [f"part_{number}" for number in range(leaves)]
+    journal = SqliteJournal(":memory:")
+    ended, _, _ = await end_of(obey, journal, kind="and", parts=parts, max_attempts=attempts)
+    journal.close()
+    assert ended.status is RunStatus.FINISHED, ended.result
+
+
+async def test_a_robot_that_comes_back_after_it_was_given_up_lets_go_of_what_it_has() -> None:
+    started, let_go, go_on = (asyncio.Event() for _ in range(3))
+
+    async def leaves(robot: ToldRobot, command: str, body: Body) -> None:
+        if body["type"] == "look":
+            await robot.look(command, there=body["finished"])
+        elif body["type"] == "start":
+            robot.executing = body["execution"]
+            about = {"execution": robot.executing}
+            await robot.report(type="step_started", step=3, name="close gripper", **about)
+            await robot.end()
+            started.set()
+        elif body["type"] == "interrupt" and body["retreat"]:
+            let_go.set()
+
+    async def waits(robot: ToldRobot, command: str, body: Body) -> None:
+        if body["type"] == "start":
+            await go_on.wait()
+        await works(robot, command, body)
+
+    journal = SqliteJournal(":memory:")
+    async with at_work(
+        leaves,
+        journal,
+        another_obeys=waits,
+        settings=RunSettings(robot_lost_timeout_s=0.01),
+        times=LinkTimes(absence_s=0.01),
+    ) as (service, robot, run):
+        await started.wait()
+        side = service.runtime._runs[run].sides["arm"]
+        while not side.gone_for_good:  # noqa: ASYNC110
+            await asyncio.sleep(0.01)
+        holding = {"execution": robot.executing, "state": "holding", "step": 3}
+        await robot.connect(leaves, executing=holding)
+        await let_go.wait()
+        go_on.set()
+        ended = await service.runtime.wait_for_end(run)
+    journal.close()
+    assert ended.status is RunStatus.FINISHED
+
+
+async def test_an_answer_gives_a_robot_as_much_time_again() -> None:
+    journal = SqliteJournal(":memory:")
+    async with at_work(rejects_looks_while_it_asks, journal) as (service, _, run):
+        while not (asked := await service.runtime.dialogues("open", 10, 0)) or not asked[0].prompt:  # noqa: ASYNC110
+            await asyncio.sleep(0)
+        state = service.runtime._runs[run].context.state
+        before = state.progress
+        await service.runtime.answer(asked[0].dialogue, asked[0].prompt.prompt, "yes", "ben")
+        assert state.progress == before + 1
+    journal.close()
