@@ -163,6 +163,7 @@ async def _open(
             max_helped_retries=settings.max_helped_retries,
             max_times_gone=settings.max_times_gone,
             robot_lost_timeout_s=settings.robot_lost_timeout_s,
+            robot_silent_timeout_s=settings.robot_silent_timeout_s,
             claim_lease_s=settings.claim_lease_s,
             limits=settings.limits,
         ),

@@ -5,7 +5,11 @@ import re
 
 from websockets.frames import Frame
 
-SECRETS = re.compile(r"(?i)((?:authorization|cookie): )[^\r\n]*")
+SECRETS = re.compile(
+    r"(?i)((?:authorization|cookie): )[^\r\n]*|((?:access_)?token=)[^&\s\"']*"
+    r"|(mend_)[0-9a-f]{8}_[A-Za-z0-9_-]+"
+)
+"""What follows such words, and Mend's own tokens wherever somebody puts them."""
 
 
 LONGEST_CHARS = 500
@@ -22,12 +26,17 @@ class HideSecrets(logging.Filter):
     any of it, and in pieces.
     """
 
+    def __init__(self, token: str | None = None) -> None:
+        """`token` is the service's own, which need not look like one."""
+        super().__init__()
+        self._own = None if token is None else re.compile(re.escape(token))
+
     def filter(self, record: logging.LogRecord) -> bool:
         """Keep the record, without what nobody may read."""
         if record.name == ACCESS and isinstance(record.args, tuple):
             # Its formatter wants each of them.
             record.args = tuple(
-                _told(each) if isinstance(each, str) else each for each in record.args
+                self._told(each) if isinstance(each, str) else each for each in record.args
             )
             return True
         if isinstance(record.args, tuple):
@@ -35,26 +44,33 @@ class HideSecrets(logging.Filter):
                 _kind(each) if isinstance(each, Frame) else each for each in record.args
             )
         text = record.getMessage()
-        told = _told(text)
+        told = self._told(text)
         if told != text:
             record.msg, record.args = told, ()
         return True
+
+    def _told(self, text: str) -> str:
+        hidden = SECRETS.sub(_stars, text)
+        if self._own is not None:
+            hidden = self._own.sub("***", hidden)
+        if len(hidden) <= LONGEST_CHARS:
+            return hidden
+        return f"{hidden[:LONGEST_CHARS]}... ({len(hidden)} characters)"
+
+
+def _stars(found: re.Match[str]) -> str:
+    kept = next(each for each in found.groups() if each is not None)
+    return f"{kept}***"
 
 
 def _kind(frame: Frame) -> str:
     return f"{frame.opcode.name} [{len(frame.data)} bytes]"
 
 
-def _told(text: str) -> str:
-    hidden = SECRETS.sub(r"\1***", text)
-    if len(hidden) <= LONGEST_CHARS:
-        return hidden
-    return f"{hidden[:LONGEST_CHARS]}... ({len(hidden)} characters)"
-
-
-def hide_secrets() -> None:
-    """Hide them where uvicorn logs what comes and goes on WebSockets."""
+def hide_secrets(token: str | None = None) -> None:
+    """Hide them, and the service's own token, where uvicorn logs what comes and goes."""
     for name in ("uvicorn.error", ACCESS):
         logger = logging.getLogger(name)
-        if not any(isinstance(each, HideSecrets) for each in logger.filters):
-            logger.addFilter(HideSecrets())
+        for each in [each for each in logger.filters if isinstance(each, HideSecrets)]:
+            logger.removeFilter(each)
+        logger.addFilter(HideSecrets(token))

@@ -50,7 +50,7 @@ def serve_config(app: FastAPI, settings: Settings) -> uvicorn.Config:
         forwarded_allow_ips=proxies.as_written,
     )
     # After the configuration, which sets up uvicorn's loggers.
-    hide_secrets()
+    hide_secrets(settings.token.get_secret_value() if settings.token else None)
     return config
 
 

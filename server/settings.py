@@ -99,6 +99,7 @@ class Settings(BaseSettings):
     robot_hang_timeout_s: Seconds = 10.0
     robot_absence_s: Seconds = 3.0
     robot_lost_timeout_s: Seconds = 60.0
+    robot_silent_timeout_s: Seconds = 600.0
     subscriber_queue: Annotated[int, Field(ge=1, le=1_000_000)] = 4096
     """How many events may wait for one slow client before it is cut off."""
     record_poses: bool = True

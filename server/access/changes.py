@@ -1,5 +1,6 @@
 """What is done to the file of principals: adding, rotating, revoking, and enrolling robots."""
 
+import unicodedata
 from dataclasses import dataclass, field
 from datetime import datetime, timedelta
 from pathlib import Path
@@ -163,7 +164,7 @@ class PrincipalsEditor:
 
 
 def _refuse_name(name: str, longest: int) -> None:
-    if name.strip().casefold() in RESERVED:
+    if unicodedata.normalize("NFKC", name).strip().casefold() in RESERVED:
         raise InvalidError(f"nobody can be called '{name}': that is what the service calls others")
     if not 0 < len(name) <= longest or not can_be_shown(name):
         raise InvalidError(

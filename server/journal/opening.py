@@ -62,6 +62,7 @@ def _open_file(path: Path, busy_timeout_s: float, check_s: float, lock: FileLock
         _refuse_emptied(path, lock)
         keep_to_owner(path)
         lock.lock_file()
+        _refuse_second_name(path)
         opened = _connected(str(path), busy_timeout_s, check_s, SameFile(path), lock)
         lock.say_made()
     except (sqlite3.OperationalError, OSError) as error:
@@ -78,6 +79,16 @@ def _refuse_emptied(path: Path, lock: FileLock) -> None:
         raise JournalDamagedError(
             f"the journal '{path}' is empty, though it was not: put a backup in its place with "
             "'mend journal restore', or delete the file to begin a new journal"
+        )
+
+
+def _refuse_second_name(path: Path) -> None:
+    """Beside each name of a file SQLite keeps another log of what is not in the file yet."""
+    if path.stat().st_nlink > 1:
+        raise _cannot_open(
+            path,
+            "its file has another name, too (a hard link), under which it would have another "
+            "history: remove one of the names, or copy the file with 'mend journal backup'",
         )
 
 

@@ -26,6 +26,7 @@ class RunSettings:
 
     help_window_s: float = 30.0
     robot_lost_timeout_s: float = 60.0
+    robot_silent_timeout_s: float = 600.0
     max_helped_retries: int = 20
     max_times_gone: int = 10
     claim_lease_s: float = 30.0

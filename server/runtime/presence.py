@@ -152,12 +152,16 @@ class Presence:
         """Have no more to do with a robot that is told one thing after the other for nothing."""
         log.warning("robot %s is given up: nothing comes of what it is told", side.robot)
         self._context.refusals.note("fruitless_commands")
-        side.retreat()
-        await self._give_up(
+        await self.give_up(
             side,
             f"is given up: it was told {MOST_FRUITLESS_COMMANDS} things one after the other, and "
             "nothing was done and nobody answered meanwhile",
         )
+
+    async def give_up(self, side: RobotSide, why: str) -> None:
+        """Have no more to do with a robot that is there; it is to let go."""
+        side.retreat()
+        await self._give_up(side, why)
 
     async def _give_up(self, side: RobotSide, why: str) -> None:
         side.gone_for_good = True

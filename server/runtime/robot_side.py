@@ -77,6 +77,8 @@ class RobotSide:
     gone_for_good: bool = False
     restarts: int = 0
     livelock: Livelock = field(default_factory=Livelock)
+    silent_since: float | None = None
+    """Since when nothing has come of what it was told (the run's clock); None: not yet known."""
     command: str | None = None
     purpose: Purpose | None = None
     holds_execution: bool = False
@@ -104,6 +106,12 @@ class RobotSide:
             self.doing is Doing.LOOKING
             and self.purpose in (Purpose.BASELINE, Purpose.WATCH, Purpose.VIEW)
         )
+
+    @property
+    def owes_a_report(self) -> bool:
+        """Whether it was told something of which a report is still to come."""
+        busy = self.doing in (Doing.LOOKING, Doing.WORKING, Doing.RETREATING)
+        return busy and not self.gone_for_good
 
     def suitability(self, behavior: str) -> float:
         """How well it can do a behavior; 0 if it cannot."""
@@ -135,6 +143,7 @@ class RobotSide:
 
     def _tell(self, doing: Doing, command: str, body: CommandBody) -> None:
         self.doing, self.command = doing, command
+        self.silent_since = None
         self.link.send(self.robot, command, body, renews=self.livelock.tell())
 
     def look(self, purpose: Purpose, **fields: Any) -> None:

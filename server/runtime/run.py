@@ -28,7 +28,7 @@ from robots.link.messages import (
     StepStarted,
     WasDone,
 )
-from server.errors import ConflictError, ServiceError
+from server.errors import BusyError, ConflictError, ServiceError
 from server.journal import events as ev
 from server.journal.journal import DuplicateReceiptError, JournalWriteError, Receipt
 from server.runtime.choosing import choose
@@ -158,10 +158,23 @@ class Run:
         waits = [self._claims.expire_in_s()]
         # What was due before has begun, or begins once an item says that it can.
         due = None if self._hardware.simulated else self._dialogues.next_due(self._settled_s)
-        if due is not None and self._context.state.status is RunStatus.RUNNING:
-            waits.append(max(0.0, due - self._context.clock.now()))
+        if self._context.state.status is RunStatus.RUNNING:
+            dues = [due, *(self._silent_too_long_at(each) for each in self._sides.values())]
+            now = self._context.clock.now()
+            waits += [max(0.0, each - now) for each in dues if each is not None]
         timeout_s = min((each for each in waits if each is not None), default=None)
         return await self._inbox.next(timeout_s)
+
+    def _silent_too_long_at(self, side: RobotSide) -> float | None:
+        """When a robot has said nothing for too long of what it was told (the run's clock).
+
+        A simulated one is watched by its process, and its world's clock stands still without it.
+        """
+        if self._hardware.simulated or not side.owes_a_report:
+            return None
+        if side.silent_since is None:
+            side.silent_since = self._context.clock.now()
+        return side.silent_since + self._context.settings.robot_silent_timeout_s
 
     async def _carry_out(self, item: Item) -> None:
         try:
@@ -176,7 +189,7 @@ class Run:
             await self._context.noted()
         except asyncio.CancelledError:
             # Whoever waits for it must not wait for ever when the service shuts down.
-            item.fail(ConflictError("the service is shutting down"))
+            item.fail(BusyError("the service is shutting down"))
             raise
         except Exception as error:
             item.fail(error)
@@ -206,7 +219,7 @@ class Run:
         try:
             take = partial(self._reported, self._sides[robot], report, receipt)
             await self.request(take, patient=True)
-        except ConflictError:
+        except (BusyError, ConflictError):
             # A service that shuts down takes nothing more: the robot sends it again afterwards.
             if not self._context.state.status.ended:
                 raise
@@ -230,6 +243,7 @@ class Run:
             await self._context.commit([], receipt=receipt)
             return
         self._context.clock.observe(report.time)
+        side.silent_since = None
         body = report.body
         if isinstance(body, StepStarted):
             side.restarts = 0
@@ -300,7 +314,7 @@ class Run:
         results = list(results_of(state))
         for side in self._sides.values():
             side.finished = results
-            if await self._gave_up_in_livelock(side):
+            if await self._gave_up_in_livelock(side) or await self._gave_up_as_silent(side):
                 return True
         for dialogue in state.open_dialogues:
             if await self._dialogues.drive(dialogue, self._sides[dialogue.opened.robot]):
@@ -321,6 +335,17 @@ class Run:
         if not idle or not side.livelock.lasts:
             return False
         await self._presence.give_up_in_livelock(side)
+        return True
+
+    async def _gave_up_as_silent(self, side: RobotSide) -> bool:
+        """Give a robot up that says nothing of what it was told; whether it did."""
+        due = self._silent_too_long_at(side)
+        if due is None or self._context.clock.now() < due:
+            return False
+        timeout_s = self._context.settings.robot_silent_timeout_s
+        await self._presence.give_up(
+            side, f"is given up: for {timeout_s:g} s it has said nothing of what it was told"
+        )
         return True
 
     async def _occupy(self, side: RobotSide) -> bool:

@@ -16,6 +16,7 @@ from dialogue.script import Script
 from server.dialogues.answers import answer_source
 from server.dialogues.escalation import EscalationPolicy
 from server.errors import (
+    BusyError,
     ConflictError,
     InvalidError,
     LostRaceError,
@@ -148,7 +149,7 @@ class Runtime:
         self._refuse_one_too_many()
         new = await self._new_runs.make(request, author)
         if self._closing:
-            raise ConflictError("the service is shutting down")
+            raise BusyError("the service is shutting down")
         # Others may have begun meanwhile.
         self._refuse_one_too_many()
         if request.world == LIVE:

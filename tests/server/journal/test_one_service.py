@@ -12,7 +12,7 @@ from full_disk import Never
 from sample_events import paused
 
 from server.journal.file_lock import JournalLockedError
-from server.journal.journal import Entry, JournalWriteError
+from server.journal.journal import Entry, JournalOpenError, JournalWriteError
 from server.journal.sqlite import SqliteJournal
 
 OPENS = """
@@ -48,7 +48,9 @@ def test_a_second_service_is_refused_however_it_comes_to_the_file(
     assert second.returncode != 0
     assert "in use by another process" in second.stderr
     first.close()
-    SqliteJournal(name).close()
+    if name != path:
+        name.unlink()
+    SqliteJournal(path).close()
 
 
 async def test_who_is_refused_takes_no_lock_from_who_has_it(tmp_path: Path) -> None:
@@ -106,3 +108,16 @@ async def test_what_another_program_changes_elsewhere_keeps_nobody_from_writing(
     (event,) = await journal.append(Entry(events=[paused()]))
     assert event.seq == 2
     journal.close()
+
+
+def test_a_file_with_two_names_is_not_opened_by_either(tmp_path: Path) -> None:
+    """What is still in the log beside one name would not be there under the other."""
+    path, other = tmp_path / "journal.db", tmp_path / "other" / "journal.db"
+    SqliteJournal(path).close()
+    other.parent.mkdir()
+    other.hardlink_to(path)
+    for name in (path, other):
+        with pytest.raises(JournalOpenError, match="has another name, too"):
+            SqliteJournal(name)
+    other.unlink()
+    SqliteJournal(path).close()

@@ -8,7 +8,7 @@ from pretend_robots import PretendRobot, Sink
 from pretend_service import PretendService, pretend_service
 from task_documents import definition_of
 
-from server.errors import ConflictError, InvalidError
+from server.errors import BusyError, ConflictError, InvalidError
 from server.journal.run_index import RunPage
 from server.runtime.ports import RealRobots
 from server.runtime.requests import RunRequest
@@ -101,7 +101,7 @@ async def test_a_run_that_is_asked_for_while_the_service_stops_does_not_begin() 
         connect(service, "duo")
         starting = asyncio.create_task(service.runtime.start_run(request_of("duo")))
         await service.runtime.close()
-        with pytest.raises(ConflictError, match="shutting down"):
+        with pytest.raises(BusyError, match="shutting down"):
             await starting
         assert service.journal.head == 0
 

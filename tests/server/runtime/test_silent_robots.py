@@ -1,0 +1,65 @@
+"""A robot that is there and says nothing of what it was told keeps a run going for only so long."""
+
+import asyncio
+
+import pytest
+from told_robot import Body, Obey, ToldRobot, at_work, end_of, works
+
+from server.journal.sqlite import SqliteJournal
+from server.runtime.context import RunSettings
+from server.runtime.views import RunStatus
+
+SOON = RunSettings(robot_silent_timeout_s=0.2)
+
+
+async def does_nothing(robot: ToldRobot, command: str, body: Body) -> None:
+    """It takes what it is told, and that is all."""
+
+
+async def takes_a_leaf_and_stops(robot: ToldRobot, command: str, body: Body) -> None:
+    if body["type"] == "look":
+        await robot.look(command, there=body["finished"])
+
+
+@pytest.mark.parametrize("obey", [does_nothing, takes_a_leaf_and_stops])
+async def test_a_robot_that_says_nothing_of_what_it_was_told_is_given_up(obey: Obey) -> None:
+    journal = SqliteJournal(":memory:")
+    ended, robot, _ = await end_of(obey, journal, settings=SOON)
+    journal.close()
+    assert ended.status is RunStatus.FAILED
+    assert ended.result is not None
+    assert ended.result.reason == (
+        "the robot 'arm' is given up: for 0.2 s it has said nothing of what it was told"
+    )
+    assert robot.told < 5
+
+
+async def test_its_leaf_goes_to_another() -> None:
+    journal = SqliteJournal(":memory:")
+    ended, _, _ = await end_of(takes_a_leaf_and_stops, journal, another_obeys=works, settings=SOON)
+    journal.close()
+    assert ended.status is RunStatus.FINISHED
+
+
+async def test_no_time_passes_while_the_run_is_paused() -> None:
+    started = asyncio.Event()
+
+    async def starts(robot: ToldRobot, command: str, body: Body) -> None:
+        await takes_a_leaf_and_stops(robot, command, body)
+        if body["type"] == "start":
+            started.set()
+
+    journal = SqliteJournal(":memory:")
+    settings = RunSettings(robot_silent_timeout_s=3600.0)
+    async with at_work(starts, journal, settings=settings) as (service, _, run):
+        await started.wait()
+        await service.runtime.pause(run)
+        actor = service.runtime._runs[run]
+        side = actor.sides["arm"]
+        at = actor._silent_too_long_at(side)
+        before = actor.context.clock.now()
+        await asyncio.sleep(0)
+        assert actor.context.clock.now() == before
+        assert at is not None
+        assert at == actor._silent_too_long_at(side)
+    journal.close()
