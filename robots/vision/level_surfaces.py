@@ -5,8 +5,11 @@ height nor colour steps from one to the next; then each surface grows over the r
 missing depth have eaten away.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from enum import Enum, auto
+from itertools import combinations
 
 import cv2
 import numpy as np
@@ -127,35 +130,53 @@ def _join_pieces(
 ) -> tuple[Labels, list[list[int]]]:
     """Pieces of one surface that something in front of it has cut, and their common label.
 
-    They are as high and of one colour, and nothing lower is seen between them.
+    They are as high and of one colour, something higher is seen between them, and between no two
+    of them anything lower. Those next to each other are joined first.
     """
     count = len(cores.tops)
     group = list(range(count))
-    for one in range(count):
-        for other in range(one + 1, count):
-            if abs(cores.tops[one] - cores.tops[other]) > step_m or group[one] == group[other]:
-                continue
-            if np.abs(cores.colors[one] - cores.colors[other]).max() > alike:
-                continue
-            if _nothing_between(pixels[one], pixels[other], cores.tops[one], seen, tolerance_m):
-                old, new = sorted((group[one], group[other]), reverse=True)
-                group = [new if each == old else each for each in group]
+    between = {
+        (one, other): _between(pixels[one], pixels[other], cores.tops[one], seen, tolerance_m)
+        for one, other in combinations(range(count), 2)
+        if abs(cores.tops[one] - cores.tops[other]) <= step_m
+        and np.abs(cores.colors[one] - cores.colors[other]).max() <= alike
+    }
+    cut = [pair for pair, found in between.items() if found is _Between.SOMETHING_HIGHER]
+    for one, other in sorted(cut, key=lambda pair: _apart_px(pixels[pair[0]], pixels[pair[1]])):
+        old, new = sorted((group[one], group[other]), reverse=True)
+        both = combinations([each for each in range(count) if group[each] in (old, new)], 2)
+        if not any(between.get(pair) is _Between.SOMETHING_LOWER for pair in both):
+            group = [new if each == old else each for each in group]
     numbers = np.append(0, np.array(group, np.int64) + 1).astype(np.int32)
     groups = [[each for each in range(count) if group[each] == key] for key in sorted(set(group))]
     return numbers[labels], groups
 
 
-def _nothing_between(
+class _Between(Enum):
+    """What is seen between two pieces."""
+
+    SOMETHING_HIGHER = auto()
+    SOMETHING_LOWER = auto()
+    NOTHING = auto()
+
+
+def _apart_px(one: tuple[Pixels, Pixels], other: tuple[Pixels, Pixels]) -> float:
+    """How far the middles of two pieces are from each other."""
+    (us, vs), (other_us, other_vs) = one, other
+    return math.hypot(us.mean() - other_us.mean(), vs.mean() - other_vs.mean())
+
+
+def _between(
     one: tuple[Pixels, Pixels],
     other: tuple[Pixels, Pixels],
     top_z: float,
     seen: HeightMap,
     tolerance_m: float,
-) -> bool:
+) -> _Between:
     us, vs = np.append(one[0], other[0]), np.append(one[1], other[1])
     left, top = int(us.min()), int(vs.min())
     if max(int(us.max()) - left, int(vs.max()) - top) > _LONGEST_PX:
-        return False
+        return _Between.NOTHING
     canvas = np.zeros((int(vs.max()) - top + 1, int(us.max()) - left + 1), np.uint8)
     # What stands on a piece, as a knob on its plate, is not between it and another one.
     for (some_us, some_vs), value in (((us, vs), 1), (one, 0), (other, 0)):
@@ -165,7 +186,9 @@ def _nothing_between(
     with np.errstate(invalid="ignore"):
         higher = int(np.count_nonzero(between > top_z + tolerance_m))
         lower = int(np.count_nonzero(between < top_z - tolerance_m))
-    return higher > 0 and lower <= _LOWER_SHARE * higher
+    if lower <= _LOWER_SHARE * higher:
+        return _Between.SOMETHING_HIGHER if higher > 0 else _Between.NOTHING
+    return _Between.SOMETHING_LOWER if lower >= _FEWEST_PX else _Between.NOTHING
 
 
 def _surfaces(

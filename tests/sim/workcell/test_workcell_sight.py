@@ -148,6 +148,29 @@ def test_equal_plates_beside_each_other_are_not_one_thing(
         assert {each.name for each in view.boxes} == set(objects)
 
 
+def test_equal_boxes_in_line_are_two_though_something_stands_on_the_end_of_one() -> None:
+    """What stands there cuts the top that it stands on, and hides most of the gap."""
+    long = SceneObject(
+        color=(0.16, 0.07, 0.07), size=(0.044, 0.111, 0.043), mass_kg=0.3, pose=Pose(x=0, y=0)
+    )
+    objects = {
+        "near": long.model_copy(update={"pose": Pose(x=0.4189, y=-0.6008)}),
+        "far": long.model_copy(update={"pose": Pose(x=0.4138, y=-0.4841)}),
+        "upper": SceneObject(
+            color=(0.51, 0.02, 0.12),
+            size=(0.046, 0.032, 0.034),
+            mass_kg=0.1,
+            pose=Pose(x=0.4114, y=-0.577, z=0.743, yaw=0.127),
+        ),
+    }
+    for seed in range(6):
+        view = view_of(Scene(name="in_line", objects=objects, places={}), seed)
+        for name in ("near", "far"):
+            (seen,) = [each for each in view.boxes if each.name == name]
+            at = objects[name].pose
+            assert math.hypot(seen.x - at.x, seen.y - at.y) < 0.005
+
+
 def test_what_carries_a_part_is_under_its_middle_though_hardly_seen() -> None:
     """Under an equal part, turned by 25 degrees, hardly more than a corner of it shows."""
     upper_z = 0.7 + 0.099
