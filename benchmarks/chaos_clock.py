@@ -7,6 +7,7 @@ for that of the note that a journal's format was changed. The kernel's own clock
 everything on the machine shares it.
 """
 
+import os
 import sys
 import time
 from datetime import datetime, timedelta, tzinfo
@@ -18,15 +19,16 @@ class Offset:
     """How far the clock is off, in seconds, as the file says now."""
 
     def __init__(self, file: Path) -> None:
-        self._file = file
+        # Kept open: there may be no descriptor left when it is to be read.
+        self._file = file.open("rb")
         self._changed_ns = 0
         self._s = 0.0
 
     def __call__(self) -> float:
-        changed_ns = self._file.stat().st_mtime_ns
+        changed_ns = os.fstat(self._file.fileno()).st_mtime_ns
         if changed_ns != self._changed_ns:
             self._changed_ns = changed_ns
-            self._s = float(self._file.read_text() or 0.0)
+            self._s = float(os.pread(self._file.fileno(), 100, 0) or 0.0)
         return self._s
 
 
