@@ -11,7 +11,7 @@ from tasks.plain_mistakes import NAME
 from tasks.unit import Unit
 
 Metres = Annotated[float, Field(ge=-100.0, le=100.0, allow_inf_nan=False), Unit("metres")]
-Length = Annotated[float, Field(gt=0.0, le=10.0, allow_inf_nan=False), Unit("metres")]
+Length = Annotated[float, Field(gt=1e-6, le=10.0, allow_inf_nan=False), Unit("metres")]
 Radians = Annotated[float, Field(ge=-6.2832, le=6.2832, allow_inf_nan=False), Unit("radians")]
 Name = Annotated[str, Field(pattern=NAME)]
 Channel = Annotated[float, Field(ge=0.0, le=1.0, allow_inf_nan=False)]
