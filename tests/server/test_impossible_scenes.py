@@ -162,8 +162,13 @@ IMPOSSIBLE = [
     ("no such object", POSSIBLE, leaf("mug", "cup"), "has no object 'mug'"),
     ("no such place", POSSIBLE, leaf("cup", "shelf"), "has no place 'shelf'"),
     # What is no scene.
-    ("no size", changed(cup__size=[0.05, 0.0, 0.06]), ALL, "must be greater than 1e-06"),
-    ("hardly a size", changed(cup__size=[0.05, 5e-324, 0.06]), ALL, "must be greater than 1e-06"),
+    ("no size", changed(cup__size=[0.05, 0.0, 0.06]), ALL, "must be greater than 0.000001"),
+    (
+        "hardly a size",
+        changed(cup__size=[0.05, 5e-324, 0.06]),
+        ALL,
+        "must be greater than 0.000001",
+    ),
     ("no colour", changed(cup__color=[2.0, 0.1, 0.1]), ALL, "less than or equal to 1"),
 ]
 UNSEEN = [
