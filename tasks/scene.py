@@ -7,7 +7,7 @@ from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from tasks.plain_mistakes import NAME
+from tasks.spellings import NAME
 from tasks.unit import Unit
 
 Metres = Annotated[float, Field(ge=-100.0, le=100.0, allow_inf_nan=False), Unit("metres")]

@@ -16,7 +16,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, TypeAdapter
 
 from robots.link.shown_name import SHOWN
 from tasks.intervention import Intervention
-from tasks.plain_mistakes import SEEN_CHARACTERS_OR_NONE
+from tasks.spellings import SEEN_CHARACTERS_OR_NONE
 
 PROTOCOL_VERSION = 1
 

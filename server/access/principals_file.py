@@ -27,7 +27,8 @@ from robots.link.shown_name import SHOWN
 from server.access.principal import RESERVED
 from server.access.roles import Role
 from server.journal.file_mode import OWNERS_FOLDER, keep_to_owner
-from tasks.plain_mistakes import SEEN_CHARACTERS, SHA256, SHORT_ID, what_it_must_be
+from tasks.plain_mistakes import what_it_must_be
+from tasks.spellings import SEEN_CHARACTERS, SHA256, SHORT_ID
 from tasks.validation import what_is_right
 
 HEADING = "# Written by `mend access`. Tokens are not in here, only their hashes.\n"

@@ -27,7 +27,7 @@ from server.runtime.service import RunService
 from server.runtime.views import WorldView
 from server.settings import Settings
 from server.speech.abilities import NO_SPEECH, SpeechAbilities
-from tasks.plain_mistakes import NAME, SEEN_CHARACTERS
+from tasks.spellings import NAME, SEEN_CHARACTERS
 
 if TYPE_CHECKING:
     # It refuses with problem documents, which know the parts.

@@ -14,7 +14,7 @@ from server.journal.run_index import RunPage
 from server.runtime.requests import RunRequest
 from server.runtime.views import RunStatus, RunSummary, RunView
 from tasks.intervention import Intervention
-from tasks.plain_mistakes import CAMERA
+from tasks.spellings import CAMERA
 
 router = APIRouter(prefix="/api/runs", tags=["runs"], route_class=RepeatableRoute)
 

@@ -14,7 +14,7 @@ from server.speech.ear import NoEars
 from server.speech.phrases import FIXED, effect_text, help_text
 from server.speech.question import find_prompt
 from server.speech.voice import NoVoice, VoiceError
-from tasks.plain_mistakes import PHRASE
+from tasks.spellings import PHRASE
 
 router = APIRouter(tags=["speech"])
 

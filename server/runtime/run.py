@@ -486,6 +486,9 @@ class Run:
         What follows from a robot's reports cannot be committed then, so it is to hold.
         """
         if reason is None:
+            for side in self._sides.values():
+                # What it said meanwhile still waits to be taken.
+                side.silent_since = None
             self._inbox.tell(_nothing)
             return
         self._inbox.refuse_impatient(JournalWriteError(reason))

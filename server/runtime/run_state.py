@@ -72,6 +72,7 @@ class RunState:
         """Leaves that were done, until a robot sets about them anew or they are done again."""
         self.times_gone: Counter[int] = Counter()
         """How often a leaf was done and its object then gone."""
+        self._times_anything_gone = 0
         self.left_out: dict[int, ev.NodeLeftOut] = {}
         """Leaves that count as done though their object is missing, as a helper said."""
         self.to_leave_out: dict[int, ev.NodeLeftOut] = {}
@@ -237,7 +238,7 @@ class RunState:
         self.taken_back.pop(leaf, None)
         self.to_leave_out.pop(leaf, None)
         self._end_execution(leaf)
-        done = leaf, self.times_gone.total()
+        done = leaf, self._times_anything_gone
         self.progress += done not in self._done_once
         self._done_once.add(done)
 
@@ -253,7 +254,9 @@ class RunState:
         if leaf in self.left_out:
             self.to_leave_out[leaf] = self.left_out.pop(leaf)
         self.taken_back[leaf] = event
-        self.times_gone[leaf] += event.because_of is None and not event.unseen
+        gone = event.because_of is None and not event.unseen
+        self.times_gone[leaf] += gone
+        self._times_anything_gone += gone
 
     @_apply.register
     def _(self, event: ev.NodeReset) -> None:

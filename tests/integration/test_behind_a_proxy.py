@@ -70,27 +70,24 @@ async def test_many_strangers_may_come_through_a_trusted_proxy() -> None:
     assert statuses == [200, 200, 200]
 
 
-async def test_what_a_proxy_passes_on_that_is_no_address_is_nobodys() -> None:
+@pytest.mark.parametrize(
+    ("guessers", "same", "other"),
+    [
+        # What is no address is nobody's, whatever it is.
+        (["made-up-0", "made-up-1"], "made-up-2", "192.0.2.1"),
+        # Of IPv6 a customer has a whole network.
+        (["2001:db8::0", "2001:db8::1"], "2001:db8::ffff:7", "2001:db8:0:1::1"),
+    ],
+)
+async def test_whoever_has_many_addresses_of_one_kind_is_one_guesser(
+    guessers: list[str], same: str, other: str
+) -> None:
     async with (
         serving(token=TOKEN, limits=LIMITS, trusted_proxies=PROXY) as service,
         httpx.AsyncClient(base_url=service.url) as proxy,
     ):
-        for number in range(2):
-            headers = shows(f"guess {number}", f"made-up-{number}")
-            assert (await proxy.get("/api/runs", headers=headers)).status_code == 401
-        another = await proxy.get("/api/runs", headers=shows(TOKEN, "made-up-2"))
-        real = await proxy.get("/api/runs", headers=shows(TOKEN, "192.0.2.1"))
-    assert [another.status_code, real.status_code] == [429, 200]
-
-
-async def test_of_ipv6_whoever_has_a_network_is_one_guesser() -> None:
-    async with (
-        serving(token=TOKEN, limits=LIMITS, trusted_proxies=PROXY) as service,
-        httpx.AsyncClient(base_url=service.url) as proxy,
-    ):
-        for number in range(2):
-            headers = shows(f"guess {number}", f"2001:db8::{number}")
-            assert (await proxy.get("/api/runs", headers=headers)).status_code == 401
-        same = await proxy.get("/api/runs", headers=shows(TOKEN, "2001:db8::ffff:7"))
-        other = await proxy.get("/api/runs", headers=shows(TOKEN, "2001:db8:0:1::1"))
-    assert [same.status_code, other.status_code] == [429, 200]
+        for number, address in enumerate(guessers):
+            response = await proxy.get("/api/runs", headers=shows(f"guess {number}", address))
+            assert response.status_code == 401
+        answers = [await proxy.get("/api/runs", headers=shows(TOKEN, at)) for at in (same, other)]
+    assert [each.status_code for each in answers] == [429, 200]

@@ -8,7 +8,8 @@ from pydantic import BaseModel, Field, ValidationError
 from robots.link.messages import robot_message
 from server.access.principals_file import Principals
 from server.app import described_app
-from tasks.plain_mistakes import SPELLINGS, what_it_must_be
+from tasks.plain_mistakes import what_it_must_be
+from tasks.spellings import SPELLINGS
 
 
 class Everything(BaseModel):

@@ -63,3 +63,25 @@ async def test_no_time_passes_while_the_run_is_paused() -> None:
         assert at is not None
         assert at == actor._silent_too_long_at(side)
     journal.close()
+
+
+async def test_while_the_journal_could_not_be_written_nobody_counts_as_silent() -> None:
+    """What a robot said meanwhile still waits behind what another one said."""
+    started = asyncio.Event()
+
+    async def starts(robot: ToldRobot, command: str, body: Body) -> None:
+        await takes_a_leaf_and_stops(robot, command, body)
+        if body["type"] == "start":
+            started.set()
+
+    journal = SqliteJournal(":memory:")
+    settings = RunSettings(robot_silent_timeout_s=3600.0)
+    async with at_work(starts, journal, settings=settings) as (service, _, run):
+        await started.wait()
+        actor = service.runtime._runs[run]
+        side = actor.sides["arm"]
+        side.silent_since = actor.context.clock.now() - 7200.0
+        actor.journal_troubled(None)
+        await actor.request(actor._go_on)
+        assert not side.gone_for_good
+    journal.close()

@@ -1,0 +1,20 @@
+"""How names and the like are spelt: the patterns, and in what words each of them is told."""
+
+NAME = r"^[A-Za-z][A-Za-z0-9_\-]{0,63}$"
+SEEN_CHARACTERS = r"^[^\x00-\x1f\x7f]+$"
+SEEN_CHARACTERS_OR_NONE = r"^[^\x00-\x1f\x7f-\x9f\u2028\u2029]*$"
+CAMERA = r"^[a-z][a-z0-9_]{0,31}$"
+PHRASE = r"^[a-z_]{1,32}$"
+SHA256 = r"^[0-9a-f]{64}$"
+SHORT_ID = r"^[0-9a-f]{8}$"
+
+SPELLINGS = {
+    NAME: "must be a name: a letter, then at most 63 letters, digits, '_' or '-'",
+    SEEN_CHARACTERS: "must have only characters that can be seen",
+    SEEN_CHARACTERS_OR_NONE: "must have only characters that can be seen",
+    CAMERA: "must be a lower-case letter, then at most 31 lower-case letters, digits or '_'",
+    PHRASE: "must be 1 to 32 lower-case letters or '_'",
+    SHA256: "must be 64 hexadecimal digits in lower case",
+    SHORT_ID: "must be 8 hexadecimal digits in lower case",
+}
+"""In what words each pattern is told."""
