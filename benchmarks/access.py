@@ -14,11 +14,11 @@ from statistics import median
 
 from starlette.requests import HTTPConnection
 
-from server.access.access import Access
-from server.access.changes import PrincipalsEditor
-from server.access.known_principals import KnownPrincipals
-from server.access.permissions import needed_for_request
-from server.access.roles import Role
+from mend.server.access.access import Access
+from mend.server.access.changes import PrincipalsEditor
+from mend.server.access.known_principals import KnownPrincipals
+from mend.server.access.permissions import needed_for_request
+from mend.server.access.roles import Role
 
 PRINCIPALS = 200
 ROUNDS = 2_000

@@ -20,8 +20,8 @@ import py_trees
 from py_trees.behaviour import Behaviour
 from py_trees.common import ParallelPolicy, Status
 
-from tasks.definition import BehaviorNode, GoalNode, TaskTreeDefinition
-from tasks.task_tree import TaskTree
+from mend.tasks.definition import BehaviorNode, GoalNode, TaskTreeDefinition
+from mend.tasks.task_tree import TaskTree
 
 _CHILDREN = 5
 

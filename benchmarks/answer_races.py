@@ -21,9 +21,9 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "doubles"))
 
 from answer_races import race
 
-from server.journal.events import Answered
-from server.journal.journal import Entry
-from server.journal.sqlite import SqliteJournal
+from mend.server.journal.events import Answered
+from mend.server.journal.journal import Entry
+from mend.server.journal.sqlite import SqliteJournal
 
 QUICK_RACES = 300
 

@@ -14,10 +14,10 @@ from typing import Literal
 
 import numpy as np
 
-from sim.workcell.cameras import Optics, WorkcellCamera, forearm_optics, head_optics
-from sim.workcell.options import WorkcellOptions
-from sim.workcell.world import WorkcellWorld
-from tasks.scene_file import built_in_scene
+from mend.sim.workcell.cameras import Optics, WorkcellCamera, forearm_optics, head_optics
+from mend.sim.workcell.options import WorkcellOptions
+from mend.sim.workcell.world import WorkcellWorld
+from mend.tasks.scene_file import built_in_scene
 
 CAMERAS: tuple[tuple[Literal["head", "forearm"], Optics], ...] = (
     ("forearm", forearm_optics(0.1)),

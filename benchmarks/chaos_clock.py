@@ -42,8 +42,8 @@ def main(file: Path) -> None:
 
     # Before anything of the service is imported, which takes the function as it is then.
     time.time = lambda: true_time_s() + offset()
-    import server.composition as composition
-    from server.cli import main as mend
+    import mend.server.composition as composition
+    from mend.server.cli import main as mend
 
     composition.datetime = Shifted  # type: ignore[misc]
     sys.argv = ["mend", "serve"]

@@ -20,7 +20,7 @@ from chaos_witness import Witness
 from full_disk import SmallDisk
 from service_process import ServiceProcess
 
-from server.access.changes import PrincipalsEditor
+from mend.server.access.changes import PrincipalsEditor
 
 TOKEN = "only-for-this-benchmark-and-thrown-away"
 DISK_MB = 512

@@ -14,9 +14,9 @@ from typing import TypedDict
 
 from playwright.async_api import async_playwright
 
-from server.composition import open_service
-from server.runtime.requests import RunRequest
-from server.settings import Settings
+from mend.server.composition import open_service
+from mend.server.runtime.requests import RunRequest
+from mend.server.settings import Settings
 
 # Counts from outside: a picture is an animation frame in which the scene was drawn.
 COUNT = """

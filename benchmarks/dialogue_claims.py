@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 
 from dialogue_record import RunRecord
 
-from server.journal import events as ev
+from mend.server.journal import events as ev
 
 AT_PLACE_M = 0.04
 """Where a robot may say that a part is at its place: what it takes for that, and its error."""

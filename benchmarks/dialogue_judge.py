@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from dialogue_claims import AT_PLACE_M, CHECKS, EFFECTS, Check
 from dialogue_record import Moment, RunRecord
 
-from server.journal import events as ev
+from mend.server.journal import events as ev
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 from untruths import Rest, equals_of, leaves_of
 
-from robots.body import Matrix4
-from robots.vision.line_of_sight import sight_of
-from robots.vision.seen_box import SeenBox
-from server.journal import events as ev
-from tasks.part_boxes import height_of
-from tasks.scene import Scene
+from mend.robots.body import Matrix4
+from mend.robots.vision.line_of_sight import sight_of
+from mend.robots.vision.seen_box import SeenBox
+from mend.server.journal import events as ev
+from mend.tasks.part_boxes import height_of
+from mend.tasks.scene import Scene
 
 NEAR_M = 0.06
 """Room that the fingers need: a part this near to another, or to its place, may be in the way."""
@@ -292,11 +292,11 @@ class _Eye:
 
 def _eye_of(world: str, scene: Scene) -> _Eye:
     if world == "tabletop":
-        from sim.tabletop.scenery import HEAD_FOCAL_PX, HEAD_SIZE, look_at_table
+        from mend.sim.tabletop.scenery import HEAD_FOCAL_PX, HEAD_SIZE, look_at_table
 
         pose, size, focal_px = look_at_table(scene.table), HEAD_SIZE, HEAD_FOCAL_PX
     else:
-        from sim.workcell.cameras import head_camera_pose, head_optics
+        from mend.sim.workcell.cameras import head_camera_pose, head_optics
 
         optics = head_optics()
         pose, size, focal_px = head_camera_pose(), optics.size, optics.focal_px

@@ -30,13 +30,13 @@ from random_scenarios import MOST_LEAVES, draw
 from untruths import find_untruths, kinds_of
 from watched_world import WatchedWorld, where_parts_rest
 
-from server.composition import open_service
-from server.dialogues import answers as answering
-from server.journal import events as ev
-from server.journal.sqlite import IN_MEMORY
-from server.runtime.requests import RunRequest
-from server.settings import Settings
-from tasks.scenario import Person
+from mend.server.composition import open_service
+from mend.server.dialogues import answers as answering
+from mend.server.journal import events as ev
+from mend.server.journal.sqlite import IN_MEMORY
+from mend.server.runtime.requests import RunRequest
+from mend.server.settings import Settings
+from mend.tasks.scenario import Person
 
 ASKS = 3000
 

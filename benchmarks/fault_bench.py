@@ -9,9 +9,9 @@ from fault_judge import Judge, checker, place_of
 from fault_trial import AFTER_DONE, LAST_STEP, NEVER, NotNowError, Said, Trial
 from plain_watch import PlainWatch, SharedSenses
 
-from robots.catalogue import Catalogue, Part
-from robots.grasp import grasp_of
-from robots.link.messages import (
+from mend.robots.catalogue import Catalogue, Part
+from mend.robots.grasp import grasp_of
+from mend.robots.link.messages import (
     Finished,
     FinishedResult,
     Interrupt,
@@ -22,14 +22,14 @@ from robots.link.messages import (
     Start,
     WasDone,
 )
-from robots.robot import Robot
-from sim.random_scene import NoRoomError, random_scene
-from sim.workcell.colors import learn_colors
-from sim.workcell.options import WorkcellOptions
-from sim.workcell.world import WorkcellWorld
-from tasks.intervention import Act, Intervention
-from tasks.plugins import load_plugins
-from tasks.scene import Scene
+from mend.robots.robot import Robot
+from mend.sim.random_scene import NoRoomError, random_scene
+from mend.sim.workcell.colors import learn_colors
+from mend.sim.workcell.options import WorkcellOptions
+from mend.sim.workcell.world import WorkcellWorld
+from mend.tasks.intervention import Act, Intervention
+from mend.tasks.plugins import load_plugins
+from mend.tasks.scene import Scene
 
 LONGEST_S = 120.0
 HAND_OVER_S = 9.0

@@ -6,12 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from sim.workcell.parts import PartPose
-from sim.workcell.world import WorkcellWorld
-from sim.world import SceneChecker
-from tasks.definition import BehaviorNode
-from tasks.plugins import load_plugins
-from tasks.scene import Pose, Scene, SceneObject
+from mend.sim.workcell.parts import PartPose
+from mend.sim.workcell.world import WorkcellWorld
+from mend.sim.world import SceneChecker
+from mend.tasks.definition import BehaviorNode
+from mend.tasks.plugins import load_plugins
+from mend.tasks.scene import Pose, Scene, SceneObject
 
 THERE_M = 0.02
 UPRIGHT_RAD = 0.2

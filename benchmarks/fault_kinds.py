@@ -10,8 +10,8 @@ from fault_bench import Bench, alone, width_m
 from fault_judge import place_of
 from fault_trial import Moment, NotNowError, Said, Trial
 
-from tasks.intervention import Act
-from tasks.scene import Pose
+from mend.tasks.intervention import Act
+from mend.tasks.scene import Pose
 
 REFUSED = "refused"
 _PULL_TAKES_S = 2.0

@@ -30,11 +30,11 @@ import numpy as np
 from playwright.async_api import Page, async_playwright
 from websockets.asyncio.client import connect
 
-from server.composition import Service, open_service
-from server.journal.events import IssueRaised, Prompt
-from server.limits import Limits
-from server.runtime.requests import RunRequest
-from server.settings import Settings
+from mend.server.composition import Service, open_service
+from mend.server.journal.events import IssueRaised, Prompt
+from mend.server.limits import Limits
+from mend.server.runtime.requests import RunRequest
+from mend.server.settings import Settings
 
 POLL_PERIOD_S = 1.0
 

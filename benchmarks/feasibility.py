@@ -24,8 +24,8 @@ from multiprocessing import get_context
 import numpy as np
 from scenes import THREAD_LIMITS, Outcome, play
 
-from tasks.definition import BehaviorNode, GoalNode, TaskTreeDefinition
-from tasks.scene import Place, Pose, Scene, SceneObject
+from mend.tasks.definition import BehaviorNode, GoalNode, TaskTreeDefinition
+from mend.tasks.scene import Place, Pose, Scene, SceneObject
 
 PART = "part"
 NEAR_M, FAR_M = 0.05, 0.25
@@ -82,7 +82,7 @@ def _spot(rng: np.random.Generator, low_y: float, high_y: float) -> Pose:
 
 def scene_of(seed: int) -> tuple[Scene, tuple[str, ...], float]:
     """The first scene drawn that has no plain mistake, what is said of it, and in which time."""
-    from sim.workcell.adapter import adapter
+    from mend.sim.workcell.adapter import adapter
 
     rng = np.random.default_rng(seed)
     while True:

@@ -15,12 +15,12 @@ from uuid import UUID, uuid4
 import httpx
 from fuzz_files import Complaints
 
-from server.access.changes import PrincipalsEditor
-from server.access.roles import Role
-from server.composition import Service, open_service
-from server.journal import events as ev
-from server.limits import Limits
-from server.settings import Settings
+from mend.server.access.changes import PrincipalsEditor
+from mend.server.access.roles import Role
+from mend.server.composition import Service, open_service
+from mend.server.journal import events as ev
+from mend.server.limits import Limits
+from mend.server.settings import Settings
 
 ROBOT = "arm-1"
 PATIENCE_S = 60.0

@@ -21,7 +21,7 @@ from uuid import UUID
 import yaml
 from fuzz_mutations import YAML_TRICKS, Mutator
 
-from server.cli.failures import CommandLineError, told_plainly
+from mend.server.cli.failures import CommandLineError, told_plainly
 
 ROOT = Path(__file__).parents[1]
 
@@ -187,13 +187,13 @@ def _files(*patterns: str) -> list[bytes]:
 
 
 def _documents() -> list[Reader]:
-    from server.cli.mistakes import (
+    from mend.server.cli.mistakes import (
         delivery_mistakes,
         scenario_mistakes,
         scene_mistakes,
         task_mistakes,
     )
-    from server.scene_checks import WorldChecks
+    from mend.server.scene_checks import WorldChecks
 
     nowhere = WorldChecks({})
     kinds: list[tuple[str, Callable[..., Any], tuple[str, ...]]] = [
@@ -218,8 +218,8 @@ def _documents() -> list[Reader]:
 
 
 def _principals(folder: Path) -> bytes:
-    from server.access.changes import PrincipalsEditor
-    from server.access.roles import Role
+    from mend.server.access.changes import PrincipalsEditor
+    from mend.server.access.roles import Role
 
     path = folder / "example.yaml"
     editor = PrincipalsEditor(path, by="root")
@@ -231,7 +231,7 @@ def _principals(folder: Path) -> bytes:
 
 
 def _read_principals(path: Path) -> None:
-    from server.access.principals_file import read_principals
+    from mend.server.access.principals_file import read_principals
 
     read_principals(path)
 
@@ -263,7 +263,7 @@ operators = ["olga@example.org"]
 
 
 def _read_settings(path: Path) -> None:
-    from server.settings import load_settings
+    from mend.server.settings import load_settings
 
     load_settings(path)
 
@@ -284,9 +284,9 @@ MAP_JSON = b'[{"p0": {"x": 0, "y": 0}, "p1": {"x": 24.0, "y": 0}}]'
 
 
 def _maps_and_logs() -> list[Reader]:
-    from maps.clean_up import clean_up
-    from maps.vector_map_file import read_vector_map
-    from robots.localization.logs.reading import read_log
+    from mend.localization.logs.reading import read_log
+    from mend.maps.clean_up import clean_up
+    from mend.maps.vector_map_file import read_vector_map
 
     drive = (ROOT / "examples/localization/drive.csv").read_bytes().split(b"\n")[:LINES]
     floor = _files("examples/localization/floor.vectormap.txt")
@@ -323,7 +323,7 @@ t0 5 5 0 100 0
 
 
 def _instances() -> list[Reader]:
-    from server.cli.delivery_files import read_delivery
+    from mend.server.cli.delivery_files import read_delivery
 
     def read(path: Path) -> None:
         read_delivery(path, "auto", transfers=True)
@@ -339,10 +339,10 @@ def _instances() -> list[Reader]:
 def _journals(folder: Path) -> list[Reader]:
     from made_up_history import write_history
 
-    from server.cli.journal import check as check_journal
-    from server.journal.backup import restore
-    from server.journal.reader import JournalReader
-    from server.journal.sqlite import SqliteJournal
+    from mend.server.cli.journal import check as check_journal
+    from mend.server.journal.backup import restore
+    from mend.server.journal.reader import JournalReader
+    from mend.server.journal.sqlite import SqliteJournal
 
     path = folder / "example.db"
     write_history(path, 2, pictures=True)
@@ -391,7 +391,7 @@ def _journals(folder: Path) -> list[Reader]:
 
 
 def _poses() -> list[Reader]:
-    from server.poses.record import PoseRecords
+    from mend.server.poses.record import PoseRecords
 
     run = UUID(int=7)
 

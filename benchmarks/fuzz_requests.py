@@ -12,7 +12,7 @@ from fuzz_bench import PATIENCE_S, ROBOT, SCENARIO, SCENE, TREE, Bench
 from fuzz_files import Finding, Found
 from fuzz_mutations import Mutator
 
-from server.access.permissions import OPEN, PATTERNS
+from mend.server.access.permissions import OPEN, PATTERNS
 
 
 @dataclass(frozen=True)

@@ -25,18 +25,18 @@ from fastapi import FastAPI
 from starlette.websockets import WebSocket, WebSocketDisconnect
 from websockets.asyncio.client import connect
 
-from server.access.access import Access
-from server.api import helper_socket
-from server.api.parts import Parts
-from server.journal.events import RunFailed
-from server.journal.journal import Entry
-from server.journal.sqlite import SqliteJournal
-from server.limits import Limits
-from server.listening import listen
-from server.refusals import Refusals
-from server.runtime.views import Snapshot
-from server.serving import Server, serve_config
-from server.settings import Settings
+from mend.server.access.access import Access
+from mend.server.api import helper_socket
+from mend.server.api.parts import Parts
+from mend.server.journal.events import RunFailed
+from mend.server.journal.journal import Entry
+from mend.server.journal.sqlite import SqliteJournal
+from mend.server.limits import Limits
+from mend.server.listening import listen
+from mend.server.refusals import Refusals
+from mend.server.runtime.views import Snapshot
+from mend.server.serving import Server, serve_config
+from mend.server.settings import Settings
 
 RUNS = 20
 EVENTS_PER_RUN_S = 2.0

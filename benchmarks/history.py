@@ -23,12 +23,12 @@ import psutil
 from made_up_history import write_history
 from websockets.asyncio.client import connect
 
-from dialogue.registry import load_scripts
-from server.composition import open_service
-from server.journal.run_index import RunPage
-from server.runtime.history import History
-from server.runtime.run_state import RunState
-from server.settings import Settings
+from mend.dialogue.registry import load_scripts
+from mend.server.composition import open_service
+from mend.server.journal.run_index import RunPage
+from mend.server.runtime.history import History
+from mend.server.runtime.run_state import RunState
+from mend.server.settings import Settings
 
 HELPERS = 20
 

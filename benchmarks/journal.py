@@ -11,9 +11,9 @@ from datetime import UTC, datetime
 from pathlib import Path
 from uuid import UUID, uuid4
 
-from server.journal.events import RobotLost
-from server.journal.journal import Entry
-from server.journal.sqlite import SqliteJournal
+from mend.server.journal.events import RobotLost
+from mend.server.journal.journal import Entry
+from mend.server.journal.sqlite import SqliteJournal
 
 EVENT_BYTES = 1024
 

@@ -17,7 +17,7 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "doubles"))
 from kills import Findings, Ordeal
 from service_process import service_process
 
-from server.runtime.requests import RunRequest
+from mend.server.runtime.requests import RunRequest
 
 QUICK_KILLS = 3
 

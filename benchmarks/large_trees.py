@@ -27,14 +27,14 @@ import httpx
 import psutil
 from websockets.asyncio.client import ClientConnection, connect
 
-from server.composition import open_service
-from server.document_checks import TreeChecker
-from server.documents import DocumentView
-from server.fixed_documents import GivenFiles, fixed_documents
-from server.garbage import settle_garbage
-from server.rendered import Rendered
-from server.scene_checks import load_world_checks
-from server.settings import Settings
+from mend.server.composition import open_service
+from mend.server.document_checks import TreeChecker
+from mend.server.documents import DocumentView
+from mend.server.fixed_documents import GivenFiles, fixed_documents
+from mend.server.garbage import settle_garbage
+from mend.server.rendered import Rendered
+from mend.server.scene_checks import load_world_checks
+from mend.server.settings import Settings
 
 PROBE_S = 0.005
 PATIENCE_S = 600.0

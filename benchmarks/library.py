@@ -28,14 +28,14 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "doubles"))
 from untruths import Rest
 from watched_world import where_parts_rest
 
-from server.journal import events as ev
-from server.journal.sqlite import IN_MEMORY
-from server.runtime.requests import RunRequest
-from server.runtime.views import RunStatus
-from server.settings import Settings
-from tasks.definition import TaskTreeDefinition
-from tasks.library import TREES
-from tasks.scene import Scene
+from mend.server.journal import events as ev
+from mend.server.journal.sqlite import IN_MEMORY
+from mend.server.runtime.requests import RunRequest
+from mend.server.runtime.views import RunStatus
+from mend.server.settings import Settings
+from mend.tasks.definition import TaskTreeDefinition
+from mend.tasks.library import TREES
+from mend.tasks.scene import Scene
 
 WORLDS = ("tabletop", "workcell")
 NOISY = {"camera_noise": 3.0, "light": 1.0, "depth_noise": 1.0}
@@ -92,7 +92,7 @@ async def run_task(
 ) -> Outcome:
     """One run of a shipped task with nobody there to help."""
     # Only here, so that a worker's limits on threads come before the libraries that heed them.
-    from server.composition import open_service
+    from mend.server.composition import open_service
 
     settings = Settings(port=0, journal=Path(IN_MEMORY), log_level="error")
     request = RunRequest(

@@ -22,12 +22,12 @@ import uvicorn
 from fastapi import FastAPI, WebSocket
 from websockets.asyncio.client import ClientConnection, connect
 
-from robots.link.messages import Held, Hello, ReachLimits, Report
-from server.access.access import Access
-from server.api.robot_socket import add_robot_route
-from server.journal.sqlite import SqliteJournal
-from server.robots.registry import RobotRegistry
-from server.websocket_protocol import WebSocketProtocol
+from mend.robots.link.messages import Held, Hello, ReachLimits, Report
+from mend.server.access.access import Access
+from mend.server.api.robot_socket import add_robot_route
+from mend.server.journal.sqlite import SqliteJournal
+from mend.server.robots.registry import RobotRegistry
+from mend.server.websocket_protocol import WebSocketProtocol
 
 PADDING = "x" * 900
 """Makes a report about 1 KB."""

@@ -20,15 +20,15 @@ from pathlib import Path
 
 import numpy as np
 
-from maps.vector_map import VectorMap
-from maps.vector_map_file import read_vector_map
-from robots.localization.evaluation import is_off
-from robots.localization.localizer import Localizer
-from robots.localization.logs.log import LogStep
-from robots.localization.methods import METHODS, warm_up
-from robots.localization.pose import Poses
-from robots.localization.synthetic.settings import SceneSettings
-from robots.localization.synthetic.world import Scene, scene
+from mend.localization.evaluation import is_off
+from mend.localization.localizer import Localizer
+from mend.localization.logs.log import LogStep
+from mend.localization.methods import METHODS, warm_up
+from mend.localization.pose import Poses
+from mend.localization.synthetic.settings import SceneSettings
+from mend.localization.synthetic.world import Scene, scene
+from mend.maps.vector_map import VectorMap
+from mend.maps.vector_map_file import read_vector_map
 
 DATA = Path(os.environ.get("MEND_DATA", Path(__file__).parents[2] / "shared/data"))
 STEP_M = 0.1

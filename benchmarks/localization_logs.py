@@ -22,15 +22,15 @@ from pathlib import Path
 import numpy as np
 from peers import mrpt
 
-from maps.vector_map import VectorMap
-from maps.vector_map_file import read_vector_map
-from robots.localization.evaluation import Summary, follow, summarize
-from robots.localization.localizer import Estimate, PointClass, Timed
-from robots.localization.logs.log import Log
-from robots.localization.logs.reading import read_log
-from robots.localization.mapping import map_of
-from robots.localization.methods import METHODS, warm_up
-from robots.localization.scan_matching import matched_poses
+from mend.localization.evaluation import Summary, follow, summarize
+from mend.localization.localizer import Estimate, PointClass, Timed
+from mend.localization.logs.log import Log
+from mend.localization.logs.reading import read_log
+from mend.localization.mapping import map_of
+from mend.localization.methods import METHODS, warm_up
+from mend.localization.scan_matching import matched_poses
+from mend.maps.vector_map import VectorMap
+from mend.maps.vector_map_file import read_vector_map
 
 DATA = Path(os.environ.get("MEND_DATA", Path(__file__).parents[2] / "shared/data"))
 PEER = "mrpt"

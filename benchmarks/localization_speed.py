@@ -19,16 +19,16 @@ import numpy as np
 import psutil
 from numpy.typing import NDArray
 
-from maps.ray_cast import cast
-from maps.vector_map import VectorMap
-from maps.vector_map_file import read_vector_map
-from robots.localization.evaluation import follow
-from robots.localization.localizer import Estimate, Timed
-from robots.localization.logs.log import LogStep
-from robots.localization.methods import METHODS, warm_up
-from robots.localization.pose import relative
-from robots.localization.synthetic.settings import SceneSettings
-from robots.localization.synthetic.world import Scene, scene
+from mend.localization.evaluation import follow
+from mend.localization.localizer import Estimate, Timed
+from mend.localization.logs.log import LogStep
+from mend.localization.methods import METHODS, warm_up
+from mend.localization.pose import relative
+from mend.localization.synthetic.settings import SceneSettings
+from mend.localization.synthetic.world import Scene, scene
+from mend.maps.ray_cast import cast
+from mend.maps.vector_map import VectorMap
+from mend.maps.vector_map_file import read_vector_map
 
 DATA = Path(os.environ.get("MEND_DATA", Path(__file__).parents[2] / "shared/data"))
 Matrix = NDArray[np.float64]

@@ -22,14 +22,14 @@ from pathlib import Path
 import numpy as np
 from scipy.stats import beta, chi2
 
-from maps.vector_map import VectorMap
-from maps.vector_map_file import read_vector_map
-from robots.localization.evaluation import follow
-from robots.localization.localizer import Timed
-from robots.localization.methods import METHODS, warm_up
-from robots.localization.pictures.canvas import Svg
-from robots.localization.synthetic.settings import SceneSettings
-from robots.localization.synthetic.world import Scene, scene
+from mend.localization.evaluation import follow
+from mend.localization.localizer import Timed
+from mend.localization.methods import METHODS, warm_up
+from mend.localization.pictures.canvas import Svg
+from mend.localization.synthetic.settings import SceneSettings
+from mend.localization.synthetic.world import Scene, scene
+from mend.maps.vector_map import VectorMap
+from mend.maps.vector_map_file import read_vector_map
 
 DATA = Path(os.environ.get("MEND_DATA", Path(__file__).parents[2] / "shared/data"))
 PUBLISHED_KM = {

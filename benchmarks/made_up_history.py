@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import Any
 from uuid import UUID
 
-from server.journal import events as ev
-from server.journal.chain import Chain, Row
-from server.journal.run_index import note
-from server.journal.sqlite import INSERT_EVENT, SqliteJournal
-from server.journal.upgrades import current_version
+from mend.server.journal import events as ev
+from mend.server.journal.chain import Chain, Row
+from mend.server.journal.run_index import note
+from mend.server.journal.sqlite import INSERT_EVENT, SqliteJournal
+from mend.server.journal.upgrades import current_version
 
 BEGUN = datetime(2026, 1, 1, tzinfo=UTC)
 BETWEEN_RUNS = timedelta(minutes=10)

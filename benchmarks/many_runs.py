@@ -27,9 +27,9 @@ from service_process import ServiceProcess
 from websockets.asyncio.client import connect
 from websockets.exceptions import ConnectionClosed
 
-from server.client import MendClient
-from server.runtime.requests import RunRequest
-from server.runtime.views import RunStatus
+from mend.server.client import MendClient
+from mend.server.runtime.requests import RunRequest
+from mend.server.runtime.views import RunStatus
 
 LIVE = "live"
 MOMENTS = 20

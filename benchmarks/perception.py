@@ -21,23 +21,23 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from robots.body import CameraImage
-from robots.catalogue import Catalogue, Part
-from robots.vision.blob import find_blob
-from robots.vision.color_model import ColorModel
-from robots.vision.head import HeadSighting
-from robots.vision.lookalikes import find_lookalikes
-from robots.vision.projection import pixels_covered, unproject
-from robots.vision.table_view import TableView, view_table
-from robots.vision.tracking import LastSeen
-from sim.random_scene import NoRoomError, random_scene
-from sim.workcell.colors import learn_colors
-from sim.workcell.options import WorkcellOptions
-from sim.workcell.parts import Part as WorldPart
-from sim.workcell.world import WorkcellWorld
-from tasks.definition import BehaviorNode
-from tasks.scene import Scene
-from tasks.scene_problem import SceneProblem
+from mend.robots.body import CameraImage
+from mend.robots.catalogue import Catalogue, Part
+from mend.robots.vision.blob import find_blob
+from mend.robots.vision.color_model import ColorModel
+from mend.robots.vision.head import HeadSighting
+from mend.robots.vision.lookalikes import find_lookalikes
+from mend.robots.vision.projection import pixels_covered, unproject
+from mend.robots.vision.table_view import TableView, view_table
+from mend.robots.vision.tracking import LastSeen
+from mend.sim.random_scene import NoRoomError, random_scene
+from mend.sim.workcell.colors import learn_colors
+from mend.sim.workcell.options import WorkcellOptions
+from mend.sim.workcell.parts import Part as WorldPart
+from mend.sim.workcell.world import WorkcellWorld
+from mend.tasks.definition import BehaviorNode
+from mend.tasks.scene import Scene
+from mend.tasks.scene_problem import SceneProblem
 
 UNOCCLUDED = 0.95
 VISIBLE = 0.5

@@ -20,17 +20,17 @@ from typing import Any
 
 import numpy as np
 
-from robots.catalogue import Catalogue
-from robots.link.messages import IssueDetected, Look, Looked, ReportBody, Start
-from robots.robot import Robot
-from sim.simulated_agent import SimulatedAgent
-from sim.workcell.colors import learn_colors
-from sim.workcell.options import WorkcellOptions
-from sim.workcell.parts import PartPose
-from sim.workcell.world import WorkcellWorld
-from tasks.plugins import load_plugins
-from tasks.scene import Scene
-from tasks.scene_file import built_in_scene
+from mend.robots.catalogue import Catalogue
+from mend.robots.link.messages import IssueDetected, Look, Looked, ReportBody, Start
+from mend.robots.robot import Robot
+from mend.sim.simulated_agent import SimulatedAgent
+from mend.sim.workcell.colors import learn_colors
+from mend.sim.workcell.options import WorkcellOptions
+from mend.sim.workcell.parts import PartPose
+from mend.sim.workcell.world import WorkcellWorld
+from mend.tasks.plugins import load_plugins
+from mend.tasks.scene import Scene
+from mend.tasks.scene_file import built_in_scene
 
 NOISY = {"camera_noise": 3.0, "light": 1.0}
 GOAL_P95_MM = 1.5

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from robots.grip import GripReading, GripState
-from robots.senses import Senses
+from mend.robots.grip import GripReading, GripState
+from mend.robots.senses import Senses
 
 
 class PlainWatch:

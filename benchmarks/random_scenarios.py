@@ -41,17 +41,17 @@ from dialogue_judge import DialogueJudge
 from untruths import Rest, find_untruths, kinds_of
 from watched_world import WatchedWorld, where_parts_rest
 
-from server.journal import events as ev
-from server.journal.sqlite import IN_MEMORY
-from server.runtime.requests import RunRequest
-from server.runtime.views import RunStatus, RunView
-from server.settings import Settings
-from tasks.definition import BehaviorNode
-from tasks.random_task import random_nesting, random_task
-from tasks.scenario import Person
+from mend.server.journal import events as ev
+from mend.server.journal.sqlite import IN_MEMORY
+from mend.server.runtime.requests import RunRequest
+from mend.server.runtime.views import RunStatus, RunView
+from mend.server.settings import Settings
+from mend.tasks.definition import BehaviorNode
+from mend.tasks.random_task import random_nesting, random_task
+from mend.tasks.scenario import Person
 
 if TYPE_CHECKING:
-    from server.composition import Service
+    from mend.server.composition import Service
 
 Answers = Literal["random", "unreliable", "none", "willing"]
 
@@ -124,9 +124,9 @@ def draw(world: str, seed: int, most_leaves: int) -> Drawn:
 
 def _random_scene(world: str, seed: int, most_parts: int) -> Drawn:
     """A scene that the world's robot can do, and a tree that places all its parts."""
-    from sim.random_scene import random_scene, scene_document
-    from sim.world import SceneChecker
-    from tasks.plugins import load_plugins
+    from mend.sim.random_scene import random_scene, scene_document
+    from mend.sim.world import SceneChecker
+    from mend.tasks.plugins import load_plugins
 
     adapter = load_plugins("mend.worlds")[world]
     check = adapter.check_scene if isinstance(adapter, SceneChecker) else None
@@ -139,10 +139,10 @@ def _random_scene(world: str, seed: int, most_parts: int) -> Drawn:
 
 def _possible_base(rng: np.random.Generator) -> Drawn:
     """A random tree over the EKET base in an order in which there is room for the fingers."""
-    from server.behaviors import behavior_parameters
-    from sim.workcell.adapter import adapter
-    from tasks.scene_file import built_in_scene
-    from tasks.task_file import check_task_text
+    from mend.server.behaviors import behavior_parameters
+    from mend.sim.workcell.adapter import adapter
+    from mend.tasks.scene_file import built_in_scene
+    from mend.tasks.task_file import check_task_text
 
     scene = built_in_scene("eket")
     while True:
@@ -199,7 +199,7 @@ async def run_once(
 ) -> Outcome:
     """One random scenario on a service of its own, judged."""
     # Only here, so that a worker's limits on threads come before the libraries that heed them.
-    from server.composition import open_service
+    from mend.server.composition import open_service
 
     answers = KINDS[seed % len(KINDS)]
     drawn = draw(world, seed, most_leaves or MOST_LEAVES[world])

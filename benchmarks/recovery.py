@@ -19,10 +19,10 @@ from uuid import UUID
 
 import numpy as np
 
-from server.composition import Service, open_service
-from server.runtime.requests import RunRequest
-from server.settings import Settings
-from tasks.intervention import Act, Intervention
+from mend.server.composition import Service, open_service
+from mend.server.runtime.requests import RunRequest
+from mend.server.settings import Settings
+from mend.tasks.intervention import Act, Intervention
 
 PART = "green_leg"
 STEAL = Intervention(act=Act.STEAL, object=PART)

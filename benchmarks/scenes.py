@@ -30,7 +30,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from robots.link.messages import (
+from mend.robots.link.messages import (
     Finished,
     Interrupt,
     IssueDetected,
@@ -41,14 +41,14 @@ from robots.link.messages import (
     ReportBody,
     Start,
 )
-from tasks.definition import BehaviorNode, TaskTreeDefinition
-from tasks.potential import leaf_potentials
-from tasks.scene import Scene
-from tasks.scene_problem import SceneProblem
-from tasks.task_tree import TaskTree
+from mend.tasks.definition import BehaviorNode, TaskTreeDefinition
+from mend.tasks.potential import leaf_potentials
+from mend.tasks.scene import Scene
+from mend.tasks.scene_problem import SceneProblem
+from mend.tasks.task_tree import TaskTree
 
 if TYPE_CHECKING:
-    from sim.simulated_agent import SimulatedAgent
+    from mend.sim.simulated_agent import SimulatedAgent
 
 NOISY = {"camera_noise": 3.0, "light": 1.0, "depth_noise": 1.0}
 ATTEMPTS = 3
@@ -92,8 +92,8 @@ class Cell:
     """A workcell with its robot, and the judge who knows where things really are."""
 
     def __init__(self, scene: Scene, seed: int, options: dict[str, Any]) -> None:
-        from sim.workcell.adapter import adapter
-        from sim.world import WorldSetup
+        from mend.sim.workcell.adapter import adapter
+        from mend.sim.world import WorldSetup
 
         setup = WorldSetup(robot="r1", scene=scene, seed=seed, speed=None, options=options)
         self.scene = scene
@@ -278,19 +278,19 @@ def _object_and_place(tree: TaskTree, leaf: int) -> tuple[str, str]:
 
 def run(seed: int, task: str | None, most_parts: int, *, show: bool = False) -> Outcome:
     """One scene in a process of its own."""
-    from server.behaviors import behavior_parameters
-    from tasks.task_file import check_task_text
+    from mend.server.behaviors import behavior_parameters
+    from mend.tasks.task_file import check_task_text
 
     if task is not None:
-        from tasks.library import TREES
-        from tasks.scene_file import built_in_scene
+        from mend.tasks.library import TREES
+        from mend.tasks.scene_file import built_in_scene
 
         definition = check_task_text(
             TREES.read(task), behavior_parameters(), built_in_scene
         ).definition
         assert definition.scene is not None
         return play(built_in_scene(definition.scene), definition, seed, show=show)
-    from sim.random_scene import random_scene
+    from mend.sim.random_scene import random_scene
 
     drawn = random_scene(seed, int(np.random.default_rng(seed).integers(1, most_parts + 1)), _check)
     text = json.dumps(drawn.tree)
@@ -299,8 +299,8 @@ def run(seed: int, task: str | None, most_parts: int, *, show: bool = False) -> 
 
 
 def _check(scene: Scene, leaves: Sequence[BehaviorNode]) -> list[SceneProblem]:
-    from sim.workcell.adapter import adapter
-    from sim.world import SceneChecker
+    from mend.sim.workcell.adapter import adapter
+    from mend.sim.world import SceneChecker
 
     return adapter.check_scene(scene, leaves) if isinstance(adapter, SceneChecker) else []
 

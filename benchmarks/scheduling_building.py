@@ -1,7 +1,8 @@
 """What transfers save in a building where shifts and capacities bind, and where they do not.
 
 Few items: the exact method with transfers against the proved optimum without. Many items: the
-search with transfers against PyVRP (`pip install mend[peers]`; it knows no transfers) for as long.
+search with transfers against PyVRP (`pip install 'mend-robots[peers]'`; it knows no transfers) for
+as long.
 The same buildings with nothing that binds are the loose case.
 
     python benchmarks/scheduling_building.py [--draws 12] [--seconds 60] [--large 4]
@@ -16,14 +17,19 @@ from pathlib import Path
 from random import Random
 from statistics import mean
 
-from fleet.scheduling.drawing.bars import BarGroup, bars
-from fleet.scheduling.exact.solve import solve_exactly
-from fleet.scheduling.instances.building import BINDING, LOOSE, BuildingPlan, building_deliveries
-from fleet.scheduling.problem import Problem
-from fleet.scheduling.problem_file import problem_of
-from fleet.scheduling.routing.solve import solve_alns
-from fleet.scheduling.solution import Solution, Status, UnsupportedError
-from fleet.scheduling.vlns.solve import prepare, solve_vlns
+from mend.fleet.scheduling.drawing.bars import BarGroup, bars
+from mend.fleet.scheduling.exact.solve import solve_exactly
+from mend.fleet.scheduling.instances.building import (
+    BINDING,
+    LOOSE,
+    BuildingPlan,
+    building_deliveries,
+)
+from mend.fleet.scheduling.problem import Problem
+from mend.fleet.scheduling.problem_file import problem_of
+from mend.fleet.scheduling.routing.solve import solve_alns
+from mend.fleet.scheduling.solution import Solution, Status, UnsupportedError
+from mend.fleet.scheduling.vlns.solve import prepare, solve_vlns
 
 OUT = Path("out/scheduling_building.svg")
 LARGE = replace(BINDING, floors=4, robots=4, items=40, capacity=10.0, shift_s=1100.0, wing_m=100.0)
@@ -79,9 +85,9 @@ def measure_exactly(problem: Problem, seconds: float, seed: int) -> Draw:
 def measure_large(problem: Problem, seconds: float, seed: int) -> Draw | None:
     """PyVRP without transfers and the search with them; None where there is no PyVRP."""
     try:
-        from fleet.scheduling.peers.pyvrp_search import solve_by_pyvrp
+        from mend.fleet.scheduling.peers.pyvrp_search import solve_by_pyvrp
     except ImportError:
-        print("PyVRP is not installed here; pip install mend[peers]")
+        print("PyVRP is not installed here; pip install 'mend-robots[peers]'")
         return None
     try:
         alone = solve_by_pyvrp(

@@ -20,13 +20,13 @@ from math import inf, isfinite
 from pathlib import Path
 from statistics import median
 
-from fleet.scheduling.drawing.bars import BarGroup, bars
-from fleet.scheduling.exact.constraint_search import Effort, search
-from fleet.scheduling.exact.model import Rounding
-from fleet.scheduling.instances.transfer_benchmark import read_transfer_benchmark
-from fleet.scheduling.methods import solve
-from fleet.scheduling.problem import Problem
-from fleet.scheduling.solution import Solution, Status
+from mend.fleet.scheduling.drawing.bars import BarGroup, bars
+from mend.fleet.scheduling.exact.constraint_search import Effort, search
+from mend.fleet.scheduling.exact.model import Rounding
+from mend.fleet.scheduling.instances.transfer_benchmark import read_transfer_benchmark
+from mend.fleet.scheduling.methods import solve
+from mend.fleet.scheduling.problem import Problem
+from mend.fleet.scheduling.solution import Solution, Status
 
 DATA = Path(os.environ.get("MEND_DATA", Path(__file__).parents[2] / "shared/data")) / "scheduling"
 OUT = Path("out/scheduling_exact.svg")

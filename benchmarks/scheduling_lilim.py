@@ -1,7 +1,7 @@
 """The search without transfers on Li and Lim's instances: vehicles first, then distance.
 
 OR-Tools' routing library runs beside it for as long; PyVRP and VROOM too, where they are installed
-(`pip install mend[peers]`). Compiling is not counted.
+(`pip install 'mend-robots[peers]'`). Compiling is not counted.
 
     python benchmarks/scheduling_lilim.py [--set pdp_100] [--seconds 60] [--instances 56]
         [--seed 1] [--peers ortools,pyvrp,vroom] [--quick] [--data FOLDER]
@@ -20,20 +20,20 @@ from math import inf, isfinite
 from pathlib import Path
 from statistics import mean
 
-from fleet.scheduling.drawing.bars import BarGroup, bars
-from fleet.scheduling.instances.li_lim import read_li_lim
-from fleet.scheduling.problem import Problem
-from fleet.scheduling.routing.solve import prepare, solve_alns
-from fleet.scheduling.solution import Solution
+from mend.fleet.scheduling.drawing.bars import BarGroup, bars
+from mend.fleet.scheduling.instances.li_lim import read_li_lim
+from mend.fleet.scheduling.problem import Problem
+from mend.fleet.scheduling.routing.solve import prepare, solve_alns
+from mend.fleet.scheduling.solution import Solution
 
 DATA = Path(os.environ.get("MEND_DATA", Path(__file__).parents[2] / "shared/data")) / "scheduling"
 OUT = Path("out/scheduling_lilim.svg")
 SAME = 1e-4
 """Two distances are equal when they differ by less than this share."""
 PEERS = {
-    "ortools": ("fleet.scheduling.peers.ortools_routing", "solve_by_ortools_routing"),
-    "pyvrp": ("fleet.scheduling.peers.pyvrp_search", "solve_by_pyvrp"),
-    "vroom": ("fleet.scheduling.peers.vroom_search", "solve_by_vroom"),
+    "ortools": ("mend.fleet.scheduling.peers.ortools_routing", "solve_by_ortools_routing"),
+    "pyvrp": ("mend.fleet.scheduling.peers.pyvrp_search", "solve_by_pyvrp"),
+    "vroom": ("mend.fleet.scheduling.peers.vroom_search", "solve_by_vroom"),
 }
 
 Solve = Callable[..., Solution]
@@ -82,7 +82,7 @@ def methods(wanted: list[str]) -> dict[str, Solve]:
         try:
             found[name] = getattr(import_module(module), function)
         except ImportError:
-            print(f"{name} is not installed here; pip install mend[peers]")
+            print(f"{name} is not installed here; pip install 'mend-robots[peers]'")
     return found
 
 

@@ -12,12 +12,12 @@ import time
 from random import Random
 from statistics import mean
 
-from fleet.scheduling.exact.solve import solve_exactly
-from fleet.scheduling.one_destination import solve_to_one_destination
-from fleet.scheduling.one_task_bidder import solve_one_task_each
-from fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit
-from fleet.scheduling.solution import Solution, Status
-from fleet.scheduling.travel import Travel
+from mend.fleet.scheduling.exact.solve import solve_exactly
+from mend.fleet.scheduling.one_destination import solve_to_one_destination
+from mend.fleet.scheduling.one_task_bidder import solve_one_task_each
+from mend.fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit
+from mend.fleet.scheduling.solution import Solution, Status
+from mend.fleet.scheduling.travel import Travel
 
 SIDE_M = 100.0
 

@@ -17,16 +17,16 @@ from math import ceil
 from random import Random
 from statistics import mean, median
 
-from fleet.scheduling.instances.building import BuildingPlan, building_deliveries
-from fleet.scheduling.instances.happenings import Happenings
-from fleet.scheduling.problem import Item, Problem, Visit, Window
-from fleet.scheduling.problem_file import navigation_graph, problem_of
-from fleet.scheduling.replanning.events import Event, NewItem, RobotDelayed, RobotFailed
-from fleet.scheduling.replanning.open_ways import OpenWays
-from fleet.scheduling.replanning.running_fleet import RunningFleet
-from fleet.scheduling.schedule import Action, Route, Schedule, Task
-from fleet.scheduling.timing import TimedRoutes, Untimeable, earliest_schedule
-from maps.navigation import NavigationGraph
+from mend.fleet.scheduling.instances.building import BuildingPlan, building_deliveries
+from mend.fleet.scheduling.instances.happenings import Happenings
+from mend.fleet.scheduling.problem import Item, Problem, Visit, Window
+from mend.fleet.scheduling.problem_file import navigation_graph, problem_of
+from mend.fleet.scheduling.replanning.events import Event, NewItem, RobotDelayed, RobotFailed
+from mend.fleet.scheduling.replanning.open_ways import OpenWays
+from mend.fleet.scheduling.replanning.running_fleet import RunningFleet
+from mend.fleet.scheduling.schedule import Action, Route, Schedule, Task
+from mend.fleet.scheduling.timing import TimedRoutes, Untimeable, earliest_schedule
+from mend.maps.navigation import NavigationGraph
 
 Clock = Callable[[], float]
 AT_WORK_S = 100.0

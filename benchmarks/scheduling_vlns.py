@@ -22,14 +22,14 @@ from statistics import mean
 
 import numpy as np
 
-from fleet.scheduling.dice import dice_from
-from fleet.scheduling.instances.transfer_benchmark import read_transfer_benchmark
-from fleet.scheduling.problem import Problem
-from fleet.scheduling.vlns.arrays import TOTAL, empty_plan, problem_arrays
-from fleet.scheduling.vlns.insertion import Manner, insert_all, refresh
-from fleet.scheduling.vlns.solve import prepare, solve_vlns
-from fleet.scheduling.vlns.times import times_for
-from fleet.scheduling.vlns.ways import ways_for
+from mend.fleet.scheduling.dice import dice_from
+from mend.fleet.scheduling.instances.transfer_benchmark import read_transfer_benchmark
+from mend.fleet.scheduling.problem import Problem
+from mend.fleet.scheduling.vlns.arrays import TOTAL, empty_plan, problem_arrays
+from mend.fleet.scheduling.vlns.insertion import Manner, insert_all, refresh
+from mend.fleet.scheduling.vlns.solve import prepare, solve_vlns
+from mend.fleet.scheduling.vlns.times import times_for
+from mend.fleet.scheduling.vlns.ways import ways_for
 
 DATA = Path(os.environ.get("MEND_DATA", Path(__file__).parents[2] / "shared/data")) / "scheduling"
 SAME = 1e-4

@@ -17,12 +17,12 @@ from typing import Any
 
 import yaml
 
-import tasks
-from robots.agent import AgentCore
-from robots.link.messages import Finished, IssueDetected, ReportBody, Start
-from sim.world import WorldAdapter, WorldSetup
-from tasks.plugins import load_plugins
-from tasks.scene import Scene
+import mend.tasks
+from mend.robots.agent import AgentCore
+from mend.robots.link.messages import Finished, IssueDetected, ReportBody, Start
+from mend.sim.world import WorldAdapter, WorldSetup
+from mend.tasks.plugins import load_plugins
+from mend.tasks.scene import Scene
 
 BUILD = (
     ("green_leg", "green_leg"),
@@ -51,7 +51,9 @@ class Timing:
 
 def load_scene() -> Scene:
     """The scene of the EKET base."""
-    text = (Path(next(iter(tasks.__path__))) / "scenes" / "eket.yaml").read_text(encoding="utf-8")
+    text = (Path(next(iter(mend.tasks.__path__))) / "scenes" / "eket.yaml").read_text(
+        encoding="utf-8"
+    )
     return Scene.model_validate_json(json.dumps(yaml.safe_load(text)))
 
 

@@ -30,11 +30,11 @@ import pocketsphinx
 from scipy.io import wavfile
 from scipy.signal import resample_poly
 
-from server.speech.commands import Command, phrase_commands
-from server.speech.decoding import Decoder, Hypothesis, SphinxDecoder
-from server.speech.ear import ProcessEars
-from server.speech.language_model import COMMAND_MARK, command_in, name, write_language_model
-from server.speech.recognizer import Recognizer, Utterance
+from mend.server.speech.commands import Command, phrase_commands
+from mend.server.speech.decoding import Decoder, Hypothesis, SphinxDecoder
+from mend.server.speech.ear import ProcessEars
+from mend.server.speech.language_model import COMMAND_MARK, command_in, name, write_language_model
+from mend.server.speech.recognizer import Recognizer, Utterance
 
 CACHE = Path("out/speech")
 PHRASES = tomllib.loads(Path(__file__).with_name("speech_phrases.toml").read_text())

@@ -22,9 +22,9 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "doubles"))
 
 from service_process import ServiceProcess, service_process
 
-from server.client import MendClient
-from server.journal import events as ev
-from server.runtime.requests import RunRequest
+from mend.server.client import MendClient
+from mend.server.journal import events as ev
+from mend.server.runtime.requests import RunRequest
 
 AFTERWARDS_S = 20.0
 """Longer than a robot may be silent."""

@@ -7,8 +7,8 @@ from typing import Any
 from dialogue_record import Moment
 from untruths import Rest
 
-from server.journal import events as ev
-from server.journal.journal import Entry, Journal
+from mend.server.journal import events as ev
+from mend.server.journal.journal import Entry, Journal
 
 
 class WatchedWorld:

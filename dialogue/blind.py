@@ -1,8 +1,8 @@
 """The script for `blind`: clear the head camera's view, and the robot goes on."""
 
-from dialogue.offer import Offer, offer_script
-from dialogue.script import Expectation, Help
-from tasks.resolution import Resolution
+from mend.dialogue.offer import Offer, offer_script
+from mend.dialogue.script import Expectation, Help
+from mend.tasks.resolution import Resolution
 
 script = offer_script(
     Offer(

@@ -4,10 +4,10 @@ What was seen in the way is gone once it is seen gone. What was felt no camera c
 person's word and a look.
 """
 
-from dialogue.offer import Offer, offer_script
-from dialogue.script import Expectation, Help
-from tasks.issue import Sensed
-from tasks.resolution import Resolution
+from mend.dialogue.offer import Offer, offer_script
+from mend.dialogue.script import Expectation, Help
+from mend.tasks.issue import Sensed
+from mend.tasks.resolution import Resolution
 
 SEEN = Offer(
     question="I cannot go on with the {object}.{why} Can you clear the way?",

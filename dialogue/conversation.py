@@ -3,9 +3,9 @@
 from enum import StrEnum
 from typing import Literal
 
-from dialogue.evidence import Change, PutRight
-from dialogue.outlook import Outlook
-from dialogue.script import (
+from mend.dialogue.evidence import Change, PutRight
+from mend.dialogue.outlook import Outlook
+from mend.dialogue.script import (
     ATTEMPT_FAILED,
     EXPECTED,
     Ask,
@@ -22,9 +22,9 @@ from dialogue.script import (
     State,
     Turn,
 )
-from dialogue.wording import sentence, word
-from tasks.issue import Issue
-from tasks.resolution import Resolution
+from mend.dialogue.wording import sentence, word
+from mend.tasks.issue import Issue
+from mend.tasks.resolution import Resolution
 
 
 class Phase(StrEnum):

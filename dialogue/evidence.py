@@ -24,7 +24,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
-from dialogue.script import Expectation
+from mend.dialogue.script import Expectation
 
 MOVED_M = 0.02
 """An object that is seen this far from where it was has been moved; cameras err by less."""

@@ -1,9 +1,9 @@
 """The offer that `missed` and `dropped` share: put it back for another try."""
 
-from dialogue.offer import Offer, offer_script
-from dialogue.place_branch import Patience
-from dialogue.script import Expectation, Help, ScriptWithParameters
-from tasks.resolution import Resolution
+from mend.dialogue.offer import Offer, offer_script
+from mend.dialogue.place_branch import Patience
+from mend.dialogue.script import Expectation, Help, ScriptWithParameters
+from mend.tasks.resolution import Resolution
 
 
 def lost_part_script(what_happened: str, failed: str) -> ScriptWithParameters[Patience]:

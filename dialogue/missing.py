@@ -1,8 +1,8 @@
 """The script for `missing`: put it on the table, and the robot goes on."""
 
-from dialogue.offer import Offer, offer_script
-from dialogue.script import Expectation, Help
-from tasks.resolution import Resolution
+from mend.dialogue.offer import Offer, offer_script
+from mend.dialogue.script import Expectation, Help
+from mend.tasks.resolution import Resolution
 
 PUT_RIGHT = {
     Expectation.AT_PLACE: Resolution.HUMAN_FINISH,

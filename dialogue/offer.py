@@ -6,9 +6,9 @@ Source: Blankenburg et al. 2020, Figure 3.
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from dialogue import place_branch
-from dialogue.place_branch import Patience
-from dialogue.script import (
+from mend.dialogue import place_branch
+from mend.dialogue.place_branch import Patience
+from mend.dialogue.script import (
     AskState,
     Expectation,
     Help,
@@ -16,8 +16,8 @@ from dialogue.script import (
     Script,
     ScriptWithParameters,
 )
-from tasks.issue import Sensed
-from tasks.resolution import Resolution
+from mend.tasks.issue import Sensed
+from mend.tasks.resolution import Resolution
 
 FAILED = "failed"
 

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 from enum import StrEnum
 
-from dialogue.spoken import choice_of, count_of
+from mend.dialogue.spoken import choice_of, count_of
 
 
 class Next(StrEnum):

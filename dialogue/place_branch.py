@@ -9,7 +9,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from dialogue.script import (
+from mend.dialogue.script import (
     ATTEMPT_FAILED,
     AskState,
     CloseState,
@@ -18,8 +18,8 @@ from dialogue.script import (
     LeaveState,
     State,
 )
-from tasks.resolution import Resolution
-from tasks.scene import StrictModel
+from mend.tasks.resolution import Resolution
+from mend.tasks.scene import StrictModel
 
 OPENING = "will_you_place"
 OPENING_EFFECT = "I ask whether you will place the {object} yourself ({attempt})."

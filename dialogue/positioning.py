@@ -4,8 +4,8 @@ Nothing waits for the answer: a yes makes it work of both, anything else the rob
 Source: Blankenburg et al. 2020, Section 3.3.
 """
 
-from dialogue.script import AskState, CloseState, Script
-from tasks.resolution import Resolution
+from mend.dialogue.script import AskState, CloseState, Script
+from mend.tasks.resolution import Resolution
 
 ALONE_EFFECT = "I place the {object} slowly by myself."
 

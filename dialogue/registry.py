@@ -5,9 +5,9 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from dialogue.script import Script, ScriptWithParameters
-from dialogue.soundness import UnsoundScriptError, check_script
-from tasks.plugins import PluginError, load_plugins
+from mend.dialogue.script import Script, ScriptWithParameters
+from mend.dialogue.soundness import UnsoundScriptError, check_script
+from mend.tasks.plugins import PluginError, load_plugins
 
 GROUP = "mend.dialogues"
 

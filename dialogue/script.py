@@ -11,8 +11,8 @@ from typing import Generic, TypeVar
 
 from pydantic import BaseModel
 
-from tasks.issue import Sensed
-from tasks.resolution import Resolution
+from mend.tasks.issue import Sensed
+from mend.tasks.resolution import Resolution
 
 
 class Help(StrEnum):

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import fields
 
-from dialogue.script import (
+from mend.dialogue.script import (
     AskState,
     CloseState,
     Expectation,
@@ -13,8 +13,8 @@ from dialogue.script import (
     Script,
     State,
 )
-from dialogue.wording import FIELDS, unknown_fields
-from tasks.resolution import Resolution
+from mend.dialogue.wording import FIELDS, unknown_fields
+from mend.tasks.resolution import Resolution
 
 
 class UnsoundScriptError(Exception):

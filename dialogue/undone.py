@@ -7,12 +7,12 @@ it nowhere somebody has to bring it.
 from collections.abc import Mapping
 from dataclasses import replace
 
-from dialogue.missing import PUT_RIGHT
-from dialogue.offer import Offer, offer_script
-from dialogue.place_branch import Patience
-from dialogue.script import CloseState, Help, Script, ScriptWithParameters, State
-from tasks.issue import Sensed
-from tasks.resolution import Resolution
+from mend.dialogue.missing import PUT_RIGHT
+from mend.dialogue.offer import Offer, offer_script
+from mend.dialogue.place_branch import Patience
+from mend.dialogue.script import CloseState, Help, Script, ScriptWithParameters, State
+from mend.tasks.issue import Sensed
+from mend.tasks.resolution import Resolution
 
 _SEEN = Offer(
     question="The {object} is not at its place.{why} Shall I place it again?",

@@ -3,9 +3,9 @@
 import re
 from string import Formatter
 
-from dialogue.outlook import Outlook
-from dialogue.spoken import spoken
-from tasks.issue import Issue
+from mend.dialogue.outlook import Outlook
+from mend.dialogue.spoken import spoken
+from mend.tasks.issue import Issue
 
 FIELDS = frozenset(
     {"object", "place", "name", "robot", "why", "attempt", "times", "again", "later", "go_on"}

@@ -8,10 +8,10 @@ import asyncio
 import os
 import sys
 
-from server.client import ENDS, MendClient
-from server.journal.events import Prompt
-from server.runtime.requests import RunRequest
-from server.runtime.views import Snapshot
+from mend.server.client import ENDS, MendClient
+from mend.server.journal.events import Prompt
+from mend.server.runtime.requests import RunRequest
+from mend.server.runtime.views import Snapshot
 
 
 async def main(url: str) -> int:

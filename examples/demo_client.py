@@ -11,12 +11,12 @@ import os
 import sys
 from collections import Counter
 
-from server.cli.output import LiveTranscript
-from server.client import DEFAULT_URL, ENDS, MendClient
-from server.client_errors import ClientError
-from server.journal.events import IssueRaised, Resolved
-from server.runtime.requests import RunRequest
-from server.runtime.views import RunStatus, Snapshot
+from mend.server.cli.output import LiveTranscript
+from mend.server.client import DEFAULT_URL, ENDS, MendClient
+from mend.server.client_errors import ClientError
+from mend.server.journal.events import IssueRaised, Resolved
+from mend.server.runtime.requests import RunRequest
+from mend.server.runtime.views import RunStatus, Snapshot
 
 FINISHED, NOT_FINISHED, UNUSABLE = 0, 1, 2
 

@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from maps.clean_up import CleanUpSettings, clean_up
-from maps.vector_map import VectorMap
+from mend.maps.clean_up import CleanUpSettings, clean_up
+from mend.maps.vector_map import VectorMap
 
 Matrix = NDArray[np.float64]
 

@@ -6,7 +6,7 @@ from math import radians, sin
 import numpy as np
 from numpy.typing import NDArray
 
-from maps.vector_map import VectorMap
+from mend.maps.vector_map import VectorMap
 
 Matrix = NDArray[np.float64]
 

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from maps.compiled import compiled
+from mend.maps.compiled import compiled
 
 Matrix = NDArray[np.float64]
 Indices = NDArray[np.int64]

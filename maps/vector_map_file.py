@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 from pydantic import BaseModel, ConfigDict, FiniteFloat, TypeAdapter, ValidationError
 
-from maps.vector_map import VectorMap, VectorMapError
+from mend.maps.vector_map import VectorMap, VectorMapError
 
 _MAX_TOLD = 10
 MAX_BYTES = 64 * 1024 * 1024

@@ -7,7 +7,7 @@ reports. Simulated and real robots, and tests, drive the same core.
 from collections.abc import Callable
 from typing import Any, Protocol, runtime_checkable
 
-from robots.link.messages import CommandBody, Hello, Picture, PoseLayout, Poses, ReportBody
+from mend.robots.link.messages import CommandBody, Hello, Picture, PoseLayout, Poses, ReportBody
 
 Emit = Callable[[ReportBody, float, dict[str, Any] | None], None]
 """Takes a report's body, the time (s, robot's clock) and a simulated world's state or None."""

@@ -8,7 +8,7 @@ import math
 from collections.abc import Generator
 from typing import TypeVar
 
-from robots.body import ArmPath, Body, ToolPose
+from mend.robots.body import ArmPath, Body, ToolPose
 
 T = TypeVar("T")
 Routine = Generator[None, None, T]

@@ -13,8 +13,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from robots.gripper import GripperModel
-from robots.vision.seen_box import SeenBox
+from mend.robots.gripper import GripperModel
+from mend.robots.vision.seen_box import SeenBox
 
 Matrix4 = NDArray[np.float64]
 """A homogeneous transform, shape (4, 4)."""

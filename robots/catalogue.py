@@ -7,9 +7,9 @@ parts goes by which name.
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from robots.link.messages import Location
-from tasks.part_boxes import Size, boxes_of, height_of
-from tasks.scene import Scene, Table
+from mend.robots.link.messages import Location
+from mend.tasks.part_boxes import Size, boxes_of, height_of
+from mend.tasks.scene import Scene, Table
 
 
 @dataclass(frozen=True, slots=True)

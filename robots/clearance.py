@@ -9,9 +9,9 @@ import shapely
 from numpy.typing import NDArray
 from scipy.spatial.distance import cdist
 
-from robots.body import ToolPose
-from robots.gripper import GripperModel, ToolBox
-from robots.vision.seen_box import SeenBox
+from mend.robots.body import ToolPose
+from mend.robots.gripper import GripperModel, ToolBox
+from mend.robots.vision.seen_box import SeenBox
 
 _SIGNS = np.array([[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]])
 

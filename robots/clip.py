@@ -3,9 +3,9 @@
 from collections import deque
 from collections.abc import Sequence
 
-from robots.body import CameraImage
-from robots.link.messages import ClipPicture
-from robots.vision.drawing import encode_jpeg
+from mend.robots.body import CameraImage
+from mend.robots.link.messages import ClipPicture
+from mend.robots.vision.drawing import encode_jpeg
 
 LENGTH_S = 8.0
 PERIOD_S = 0.2

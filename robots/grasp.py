@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from robots.body import Matrix4, ToolPose
-from robots.catalogue import Part
-from robots.gripper import GripperModel
+from mend.robots.body import Matrix4, ToolPose
+from mend.robots.catalogue import Part
+from mend.robots.gripper import GripperModel
 
 RELEASE_CLEARANCE_M = 0.002
 """A part is let go this far above where it is to rest, so that it is never pressed down."""

@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
-from robots.catalogue import Part
-from robots.link.messages import FinishedResult, Location
+from mend.robots.catalogue import Part
+from mend.robots.link.messages import FinishedResult, Location
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,17 +4,17 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from robots.agent import Emit, EmitPicture
-from robots.arm import Arm, Routine
-from robots.behaviors.behavior import Behavior
-from robots.behaviors.execution import Execution
-from robots.behaviors.execution_state import ExecutionState
-from robots.behaviors.progress import Progress
-from robots.behaviors.work import Work
-from robots.body import Body, CameraImage
-from robots.catalogue import Catalogue
-from robots.clip import encode_clip
-from robots.link.messages import (
+from mend.robots.agent import Emit, EmitPicture
+from mend.robots.arm import Arm, Routine
+from mend.robots.behaviors.behavior import Behavior
+from mend.robots.behaviors.execution import Execution
+from mend.robots.behaviors.execution_state import ExecutionState
+from mend.robots.behaviors.progress import Progress
+from mend.robots.behaviors.work import Work
+from mend.robots.body import Body, CameraImage
+from mend.robots.catalogue import Catalogue
+from mend.robots.clip import encode_clip
+from mend.robots.link.messages import (
     PROTOCOL_VERSION,
     ActiveExecution,
     ClipTaken,
@@ -38,16 +38,16 @@ from robots.link.messages import (
     Start,
     TakePicture,
 )
-from robots.looks import Looker, look_as_told
-from robots.monitors.monitor import BEFORE_FIRST_STEP, Monitor
-from robots.result import Result
-from robots.senses import FOREARM, Senses
-from robots.showing import PoseDisplay
-from robots.task_progress import TaskProgress
-from robots.understanding import CommandError, Understanding
-from robots.vision.color_model import ColorModel
-from robots.vision.drawing import encode_jpeg
-from robots.vision.warming_up import warm_up
+from mend.robots.looks import Looker, look_as_told
+from mend.robots.monitors.monitor import BEFORE_FIRST_STEP, Monitor
+from mend.robots.result import Result
+from mend.robots.senses import FOREARM, Senses
+from mend.robots.showing import PoseDisplay
+from mend.robots.task_progress import TaskProgress
+from mend.robots.understanding import CommandError, Understanding
+from mend.robots.vision.color_model import ColorModel
+from mend.robots.vision.drawing import encode_jpeg
+from mend.robots.vision.warming_up import warm_up
 
 _SEEN_AT_ONCE = (IssueDetected, Finished, Looked, Rejected)
 """Reports that the service must see before more time passes."""

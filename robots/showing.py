@@ -6,11 +6,18 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from robots.body import Body, Matrix4
-from robots.catalogue import Catalogue, Part
-from robots.grasp import part_in_tool
-from robots.link.messages import PoseLayout, Poses, PoseValues, ShownObject, ShownPose, Sighting
-from robots.senses import Senses
+from mend.robots.body import Body, Matrix4
+from mend.robots.catalogue import Catalogue, Part
+from mend.robots.grasp import part_in_tool
+from mend.robots.link.messages import (
+    PoseLayout,
+    Poses,
+    PoseValues,
+    ShownObject,
+    ShownPose,
+    Sighting,
+)
+from mend.robots.senses import Senses
 
 
 @runtime_checkable

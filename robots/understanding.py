@@ -4,11 +4,11 @@ from collections.abc import Collection, Iterable, Mapping
 
 from pydantic import ValidationError
 
-from robots.behaviors.assignment import Assignment
-from robots.behaviors.behavior import Behavior
-from robots.catalogue import Catalogue, Part
-from robots.link.messages import FinishedResult, Location, Look, Start
-from robots.result import Result
+from mend.robots.behaviors.assignment import Assignment
+from mend.robots.behaviors.behavior import Behavior
+from mend.robots.catalogue import Catalogue, Part
+from mend.robots.link.messages import FinishedResult, Location, Look, Start
+from mend.robots.result import Result
 
 
 class CommandError(Exception):

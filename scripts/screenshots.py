@@ -25,8 +25,8 @@ sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "doubles")]
 import console_situations as situations
 from console_in_browser import TOKEN, OpenPage
 
-from server.composition import Service, open_service
-from server.settings import Settings
+from mend.server.composition import Service, open_service
+from mend.server.settings import Settings
 
 IMAGES = ROOT / "docs" / "images"
 MAX_BYTES = 200_000

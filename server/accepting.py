@@ -10,11 +10,11 @@ from contextlib import suppress
 from functools import partial
 from http import HTTPStatus
 
-from server.background import Endless
-from server.descriptors import NO_DESCRIPTOR, TRY_AGAIN_S
-from server.rare_log import RareLog
-from server.raw_answers import raw_problem
-from server.visitors import Beyond, Visitor, Visitors
+from mend.server.background import Endless
+from mend.server.descriptors import NO_DESCRIPTOR, TRY_AGAIN_S
+from mend.server.rare_log import RareLog
+from mend.server.raw_answers import raw_problem
+from mend.server.visitors import Beyond, Visitor, Visitors
 
 log = logging.getLogger(__name__)
 

@@ -9,10 +9,10 @@ from typing import Any
 
 from fastapi import FastAPI
 
-from server.access.access import Access
-from server.access.deed_log import DeedLog
-from server.access.known_principals import KnownPrincipals
-from server.api import (
+from mend.server.access.access import Access
+from mend.server.access.deed_log import DeedLog
+from mend.server.access.known_principals import KnownPrincipals
+from mend.server.api import (
     console,
     dialogues,
     documents,
@@ -28,29 +28,29 @@ from server.api import (
     speech,
     speech_socket,
 )
-from server.api import models as models_api
-from server.api import poses as poses_api
-from server.api import principals as principals_api
-from server.api import worlds as worlds_api
-from server.api.absolute_form import AbsoluteForm
-from server.api.gate import Gate
-from server.api.idempotency_key import take_keys
-from server.api.openapi_links import add_links
-from server.api.openapi_responses import document_answers
-from server.api.parts import ObservedJournal, Parts, WorldList
-from server.api.problems import Problem, answer_errors_with_problems
-from server.api.repeats import Repeats
-from server.documents import DocumentLibrary
-from server.models import RobotModels
-from server.off_loop import OffLoop
-from server.pace import Sleep
-from server.poses.feed import PoseSource
-from server.public_url import host_of
-from server.refusals import Refusals
-from server.robots.passes import OwnRobots
-from server.runtime.service import RunService
-from server.settings import Settings
-from server.speech.abilities import NO_SPEECH, SpeechAbilities
+from mend.server.api import models as models_api
+from mend.server.api import poses as poses_api
+from mend.server.api import principals as principals_api
+from mend.server.api import worlds as worlds_api
+from mend.server.api.absolute_form import AbsoluteForm
+from mend.server.api.gate import Gate
+from mend.server.api.idempotency_key import take_keys
+from mend.server.api.openapi_links import add_links
+from mend.server.api.openapi_responses import document_answers
+from mend.server.api.parts import ObservedJournal, Parts, WorldList
+from mend.server.api.problems import Problem, answer_errors_with_problems
+from mend.server.api.repeats import Repeats
+from mend.server.documents import DocumentLibrary
+from mend.server.models import RobotModels
+from mend.server.off_loop import OffLoop
+from mend.server.pace import Sleep
+from mend.server.poses.feed import PoseSource
+from mend.server.public_url import host_of
+from mend.server.refusals import Refusals
+from mend.server.robots.passes import OwnRobots
+from mend.server.runtime.service import RunService
+from mend.server.settings import Settings
+from mend.server.speech.abilities import NO_SPEECH, SpeechAbilities
 
 ROUTES = (
     session,
@@ -164,7 +164,7 @@ def described_app(lifespan: Lifespan | None = None) -> FastAPI:
     """The application with its routes, but nothing behind them; enough to describe it."""
     app = FastAPI(
         title="Mend",
-        version=version("mend"),
+        version=version("mend-robots"),
         description=DESCRIPTION,
         lifespan=_entered(lifespan),
         docs_url=None,  # see server.api.reference

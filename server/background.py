@@ -5,7 +5,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-from server.rare_log import RareLog
+from mend.server.rare_log import RareLog
 
 log = logging.getLogger(__name__)
 

@@ -2,7 +2,7 @@
 
 from pydantic import BaseModel
 
-from tasks.plugins import load_plugins
+from mend.tasks.plugins import load_plugins
 
 
 def behavior_parameters() -> dict[str, type[BaseModel]]:

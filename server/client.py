@@ -11,15 +11,15 @@ from uuid import UUID
 import httpx
 from pydantic import TypeAdapter, ValidationError
 
-from server.api.principals import CodeView, DeedsPage, PrincipalView, TokenView
-from server.api.problems import Problem, problem
-from server.api.speech import SpeechView
-from server.client_connection import HelperDoor
-from server.client_errors import RefusedError, UnreachableError
-from server.client_retries import send_once
-from server.client_speech import SpeechStream
-from server.client_stream import EventStream
-from server.documents import (
+from mend.server.api.principals import CodeView, DeedsPage, PrincipalView, TokenView
+from mend.server.api.problems import Problem, problem
+from mend.server.api.speech import SpeechView
+from mend.server.client_connection import HelperDoor
+from mend.server.client_errors import RefusedError, UnreachableError
+from mend.server.client_retries import send_once
+from mend.server.client_speech import SpeechStream
+from mend.server.client_stream import EventStream
+from mend.server.documents import (
     DocumentCheck,
     DocumentSummary,
     DocumentView,
@@ -27,7 +27,7 @@ from server.documents import (
     ScenarioSummary,
     SceneSummary,
 )
-from server.journal.events import (
+from mend.server.journal.events import (
     Answered,
     AnyEvent,
     DeadlineExtended,
@@ -36,10 +36,10 @@ from server.journal.events import (
     RunFailed,
     RunFinished,
 )
-from server.journal.trouble import Sleep
-from server.runtime.requests import RunRequest
-from server.runtime.views import DialogueView, RobotView, RunSummary, RunView, Snapshot
-from tasks.intervention import Intervention
+from mend.server.journal.trouble import Sleep
+from mend.server.runtime.requests import RunRequest
+from mend.server.runtime.views import DialogueView, RobotView, RunSummary, RunView, Snapshot
+from mend.tasks.intervention import Intervention
 
 T = TypeVar("T")
 

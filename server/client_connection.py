@@ -8,7 +8,7 @@ from pydantic import ValidationError
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import InvalidHandshake, InvalidStatus
 
-from server.client_errors import StreamRefusedError, UnreachableError
+from mend.server.client_errors import StreamRefusedError, UnreachableError
 
 POLICY_VIOLATION = 1008
 TOO_MANY_REQUESTS = 429

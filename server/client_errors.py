@@ -1,7 +1,7 @@
 """What goes wrong for a client of the service; each message is one sentence for people."""
 
-from server.api.helper_messages import Error
-from server.api.problems import Problem
+from mend.server.api.helper_messages import Error
+from mend.server.api.problems import Problem
 
 
 class ClientError(Exception):

@@ -5,8 +5,8 @@ from uuid import uuid4
 
 import httpx
 
-from server.api.idempotency_key import HEADER
-from server.journal.trouble import Sleep
+from mend.server.api.idempotency_key import HEADER
+from mend.server.journal.trouble import Sleep
 
 PAUSES_S = (0.2, 0.5, 1.0, 2.0)
 """Before each further try: a service that is started again takes about so long."""

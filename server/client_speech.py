@@ -7,9 +7,9 @@ from uuid import UUID
 from websockets.asyncio.client import ClientConnection
 from websockets.exceptions import ConnectionClosed
 
-from server.api.speech_messages import AnySpeechServerMessage, speech_server_message
-from server.client_connection import check_not_turned_away, readable
-from server.client_errors import ConnectionLostError
+from mend.server.api.speech_messages import AnySpeechServerMessage, speech_server_message
+from mend.server.client_connection import check_not_turned_away, readable
+from mend.server.client_errors import ConnectionLostError
 
 
 class SpeechStream:

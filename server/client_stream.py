@@ -12,11 +12,11 @@ from uuid import UUID
 from websockets.asyncio.client import ClientConnection
 from websockets.exceptions import ConnectionClosed
 
-from server.api.helper_messages import Error
-from server.client_connection import HelperDoor, check_not_turned_away, readable
-from server.client_errors import CommandRefusedError, ConnectionLostError, UnreachableError
-from server.journal.events import Event, any_event
-from server.runtime.views import Snapshot
+from mend.server.api.helper_messages import Error
+from mend.server.client_connection import HelperDoor, check_not_turned_away, readable
+from mend.server.client_errors import CommandRefusedError, ConnectionLostError, UnreachableError
+from mend.server.journal.events import Event, any_event
+from mend.server.runtime.views import Snapshot
 
 FIRST_PAUSE_S = 0.1
 LONGEST_PAUSE_S = 5.0

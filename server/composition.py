@@ -10,45 +10,45 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from functools import partial
 
-from dialogue.registry import load_scripts
-from server.access.access import Access
-from server.access.deed_log import DeedLog
-from server.api.robot_socket import ROBOT_PATH, add_robot_route
-from server.app import build_access, create_app
-from server.background import Endless
-from server.believed_time import BelievedTime
-from server.dialogues.escalation import EscalationPolicy
-from server.dialogues.mail import Mailer
-from server.fixed_documents import GivenFiles, fixed_documents
-from server.journal.run_index import RunPage
-from server.journal.sqlite import IN_MEMORY, SqliteJournal
-from server.library import Library, build_library
-from server.listening import listen, reachable_host
-from server.models import RobotModels
-from server.off_loop import OffLoop
-from server.poses.feed import PoseFeed
-from server.poses.record import PoseRecords
-from server.refusals import Refusals
-from server.retention import prune_regularly
-from server.robots.passes import OwnRobots
-from server.robots.process import launch
-from server.robots.registry import RobotRegistry
-from server.robots.simulation_thread import SimulationThread
-from server.robots.times import LinkTimes
-from server.runtime.context import RunSettings
-from server.runtime.operator_mail import OperatorMail
-from server.runtime.runtime import Runtime
-from server.runtime.worlds import SimulatedWorlds
-from server.scene_checks import WorldChecks
-from server.server_tls import server_tls
-from server.serving import Server, serve_config
-from server.session_key import session_key
-from server.settings import Settings, is_everywhere
-from server.speech.abilities import SpeechAbilities
-from server.speech.ear import choose_ears
-from server.speech.rendering import SpokenTexts, render_prompts
-from server.speech.voice import NoVoice, choose_voice
-from tasks.plugins import load_plugins
+from mend.dialogue.registry import load_scripts
+from mend.server.access.access import Access
+from mend.server.access.deed_log import DeedLog
+from mend.server.api.robot_socket import ROBOT_PATH, add_robot_route
+from mend.server.app import build_access, create_app
+from mend.server.background import Endless
+from mend.server.believed_time import BelievedTime
+from mend.server.dialogues.escalation import EscalationPolicy
+from mend.server.dialogues.mail import Mailer
+from mend.server.fixed_documents import GivenFiles, fixed_documents
+from mend.server.journal.run_index import RunPage
+from mend.server.journal.sqlite import IN_MEMORY, SqliteJournal
+from mend.server.library import Library, build_library
+from mend.server.listening import listen, reachable_host
+from mend.server.models import RobotModels
+from mend.server.off_loop import OffLoop
+from mend.server.poses.feed import PoseFeed
+from mend.server.poses.record import PoseRecords
+from mend.server.refusals import Refusals
+from mend.server.retention import prune_regularly
+from mend.server.robots.passes import OwnRobots
+from mend.server.robots.process import launch
+from mend.server.robots.registry import RobotRegistry
+from mend.server.robots.simulation_thread import SimulationThread
+from mend.server.robots.times import LinkTimes
+from mend.server.runtime.context import RunSettings
+from mend.server.runtime.operator_mail import OperatorMail
+from mend.server.runtime.runtime import Runtime
+from mend.server.runtime.worlds import SimulatedWorlds
+from mend.server.scene_checks import WorldChecks
+from mend.server.server_tls import server_tls
+from mend.server.serving import Server, serve_config
+from mend.server.session_key import session_key
+from mend.server.settings import Settings, is_everywhere
+from mend.server.speech.abilities import SpeechAbilities
+from mend.server.speech.ear import choose_ears
+from mend.server.speech.rendering import SpokenTexts, render_prompts
+from mend.server.speech.voice import NoVoice, choose_voice
+from mend.tasks.plugins import load_plugins
 
 log = logging.getLogger(__name__)
 

@@ -5,9 +5,9 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
-from server.api import helper_messages, speech_messages
-from server.journal.events import AnyEvent
-from server.schemas import DIALECT, TO_HELPERS, Models, asyncapi, members_of, openapi
+from mend.server.api import helper_messages, speech_messages
+from mend.server.journal.events import AnyEvent
+from mend.server.schemas import DIALECT, TO_HELPERS, Models, asyncapi, members_of, openapi
 
 
 def console() -> dict[str, Any]:

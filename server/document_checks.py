@@ -3,8 +3,8 @@
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from server.behaviors import behavior_parameters, behavior_step_counts
-from server.documents import (
+from mend.server.behaviors import behavior_parameters, behavior_step_counts
+from mend.server.documents import (
     SPOKEN,
     CheckedDocument,
     DocumentKind,
@@ -14,22 +14,22 @@ from server.documents import (
     WorldFit,
     WrongDocumentError,
 )
-from server.scene_checks import WorldChecks
-from tasks.definition import BehaviorNode, TaskTreeDefinition
-from tasks.library import NotInLibraryError
-from tasks.problem import InvalidFileError, Problem
-from tasks.scenario import Scenario
-from tasks.scenario_file import (
+from mend.server.scene_checks import WorldChecks
+from mend.tasks.definition import BehaviorNode, TaskTreeDefinition
+from mend.tasks.library import NotInLibraryError
+from mend.tasks.problem import InvalidFileError, Problem
+from mend.tasks.scenario import Scenario
+from mend.tasks.scenario_file import (
     Misfit,
     ReadScenario,
     check_scenario_text,
     find_misfits,
     read_scenario_text,
 )
-from tasks.scene import Scene
-from tasks.scene_file import ReadScene, check_scene_text, read_scene_text
-from tasks.scene_problem import SceneProblem
-from tasks.task_file import CheckedTask, check_task_text
+from mend.tasks.scene import Scene
+from mend.tasks.scene_file import ReadScene, check_scene_text, read_scene_text
+from mend.tasks.scene_problem import SceneProblem
+from mend.tasks.task_file import CheckedTask, check_task_text
 
 
 @dataclass(frozen=True)

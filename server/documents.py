@@ -5,10 +5,10 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any, Literal, Protocol
 
-from server.errors import InvalidError
-from server.journal.events import Author
-from server.rendered import Rendered
-from server.runtime.views import View
+from mend.server.errors import InvalidError
+from mend.server.journal.events import Author
+from mend.server.rendered import Rendered
+from mend.server.runtime.views import View
 
 
 class DocumentKind(StrEnum):

@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from uuid import UUID
 
-from server.limits import LimitName
-from tasks.scene_problem import SceneProblem
+from mend.server.limits import LimitName
+from mend.tasks.scene_problem import SceneProblem
 
 
 class ServiceError(Exception):

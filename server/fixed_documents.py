@@ -4,8 +4,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from server.documents import DocumentKind, FixedDocuments
-from tasks.library import SCENARIOS, SCENES, TREES, NotInLibraryError
+from mend.server.documents import DocumentKind, FixedDocuments
+from mend.tasks.library import SCENARIOS, SCENES, TREES, NotInLibraryError
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,8 +9,8 @@ from uvicorn import Config
 from uvicorn.protocols.http.h11_impl import H11Protocol
 from uvicorn.server import ServerState
 
-from server.raw_answers import raw_problem
-from server.visitors import STATE_KEY, Beyond, Phase, Visitor
+from mend.server.raw_answers import raw_problem
+from mend.server.visitors import STATE_KEY, Beyond, Phase, Visitor
 
 TOO_LATE = ("head_s", "body_s")
 SHUTTING_DOWN = "the service is shutting down"

@@ -6,7 +6,7 @@ from datetime import datetime
 from functools import partial
 from typing import Any, TypeVar
 
-from server.documents import (
+from mend.server.documents import (
     SPOKEN,
     DocumentCheck,
     DocumentChecker,
@@ -19,14 +19,14 @@ from server.documents import (
     Uploaded,
     WrongDocumentError,
 )
-from server.errors import ConflictError, InvalidError, NotFoundError
-from server.journal.events import Author, DocumentDeleted, DocumentKept
-from server.journal.journal import Document, Entry, Journal
-from server.limits import Limits
-from server.off_loop import MUCH_CHARS, OffLoop
-from server.remembered_views import RememberedViews
-from server.rendered import Rendered
-from server.uploads import Uploads
+from mend.server.errors import ConflictError, InvalidError, NotFoundError
+from mend.server.journal.events import Author, DocumentDeleted, DocumentKept
+from mend.server.journal.journal import Document, Entry, Journal
+from mend.server.limits import Limits
+from mend.server.off_loop import MUCH_CHARS, OffLoop
+from mend.server.remembered_views import RememberedViews
+from mend.server.rendered import Rendered
+from mend.server.uploads import Uploads
 
 T = TypeVar("T")
 

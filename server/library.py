@@ -5,23 +5,23 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import Any
 
-from server.document_checks import ScenarioChecker, SceneFileChecker, TreeChecker
-from server.documents import (
+from mend.server.document_checks import ScenarioChecker, SceneFileChecker, TreeChecker
+from mend.server.documents import (
     DocumentKind,
     DocumentSummary,
     FixedDocuments,
     ScenarioSummary,
     SceneSummary,
 )
-from server.journal.journal import Journal
-from server.journaled_documents import JournaledDocuments
-from server.limits import Limits
-from server.off_loop import OffLoop
-from server.run_preparation import RunPreparer
-from server.runtime.ports import PreparedRun
-from server.runtime.requests import RunRequest
-from server.scene_checks import WorldChecks
-from server.uploads import Uploads
+from mend.server.journal.journal import Journal
+from mend.server.journaled_documents import JournaledDocuments
+from mend.server.limits import Limits
+from mend.server.off_loop import OffLoop
+from mend.server.run_preparation import RunPreparer
+from mend.server.runtime.ports import PreparedRun
+from mend.server.runtime.requests import RunRequest
+from mend.server.scene_checks import WorldChecks
+from mend.server.uploads import Uploads
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,7 +2,7 @@
 
 import socket
 
-from server.settings import Settings
+from mend.server.settings import Settings
 
 SEND_BUFFER_BYTES = 256 * 1024
 """What the kernel may hold for a client that does not read; the kernel would go up to megabytes."""

@@ -3,8 +3,8 @@
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
-from server.errors import NotFoundError
-from sim.world import ModelProvider, WorldAdapter, WorldUnavailableError
+from mend.server.errors import NotFoundError
+from mend.sim.world import ModelProvider, WorldAdapter, WorldUnavailableError
 
 URDF = "robot.urdf"
 _KINDS = frozenset({".urdf", ".stl", ".dae", ".png", ".jpg"})

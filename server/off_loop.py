@@ -16,9 +16,9 @@ from concurrent.futures.process import BrokenProcessPool
 from functools import partial
 from typing import ParamSpec, TypeVar
 
-from server.errors import BusyError
-from server.limits import Limits
-from server.one_by_one import OneByOne
+from mend.server.errors import BusyError
+from mend.server.limits import Limits
+from mend.server.one_by_one import OneByOne
 
 P = ParamSpec("P")
 T = TypeVar("T")

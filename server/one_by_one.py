@@ -5,8 +5,8 @@ from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from weakref import WeakValueDictionary
 
-from server.asking import asker
-from server.errors import BusyError
+from mend.server.asking import asker
+from mend.server.errors import BusyError
 
 
 class OneByOne:

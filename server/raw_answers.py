@@ -2,8 +2,8 @@
 
 from http import HTTPStatus
 
-from server.api.problems import MEDIA_TYPE, problem, problem_text
-from server.api.safe_headers import SAFE_HEADERS
+from mend.server.api.problems import MEDIA_TYPE, problem, problem_text
+from mend.server.api.safe_headers import SAFE_HEADERS
 
 
 def raw_problem(status: HTTPStatus, detail: str, *, retry_after_s: int | None = None) -> bytes:

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import get_args
 
-from server.limits import LimitName
+from mend.server.limits import LimitName
 
 
 class Refusals:

@@ -8,9 +8,9 @@ from typing import Generic, TypeVar
 
 from pydantic import BaseModel
 
-from server.limits import Limits
-from server.one_by_one import OneByOne
-from server.rendered import Rendered
+from mend.server.limits import Limits
+from mend.server.one_by_one import OneByOne
+from mend.server.rendered import Rendered
 
 V = TypeVar("V", bound=BaseModel)
 

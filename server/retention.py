@@ -9,9 +9,9 @@ from uuid import UUID
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from server.background import Endless
-from server.journal.journal import JournalClosedError, JournalWriteError
-from server.journal.pruning import Keep, Pruned
+from mend.server.background import Endless
+from mend.server.journal.journal import JournalClosedError, JournalWriteError
+from mend.server.journal.pruning import Keep, Pruned
 
 log = logging.getLogger(__name__)
 

@@ -3,19 +3,19 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from server.behaviors import behavior_step_counts
-from server.document_checks import Finder
-from server.documents import SPOKEN, DocumentKind, FixedDocuments, Uploaded
-from server.errors import ImpossibleError, InvalidError, NotFoundError
-from server.runtime.ports import LIVE, PreparedRun
-from server.runtime.requests import RunRequest
-from server.scene_checks import WorldChecks
-from tasks.definition import BehaviorNode, TaskTreeDefinition
-from tasks.library import NotInLibraryError
-from tasks.problem import InvalidFileError
-from tasks.scenario import Scenario
-from tasks.scenario_file import find_misfits, moved_scene
-from tasks.scene import Scene
+from mend.server.behaviors import behavior_step_counts
+from mend.server.document_checks import Finder
+from mend.server.documents import SPOKEN, DocumentKind, FixedDocuments, Uploaded
+from mend.server.errors import ImpossibleError, InvalidError, NotFoundError
+from mend.server.runtime.ports import LIVE, PreparedRun
+from mend.server.runtime.requests import RunRequest
+from mend.server.scene_checks import WorldChecks
+from mend.tasks.definition import BehaviorNode, TaskTreeDefinition
+from mend.tasks.library import NotInLibraryError
+from mend.tasks.problem import InvalidFileError
+from mend.tasks.scenario import Scenario
+from mend.tasks.scenario_file import find_misfits, moved_scene
+from mend.tasks.scene import Scene
 
 
 @dataclass(frozen=True, slots=True)

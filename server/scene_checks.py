@@ -2,12 +2,12 @@
 
 from collections.abc import Callable, Mapping, Sequence
 
-from server.errors import InvalidError
-from sim.world import SceneChecker, WorldAdapter, WorldUnavailableError
-from tasks.definition import BehaviorNode, GoalNode, TaskTreeDefinition
-from tasks.plugins import load_plugins
-from tasks.scene import Scene
-from tasks.scene_problem import SceneProblem
+from mend.server.errors import InvalidError
+from mend.sim.world import SceneChecker, WorldAdapter, WorldUnavailableError
+from mend.tasks.definition import BehaviorNode, GoalNode, TaskTreeDefinition
+from mend.tasks.plugins import load_plugins
+from mend.tasks.scene import Scene
+from mend.tasks.scene_problem import SceneProblem
 
 WorldCheck = Callable[[Scene, Sequence[GoalNode | BehaviorNode]], list[SceneProblem]]
 

@@ -6,18 +6,18 @@ from typing import Any, get_args
 from pydantic import BaseModel, TypeAdapter
 from pydantic.json_schema import models_json_schema
 
-from robots.link import messages as link
-from server.api import helper_messages, speech_messages
-from server.api.problems import Problem
-from server.app import described_app
-from server.documents import DocumentCheck
-from server.journal.events import AnyEvent
-from server.poses.layout import Layout
-from server.runtime.requests import RunRequest
-from server.runtime.views import DialogueView, RobotView, RunView, WorldView
-from tasks.intervention import Intervention
-from tasks.scenario import Scenario
-from tasks.scene import Scene
+from mend.robots.link import messages as link
+from mend.server.api import helper_messages, speech_messages
+from mend.server.api.problems import Problem
+from mend.server.app import described_app
+from mend.server.documents import DocumentCheck
+from mend.server.journal.events import AnyEvent
+from mend.server.poses.layout import Layout
+from mend.server.runtime.requests import RunRequest
+from mend.server.runtime.views import DialogueView, RobotView, RunView, WorldView
+from mend.tasks.intervention import Intervention
+from mend.tasks.scenario import Scenario
+from mend.tasks.scene import Scene
 
 Models = tuple[type[BaseModel], ...]
 
@@ -79,7 +79,7 @@ def asyncapi() -> dict[str, Any]:
         "asyncapi": "3.0.0",
         "info": {
             "title": "Mend",
-            "version": version("mend"),
+            "version": version("mend-robots"),
             "description": "The WebSockets of helpers and robots. All messages are JSON text, "
             "but for the poses of a run that is watched and a microphone's sound.",
         },

@@ -3,7 +3,7 @@
 import ssl
 from pathlib import Path
 
-from server.settings import WrongSettingsError
+from mend.server.settings import WrongSettingsError
 
 
 def server_tls(certificate: Path, key: Path) -> ssl.SSLContext:

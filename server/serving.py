@@ -13,14 +13,14 @@ from fastapi import FastAPI
 from starlette.types import ASGIApp, Receive, Scope, Send
 from uvicorn.config import STARTUP_FAILURE
 
-from server.accepting import Acceptor
-from server.http_protocol import HttpProtocol
-from server.log_secrets import hide_secrets
-from server.proxies import TrustedProxies
-from server.refusals import Refusals
-from server.settings import Settings
-from server.visitors import STATE_KEY, Visitor, Visitors
-from server.websocket_protocol import WebSocketProtocol
+from mend.server.accepting import Acceptor
+from mend.server.http_protocol import HttpProtocol
+from mend.server.log_secrets import hide_secrets
+from mend.server.proxies import TrustedProxies
+from mend.server.refusals import Refusals
+from mend.server.settings import Settings
+from mend.server.visitors import STATE_KEY, Visitor, Visitors
+from mend.server.websocket_protocol import WebSocketProtocol
 
 MAX_SOCKET_MESSAGE_BYTES = 1024 * 1024
 """Robots send pictures; helpers get an `error` message for anything above 64 KiB."""

@@ -4,8 +4,8 @@ import logging
 import os
 from pathlib import Path
 
-from server.access.sessions import KEY_BYTES, new_session_key
-from server.journal.file_mode import OWNERS_FILE
+from mend.server.access.sessions import KEY_BYTES, new_session_key
+from mend.server.journal.file_mode import OWNERS_FILE
 
 log = logging.getLogger(__name__)
 

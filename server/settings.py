@@ -15,14 +15,14 @@ from pydantic_settings import (
     TomlConfigSettingsSource,
 )
 
-from server.dialogues.mail import MailSettings
-from server.journal.sqlite import IN_MEMORY
-from server.limits import Limits
-from server.proxies import ProxyNetwork
-from server.public_url import PublicUrl
-from server.retention import KeepSettings
-from server.speech.voice import VoiceChoice
-from tasks.plain_mistakes import what_it_must_be
+from mend.server.dialogues.mail import MailSettings
+from mend.server.journal.sqlite import IN_MEMORY
+from mend.server.limits import Limits
+from mend.server.proxies import ProxyNetwork
+from mend.server.public_url import PublicUrl
+from mend.server.retention import KeepSettings
+from mend.server.speech.voice import VoiceChoice
+from mend.tasks.plain_mistakes import what_it_must_be
 
 Seconds = Annotated[float, Field(gt=0, le=86_400, allow_inf_nan=False)]
 HostName = Annotated[str, Field(min_length=1, max_length=253)]

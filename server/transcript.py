@@ -5,12 +5,12 @@ from dataclasses import dataclass
 from enum import StrEnum
 from functools import singledispatchmethod
 
-from dialogue.evidence import Change
-from dialogue.script import CloseReason, Help
-from server.access.principal import RESERVED
-from server.journal import events as ev
-from tasks.intervention import Act, Intervention
-from tasks.resolution import Resolution
+from mend.dialogue.evidence import Change
+from mend.dialogue.script import CloseReason, Help
+from mend.server.access.principal import RESERVED
+from mend.server.journal import events as ev
+from mend.tasks.intervention import Act, Intervention
+from mend.tasks.resolution import Resolution
 
 
 class Tone(StrEnum):

@@ -4,10 +4,10 @@ import asyncio
 import re
 from collections.abc import Iterable, Iterator, Mapping
 
-from server.documents import DocumentKind, FixedDocuments, Uploaded
-from server.journal.journal import Journal
-from server.limits import Limits
-from server.one_by_one import OneByOne
+from mend.server.documents import DocumentKind, FixedDocuments, Uploaded
+from mend.server.journal.journal import Journal
+from mend.server.limits import Limits
+from mend.server.one_by_one import OneByOne
 
 WORD = re.compile(r"[A-Za-z0-9_-]+")
 """A name of a document is one of these, wherever in a file it is written."""

@@ -8,11 +8,11 @@ from typing import Protocol
 
 from starlette.types import Scope
 
-from server.background import Endless
-from server.household import household_of
-from server.limits import LimitName, Limits
-from server.rare_log import RareLog
-from server.refusals import Refusals
+from mend.server.background import Endless
+from mend.server.household import household_of
+from mend.server.limits import LimitName, Limits
+from mend.server.rare_log import RareLog
+from mend.server.refusals import Refusals
 
 log = logging.getLogger(__name__)
 

@@ -8,8 +8,8 @@ from websockets.exceptions import PayloadTooBig
 from websockets.frames import Frame
 from websockets.protocol import State
 
-from server.limits import LimitName
-from server.visitors import STATE_KEY, Beyond, Visitor
+from mend.server.limits import LimitName
+from mend.server.visitors import STATE_KEY, Beyond, Visitor
 
 STRANGER_MESSAGE_BYTES = 64 * 1024
 """Long enough for a token."""

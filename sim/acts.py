@@ -7,11 +7,11 @@ from typing import Generic, Protocol, TypeVar
 
 import numpy as np
 
-from sim.camera_cover import CameraCover
-from sim.free_pose import PLACE_RADIUS_M, radius_m
-from tasks.footprint import Footprint
-from tasks.intervention import Act, Intervention
-from tasks.scene import Place, Pose, Scene
+from mend.sim.camera_cover import CameraCover
+from mend.sim.free_pose import PLACE_RADIUS_M, radius_m
+from mend.tasks.footprint import Footprint
+from mend.tasks.intervention import Act, Intervention
+from mend.tasks.scene import Place, Pose, Scene
 
 HAND_OVER_S = 15.0
 """How long somebody holds a part out to the robot."""

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from robots.body import Camera, CameraImage, Matrix4
+from mend.robots.body import Camera, CameraImage, Matrix4
 
 
 @dataclass(slots=True)

@@ -7,8 +7,8 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from robots.body import Matrix4
-from robots.vision.color_model import (
+from mend.robots.body import Matrix4
+from mend.robots.vision.color_model import (
     ColorModel,
     ColorSettings,
     LearnedColor,
@@ -16,9 +16,9 @@ from robots.vision.color_model import (
     Tint,
     learn,
 )
-from sim.lighting import Lighting
-from sim.raster import Light, Mesh, Rasterizer, RenderedImage, box_triangles
-from tasks.scene import Scene
+from mend.sim.lighting import Lighting
+from mend.sim.raster import Light, Mesh, Rasterizer, RenderedImage, box_triangles
+from mend.tasks.scene import Scene
 
 Color = tuple[float, float, float]
 

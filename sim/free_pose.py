@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from tasks.scene import Pose, Scene
+from mend.tasks.scene import Pose, Scene
 
 PLACE_RADIUS_M = 0.06
 """What is kept clear around a place, whatever belongs there."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.raster import Light
+from mend.sim.raster import Light
 
 _DIRECTION_SPREAD = 1.0
 _AMBIENT_SPREAD = 0.10

@@ -4,10 +4,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from sim.free_pose import free_pose
-from tasks.intervention import Act, Intervention
-from tasks.scenario import ScriptedIntervention, Trigger
-from tasks.scene import Scene
+from mend.sim.free_pose import free_pose
+from mend.tasks.intervention import Act, Intervention
+from mend.tasks.scenario import ScriptedIntervention, Trigger
+from mend.tasks.scene import Scene
 
 _ACTS = (Act.STEAL, Act.MOVE, Act.BLOCK, Act.COVER)
 _SHARES = (0.55, 0.22, 0.15, 0.08)

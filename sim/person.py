@@ -5,10 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sim.free_pose import free_pose
-from tasks.intervention import Act, Intervention
-from tasks.scenario import Person
-from tasks.scene import Scene
+from mend.sim.free_pose import free_pose
+from mend.tasks.intervention import Act, Intervention
+from mend.tasks.scenario import Person
+from mend.tasks.scene import Scene
 
 _ACTS = {
     "place": Act.PLACE,

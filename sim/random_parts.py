@@ -5,9 +5,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sim.workcell.gripper import PR2_GRIPPER
-from tasks.part_boxes import Size, height_of
-from tasks.scene import Pose, SceneObject
+from mend.sim.workcell.gripper import PR2_GRIPPER
+from mend.tasks.part_boxes import Size, height_of
+from mend.tasks.scene import Pose, SceneObject
 
 Color = tuple[float, float, float]
 

@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from maps.compiled import compiled
-from robots.body import Matrix4
+from mend.maps.compiled import compiled
+from mend.robots.body import Matrix4
 
 Triangles = NDArray[np.float64]
 """Corners of triangles, shape (n, 3, 3), counter-clockwise seen from outside."""

@@ -1,4 +1,4 @@
-"""A simulated robot's process: `python -P -m sim.robot_process`, with its setup on stdin.
+"""A simulated robot's process: `python -P -m mend.sim.robot_process`, with its setup on stdin.
 
 The first line of stdin is a `RobotProcessSetup` in JSON; stdin then stays open for as long as the
 parent lives. Exits with 0 after a `shutdown` command or when the parent is gone, with 2 and one
@@ -19,16 +19,16 @@ from uuid import uuid4
 
 from pydantic import ValidationError
 
-from robots.agent import AgentCore
-from robots.link.channel import LinkRefusedError
-from robots.link.client import run_agent
-from robots.link.clock import LoopClock
-from robots.link.outbox import IN_MEMORY, Outbox
-from robots.link.pinned_tls import pinned_tls
-from robots.link.websocket import websocket_channel
-from sim.world import WorldAdapter, WorldSetup, WorldUnavailableError
-from tasks.plugins import PluginError, load_plugins
-from tasks.scene import StrictModel
+from mend.robots.agent import AgentCore
+from mend.robots.link.channel import LinkRefusedError
+from mend.robots.link.client import run_agent
+from mend.robots.link.clock import LoopClock
+from mend.robots.link.outbox import IN_MEMORY, Outbox
+from mend.robots.link.pinned_tls import pinned_tls
+from mend.robots.link.websocket import websocket_channel
+from mend.sim.world import WorldAdapter, WorldSetup, WorldUnavailableError
+from mend.tasks.plugins import PluginError, load_plugins
+from mend.tasks.scene import StrictModel
 
 CANNOT_RUN = 2
 PR_SET_PDEATHSIG = 1

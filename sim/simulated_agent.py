@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
-from robots.agent import Emit, EmitPicture
-from robots.link.messages import (
+from mend.robots.agent import Emit, EmitPicture
+from mend.robots.link.messages import (
     CommandBody,
     Finished,
     Held,
@@ -25,13 +25,13 @@ from robots.link.messages import (
     StepStarted,
     TakePicture,
 )
-from robots.robot import Robot
-from robots.task_progress import TaskProgress
-from sim.interventions import HELPER, Deed, PendingInterventions, PendingSnapshot
-from sim.world import ShownWorld, World
-from tasks.intervention import Act, Intervention
-from tasks.scenario import ScriptedIntervention
-from tasks.scene import StrictModel
+from mend.robots.robot import Robot
+from mend.robots.task_progress import TaskProgress
+from mend.sim.interventions import HELPER, Deed, PendingInterventions, PendingSnapshot
+from mend.sim.world import ShownWorld, World
+from mend.tasks.intervention import Act, Intervention
+from mend.tasks.scenario import ScriptedIntervention
+from mend.tasks.scene import StrictModel
 
 _SEEN_AT_ONCE = (StepStarted, IssueDetected, Finished, Looked, Rejected, Held)
 """Reports that the service must see before more time passes."""

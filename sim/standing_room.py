@@ -7,11 +7,11 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from robots.catalogue import Part
-from robots.grasp import grasps_of
-from robots.gripper import ToolBox
-from sim.workcell.gripper import PR2_GRIPPER
-from tasks.footprint import TOUCH_M, Footprint
+from mend.robots.catalogue import Part
+from mend.robots.grasp import grasps_of
+from mend.robots.gripper import ToolBox
+from mend.sim.workcell.gripper import PR2_GRIPPER
+from mend.tasks.footprint import TOUCH_M, Footprint
 
 _GAP_M = 0.003
 """Kept between what one site needs and what stands on another."""

@@ -6,15 +6,15 @@ from typing import Any, Protocol, runtime_checkable
 
 from pydantic import BaseModel
 
-from robots.agent import AgentCore
-from robots.body import Body
-from robots.link.messages import ShownObject, ShownPose
-from robots.vision.color_model import ColorModel
-from tasks.definition import BehaviorNode, GoalNode
-from tasks.intervention import Intervention
-from tasks.scenario import ScriptedIntervention
-from tasks.scene import Scene, StrictModel
-from tasks.scene_problem import SceneProblem
+from mend.robots.agent import AgentCore
+from mend.robots.body import Body
+from mend.robots.link.messages import ShownObject, ShownPose
+from mend.robots.vision.color_model import ColorModel
+from mend.tasks.definition import BehaviorNode, GoalNode
+from mend.tasks.intervention import Intervention
+from mend.tasks.scenario import ScriptedIntervention
+from mend.tasks.scene import Scene, StrictModel
+from mend.tasks.scene_problem import SceneProblem
 
 
 class WorldSetup(StrictModel):

@@ -5,8 +5,8 @@ from typing import Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
-from tasks.problem import list_names
-from tasks.validation import describe_mistake
+from mend.tasks.problem import list_names
+from mend.tasks.validation import describe_mistake
 
 Options = TypeVar("Options", bound=BaseModel)
 

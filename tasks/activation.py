@@ -7,9 +7,9 @@ import math
 from array import array
 from collections.abc import Iterator, Sequence
 
-from tasks.definition import NodeKind
-from tasks.tree_shape import NO_NODE, TreeShape
-from tasks.tree_state import LeafStatus, TreeState
+from mend.tasks.definition import NodeKind
+from mend.tasks.tree_shape import NO_NODE, TreeShape
+from mend.tasks.tree_state import LeafStatus, TreeState
 
 _SMALLEST_LEVEL = math.ulp(0.0)
 """Shares of shares may be too small for a float; they must not become 0 all the same."""

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from tasks.definition import BehaviorNode, GoalNode
+from mend.tasks.definition import BehaviorNode, GoalNode
 
 Nodes = Sequence[GoalNode | BehaviorNode]
 

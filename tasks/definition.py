@@ -10,7 +10,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, JsonValue, model_validator
 
-from tasks.scene import Name, StrictModel
+from mend.tasks.scene import Name, StrictModel
 
 
 class NodeKind(StrEnum):

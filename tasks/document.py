@@ -9,7 +9,7 @@ from typing import Any
 
 import yaml
 
-from tasks.problem import Problem
+from mend.tasks.problem import Problem
 
 MAX_BYTES = 32 * 1024 * 1024
 MAX_DEPTH = 4_000

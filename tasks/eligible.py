@@ -3,9 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from tasks.definition import NodeKind
-from tasks.tree_shape import AND_CODE, LEAF_CODE, NO_NODE, OR_CODE, THEN_CODE, TreeShape
-from tasks.tree_state import TreeState
+from mend.tasks.definition import NodeKind
+from mend.tasks.tree_shape import AND_CODE, LEAF_CODE, NO_NODE, OR_CODE, THEN_CODE, TreeShape
+from mend.tasks.tree_state import TreeState
 
 _MAX_STALE = 64
 """With more unread changes than this, deriving everything once is cheaper than editing."""

@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass
 
-from tasks.definition import NodeKind
-from tasks.tree_shape import TreeShape
-from tasks.tree_state import LeafStatus, TreeState
+from mend.tasks.definition import NodeKind
+from mend.tasks.tree_shape import TreeShape
+from mend.tasks.tree_state import LeafStatus, TreeState
 
 
 @dataclass(frozen=True, slots=True)

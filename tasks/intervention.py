@@ -5,7 +5,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from tasks.scene import Name, Pose, StrictModel
+from mend.tasks.scene import Name, Pose, StrictModel
 
 
 class Act(StrEnum):

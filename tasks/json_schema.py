@@ -4,12 +4,12 @@ from typing import Any
 
 from pydantic import BaseModel, TypeAdapter
 
-from tasks.flat_form import IGNORED_KEYS
-from tasks.leaf_check import Behaviors
-from tasks.nested_form import GOAL_KEYS
-from tasks.part_rows import Grid
-from tasks.scenario import Scenario
-from tasks.scene import Name, Scene
+from mend.tasks.flat_form import IGNORED_KEYS
+from mend.tasks.leaf_check import Behaviors
+from mend.tasks.nested_form import GOAL_KEYS
+from mend.tasks.part_rows import Grid
+from mend.tasks.scenario import Scenario
+from mend.tasks.scene import Name, Scene
 
 _DIALECT = "https://json-schema.org/draft/2020-12/schema"
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from tasks.definition import BehaviorNode, GoalNode
+from mend.tasks.definition import BehaviorNode, GoalNode
 
 
 class LeafOrder:

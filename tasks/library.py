@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from importlib.resources import files
 
-from tasks.problem import list_names
+from mend.tasks.problem import list_names
 
 MOST_SHOWN = 64
 """Characters of an unknown name in a sentence; no name that there is has more."""
@@ -22,7 +22,7 @@ class Shelf:
 
     def names(self) -> list[str]:
         """What there is, sorted."""
-        folder = files("tasks").joinpath(self.folder)
+        folder = files("mend.tasks").joinpath(self.folder)
         if not folder.is_dir():
             return []
         found = [entry.name for entry in folder.iterdir()]
@@ -37,7 +37,7 @@ class Shelf:
                 f"there is no {self.what} '{shown}' in the library; "
                 f"it has {list_names(self.names()) or 'none'}"
             )
-        return files("tasks").joinpath(self.folder, f"{name}.yaml").read_text(encoding="utf-8")
+        return files("mend.tasks").joinpath(self.folder, f"{name}.yaml").read_text(encoding="utf-8")
 
 
 TREES = Shelf("library", "task tree")

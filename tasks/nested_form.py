@@ -3,10 +3,10 @@
 from difflib import get_close_matches
 from typing import Any
 
-from tasks.document import LinedMapping, LinedSequence
-from tasks.draft import MAX_NODES, Draft, DraftNode, find_name_mistake
-from tasks.problem import Problem
-from tasks.validation import show_kind
+from mend.tasks.document import LinedMapping, LinedSequence
+from mend.tasks.draft import MAX_NODES, Draft, DraftNode, find_name_mistake
+from mend.tasks.problem import Problem
+from mend.tasks.validation import show_kind
 
 GOAL_KEYS = ("then", "and", "or")
 _KIND_KEYS = (*GOAL_KEYS, "behavior")

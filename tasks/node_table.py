@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import JsonValue
 
-from tasks.definition import BehaviorNode, GoalNode, NodeKind, TaskTreeDefinition
-from tasks.tree_shape import TreeShape
+from mend.tasks.definition import BehaviorNode, GoalNode, NodeKind, TaskTreeDefinition
+from mend.tasks.tree_shape import TreeShape
 
 NO_CODE = -1
 

@@ -7,10 +7,10 @@ from typing import Annotated, Any
 
 from pydantic import Field
 
-from tasks.document import LinedMapping, LinedSequence
-from tasks.problem import Problem
-from tasks.scene import Metres, Pose, StrictModel
-from tasks.validation import show_kind, validate_part
+from mend.tasks.document import LinedMapping, LinedSequence
+from mend.tasks.problem import Problem
+from mend.tasks.scene import Metres, Pose, StrictModel
+from mend.tasks.validation import show_kind, validate_part
 
 _MOST = 1000
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from tasks.node_table import NO_CODE, NodeTable
+from mend.tasks.node_table import NO_CODE, NodeTable
 
 Point = tuple[float, float, float]
 

@@ -7,8 +7,8 @@ from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from tasks.spellings import NAME
-from tasks.unit import Unit
+from mend.tasks.spellings import NAME
+from mend.tasks.unit import Unit
 
 Metres = Annotated[float, Field(ge=-100.0, le=100.0, allow_inf_nan=False), Unit("metres")]
 Length = Annotated[float, Field(gt=1e-6, le=10.0, allow_inf_nan=False), Unit("metres")]

@@ -5,12 +5,12 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from tasks.document import DocumentError, LinedMapping, read_document, read_text
-from tasks.library import SCENES
-from tasks.part_rows import expand_rows
-from tasks.problem import InvalidFileError, Problem
-from tasks.scene import Scene
-from tasks.validation import find_line, show_kind, validate_part
+from mend.tasks.document import DocumentError, LinedMapping, read_document, read_text
+from mend.tasks.library import SCENES
+from mend.tasks.part_rows import expand_rows
+from mend.tasks.problem import InvalidFileError, Problem
+from mend.tasks.scene import Scene
+from mend.tasks.validation import find_line, show_kind, validate_part
 
 
 class SceneFileError(InvalidFileError):

@@ -6,9 +6,9 @@ taken back, everything that a THEN puts after it goes with it; AND and OR build 
 
 from dataclasses import dataclass
 
-from tasks.definition import NodeKind
-from tasks.tree_shape import TreeShape
-from tasks.tree_state import LeafStatus, TreeState
+from mend.tasks.definition import NodeKind
+from mend.tasks.tree_shape import TreeShape
+from mend.tasks.tree_state import LeafStatus, TreeState
 
 
 @dataclass(frozen=True, slots=True)

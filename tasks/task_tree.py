@@ -6,16 +6,16 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from tasks.activation import FullEvaluation, level_of
-from tasks.choice import choose_leaf
-from tasks.definition import BehaviorNode, NodeKind, TaskTreeDefinition
-from tasks.eligible import EligibleLeaves
-from tasks.giving_up import GiveUp, find_active_leaves, find_give_up
-from tasks.node_table import NodeTable
-from tasks.resolution import Resolution
-from tasks.taking_back import TakeBack, find_begun_after, find_take_back
-from tasks.tree_shape import NO_NODE
-from tasks.tree_state import LeafStatus, TreeState
+from mend.tasks.activation import FullEvaluation, level_of
+from mend.tasks.choice import choose_leaf
+from mend.tasks.definition import BehaviorNode, NodeKind, TaskTreeDefinition
+from mend.tasks.eligible import EligibleLeaves
+from mend.tasks.giving_up import GiveUp, find_active_leaves, find_give_up
+from mend.tasks.node_table import NodeTable
+from mend.tasks.resolution import Resolution
+from mend.tasks.taking_back import TakeBack, find_begun_after, find_take_back
+from mend.tasks.tree_shape import NO_NODE
+from mend.tasks.tree_state import LeafStatus, TreeState
 
 
 class IllegalTransitionError(Exception):

@@ -4,11 +4,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from tasks.alternatives import MOST_COMPARED_LEAVES, distinct_alternatives
-from tasks.definition import BehaviorNode, GoalNode
-from tasks.footprint import Footprint
-from tasks.leaf_order import LeafOrder
-from tasks.scene import RESTS_M, Pose, Scene, SceneObject
+from mend.tasks.alternatives import MOST_COMPARED_LEAVES, distinct_alternatives
+from mend.tasks.definition import BehaviorNode, GoalNode
+from mend.tasks.footprint import Footprint
+from mend.tasks.leaf_order import LeafOrder
+from mend.tasks.scene import RESTS_M, Pose, Scene, SceneObject
 
 Nodes = Sequence[GoalNode | BehaviorNode]
 

@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from tasks.definition import NodeKind
+from mend.tasks.definition import NodeKind
 
 NO_NODE = -1
 """Stands for "none" where an index is kept in an array of integers."""

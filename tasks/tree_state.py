@@ -8,8 +8,8 @@ from array import array
 from enum import StrEnum
 from typing import Self
 
-from tasks.definition import NodeKind
-from tasks.tree_shape import NO_NODE, TreeShape
+from mend.tasks.definition import NodeKind
+from mend.tasks.tree_shape import NO_NODE, TreeShape
 
 _THEN = NodeKind.THEN
 _OR = NodeKind.OR

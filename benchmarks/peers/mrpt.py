@@ -15,10 +15,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from maps.vector_map import VectorMap
-from robots.localization.evaluation import Trace
-from robots.localization.logs.log import Log
-from robots.localization.pose import compose
+from mend.localization.evaluation import Trace
+from mend.localization.logs.log import Log
+from mend.localization.pose import compose
+from mend.maps.vector_map import VectorMap
 
 PROGRAMS = ("carmen2rawlog", "image2gridmap", "pf-localization")
 MISSING = "MRPT is left out: it is not installed (apt-get install mrpt-apps mrpt-common)"

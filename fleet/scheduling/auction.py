@@ -9,14 +9,14 @@ from dataclasses import dataclass, field
 from math import inf
 from random import Random
 
-from fleet.scheduling.constraint import Constraint
-from fleet.scheduling.growing_routes import Bid, GrowingRoutes
-from fleet.scheduling.objective import cost
-from fleet.scheduling.partial_routes import part_schedule
-from fleet.scheduling.problem import Problem
-from fleet.scheduling.schedule import Route, Schedule
-from fleet.scheduling.solution import Progress, Solution, Status
-from fleet.scheduling.temporal_network import Conflict
+from mend.fleet.scheduling.constraint import Constraint
+from mend.fleet.scheduling.growing_routes import Bid, GrowingRoutes
+from mend.fleet.scheduling.objective import cost
+from mend.fleet.scheduling.partial_routes import part_schedule
+from mend.fleet.scheduling.problem import Problem
+from mend.fleet.scheduling.schedule import Route, Schedule
+from mend.fleet.scheduling.solution import Progress, Solution, Status
+from mend.fleet.scheduling.temporal_network import Conflict
 
 ATTEMPTS = 8
 """How many auctions are held, with transfers and without: each offers first what had no place."""

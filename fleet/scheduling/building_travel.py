@@ -5,8 +5,8 @@ from math import inf
 
 import numpy as np
 
-from fleet.scheduling.travel import Epoch, Matrix, Travel, TravelError
-from maps.navigation import NavigationGraph
+from mend.fleet.scheduling.travel import Epoch, Matrix, Travel, TravelError
+from mend.maps.navigation import NavigationGraph
 
 MAX_CHANGES = 48
 """At how many different times doors may open or close: epochs grow with its square."""

@@ -4,12 +4,12 @@ from collections.abc import Callable, Sequence
 from math import inf
 from random import Random
 
-from fleet.scheduling.growing_routes import GrowingRoutes
-from fleet.scheduling.objective import cost
-from fleet.scheduling.partial_routes import part_schedule
-from fleet.scheduling.problem import Problem
-from fleet.scheduling.schedule import Route, Schedule
-from fleet.scheduling.solution import Progress, Solution, Status
+from mend.fleet.scheduling.growing_routes import GrowingRoutes
+from mend.fleet.scheduling.objective import cost
+from mend.fleet.scheduling.partial_routes import part_schedule
+from mend.fleet.scheduling.problem import Problem
+from mend.fleet.scheduling.schedule import Route, Schedule
+from mend.fleet.scheduling.solution import Progress, Solution, Status
 
 ORDERS = 12
 """In how many orders the items are put in; the best schedule counts."""

@@ -9,9 +9,9 @@ from collections.abc import Iterator
 from itertools import pairwise
 from math import isfinite
 
-from fleet.scheduling.item_way import BrokenWayError, Leg, item_way, item_ways
-from fleet.scheduling.problem import Item, Problem, Window
-from fleet.scheduling.schedule import Action, Schedule, Stop
+from mend.fleet.scheduling.item_way import BrokenWayError, Leg, item_way, item_ways
+from mend.fleet.scheduling.problem import Item, Problem, Window
+from mend.fleet.scheduling.schedule import Action, Schedule, Stop
 
 TOLERANCE_S = 1e-6
 TOLERANCE_LOAD = 1e-9

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import Any, TypeVar
 
-import maps.compiled
+import mend.maps.compiled
 
 Kernel = TypeVar("Kernel", bound=Callable[..., Any])
 
@@ -20,4 +20,4 @@ def compiled(function: Kernel) -> Kernel:
     arrays of a problem, takes longer to compile than most kernels.
     """
     private = function.__name__.startswith("_")
-    return maps.compiled.compiled(function, **PLAIN, no_cpython_wrapper=private)
+    return mend.maps.compiled.compiled(function, **PLAIN, no_cpython_wrapper=private)

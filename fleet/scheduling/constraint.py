@@ -3,8 +3,8 @@
 from enum import StrEnum
 from typing import NamedTuple
 
-from fleet.scheduling.problem import Problem
-from fleet.scheduling.schedule import Task
+from mend.fleet.scheduling.problem import Problem
+from mend.fleet.scheduling.schedule import Task
 
 
 class ConstraintKind(StrEnum):

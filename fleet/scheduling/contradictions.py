@@ -10,12 +10,12 @@ from math import inf
 
 import numpy as np
 
-from fleet.scheduling.constraint import Constraint, ConstraintKind, sentence
-from fleet.scheduling.problem import Problem, Robot, Transfers
-from fleet.scheduling.schedule import Action, Task
-from fleet.scheduling.temporal_network import ORIGIN, Conflict, TemporalNetwork
-from fleet.scheduling.timing import TimedRoutes
-from fleet.scheduling.travel import TOLERANCE_S, Matrix, Travel
+from mend.fleet.scheduling.constraint import Constraint, ConstraintKind, sentence
+from mend.fleet.scheduling.problem import Problem, Robot, Transfers
+from mend.fleet.scheduling.schedule import Action, Task
+from mend.fleet.scheduling.temporal_network import ORIGIN, Conflict, TemporalNetwork
+from mend.fleet.scheduling.timing import TimedRoutes
+from mend.fleet.scheduling.travel import TOLERANCE_S, Matrix, Travel
 
 
 @dataclass(frozen=True, slots=True)

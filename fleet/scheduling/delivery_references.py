@@ -2,15 +2,15 @@
 
 from collections.abc import Iterator
 
-from fleet.scheduling.delivery_document import (
+from mend.fleet.scheduling.delivery_document import (
     DeliveryDocument,
     GraphEntry,
     MatrixEntry,
     Span,
     TravelEntry,
 )
-from maps.navigation import WayKind
-from tasks.problem import list_names
+from mend.maps.navigation import WayKind
+from mend.tasks.problem import list_names
 
 Location = tuple[str | int, ...]
 Mistake = tuple[Location, str]

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from fleet.scheduling.compiled import compiled
+from mend.fleet.scheduling.compiled import compiled
 
 Dice = NDArray[np.uint64]
 

@@ -6,17 +6,17 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fleet.scheduling.constraint import Constraint, ConstraintKind
-from fleet.scheduling.item_way import Leg as CarriedLeg
-from fleet.scheduling.leg_search import ANYWHERE, RouteTimes
-from fleet.scheduling.leg_tables import LegTables
-from fleet.scheduling.objective import cost
-from fleet.scheduling.partial_routes import items_in, part_schedule, without_items
-from fleet.scheduling.problem import Problem
-from fleet.scheduling.schedule import Action, Route, Task
-from fleet.scheduling.temporal_network import Conflict
-from fleet.scheduling.timing import TimedRoutes, service_s
-from fleet.scheduling.trajectories import Leg, Trajectory
+from mend.fleet.scheduling.constraint import Constraint, ConstraintKind
+from mend.fleet.scheduling.item_way import Leg as CarriedLeg
+from mend.fleet.scheduling.leg_search import ANYWHERE, RouteTimes
+from mend.fleet.scheduling.leg_tables import LegTables
+from mend.fleet.scheduling.objective import cost
+from mend.fleet.scheduling.partial_routes import items_in, part_schedule, without_items
+from mend.fleet.scheduling.problem import Problem
+from mend.fleet.scheduling.schedule import Action, Route, Task
+from mend.fleet.scheduling.temporal_network import Conflict
+from mend.fleet.scheduling.timing import TimedRoutes, service_s
+from mend.fleet.scheduling.trajectories import Leg, Trajectory
 
 COMPARED = 6
 """How many possible trajectories are compared where more than distance and robots counts."""

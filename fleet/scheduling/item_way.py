@@ -4,8 +4,8 @@ from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from fleet.scheduling.problem import Problem
-from fleet.scheduling.schedule import Action, Route, Task
+from mend.fleet.scheduling.problem import Problem
+from mend.fleet.scheduling.schedule import Action, Route, Task
 
 
 class BrokenWayError(Exception):

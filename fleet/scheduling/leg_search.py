@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from fleet.scheduling.compiled import compiled
+from mend.fleet.scheduling.compiled import compiled
 
 KEPT = 4
 """How many of the cheapest legs of one robot between two ends are remembered."""

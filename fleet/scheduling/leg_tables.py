@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from fleet.scheduling.leg_search import (
+from mend.fleet.scheduling.leg_search import (
     FAR,
     Ends,
     Floats,
@@ -15,8 +15,8 @@ from fleet.scheduling.leg_search import (
     find_legs,
     no_legs,
 )
-from fleet.scheduling.problem import Problem, Visit
-from fleet.scheduling.trajectories import TransferGraph
+from mend.fleet.scheduling.problem import Problem, Visit
+from mend.fleet.scheduling.trajectories import TransferGraph
 
 BEST_PLACES = 8
 """How many transfer places are tried for an item: those with the smallest detour."""

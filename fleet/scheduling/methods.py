@@ -7,22 +7,22 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Protocol
 
-from fleet.scheduling.auction import solve_by_auction
-from fleet.scheduling.cheapest_insertion import solve_by_insertion
-from fleet.scheduling.exact.route_bound import prepare as prepare_routes
-from fleet.scheduling.exact.solve import solve_exactly
-from fleet.scheduling.nearest_next import solve_by_nearest_next
-from fleet.scheduling.one_destination import solve_to_one_destination
-from fleet.scheduling.one_task_bidder import solve_one_task_each
-from fleet.scheduling.problem import Problem
-from fleet.scheduling.reinsertion import solve_by_reinsertion
-from fleet.scheduling.routing.arrays import unsupported
-from fleet.scheduling.routing.solve import prepare as prepare_alns
-from fleet.scheduling.routing.solve import solve_alns
-from fleet.scheduling.schedule import Schedule
-from fleet.scheduling.solution import Progress, Solution, Status, UnsupportedError
-from fleet.scheduling.vlns.solve import prepare as prepare_vlns
-from fleet.scheduling.vlns.solve import solve_vlns
+from mend.fleet.scheduling.auction import solve_by_auction
+from mend.fleet.scheduling.cheapest_insertion import solve_by_insertion
+from mend.fleet.scheduling.exact.route_bound import prepare as prepare_routes
+from mend.fleet.scheduling.exact.solve import solve_exactly
+from mend.fleet.scheduling.nearest_next import solve_by_nearest_next
+from mend.fleet.scheduling.one_destination import solve_to_one_destination
+from mend.fleet.scheduling.one_task_bidder import solve_one_task_each
+from mend.fleet.scheduling.problem import Problem
+from mend.fleet.scheduling.reinsertion import solve_by_reinsertion
+from mend.fleet.scheduling.routing.arrays import unsupported
+from mend.fleet.scheduling.routing.solve import prepare as prepare_alns
+from mend.fleet.scheduling.routing.solve import solve_alns
+from mend.fleet.scheduling.schedule import Schedule
+from mend.fleet.scheduling.solution import Progress, Solution, Status, UnsupportedError
+from mend.fleet.scheduling.vlns.solve import prepare as prepare_vlns
+from mend.fleet.scheduling.vlns.solve import solve_vlns
 
 Clock = Callable[[], float]
 """Tells seconds from whatever origin."""

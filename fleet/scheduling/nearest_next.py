@@ -3,14 +3,14 @@
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
-from fleet.scheduling.cheapest_insertion import insert_items
-from fleet.scheduling.checker import require_valid
-from fleet.scheduling.objective import cost
-from fleet.scheduling.problem import Item, Problem
-from fleet.scheduling.route_estimate import estimate
-from fleet.scheduling.schedule import Action, Route, Schedule, Task
-from fleet.scheduling.solution import Progress, Solution, Status
-from fleet.scheduling.timing import Untimeable, earliest_schedule, service_s, task_window
+from mend.fleet.scheduling.cheapest_insertion import insert_items
+from mend.fleet.scheduling.checker import require_valid
+from mend.fleet.scheduling.objective import cost
+from mend.fleet.scheduling.problem import Item, Problem
+from mend.fleet.scheduling.route_estimate import estimate
+from mend.fleet.scheduling.schedule import Action, Route, Schedule, Task
+from mend.fleet.scheduling.solution import Progress, Solution, Status
+from mend.fleet.scheduling.timing import Untimeable, earliest_schedule, service_s, task_window
 
 
 def solve_by_nearest_next(

@@ -2,10 +2,10 @@
 
 from collections.abc import Callable
 
-from fleet.scheduling.auction import sell
-from fleet.scheduling.constraint import Constraint, sentence
-from fleet.scheduling.problem import Problem
-from fleet.scheduling.temporal_network import Conflict
+from mend.fleet.scheduling.auction import sell
+from mend.fleet.scheduling.constraint import Constraint, sentence
+from mend.fleet.scheduling.problem import Problem
+from mend.fleet.scheduling.temporal_network import Conflict
 
 
 def conflict_words(problem: Problem, conflict: Conflict[Constraint]) -> str:

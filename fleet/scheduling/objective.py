@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from itertools import pairwise
 
-from fleet.scheduling.problem import Problem
-from fleet.scheduling.schedule import Action, Schedule
+from mend.fleet.scheduling.problem import Problem
+from mend.fleet.scheduling.schedule import Action, Schedule
 
 
 @dataclass(frozen=True, slots=True)

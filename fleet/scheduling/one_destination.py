@@ -13,14 +13,14 @@ from math import inf
 
 import numpy as np
 
-from fleet.scheduling.auction import solve_by_auction
-from fleet.scheduling.checker import require_valid
-from fleet.scheduling.objective import cost
-from fleet.scheduling.problem import Problem, Robot, Window
-from fleet.scheduling.schedule import Action, Route, Schedule, Task
-from fleet.scheduling.solution import Progress, Solution, Status, UnsupportedError
-from fleet.scheduling.timing import Untimeable, earliest_schedule
-from fleet.scheduling.travel import Matrix
+from mend.fleet.scheduling.auction import solve_by_auction
+from mend.fleet.scheduling.checker import require_valid
+from mend.fleet.scheduling.objective import cost
+from mend.fleet.scheduling.problem import Problem, Robot, Window
+from mend.fleet.scheduling.schedule import Action, Route, Schedule, Task
+from mend.fleet.scheduling.solution import Progress, Solution, Status, UnsupportedError
+from mend.fleet.scheduling.timing import Untimeable, earliest_schedule
+from mend.fleet.scheduling.travel import Matrix
 
 EXACT_PLACES = 10
 """Up to this many different pickups the shortest walk is found."""

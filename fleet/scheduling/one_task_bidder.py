@@ -6,12 +6,12 @@ given before; a robot brings one item before it goes for the next. A baseline to
 
 from collections.abc import Callable
 
-from fleet.scheduling.objective import cost
-from fleet.scheduling.partial_routes import part_schedule
-from fleet.scheduling.problem import Problem
-from fleet.scheduling.route_estimate import estimate
-from fleet.scheduling.schedule import Action, Route, Schedule, Task
-from fleet.scheduling.solution import Progress, Solution, Status
+from mend.fleet.scheduling.objective import cost
+from mend.fleet.scheduling.partial_routes import part_schedule
+from mend.fleet.scheduling.problem import Problem
+from mend.fleet.scheduling.route_estimate import estimate
+from mend.fleet.scheduling.schedule import Action, Route, Schedule, Task
+from mend.fleet.scheduling.solution import Progress, Solution, Status
 
 
 def solve_one_task_each(

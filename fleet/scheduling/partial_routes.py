@@ -3,10 +3,10 @@
 from collections.abc import Container, Mapping, Sequence
 from dataclasses import replace
 
-from fleet.scheduling.checker import check
-from fleet.scheduling.problem import Problem
-from fleet.scheduling.schedule import Route, Schedule
-from fleet.scheduling.timing import Untimeable, earliest_schedule
+from mend.fleet.scheduling.checker import check
+from mend.fleet.scheduling.problem import Problem
+from mend.fleet.scheduling.schedule import Route, Schedule
+from mend.fleet.scheduling.timing import Untimeable, earliest_schedule
 
 
 def items_in(routes: Sequence[Route]) -> list[int]:

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from math import inf, isfinite
 
-from fleet.scheduling.travel import Travel
+from mend.fleet.scheduling.travel import Travel
 
 
 class ProblemError(Exception):

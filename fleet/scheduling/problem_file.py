@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from fleet.scheduling.building_travel import travel_in
-from fleet.scheduling.contradictions import contradictions
-from fleet.scheduling.delivery_document import (
+from mend.fleet.scheduling.building_travel import travel_in
+from mend.fleet.scheduling.contradictions import contradictions
+from mend.fleet.scheduling.delivery_document import (
     DeliveryDocument,
     GraphEntry,
     ItemEntry,
@@ -19,8 +19,8 @@ from fleet.scheduling.delivery_document import (
     TravelEntry,
     VisitEntry,
 )
-from fleet.scheduling.delivery_references import find_mistakes, place_names
-from fleet.scheduling.problem import (
+from mend.fleet.scheduling.delivery_references import find_mistakes, place_names
+from mend.fleet.scheduling.problem import (
     Item,
     Problem,
     ProblemError,
@@ -30,12 +30,12 @@ from fleet.scheduling.problem import (
     Weights,
     Window,
 )
-from fleet.scheduling.travel import Matrix, Travel, TravelError
-from maps.navigation import NavigationError, NavigationGraph, Place, Way
-from tasks.document import DocumentError, LinedMapping, read_document, read_text
-from tasks.problem import InvalidFileError
-from tasks.problem import Problem as Mistake
-from tasks.validation import find_line, show_kind, validate_part
+from mend.fleet.scheduling.travel import Matrix, Travel, TravelError
+from mend.maps.navigation import NavigationError, NavigationGraph, Place, Way
+from mend.tasks.document import DocumentError, LinedMapping, read_document, read_text
+from mend.tasks.problem import InvalidFileError
+from mend.tasks.problem import Problem as Mistake
+from mend.tasks.validation import find_line, show_kind, validate_part
 
 FLOOR_GAP = 0.25
 """How far floors are apart where they are drawn beside each other, as a share of their depth."""

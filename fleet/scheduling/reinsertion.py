@@ -7,12 +7,12 @@ knows when doors let a robot through.
 from collections.abc import Callable
 from random import Random
 
-from fleet.scheduling.cheapest_insertion import insert_items, solve_by_insertion
-from fleet.scheduling.objective import cost
-from fleet.scheduling.partial_routes import part_schedule, without_items
-from fleet.scheduling.problem import Problem
-from fleet.scheduling.schedule import Schedule
-from fleet.scheduling.solution import Progress, Solution, Status
+from mend.fleet.scheduling.cheapest_insertion import insert_items, solve_by_insertion
+from mend.fleet.scheduling.objective import cost
+from mend.fleet.scheduling.partial_routes import part_schedule, without_items
+from mend.fleet.scheduling.problem import Problem
+from mend.fleet.scheduling.schedule import Schedule
+from mend.fleet.scheduling.solution import Progress, Solution, Status
 
 START_SHARE = 0.2
 """The share of the time for the schedule to begin with."""

@@ -2,10 +2,10 @@
 
 from typing import NamedTuple
 
-from fleet.scheduling.checker import TOLERANCE_LOAD, TOLERANCE_S
-from fleet.scheduling.problem import Problem, Visit
-from fleet.scheduling.schedule import Action, Route
-from fleet.scheduling.timing import service_s
+from mend.fleet.scheduling.checker import TOLERANCE_LOAD, TOLERANCE_S
+from mend.fleet.scheduling.problem import Problem, Visit
+from mend.fleet.scheduling.schedule import Action, Route
+from mend.fleet.scheduling.timing import service_s
 
 
 class RouteEstimate(NamedTuple):

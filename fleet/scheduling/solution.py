@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from enum import StrEnum
 
-from fleet.scheduling.objective import Cost
-from fleet.scheduling.schedule import Schedule
+from mend.fleet.scheduling.objective import Cost
+from mend.fleet.scheduling.schedule import Schedule
 
 
 class UnsupportedError(Exception):

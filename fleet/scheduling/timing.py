@@ -5,11 +5,11 @@ from dataclasses import dataclass
 from itertools import pairwise
 from math import inf
 
-from fleet.scheduling.constraint import Constraint, ConstraintKind, sentence
-from fleet.scheduling.item_way import Leg, item_ways
-from fleet.scheduling.problem import Problem, Window
-from fleet.scheduling.schedule import Action, RobotSchedule, Route, Schedule, Stop, Task
-from fleet.scheduling.temporal_network import ORIGIN, TOLERANCE_S, Conflict, TemporalNetwork
+from mend.fleet.scheduling.constraint import Constraint, ConstraintKind, sentence
+from mend.fleet.scheduling.item_way import Leg, item_ways
+from mend.fleet.scheduling.problem import Problem, Window
+from mend.fleet.scheduling.schedule import Action, RobotSchedule, Route, Schedule, Stop, Task
+from mend.fleet.scheduling.temporal_network import ORIGIN, TOLERANCE_S, Conflict, TemporalNetwork
 
 MAX_ROUNDS = 1000
 """How often the times of routes may be moved because of doors."""

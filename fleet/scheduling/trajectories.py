@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fleet.scheduling.leg_search import KEPT, Floats, Integers, Legs
+from mend.fleet.scheduling.leg_search import KEPT, Floats, Integers, Legs
 
 CHAIN = 3
 """The most transfers of one item."""

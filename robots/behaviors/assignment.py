@@ -3,11 +3,11 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from robots.behaviors.behavior import Behavior
-from robots.catalogue import Part
-from robots.link.messages import Location, WasDone
-from robots.result import Result
-from tasks.scene import StrictModel
+from mend.robots.behaviors.behavior import Behavior
+from mend.robots.catalogue import Part
+from mend.robots.link.messages import Location, WasDone
+from mend.robots.result import Result
+from mend.tasks.scene import StrictModel
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,14 +4,14 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 
-from robots.arm import Routine
-from robots.behaviors.contact import Contact, ContactWatch
-from robots.behaviors.execution_state import ExecutionState
-from robots.behaviors.phase import Phase
-from robots.behaviors.planning import waypoints_of
-from robots.behaviors.watch import Watch
-from robots.behaviors.work import Work
-from robots.body import ToolPose
+from mend.robots.arm import Routine
+from mend.robots.behaviors.contact import Contact, ContactWatch
+from mend.robots.behaviors.execution_state import ExecutionState
+from mend.robots.behaviors.phase import Phase
+from mend.robots.behaviors.planning import waypoints_of
+from mend.robots.behaviors.watch import Watch
+from mend.robots.behaviors.work import Work
+from mend.robots.body import ToolPose
 
 _SPEED = 0.3
 _BIDE_S = 0.5

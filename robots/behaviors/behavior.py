@@ -5,13 +5,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar, Literal
 
-from robots.behaviors.phase import Phase
-from robots.body import ToolPose
-from robots.catalogue import Part
-from robots.grasp import Grasp
-from robots.gripper import GripperModel
-from robots.link.messages import Location
-from tasks.scene import StrictModel
+from mend.robots.behaviors.phase import Phase
+from mend.robots.body import ToolPose
+from mend.robots.catalogue import Part
+from mend.robots.grasp import Grasp
+from mend.robots.gripper import GripperModel
+from mend.robots.link.messages import Location
+from mend.tasks.scene import StrictModel
 
 
 @dataclass(frozen=True, slots=True)

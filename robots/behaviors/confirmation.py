@@ -1,12 +1,12 @@
 """After the last step: whether the object is seen where the behavior was to bring it."""
 
-from robots.arm import Arm, Routine
-from robots.behaviors.findings import Outcome
-from robots.behaviors.search import LOOK_AGAIN_S, LOOKS
-from robots.catalogue import Part
-from robots.link.messages import Location
-from robots.senses import Senses
-from robots.vision.presence import Presence
+from mend.robots.arm import Arm, Routine
+from mend.robots.behaviors.findings import Outcome
+from mend.robots.behaviors.search import LOOK_AGAIN_S, LOOKS
+from mend.robots.catalogue import Part
+from mend.robots.link.messages import Location
+from mend.robots.senses import Senses
+from mend.robots.vision.presence import Presence
 
 
 def look_at_outcome(part: Part, target: Location, arm: Arm, senses: Senses) -> Routine[Outcome]:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from robots.body import ToolPose
+from mend.robots.body import ToolPose
 
 _LASTING_N_S = 0.3
 """A force is a contact once this much above the limit has added up: 15 N more for 20 ms."""

@@ -1,12 +1,12 @@
 """Finished results that a behavior covers: whether they are there until nobody can see them."""
 
-from robots.behaviors.assignment import Assignment
-from robots.behaviors.phase import Phase
-from robots.catalogue import Part
-from robots.link.messages import Location
-from robots.result import Result
-from robots.senses import Senses
-from tasks.footprint import Footprint
+from mend.robots.behaviors.assignment import Assignment
+from mend.robots.behaviors.phase import Phase
+from mend.robots.catalogue import Part
+from mend.robots.link.messages import Location
+from mend.robots.result import Result
+from mend.robots.senses import Senses
+from mend.tasks.footprint import Footprint
 
 LOOK_PERIOD_S = 0.5
 

@@ -3,13 +3,13 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from robots.behaviors.assignment import Assignment
-from robots.behaviors.behavior import Situation, Step
-from robots.behaviors.findings import Findings
-from robots.catalogue import Part
-from robots.grasp import Grasp
-from robots.link.messages import Location
-from robots.senses import Senses
+from mend.robots.behaviors.assignment import Assignment
+from mend.robots.behaviors.behavior import Situation, Step
+from mend.robots.behaviors.findings import Findings
+from mend.robots.catalogue import Part
+from mend.robots.grasp import Grasp
+from mend.robots.link.messages import Location
+from mend.robots.senses import Senses
 
 
 @dataclass(frozen=True, slots=True)

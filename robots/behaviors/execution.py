@@ -3,21 +3,21 @@
 from collections.abc import Sequence
 from typing import Any
 
-from robots.arm import Routine
-from robots.behaviors.confirmation import look_at_outcome
-from robots.behaviors.covering import CoveredResultGone
-from robots.behaviors.execution_state import ExecutionState, is_over
-from robots.behaviors.preparation import prepare
-from robots.behaviors.put_down import put_down
-from robots.behaviors.step_walk import StepWalk
-from robots.behaviors.watch import Interruption, Watch
-from robots.behaviors.work import Work
-from robots.body import ToolPose
-from robots.catalogue import Part
-from robots.link.messages import Finished, Holding, Location, Resumed
-from robots.monitors.monitor import BEFORE_FIRST_STEP, Meanwhile, Monitor
-from robots.vision.obstruction import Obstruction
-from robots.vision.presence import Presence
+from mend.robots.arm import Routine
+from mend.robots.behaviors.confirmation import look_at_outcome
+from mend.robots.behaviors.covering import CoveredResultGone
+from mend.robots.behaviors.execution_state import ExecutionState, is_over
+from mend.robots.behaviors.preparation import prepare
+from mend.robots.behaviors.put_down import put_down
+from mend.robots.behaviors.step_walk import StepWalk
+from mend.robots.behaviors.watch import Interruption, Watch
+from mend.robots.behaviors.work import Work
+from mend.robots.body import ToolPose
+from mend.robots.catalogue import Part
+from mend.robots.link.messages import Finished, Holding, Location, Resumed
+from mend.robots.monitors.monitor import BEFORE_FIRST_STEP, Meanwhile, Monitor
+from mend.robots.vision.obstruction import Obstruction
+from mend.robots.vision.presence import Presence
 
 
 class Execution:

@@ -3,12 +3,12 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from robots.body import CameraImage, ToolPose
-from robots.catalogue import Part
-from robots.link.messages import Location
-from robots.vision.head import HeadSighting
-from robots.vision.obstruction import Obstruction
-from robots.vision.presence import AT_PLACE_M, Presence, off_place_m
+from mend.robots.body import CameraImage, ToolPose
+from mend.robots.catalogue import Part
+from mend.robots.link.messages import Location
+from mend.robots.vision.head import HeadSighting
+from mend.robots.vision.obstruction import Obstruction
+from mend.robots.vision.presence import AT_PLACE_M, Presence, off_place_m
 
 _EXACT_M = 0.006
 """The arm places a part less than 3 mm off, and the camera sees it less than 2 mm off."""

@@ -8,15 +8,15 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from robots.behaviors.behavior import Move, SetGripper, Situation, Step
-from robots.behaviors.errand import Errand
-from robots.body import ToolPose
-from robots.catalogue import Part
-from robots.clearance import ROOM_M, Room, room_around
-from robots.grasp import Grasp, grasps_of, half_turn
-from robots.gripper import GripperModel
-from robots.link.messages import Location
-from robots.vision.seen_box import SeenBox
+from mend.robots.behaviors.behavior import Move, SetGripper, Situation, Step
+from mend.robots.behaviors.errand import Errand
+from mend.robots.body import ToolPose
+from mend.robots.catalogue import Part
+from mend.robots.clearance import ROOM_M, Room, room_around
+from mend.robots.grasp import Grasp, grasps_of, half_turn
+from mend.robots.gripper import GripperModel
+from mend.robots.link.messages import Location
+from mend.robots.vision.seen_box import SeenBox
 
 Vector = NDArray[np.float64]
 

@@ -4,13 +4,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from robots.behaviors.behavior import Move, SetGripper, Step
-from robots.body import HeldBox, Leg
-from robots.catalogue import Part
-from robots.grasp import Grasp, part_in_tool
-from robots.gripper import GripperModel
-from robots.vision.seen_box import SeenBox
-from tasks.scene import Table
+from mend.robots.behaviors.behavior import Move, SetGripper, Step
+from mend.robots.body import HeldBox, Leg
+from mend.robots.catalogue import Part
+from mend.robots.grasp import Grasp, part_in_tool
+from mend.robots.gripper import GripperModel
+from mend.robots.vision.seen_box import SeenBox
+from mend.tasks.scene import Table
 
 _LESS_M = 0.004
 """A held part is taken for so much smaller on every side: where it fits closely it may go."""

@@ -4,12 +4,12 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import ClassVar
 
-from robots.behaviors.behavior import Behavior, Move, SetGripper, Situation, Step
-from robots.behaviors.phase import Phase
-from robots.body import ToolPose
-from robots.grasp import RELEASE_CLEARANCE_M, Grasp, half_turn
-from robots.link.messages import Location
-from tasks.scene import Name, StrictModel
+from mend.robots.behaviors.behavior import Behavior, Move, SetGripper, Situation, Step
+from mend.robots.behaviors.phase import Phase
+from mend.robots.body import ToolPose
+from mend.robots.grasp import RELEASE_CLEARANCE_M, Grasp, half_turn
+from mend.robots.link.messages import Location
+from mend.tasks.scene import Name, StrictModel
 
 _LIFTING = (Phase.APPROACH, Phase.GRASP, Phase.LIFT)
 

@@ -4,17 +4,17 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 
-from robots.arm import Routine
-from robots.behaviors.errand import Errand, errand_of
-from robots.behaviors.grasp_choice import Crowding, others
-from robots.behaviors.planning import Barred, Plan, bar_of, plan_amid
-from robots.behaviors.work import Work
-from robots.body import ToolPose
-from robots.catalogue import Part
-from robots.grasp import UngraspableError
-from robots.vision.carriers import bears
-from robots.vision.obstruction import Obstruction, obstruction_at
-from robots.vision.seen_box import SeenBox
+from mend.robots.arm import Routine
+from mend.robots.behaviors.errand import Errand, errand_of
+from mend.robots.behaviors.grasp_choice import Crowding, others
+from mend.robots.behaviors.planning import Barred, Plan, bar_of, plan_amid
+from mend.robots.behaviors.work import Work
+from mend.robots.body import ToolPose
+from mend.robots.catalogue import Part
+from mend.robots.grasp import UngraspableError
+from mend.robots.vision.carriers import bears
+from mend.robots.vision.obstruction import Obstruction, obstruction_at
+from mend.robots.vision.seen_box import SeenBox
 
 
 def make_plan(work: Work) -> Routine[Plan | None]:

@@ -4,10 +4,10 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
-from robots.arm import Routine, T
-from robots.behaviors.behavior import Move, Step
-from robots.behaviors.errand import Errand
-from robots.behaviors.grasp_choice import (
+from mend.robots.arm import Routine, T
+from mend.robots.behaviors.behavior import Move, Step
+from mend.robots.behaviors.errand import Errand
+from mend.robots.behaviors.grasp_choice import (
     MARGIN_M,
     Crowding,
     Grip,
@@ -16,12 +16,12 @@ from robots.behaviors.grasp_choice import (
     roominess_m,
     ways_to_grasp,
 )
-from robots.behaviors.legs import legs_of, table_box
-from robots.body import ArmPath, Leg, NoWay, ToolPose
-from robots.grasp import Grasp
-from robots.gripper import GripperModel
-from robots.vision.seen_box import SeenBox
-from tasks.scene import Table
+from mend.robots.behaviors.legs import legs_of, table_box
+from mend.robots.body import ArmPath, Leg, NoWay, ToolPose
+from mend.robots.grasp import Grasp
+from mend.robots.gripper import GripperModel
+from mend.robots.vision.seen_box import SeenBox
+from mend.tasks.scene import Table
 
 _MOST_BARS = 3
 """Where more stand in the arm's way, none of them is said to be."""

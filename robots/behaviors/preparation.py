@@ -1,21 +1,21 @@
 """Before the first step: what is seen and held, and the plan to walk that follows from it."""
 
-from robots.arm import Routine
-from robots.behaviors.backing_off import get_out_of_view
-from robots.behaviors.errand import errand_of
-from robots.behaviors.execution_state import ExecutionTransitionError
-from robots.behaviors.findings import Findings, is_inexact
-from robots.behaviors.grasp_choice import ways_to_grasp
-from robots.behaviors.phase import Phase
-from robots.behaviors.plan import make_plan
-from robots.behaviors.planning import Plan
-from robots.behaviors.put_down import put_down, set_down
-from robots.behaviors.search import LOOK_AGAIN_S, feel_for_object, find_object, find_table
-from robots.behaviors.watch import Watch
-from robots.behaviors.work import Work
-from robots.link.messages import Location
-from robots.vision.head import HeadSighting
-from robots.vision.presence import Presence, is_at
+from mend.robots.arm import Routine
+from mend.robots.behaviors.backing_off import get_out_of_view
+from mend.robots.behaviors.errand import errand_of
+from mend.robots.behaviors.execution_state import ExecutionTransitionError
+from mend.robots.behaviors.findings import Findings, is_inexact
+from mend.robots.behaviors.grasp_choice import ways_to_grasp
+from mend.robots.behaviors.phase import Phase
+from mend.robots.behaviors.plan import make_plan
+from mend.robots.behaviors.planning import Plan
+from mend.robots.behaviors.put_down import put_down, set_down
+from mend.robots.behaviors.search import LOOK_AGAIN_S, feel_for_object, find_object, find_table
+from mend.robots.behaviors.watch import Watch
+from mend.robots.behaviors.work import Work
+from mend.robots.link.messages import Location
+from mend.robots.vision.head import HeadSighting
+from mend.robots.vision.presence import Presence, is_at
 
 
 def prepare(work: Work, watch: Watch) -> Routine[Plan | None]:

@@ -2,14 +2,14 @@
 
 from dataclasses import dataclass, field
 
-from robots.behaviors.contact import Contact
-from robots.behaviors.execution_state import ExecutionState, ExecutionTransitionError, follow
-from robots.behaviors.findings import Findings, Outcome
-from robots.behaviors.phase import Phase
-from robots.behaviors.planning import Plan, waypoints_of
-from robots.body import ToolPose
-from robots.link.messages import WasDone
-from robots.monitors.monitor import BEFORE_FIRST_STEP
+from mend.robots.behaviors.contact import Contact
+from mend.robots.behaviors.execution_state import ExecutionState, ExecutionTransitionError, follow
+from mend.robots.behaviors.findings import Findings, Outcome
+from mend.robots.behaviors.phase import Phase
+from mend.robots.behaviors.planning import Plan, waypoints_of
+from mend.robots.body import ToolPose
+from mend.robots.link.messages import WasDone
+from mend.robots.monitors.monitor import BEFORE_FIRST_STEP
 
 
 @dataclass(slots=True)

@@ -4,17 +4,17 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from robots.arm import Arm, Routine
-from robots.behaviors.grasp_choice import MARGIN_M, others
-from robots.behaviors.legs import held_boxes, table_box
-from robots.body import ArmPath, Leg, NoWay, ToolPose
-from robots.catalogue import Part
-from robots.clearance import beside, in_the_way
-from robots.grasp import RELEASE_CLEARANCE_M, Grasp
-from robots.gripper import GripperModel
-from robots.senses import Senses
-from robots.vision.seen_box import SeenBox
-from tasks.scene import Table
+from mend.robots.arm import Arm, Routine
+from mend.robots.behaviors.grasp_choice import MARGIN_M, others
+from mend.robots.behaviors.legs import held_boxes, table_box
+from mend.robots.body import ArmPath, Leg, NoWay, ToolPose
+from mend.robots.catalogue import Part
+from mend.robots.clearance import beside, in_the_way
+from mend.robots.grasp import RELEASE_CLEARANCE_M, Grasp
+from mend.robots.gripper import GripperModel
+from mend.robots.senses import Senses
+from mend.robots.vision.seen_box import SeenBox
+from mend.tasks.scene import Table
 
 _SPEED = 0.4
 _LIFT_M = 0.14

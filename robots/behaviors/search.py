@@ -1,7 +1,7 @@
 """Before a plan is made: whether the object is held, and where it is."""
 
-from robots.arm import Routine
-from robots.behaviors.work import Work
+from mend.robots.arm import Routine
+from mend.robots.behaviors.work import Work
 
 LOOKS = 3
 """So often a part that is not wholly seen is looked for before that is believed."""

@@ -4,18 +4,18 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from robots.arm import Routine
-from robots.behaviors.backing_off import back_off, try_again
-from robots.behaviors.behavior import Move, Step
-from robots.behaviors.contact import Contact, ContactWatch, Track, Try, hindering_n, is_arrival
-from robots.behaviors.covering import Covering
-from robots.behaviors.execution_state import ExecutionState, ExecutionTransitionError
-from robots.behaviors.phase import Phase
-from robots.behaviors.planning import Plan
-from robots.behaviors.watch import Watch
-from robots.behaviors.work import Work
-from robots.body import ToolPose
-from robots.link.messages import StepStarted
+from mend.robots.arm import Routine
+from mend.robots.behaviors.backing_off import back_off, try_again
+from mend.robots.behaviors.behavior import Move, Step
+from mend.robots.behaviors.contact import Contact, ContactWatch, Track, Try, hindering_n, is_arrival
+from mend.robots.behaviors.covering import Covering
+from mend.robots.behaviors.execution_state import ExecutionState, ExecutionTransitionError
+from mend.robots.behaviors.phase import Phase
+from mend.robots.behaviors.planning import Plan
+from mend.robots.behaviors.watch import Watch
+from mend.robots.behaviors.work import Work
+from mend.robots.body import ToolPose
+from mend.robots.link.messages import StepStarted
 
 _MOST_REGRASPS = 2
 """Who pushes a part aside more often than this is told that it was missed."""

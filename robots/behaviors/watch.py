@@ -4,16 +4,16 @@ import math
 from collections.abc import Sequence
 from typing import Any, NoReturn
 
-from robots.behaviors.behavior import SetGripper
-from robots.behaviors.contact import Contact, Try
-from robots.behaviors.execution_state import ExecutionTransitionError
-from robots.behaviors.phase import Phase
-from robots.behaviors.work import Work
-from robots.grip import GripReading
-from robots.link.messages import Detection, IssueDetected
-from robots.monitors.monitor import Monitor, MonitorView
-from robots.senses import FOREARM, HEAD
-from robots.vision.drawing import draw_detection, encode_jpeg
+from mend.robots.behaviors.behavior import SetGripper
+from mend.robots.behaviors.contact import Contact, Try
+from mend.robots.behaviors.execution_state import ExecutionTransitionError
+from mend.robots.behaviors.phase import Phase
+from mend.robots.behaviors.work import Work
+from mend.robots.grip import GripReading
+from mend.robots.link.messages import Detection, IssueDetected
+from mend.robots.monitors.monitor import Monitor, MonitorView
+from mend.robots.senses import FOREARM, HEAD
+from mend.robots.vision.drawing import draw_detection, encode_jpeg
 
 _CAREFUL = 0.5
 """While a person's hands are near, motion is scaled by this."""

@@ -3,12 +3,12 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from robots.arm import Arm
-from robots.behaviors.assignment import Assignment
-from robots.behaviors.progress import Progress
-from robots.catalogue import Part
-from robots.link.messages import Location, ReportBody
-from robots.senses import Senses
+from mend.robots.arm import Arm
+from mend.robots.behaviors.assignment import Assignment
+from mend.robots.behaviors.progress import Progress
+from mend.robots.catalogue import Part
+from mend.robots.link.messages import Location, ReportBody
+from mend.robots.senses import Senses
 
 
 @dataclass(frozen=True, slots=True)

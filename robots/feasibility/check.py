@@ -3,20 +3,20 @@
 from collections.abc import Sequence
 from itertools import combinations
 
-from robots.behaviors.planning import Planner
-from robots.feasibility.doing import ArmCheck, Hindrance
-from robots.feasibility.handling import cannot_handle
-from robots.feasibility.merging import one_surface
-from robots.feasibility.moments import Job, Moment, Moments
-from robots.feasibility.sight import hidden, out_of_picture
-from robots.feasibility.standing import Standing, at_place, starts
-from robots.feasibility.support import cannot_stand
-from robots.vision.viewpoint import Viewpoint
-from tasks.alternatives import MOST_COMPARED_LEAVES, distinct_alternatives
-from tasks.definition import BehaviorNode, GoalNode
-from tasks.leaf_order import LeafOrder
-from tasks.scene import Scene
-from tasks.scene_problem import SceneProblem
+from mend.robots.behaviors.planning import Planner
+from mend.robots.feasibility.doing import ArmCheck, Hindrance
+from mend.robots.feasibility.handling import cannot_handle
+from mend.robots.feasibility.merging import one_surface
+from mend.robots.feasibility.moments import Job, Moment, Moments
+from mend.robots.feasibility.sight import hidden, out_of_picture
+from mend.robots.feasibility.standing import Standing, at_place, starts
+from mend.robots.feasibility.support import cannot_stand
+from mend.robots.vision.viewpoint import Viewpoint
+from mend.tasks.alternatives import MOST_COMPARED_LEAVES, distinct_alternatives
+from mend.tasks.definition import BehaviorNode, GoalNode
+from mend.tasks.leaf_order import LeafOrder
+from mend.tasks.scene import Scene
+from mend.tasks.scene_problem import SceneProblem
 
 _MOST_SPLITS = 3
 """So many things that may or may not stand around are looked at by themselves; where more of them

@@ -5,12 +5,12 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 
-from robots.behaviors.behavior import Situation, Step
-from robots.behaviors.errand import Errand
-from robots.behaviors.grasp_choice import Crowding, room_for
-from robots.behaviors.pick_and_place import PickAndPlace, PickAndPlaceParameters, lifting
-from robots.behaviors.plan import carries
-from robots.behaviors.planning import (
+from mend.robots.behaviors.behavior import Situation, Step
+from mend.robots.behaviors.errand import Errand
+from mend.robots.behaviors.grasp_choice import Crowding, room_for
+from mend.robots.behaviors.pick_and_place import PickAndPlace, PickAndPlaceParameters, lifting
+from mend.robots.behaviors.plan import carries
+from mend.robots.behaviors.planning import (
     AS_SEEN,
     Barred,
     Planner,
@@ -19,12 +19,12 @@ from robots.behaviors.planning import (
     bar_of,
     plan_amid,
 )
-from robots.clearance import ROOM_M
-from robots.feasibility.standing import Standing, beneath
-from robots.link.messages import Location
-from robots.vision.seen_box import SeenBox
-from tasks.scene import Pose, Scatter, Table
-from tasks.scene_problem import SceneProblem
+from mend.robots.clearance import ROOM_M
+from mend.robots.feasibility.standing import Standing, beneath
+from mend.robots.link.messages import Location
+from mend.robots.vision.seen_box import SeenBox
+from mend.tasks.scene import Pose, Scatter, Table
+from mend.tasks.scene_problem import SceneProblem
 
 _SEEN_M = 0.0015
 """A part may be seen so far away from where it is."""

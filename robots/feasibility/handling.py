@@ -2,12 +2,12 @@
 
 from collections.abc import Iterator
 
-from robots.catalogue import Part
-from robots.grasp import UngraspableError, grasps_of
-from robots.gripper import GripperModel
-from tasks.part_boxes import height_of
-from tasks.scene import SceneObject
-from tasks.scene_problem import SceneProblem
+from mend.robots.catalogue import Part
+from mend.robots.grasp import UngraspableError, grasps_of
+from mend.robots.gripper import GripperModel
+from mend.tasks.part_boxes import height_of
+from mend.tasks.scene import SceneObject
+from mend.tasks.scene_problem import SceneProblem
 
 
 def cannot_handle(name: str, made: SceneObject, gripper: GripperModel) -> Iterator[SceneProblem]:

@@ -5,11 +5,11 @@ from itertools import combinations
 
 from shapely import Polygon
 
-from robots.feasibility.moments import Job
-from robots.feasibility.standing import Standing
-from tasks.leaf_order import LeafOrder
-from tasks.scene import Scene
-from tasks.scene_problem import SceneProblem
+from mend.robots.feasibility.moments import Job
+from mend.robots.feasibility.standing import Standing
+from mend.tasks.leaf_order import LeafOrder
+from mend.tasks.scene import Scene
+from mend.tasks.scene_problem import SceneProblem
 
 APART_M = 0.005
 """Tops of one colour need a gap so wide to be seen as two."""

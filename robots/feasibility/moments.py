@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from robots.feasibility.standing import Standing, beneath
-from tasks.leaf_order import LeafOrder
+from mend.robots.feasibility.standing import Standing, beneath
+from mend.tasks.leaf_order import LeafOrder
 
 
 @dataclass(frozen=True, slots=True)

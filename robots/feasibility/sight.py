@@ -7,13 +7,13 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from robots.feasibility.moments import Job
-from robots.feasibility.standing import Standing
-from robots.vision.line_of_sight import sight_of
-from robots.vision.seen_box import SeenBox
-from robots.vision.viewpoint import Viewpoint
-from tasks.scene import Scatter
-from tasks.scene_problem import SceneProblem
+from mend.robots.feasibility.moments import Job
+from mend.robots.feasibility.standing import Standing
+from mend.robots.vision.line_of_sight import sight_of
+from mend.robots.vision.seen_box import SeenBox
+from mend.robots.vision.viewpoint import Viewpoint
+from mend.tasks.scene import Scatter
+from mend.tasks.scene_problem import SceneProblem
 
 _LEAST_SHARE = 0.6
 """Of the top of a part; to less a rectangle cannot be fitted as exactly as a grasp needs it."""

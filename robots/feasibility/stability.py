@@ -7,7 +7,7 @@ import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
-from robots.feasibility.standing import Standing, beneath
+from mend.robots.feasibility.standing import Standing, beneath
 
 PLACED_WITHIN_M = 0.003
 """So far a part may be beside where it is to stand on another one."""

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import shapely
 
-from robots.catalogue import Part
-from robots.vision.seen_box import SeenBox
-from tasks.scene import RESTS_M, Pose, Scene
+from mend.robots.catalogue import Part
+from mend.robots.vision.seen_box import SeenBox
+from mend.tasks.scene import RESTS_M, Pose, Scene
 
 _OVERLAP_M = 0.001
 """What overlaps by less only touches."""

@@ -5,10 +5,10 @@ from collections.abc import Iterator, Sequence
 
 import shapely
 
-from robots.feasibility.stability import carried_by, stability_rad
-from robots.feasibility.standing import Standing, beneath
-from tasks.scene import RESTS_M, Scene, Table
-from tasks.scene_problem import SceneProblem
+from mend.robots.feasibility.stability import carried_by, stability_rad
+from mend.robots.feasibility.standing import Standing, beneath
+from mend.tasks.scene import RESTS_M, Scene, Table
+from mend.tasks.scene_problem import SceneProblem
 
 LEAST_STABILITY_RAD = math.radians(8.0)
 """What tips over when it leans by less does so when it is grasped, put down or touched."""

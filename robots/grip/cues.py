@@ -8,10 +8,10 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from robots.grasp import Grasp
-from robots.grip.belief import Between
-from robots.grip.composition import Composition, log_density
-from robots.gripper import GripperModel
+from mend.robots.grasp import Grasp
+from mend.robots.grip.belief import Between
+from mend.robots.grip.composition import Composition, log_density
+from mend.robots.gripper import GripperModel
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 from enum import StrEnum
 
-from robots.body import CameraImage
-from robots.grip.composition import Composition
-from robots.vision.blob import Blob
+from mend.robots.body import CameraImage
+from mend.robots.grip.composition import Composition
+from mend.robots.vision.blob import Blob
 
 _MM = 1e3
 _ALL_ITS_OWN = 0.8

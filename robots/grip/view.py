@@ -6,14 +6,14 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from robots.body import CameraImage, Matrix4
-from robots.catalogue import Part
-from robots.grasp import Grasp, corners_in_tool
-from robots.grip.composition import Composition
-from robots.vision.blob import Mask
-from robots.vision.color_model import ColorModel, Segmentation
-from robots.vision.projection import NEAR_M, project
-from robots.vision.seen_box import SeenBox
+from mend.robots.body import CameraImage, Matrix4
+from mend.robots.catalogue import Part
+from mend.robots.grasp import Grasp, corners_in_tool
+from mend.robots.grip.composition import Composition
+from mend.robots.vision.blob import Mask
+from mend.robots.vision.color_model import ColorModel, Segmentation
+from mend.robots.vision.projection import NEAR_M, project
+from mend.robots.vision.seen_box import SeenBox
 
 REFERENCE_WIDTH_PX = 160
 """Lengths in pixels are for a picture this wide and grow with it."""

@@ -7,14 +7,14 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from robots.body import CameraImage, Matrix4
-from robots.catalogue import Part
-from robots.grasp import Grasp, corners_in_tool
-from robots.grip.belief import Belief, Between
-from robots.grip.composition import Composition
-from robots.grip.cues import CueModel, HandReading
-from robots.grip.reading import GripReading, GripState, follow
-from robots.grip.view import (
+from mend.robots.body import CameraImage, Matrix4
+from mend.robots.catalogue import Part
+from mend.robots.grasp import Grasp, corners_in_tool
+from mend.robots.grip.belief import Belief, Between
+from mend.robots.grip.composition import Composition
+from mend.robots.grip.cues import CueModel, HandReading
+from mend.robots.grip.reading import GripReading, GripState, follow
+from mend.robots.grip.view import (
     REFERENCE_WIDTH_PX,
     composition,
     in_front,
@@ -22,11 +22,11 @@ from robots.grip.view import (
     outline,
     visible_region,
 )
-from robots.gripper import GripperModel
-from robots.vision.blob import Blob, Mask, find_blob
-from robots.vision.color_model import ColorModel, Segmentation
-from robots.vision.projection import project
-from robots.vision.seen_box import SeenBox
+from mend.robots.gripper import GripperModel
+from mend.robots.vision.blob import Blob, Mask, find_blob
+from mend.robots.vision.color_model import ColorModel, Segmentation
+from mend.robots.vision.projection import project
+from mend.robots.vision.seen_box import SeenBox
 
 _SURE = 0.99
 _LONGEST_DOUBT = 12

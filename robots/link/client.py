@@ -10,16 +10,16 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any, TypeVar
 
-from robots.agent import AgentCore, ShowsPoses
-from robots.link.backoff import Backoff
-from robots.link.channel import Channel, ChannelClosedError
-from robots.link.clock import Clock
-from robots.link.command_memory import CommandMemory
-from robots.link.connection import Connection, UnknownCommand
-from robots.link.messages import Command, Hello, Picture, Rejected, ReportBody, Taken
-from robots.link.outbox import Outbox
-from robots.link.pacing import Pacer
-from robots.link.sampling import PoseSampling
+from mend.robots.agent import AgentCore, ShowsPoses
+from mend.robots.link.backoff import Backoff
+from mend.robots.link.channel import Channel, ChannelClosedError
+from mend.robots.link.clock import Clock
+from mend.robots.link.command_memory import CommandMemory
+from mend.robots.link.connection import Connection, UnknownCommand
+from mend.robots.link.messages import Command, Hello, Picture, Rejected, ReportBody, Taken
+from mend.robots.link.outbox import Outbox
+from mend.robots.link.pacing import Pacer
+from mend.robots.link.sampling import PoseSampling
 
 log = logging.getLogger(__name__)
 

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 
 from pydantic import ValidationError
 
-from robots.link.channel import Channel, ChannelClosedError, LinkRefusedError
-from robots.link.clock import Clock
-from robots.link.messages import (
+from mend.robots.link.channel import Channel, ChannelClosedError, LinkRefusedError
+from mend.robots.link.clock import Clock
+from mend.robots.link.messages import (
     Ack,
     AnyServiceMessage,
     Command,
@@ -25,7 +25,7 @@ from robots.link.messages import (
     Welcome,
     service_message,
 )
-from robots.link.outbox import Outbox
+from mend.robots.link.outbox import Outbox
 
 log = logging.getLogger(__name__)
 

@@ -7,7 +7,7 @@ from urllib.parse import urlsplit, urlunsplit
 import httpx
 from pydantic import BaseModel, ConfigDict, ValidationError
 
-from robots.link.channel import ChannelClosedError, LinkRefusedError
+from mend.robots.link.channel import ChannelClosedError, LinkRefusedError
 
 ENROL_PATH = "/api/robots/enrol"
 PATIENCE_S = 10.0

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from robots.link.messages import Report, ReportBody
+from mend.robots.link.messages import Report, ReportBody
 
 IN_MEMORY = ":memory:"
 

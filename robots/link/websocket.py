@@ -6,7 +6,7 @@ import ssl
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidStatus
 
-from robots.link.channel import ChannelClosedError, LinkRefusedError
+from mend.robots.link.channel import ChannelClosedError, LinkRefusedError
 
 MAX_MESSAGE_BYTES = 1 << 20
 TOO_MANY_REQUESTS = 429

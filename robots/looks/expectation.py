@@ -2,9 +2,9 @@
 
 from typing import Protocol
 
-from robots.catalogue import Part
-from robots.link.messages import Location
-from robots.looks.looker import Looker
+from mend.robots.catalogue import Part
+from mend.robots.link.messages import Location
+from mend.robots.looks.looker import Looker
 
 
 class Expectation(Protocol):

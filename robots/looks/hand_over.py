@@ -2,13 +2,13 @@
 
 import math
 
-from robots.arm import Routine
-from robots.catalogue import Part
-from robots.grasp import can_grasp
-from robots.grip import GripState
-from robots.grip.composition import likeliest
-from robots.link.messages import Holding, Looked
-from robots.looks.looker import Looker
+from mend.robots.arm import Routine
+from mend.robots.catalogue import Part
+from mend.robots.grasp import can_grasp
+from mend.robots.grip import GripState
+from mend.robots.grip.composition import likeliest
+from mend.robots.link.messages import Holding, Looked
+from mend.robots.looks.looker import Looker
 
 _STEADY_S = 0.3
 _TRY_EVERY_S = 2.0

@@ -3,16 +3,16 @@
 import math
 from collections.abc import Sequence
 
-from robots.behaviors.errand import Errand
-from robots.behaviors.grasp_choice import others
-from robots.behaviors.pick_and_place import lifting
-from robots.behaviors.planning import Plan, at_once, plan_amid
-from robots.catalogue import Part
-from robots.grasp import can_grasp
-from robots.link.messages import Location
-from robots.looks.looker import Looker
-from robots.vision.head import HeadSighting
-from robots.vision.seen_box import SeenBox
+from mend.robots.behaviors.errand import Errand
+from mend.robots.behaviors.grasp_choice import others
+from mend.robots.behaviors.pick_and_place import lifting
+from mend.robots.behaviors.planning import Plan, at_once, plan_amid
+from mend.robots.catalogue import Part
+from mend.robots.grasp import can_grasp
+from mend.robots.link.messages import Location
+from mend.robots.looks.looker import Looker
+from mend.robots.vision.head import HeadSighting
+from mend.robots.vision.seen_box import SeenBox
 
 _STILL_M = 0.006
 """An object is at rest if it is this near to where the look before saw it."""

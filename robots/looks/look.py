@@ -2,14 +2,14 @@
 
 from collections.abc import Callable
 
-from robots.arm import Routine
-from robots.link.messages import Look, Looked
-from robots.looks.expectation import AtPlace, Expectation, ViewClear
-from robots.looks.hand_over import take_from_person
-from robots.looks.in_reach import InReach
-from robots.looks.looker import Looker
-from robots.looks.way_clear import WayClear
-from robots.understanding import Understanding
+from mend.robots.arm import Routine
+from mend.robots.link.messages import Look, Looked
+from mend.robots.looks.expectation import AtPlace, Expectation, ViewClear
+from mend.robots.looks.hand_over import take_from_person
+from mend.robots.looks.in_reach import InReach
+from mend.robots.looks.looker import Looker
+from mend.robots.looks.way_clear import WayClear
+from mend.robots.understanding import Understanding
 
 _PERIOD_S = 0.5
 

@@ -3,14 +3,14 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
-from robots.arm import Arm, Routine
-from robots.behaviors.execution import Execution
-from robots.behaviors.search import LOOK_AGAIN_S, LOOKS
-from robots.body import CameraImage
-from robots.link.messages import FinishedResult, Looked, ReportBody
-from robots.result import Result
-from robots.senses import Senses
-from robots.vision.presence import Presence
+from mend.robots.arm import Arm, Routine
+from mend.robots.behaviors.execution import Execution
+from mend.robots.behaviors.search import LOOK_AGAIN_S, LOOKS
+from mend.robots.body import CameraImage
+from mend.robots.link.messages import FinishedResult, Looked, ReportBody
+from mend.robots.result import Result
+from mend.robots.senses import Senses
+from mend.robots.vision.presence import Presence
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,8 +1,8 @@
 """The expectation that an execution that waits can go on."""
 
-from robots.behaviors.contact import hindering_n
-from robots.body import CameraImage, ToolPose
-from robots.looks.looker import Looker
+from mend.robots.behaviors.contact import hindering_n
+from mend.robots.body import CameraImage, ToolPose
+from mend.robots.looks.looker import Looker
 
 _CLEAR_FORCE_N = 20.0
 """What holds an arm up at its first try pushes harder; its own load and noise make at most 8 N."""

@@ -2,10 +2,10 @@
 
 from typing import ClassVar
 
-from robots.behaviors.phase import Phase
-from robots.link.messages import Detection
-from robots.monitors.monitor import ANY_BEHAVIOR, Meanwhile, Monitor, MonitorView, NoParameters
-from tasks.scene import StrictModel
+from mend.robots.behaviors.phase import Phase
+from mend.robots.link.messages import Detection
+from mend.robots.monitors.monitor import ANY_BEHAVIOR, Meanwhile, Monitor, MonitorView, NoParameters
+from mend.tasks.scene import StrictModel
 
 
 class Blind(Monitor[NoParameters]):

@@ -6,12 +6,12 @@ from typing import Annotated, ClassVar, Self
 
 from pydantic import Field, model_validator
 
-from robots.behaviors.contact import Contact, Try
-from robots.behaviors.phase import Phase
-from robots.behaviors.pick_and_place import PickAndPlace
-from robots.link.messages import Detection
-from robots.monitors.monitor import BEFORE_FIRST_STEP, Meanwhile, Monitor, MonitorView
-from tasks.scene import StrictModel
+from mend.robots.behaviors.contact import Contact, Try
+from mend.robots.behaviors.phase import Phase
+from mend.robots.behaviors.pick_and_place import PickAndPlace
+from mend.robots.link.messages import Detection
+from mend.robots.monitors.monitor import BEFORE_FIRST_STEP, Meanwhile, Monitor, MonitorView
+from mend.tasks.scene import StrictModel
 
 PushLimit = Annotated[float, Field(gt=0.0, le=100.0)]
 SpeedShare = Annotated[float, Field(gt=0.0, le=1.0)]

@@ -2,10 +2,10 @@
 
 from typing import ClassVar
 
-from robots.behaviors.phase import Phase
-from robots.behaviors.pick_and_place import PickAndPlace
-from robots.grip import GripState
-from robots.monitors.grip import GripMonitor
+from mend.robots.behaviors.phase import Phase
+from mend.robots.behaviors.pick_and_place import PickAndPlace
+from mend.robots.grip import GripState
+from mend.robots.monitors.grip import GripMonitor
 
 
 class Dropped(GripMonitor):

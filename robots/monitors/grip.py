@@ -2,10 +2,10 @@
 
 from typing import ClassVar
 
-from robots.grip import GripState
-from robots.link.messages import Detection
-from robots.monitors.monitor import Meanwhile, Monitor, MonitorView, NoParameters
-from tasks.scene import StrictModel
+from mend.robots.grip import GripState
+from mend.robots.link.messages import Detection
+from mend.robots.monitors.monitor import Meanwhile, Monitor, MonitorView, NoParameters
+from mend.tasks.scene import StrictModel
 
 
 class GripMonitor(Monitor[NoParameters]):

@@ -6,16 +6,16 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Any, ClassVar, Generic, TypeVar
 
-from robots.behaviors.contact import Contact, Try
-from robots.behaviors.phase import Phase
-from robots.body import CameraImage, Reach
-from robots.catalogue import Part
-from robots.grip import GripReading
-from robots.link.messages import Detection, Location, WasDone
-from robots.vision.head import HeadSighting
-from robots.vision.obstruction import Obstruction
-from robots.vision.presence import Presence
-from tasks.scene import StrictModel
+from mend.robots.behaviors.contact import Contact, Try
+from mend.robots.behaviors.phase import Phase
+from mend.robots.body import CameraImage, Reach
+from mend.robots.catalogue import Part
+from mend.robots.grip import GripReading
+from mend.robots.link.messages import Detection, Location, WasDone
+from mend.robots.vision.head import HeadSighting
+from mend.robots.vision.obstruction import Obstruction
+from mend.robots.vision.presence import Presence
+from mend.tasks.scene import StrictModel
 
 BEFORE_FIRST_STEP = 0
 

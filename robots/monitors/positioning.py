@@ -2,11 +2,11 @@
 
 from typing import ClassVar
 
-from robots.behaviors.phase import Phase
-from robots.behaviors.pick_and_place import PickAndPlace
-from robots.link.messages import Detection
-from robots.monitors.monitor import Meanwhile, Monitor, MonitorView, NoParameters
-from tasks.scene import StrictModel
+from mend.robots.behaviors.phase import Phase
+from mend.robots.behaviors.pick_and_place import PickAndPlace
+from mend.robots.link.messages import Detection
+from mend.robots.monitors.monitor import Meanwhile, Monitor, MonitorView, NoParameters
+from mend.tasks.scene import StrictModel
 
 
 class Positioning(Monitor[NoParameters]):

@@ -5,13 +5,13 @@ from typing import ClassVar
 
 from pydantic import Field
 
-from robots.behaviors.phase import Phase
-from robots.link.messages import Detection
-from robots.monitors.monitor import ANY_BEHAVIOR, Meanwhile, Monitor, MonitorView
-from robots.monitors.unreachable import why_beyond_reach, why_lying
-from robots.vision.head import HeadSighting
-from robots.vision.presence import AT_PLACE_HEIGHT_M, AT_PLACE_M, Presence, is_at, turned_rad
-from tasks.scene import StrictModel
+from mend.robots.behaviors.phase import Phase
+from mend.robots.link.messages import Detection
+from mend.robots.monitors.monitor import ANY_BEHAVIOR, Meanwhile, Monitor, MonitorView
+from mend.robots.monitors.unreachable import why_beyond_reach, why_lying
+from mend.robots.vision.head import HeadSighting
+from mend.robots.vision.presence import AT_PLACE_HEIGHT_M, AT_PLACE_M, Presence, is_at, turned_rad
+from mend.tasks.scene import StrictModel
 
 _MM = 1e3
 

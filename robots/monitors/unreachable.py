@@ -5,11 +5,11 @@ from typing import ClassVar
 
 from pydantic import Field
 
-from robots.behaviors.phase import Phase
-from robots.link.messages import Detection
-from robots.monitors.monitor import ANY_BEHAVIOR, Meanwhile, Monitor, MonitorView
-from robots.vision.head import HeadSighting
-from tasks.scene import StrictModel
+from mend.robots.behaviors.phase import Phase
+from mend.robots.link.messages import Detection
+from mend.robots.monitors.monitor import ANY_BEHAVIOR, Meanwhile, Monitor, MonitorView
+from mend.robots.vision.head import HeadSighting
+from mend.tasks.scene import StrictModel
 
 
 class UnreachableParameters(StrictModel):

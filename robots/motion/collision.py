@@ -15,9 +15,9 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
-from robots.body import HeldBox
-from robots.motion.kinematics import Joints
-from robots.vision.seen_box import SeenBox
+from mend.robots.body import HeldBox
+from mend.robots.motion.kinematics import Joints
+from mend.robots.vision.seen_box import SeenBox
 
 _QHULL_OPTIONS = "Qt"
 """Triangles: what coal calls the convex representation of a mesh is that only if it is convex."""

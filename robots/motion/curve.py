@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import make_interp_spline
 
-from robots.motion.kinematics import Joints
+from mend.robots.motion.kinematics import Joints
 
 _SAME = 1e-6
 """Parameters nearer than this are one knot."""

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from maps.compiled import compiled
-from robots.body import Matrix4
+from mend.maps.compiled import compiled
+from mend.robots.body import Matrix4
 
 Joints = NDArray[np.float64]
 """Joint angles in radians, shape (n,)."""

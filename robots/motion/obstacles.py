@@ -5,11 +5,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from robots.motion.collision import CollisionModel, Hand, Margins, Surrounded
-from robots.motion.curve import JointCurve
-from robots.motion.kinematics import Joints
-from robots.motion.planner import PathSegment
-from robots.vision.seen_box import SeenBox
+from mend.robots.motion.collision import CollisionModel, Hand, Margins, Surrounded
+from mend.robots.motion.curve import JointCurve
+from mend.robots.motion.kinematics import Joints
+from mend.robots.motion.planner import PathSegment
+from mend.robots.vision.seen_box import SeenBox
 
 _FREE_M = 0.008
 """Kept from everything on free ways."""

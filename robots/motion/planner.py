@@ -8,11 +8,11 @@ from typing import Protocol
 
 import numpy as np
 
-from robots.body import Matrix4, NoWay, ToolPose
-from robots.motion.curve import JointCurve
-from robots.motion.kinematics import Joints, KinematicChain
-from robots.motion.rrt_connect import connect
-from robots.vision.seen_box import SeenBox
+from mend.robots.body import Matrix4, NoWay, ToolPose
+from mend.robots.motion.curve import JointCurve
+from mend.robots.motion.kinematics import Joints, KinematicChain
+from mend.robots.motion.rrt_connect import connect
+from mend.robots.vision.seen_box import SeenBox
 
 _LINE_STEPS = 8
 """Postures along a straight line; between them the tool strays less than 0.1 mm."""

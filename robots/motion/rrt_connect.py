@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from robots.motion.kinematics import Joints
+from mend.robots.motion.kinematics import Joints
 
 _STEP_RAD = 0.3
 """How far a tree grows at once, by the joint that moves furthest."""

@@ -5,9 +5,9 @@ import math
 import numpy as np
 from ruckig import InputParameter, OutputParameter, Result, Ruckig
 
-from robots.motion.curve import JointCurve
-from robots.motion.kinematics import Joints
-from robots.motion.limits import MotionLimits
+from mend.robots.motion.curve import JointCurve
+from mend.robots.motion.kinematics import Joints
+from mend.robots.motion.limits import MotionLimits
 
 _LEAST_SLOPE = 1e-9
 

@@ -2,15 +2,15 @@
 
 from collections.abc import Sequence
 
-from robots.body import Body, CameraImage
-from robots.catalogue import Part
-from robots.clip import Clip
-from robots.grasp import Grasp, grasp_of
-from robots.grip.reading import GripState
-from robots.grip.watch import GripWatch, Hand
-from robots.link.messages import Position
-from robots.vision.color_model import ColorModel
-from robots.vision.seen_box import SeenBox
+from mend.robots.body import Body, CameraImage
+from mend.robots.catalogue import Part
+from mend.robots.clip import Clip
+from mend.robots.grasp import Grasp, grasp_of
+from mend.robots.grip.reading import GripState
+from mend.robots.grip.watch import GripWatch, Hand
+from mend.robots.link.messages import Position
+from mend.robots.vision.color_model import ColorModel
+from mend.robots.vision.seen_box import SeenBox
 
 FOREARM = "forearm"
 

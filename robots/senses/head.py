@@ -6,20 +6,20 @@ from functools import partial
 
 import numpy as np
 
-from robots.body import Body, CameraImage, ToolPose
-from robots.catalogue import Part
-from robots.link.messages import Location, Sighting
-from robots.result import Result
-from robots.senses.own_arm import OwnArm
-from robots.senses.understanding import TableUnderstanding
-from robots.vision.blindness import why_frozen, why_outdated
-from robots.vision.blob import Blob
-from robots.vision.carriers import unseen_carriers
-from robots.vision.head import HeadSighting
-from robots.vision.height_map import measure_heights
-from robots.vision.obstruction import Clearance, Obstruction, corridor, find_obstruction
-from robots.vision.occupancy import Fit, find_occupant, room_above, room_at_place
-from robots.vision.presence import (
+from mend.robots.body import Body, CameraImage, ToolPose
+from mend.robots.catalogue import Part
+from mend.robots.link.messages import Location, Sighting
+from mend.robots.result import Result
+from mend.robots.senses.own_arm import OwnArm
+from mend.robots.senses.understanding import TableUnderstanding
+from mend.robots.vision.blindness import why_frozen, why_outdated
+from mend.robots.vision.blob import Blob
+from mend.robots.vision.carriers import unseen_carriers
+from mend.robots.vision.head import HeadSighting
+from mend.robots.vision.height_map import measure_heights
+from mend.robots.vision.obstruction import Clearance, Obstruction, corridor, find_obstruction
+from mend.robots.vision.occupancy import Fit, find_occupant, room_above, room_at_place
+from mend.robots.vision.presence import (
     Presence,
     is_at,
     is_seen_through,
@@ -27,8 +27,8 @@ from robots.vision.presence import (
     judge_presence,
     room_of,
 )
-from robots.vision.projection import project
-from robots.vision.seen_box import SeenBox
+from mend.robots.vision.projection import project
+from mend.robots.vision.seen_box import SeenBox
 
 HEAD = "head"
 

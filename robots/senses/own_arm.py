@@ -3,10 +3,10 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from robots.body import Body
-from robots.senses.hand import FOREARM, HandSense
-from robots.vision.obstruction import near
-from robots.vision.projection import Points
+from mend.robots.body import Body
+from mend.robots.senses.hand import FOREARM, HandSense
+from mend.robots.vision.obstruction import near
+from mend.robots.vision.projection import Points
 
 _ARM_LENGTH_M = 0.7
 """How far the arm reaches back from the tool point, for telling it from an obstacle."""

@@ -2,17 +2,17 @@
 
 from collections.abc import Sequence
 
-from robots.body import Body
-from robots.catalogue import Catalogue
-from robots.grip.reading import GripReading
-from robots.grip.watch import GripWatch
-from robots.senses.hand import HandSense
-from robots.senses.head import HeadSense
-from robots.senses.own_arm import OwnArm
-from robots.senses.understanding import TableUnderstanding
-from robots.vision.color_model import ColorModel
-from robots.vision.picture_memory import keep_picture_memory
-from robots.vision.seen_box import SeenBox
+from mend.robots.body import Body
+from mend.robots.catalogue import Catalogue
+from mend.robots.grip.reading import GripReading
+from mend.robots.grip.watch import GripWatch
+from mend.robots.senses.hand import HandSense
+from mend.robots.senses.head import HeadSense
+from mend.robots.senses.own_arm import OwnArm
+from mend.robots.senses.understanding import TableUnderstanding
+from mend.robots.vision.color_model import ColorModel
+from mend.robots.vision.picture_memory import keep_picture_memory
+from mend.robots.vision.seen_box import SeenBox
 
 
 class Senses:

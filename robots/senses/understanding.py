@@ -3,20 +3,20 @@
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 
-from robots.body import CameraImage, ToolPose
-from robots.catalogue import Catalogue, Part
-from robots.link.messages import Location
-from robots.senses.hand import HandSense
-from robots.senses.own_arm import OwnArm
-from robots.vision.blindness import why_blind
-from robots.vision.color_model import ColorModel
-from robots.vision.obstruction import Obstruction
-from robots.vision.occupancy import Room
-from robots.vision.presence import Presence, judge_presence
-from robots.vision.scene_change import is_same, shows_change, still_measures
-from robots.vision.seen_box import SeenBox
-from robots.vision.table_view import TableView, boxes_of, view_table
-from robots.vision.tracking import LastSeen, Spot
+from mend.robots.body import CameraImage, ToolPose
+from mend.robots.catalogue import Catalogue, Part
+from mend.robots.link.messages import Location
+from mend.robots.senses.hand import HandSense
+from mend.robots.senses.own_arm import OwnArm
+from mend.robots.vision.blindness import why_blind
+from mend.robots.vision.color_model import ColorModel
+from mend.robots.vision.obstruction import Obstruction
+from mend.robots.vision.occupancy import Room
+from mend.robots.vision.presence import Presence, judge_presence
+from mend.robots.vision.scene_change import is_same, shows_change, still_measures
+from mend.robots.vision.seen_box import SeenBox
+from mend.robots.vision.table_view import TableView, boxes_of, view_table
+from mend.robots.vision.tracking import LastSeen, Spot
 
 Way = tuple[tuple[ToolPose, ...], str | None]
 """Waypoints of the tool point, and the name of the part that is to be taken there."""

@@ -6,11 +6,11 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from robots.body import CameraImage
-from robots.vision.height_map import ground_rays
-from robots.vision.projection import Points, is_measured
-from robots.vision.scene_change import BRIGHTEST, DARKEST
-from tasks.scene import Table
+from mend.robots.body import CameraImage
+from mend.robots.vision.height_map import ground_rays
+from mend.robots.vision.projection import Points, is_measured
+from mend.robots.vision.scene_change import BRIGHTEST, DARKEST
+from mend.tasks.scene import Table
 
 _SPARSE = 4
 """Depth is judged in each fourth row and column, colour in means of as many."""

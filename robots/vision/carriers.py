@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import shapely
 
-from robots.vision.seen_box import SeenBox
+from mend.robots.vision.seen_box import SeenBox
 
 _HELD_UP_M = 0.01
 """What is so near to something's top is held up by it."""

@@ -15,7 +15,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from robots.vision.blob import Mask
+from mend.robots.vision.blob import Mask
 
 Histogram = NDArray[np.float32]
 

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from robots.link.messages import Detection
+from mend.robots.link.messages import Detection
 
 _SEEN = (60, 60, 235)
 _EXPECTED = (80, 200, 80)

@@ -10,10 +10,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from robots.body import CameraImage
-from robots.vision.level_rectangle import Rectangle
-from robots.vision.level_surfaces import Pixels, Surface, Surfaces
-from robots.vision.projection import pixel_area_m2, project
+from mend.robots.body import CameraImage
+from mend.robots.vision.level_rectangle import Rectangle
+from mend.robots.vision.level_surfaces import Pixels, Surface, Surfaces
+from mend.robots.vision.projection import pixel_area_m2, project
 
 Bits = NDArray[np.bool_]
 _Patch = tuple[slice, slice]

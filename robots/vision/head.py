@@ -3,10 +3,10 @@
 import math
 from dataclasses import dataclass
 
-from robots.catalogue import Part
-from robots.grasp import half_turn
-from robots.link.messages import Sighting
-from robots.vision.blob import Blob
+from mend.robots.catalogue import Part
+from mend.robots.grasp import half_turn
+from mend.robots.link.messages import Sighting
+from mend.robots.vision.blob import Blob
 
 _TOPPLED_M = 0.012
 

@@ -8,9 +8,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from robots.body import CameraImage
-from robots.vision.projection import heights
-from tasks.scene import Table
+from mend.robots.body import CameraImage
+from mend.robots.vision.projection import heights
+from mend.tasks.scene import Table
 
 Heights = NDArray[np.float32]
 

@@ -15,8 +15,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from maps.compiled import compiled
-from robots.vision.height_map import HeightMap, Heights
+from mend.maps.compiled import compiled
+from mend.robots.vision.height_map import HeightMap, Heights
 
 Labels = NDArray[np.int32]
 Pixels = NDArray[np.intp]

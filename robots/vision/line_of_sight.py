@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from robots.vision.seen_box import SeenBox
+from mend.robots.vision.seen_box import SeenBox
 
 _ACROSS = 12
 """So many points along each side of the top are looked at."""

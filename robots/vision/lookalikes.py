@@ -5,11 +5,11 @@ from itertools import combinations
 
 import numpy as np
 
-from robots.vision.color_model import ColorModel
-from tasks.definition import BehaviorNode, GoalNode
-from tasks.part_boxes import Size, boxes_of
-from tasks.scene import Scene, SceneObject
-from tasks.scene_problem import SceneProblem
+from mend.robots.vision.color_model import ColorModel
+from mend.tasks.definition import BehaviorNode, GoalNode
+from mend.tasks.part_boxes import Size, boxes_of
+from mend.tasks.scene import Scene, SceneObject
+from mend.tasks.scene_problem import SceneProblem
 
 SIZE_RESOLUTION_M = 0.004
 """Sizes that differ by less are the same to the cameras."""

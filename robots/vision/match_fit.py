@@ -11,13 +11,13 @@ from dataclasses import replace
 import numpy as np
 import shapely
 
-from robots.link.messages import Location
-from robots.vision.evidence import Evidence, gather_under
-from robots.vision.level_rectangle import Rectangle
-from robots.vision.level_surfaces import Surfaces
-from robots.vision.naming import Match, Top
-from robots.vision.rectangle import Fitted, fit_sized, fit_with_knob
-from tasks.part_boxes import Size
+from mend.robots.link.messages import Location
+from mend.robots.vision.evidence import Evidence, gather_under
+from mend.robots.vision.level_rectangle import Rectangle
+from mend.robots.vision.level_surfaces import Surfaces
+from mend.robots.vision.naming import Match, Top
+from mend.robots.vision.rectangle import Fitted, fit_sized, fit_with_knob
+from mend.tasks.part_boxes import Size
 
 _TURNS_RAD = (math.pi / 4, math.pi / 2, -math.pi / 4)
 _SMALL_PX = 10.0

@@ -14,14 +14,14 @@ import shapely
 from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
-from robots.catalogue import Part
-from robots.vision.color_model import ColorModel, Segmentation, tint_sigma
-from robots.vision.evidence import Evidence
-from robots.vision.level_rectangle import Rectangle
-from robots.vision.level_surfaces import Surface, Surfaces
-from robots.vision.rectangle import Fitted
-from robots.vision.tracking import Spot
-from tasks.part_boxes import Size
+from mend.robots.catalogue import Part
+from mend.robots.vision.color_model import ColorModel, Segmentation, tint_sigma
+from mend.robots.vision.evidence import Evidence
+from mend.robots.vision.level_rectangle import Rectangle
+from mend.robots.vision.level_surfaces import Surface, Surfaces
+from mend.robots.vision.rectangle import Fitted
+from mend.robots.vision.tracking import Spot
+from mend.tasks.part_boxes import Size
 
 Costs = NDArray[np.float64]
 

@@ -8,12 +8,12 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from robots.body import CameraImage, ToolPose
-from robots.vision.carriers import below
-from robots.vision.head import HeadSighting
-from robots.vision.projection import Points, pixels_covered, project
-from robots.vision.seen_box import SeenBox
-from robots.vision.table_view import TableView
+from mend.robots.body import CameraImage, ToolPose
+from mend.robots.vision.carriers import below
+from mend.robots.vision.head import HeadSighting
+from mend.robots.vision.projection import Points, pixels_covered, project
+from mend.robots.vision.seen_box import SeenBox
+from mend.robots.vision.table_view import TableView
 
 _BOTTOM_ERROR_M = 0.010
 """So well is it known how high a part stands."""

@@ -5,13 +5,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from robots.catalogue import Part
-from robots.link.messages import Location
-from robots.vision.head import HeadSighting
-from robots.vision.obstruction import Obstruction, obstruction_of
-from robots.vision.projection import Points, pixels_covered
-from robots.vision.seen_box import SeenBox
-from robots.vision.table_view import TableView
+from mend.robots.catalogue import Part
+from mend.robots.link.messages import Location
+from mend.robots.vision.head import HeadSighting
+from mend.robots.vision.obstruction import Obstruction, obstruction_of
+from mend.robots.vision.projection import Points, pixels_covered
+from mend.robots.vision.seen_box import SeenBox
+from mend.robots.vision.table_view import TableView
 
 _COVERED_SHARE = 0.7
 """Something covers a part of whose top less than this is seen."""

@@ -10,15 +10,15 @@ import shapely
 from numpy.typing import NDArray
 from scipy.spatial.distance import directed_hausdorff
 
-from robots.body import CameraImage
-from robots.catalogue import Part
-from robots.link.messages import Location
-from robots.vision.head import HeadSighting
-from robots.vision.height_map import HeightMap
-from robots.vision.level_rectangle import Rectangle
-from robots.vision.projection import is_measured, project
-from robots.vision.seen_box import SeenBox
-from robots.vision.table_view import TableView
+from mend.robots.body import CameraImage
+from mend.robots.catalogue import Part
+from mend.robots.link.messages import Location
+from mend.robots.vision.head import HeadSighting
+from mend.robots.vision.height_map import HeightMap
+from mend.robots.vision.level_rectangle import Rectangle
+from mend.robots.vision.projection import is_measured, project
+from mend.robots.vision.seen_box import SeenBox
+from mend.robots.vision.table_view import TableView
 
 Indices = NDArray[np.intp]
 

@@ -5,7 +5,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from robots.body import CameraImage, Matrix4
+from mend.robots.body import CameraImage, Matrix4
 
 Points = NDArray[np.float64]
 

@@ -15,9 +15,9 @@ import shapely
 from numpy.typing import NDArray
 from shapely.affinity import rotate, translate
 
-from maps.compiled import compiled
-from robots.vision.evidence import Evidence
-from robots.vision.level_rectangle import Rectangle
+from mend.maps.compiled import compiled
+from mend.robots.vision.evidence import Evidence
+from mend.robots.vision.level_rectangle import Rectangle
 
 Array = NDArray[np.float64]
 Ends = NDArray[np.int64]

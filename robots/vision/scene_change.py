@@ -9,8 +9,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from robots.body import CameraImage
-from robots.vision.projection import is_measured
+from mend.robots.body import CameraImage
+from mend.robots.vision.projection import is_measured
 
 Picture = NDArray[np.float32]
 

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from robots.vision.level_rectangle import Rectangle
-from tasks.part_boxes import Size
+from mend.robots.vision.level_rectangle import Rectangle
+from mend.tasks.part_boxes import Size
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,24 +9,24 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from robots.body import CameraImage
-from robots.catalogue import Part
-from robots.grasp import half_turn
-from robots.link.messages import Location
-from robots.vision.blob import Blob
-from robots.vision.color_model import ColorModel
-from robots.vision.evidence import gather
-from robots.vision.head import HeadSighting
-from robots.vision.height_map import IN_FRONT_M, HeightMap, measure_heights
-from robots.vision.level_rectangle import Rectangle
-from robots.vision.level_surfaces import Pixels, Surface, find_surfaces
-from robots.vision.match_fit import carried_by, fit_match
-from robots.vision.naming import Match, Namer, Top
-from robots.vision.projection import Points, unproject
-from robots.vision.rectangle import Fitted, fit_any
-from robots.vision.seen_box import SeenBox
-from robots.vision.tracking import LastSeen
-from tasks.scene import Table
+from mend.robots.body import CameraImage
+from mend.robots.catalogue import Part
+from mend.robots.grasp import half_turn
+from mend.robots.link.messages import Location
+from mend.robots.vision.blob import Blob
+from mend.robots.vision.color_model import ColorModel
+from mend.robots.vision.evidence import gather
+from mend.robots.vision.head import HeadSighting
+from mend.robots.vision.height_map import IN_FRONT_M, HeightMap, measure_heights
+from mend.robots.vision.level_rectangle import Rectangle
+from mend.robots.vision.level_surfaces import Pixels, Surface, find_surfaces
+from mend.robots.vision.match_fit import carried_by, fit_match
+from mend.robots.vision.naming import Match, Namer, Top
+from mend.robots.vision.projection import Points, unproject
+from mend.robots.vision.rectangle import Fitted, fit_any
+from mend.robots.vision.seen_box import SeenBox
+from mend.robots.vision.tracking import LastSeen
+from mend.tasks.scene import Table
 
 _COMPLETE_SHARE = 0.8
 _SHARED = 0.4

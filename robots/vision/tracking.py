@@ -4,8 +4,8 @@ import math
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from robots.link.messages import Location
-from robots.vision.head import HeadSighting
+from mend.robots.link.messages import Location
+from mend.robots.vision.head import HeadSighting
 
 _MOVED_M = 0.02
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from robots.vision.color_model import ColorModelError, Sample
+from mend.robots.vision.color_model import ColorModelError, Sample
 
 MASK_SUFFIX = ".mask.png"
 

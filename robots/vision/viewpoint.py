@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from robots.body import Matrix4
-from robots.vision.projection import Points, project
+from mend.robots.body import Matrix4
+from mend.robots.vision.projection import Points, project
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -4,12 +4,12 @@ from functools import cache
 
 import numpy as np
 
-from robots.body import CameraImage
-from robots.vision.evidence import gather
-from robots.vision.height_map import measure_heights
-from robots.vision.level_surfaces import find_surfaces
-from robots.vision.rectangle import fit_any, fit_sized
-from tasks.scene import Table
+from mend.robots.body import CameraImage
+from mend.robots.vision.evidence import gather
+from mend.robots.vision.height_map import measure_heights
+from mend.robots.vision.level_surfaces import find_surfaces
+from mend.robots.vision.rectangle import fit_any, fit_sized
+from mend.tasks.scene import Table
 
 _EYE_M = 1.0
 _BOX_M = 0.1

@@ -12,19 +12,19 @@ from urllib.parse import urlsplit
 
 from starlette.requests import HTTPConnection
 
-from server.access.admission import REFUSED, Admission
-from server.access.known_principals import KnownPrincipals
-from server.access.principal import ANYBODY, TOKEN_NAME, Caller, Principal
-from server.access.roles import Role
-from server.access.sessions import Session, Sessions, new_session_key
-from server.access.tokens import bytes_of, fingerprint, fits
-from server.access.wrong_tokens import WrongTokens
-from server.household import household_of
-from server.limits import Limits
-from server.pace import BURST_S, Paces, Sleep
-from server.refusals import Refusals
-from server.robots.passes import OneRobot, OwnRobots, Pass
-from server.visitors import visitor_of
+from mend.server.access.admission import REFUSED, Admission
+from mend.server.access.known_principals import KnownPrincipals
+from mend.server.access.principal import ANYBODY, TOKEN_NAME, Caller, Principal
+from mend.server.access.roles import Role
+from mend.server.access.sessions import Session, Sessions, new_session_key
+from mend.server.access.tokens import bytes_of, fingerprint, fits
+from mend.server.access.wrong_tokens import WrongTokens
+from mend.server.household import household_of
+from mend.server.limits import Limits
+from mend.server.pace import BURST_S, Paces, Sleep
+from mend.server.refusals import Refusals
+from mend.server.robots.passes import OneRobot, OwnRobots, Pass
+from mend.server.visitors import visitor_of
 
 SESSION_COOKIE = "mend_session"
 

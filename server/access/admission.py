@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from server.access.principal import Caller
+from mend.server.access.principal import Caller
 
 
 @dataclass(frozen=True, slots=True)

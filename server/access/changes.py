@@ -6,9 +6,9 @@ from datetime import datetime, timedelta
 from pathlib import Path
 from uuid import UUID, uuid4
 
-from robots.link.shown_name import can_be_shown
-from server.access.principal import RESERVED
-from server.access.principals_file import (
+from mend.robots.link.shown_name import can_be_shown
+from mend.server.access.principal import RESERVED
+from mend.server.access.principals_file import (
     KEPT_CHANGES,
     Change,
     Enrolment,
@@ -17,9 +17,9 @@ from server.access.principals_file import (
     What,
     edited,
 )
-from server.access.roles import Role, with_article
-from server.access.tokens import fingerprint, fits, new_code, new_token, plain_code
-from server.errors import ConflictError, InvalidError, NotFoundError, ServiceError
+from mend.server.access.roles import Role, with_article
+from mend.server.access.tokens import fingerprint, fits, new_code, new_token, plain_code
+from mend.server.errors import ConflictError, InvalidError, NotFoundError, ServiceError
 
 LONGEST_DAYS = 3650
 LONGEST_NAME = 64

@@ -7,13 +7,13 @@ from contextlib import contextmanager, suppress
 from datetime import datetime, timedelta
 from uuid import UUID
 
-from server.access.principal import Caller, Principal
-from server.access.principals_file import KEPT_CHANGES, Change
-from server.access.roles import Role
-from server.access.sessions import Session, Sessions
-from server.access.tally import Tally
-from server.journal import events as ev
-from server.journal.journal import (
+from mend.server.access.principal import Caller, Principal
+from mend.server.access.principals_file import KEPT_CHANGES, Change
+from mend.server.access.roles import Role
+from mend.server.access.sessions import Session, Sessions
+from mend.server.access.tally import Tally
+from mend.server.journal import events as ev
+from mend.server.journal.journal import (
     Entry,
     Journal,
     JournalClosedError,

@@ -8,11 +8,11 @@ from uuid import UUID
 
 from pydantic import BaseModel, ConfigDict
 
-from server.access.roles import Role, with_article
-from server.journal import events as ev
-from server.journal.chain import Seal
-from server.journal.journal import UnreadableEvent
-from server.journal.reader import JournalReader
+from mend.server.access.roles import Role, with_article
+from mend.server.journal import events as ev
+from mend.server.journal.chain import Seal
+from mend.server.journal.journal import UnreadableEvent
+from mend.server.journal.reader import JournalReader
 
 
 class Deed(BaseModel):

@@ -6,8 +6,8 @@ from collections.abc import Callable, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 
-from server.access.principal import Principal
-from server.access.principals_file import (
+from mend.server.access.principal import Principal
+from mend.server.access.principals_file import (
     Change,
     KeptPrincipal,
     Principals,
@@ -15,8 +15,8 @@ from server.access.principals_file import (
     UnreadablePrincipalsError,
     read_principals,
 )
-from server.access.roles import Role
-from server.access.tokens import fits, id_in
+from mend.server.access.roles import Role
+from mend.server.access.tokens import fits, id_in
 
 log = logging.getLogger(__name__)
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from starlette.routing import compile_path
 
-from server.access.roles import Role
+from mend.server.access.roles import Role
 
 OPEN = None
 """Whoever reaches the service may do it."""

@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass
 
-from server.access.roles import Role
-from server.journal.events import Author
-from server.journal.keyed_request import KeyedAuthor, KeyedRequest
+from mend.server.access.roles import Role
+from mend.server.journal.events import Author
+from mend.server.journal.keyed_request import KeyedAuthor, KeyedRequest
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,8 +9,8 @@ from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from server.access.principal import Principal
-from server.access.tokens import bytes_of
+from mend.server.access.principal import Principal
+from mend.server.access.tokens import bytes_of
 
 SESSION_LIFETIME_S = 12 * 3600
 KEY_BYTES = 32

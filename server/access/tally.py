@@ -2,7 +2,7 @@
 
 from collections import Counter
 
-from server.journal.events import AddressCount
+from mend.server.journal.events import AddressCount
 
 MOST_ADDRESSES = 20
 UNKNOWN = "unknown"

@@ -3,9 +3,9 @@
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-from server.access.permissions import endpoint_of
-from server.asking import asker
-from server.documents import DocumentKind
+from mend.server.access.permissions import endpoint_of
+from mend.server.asking import asker
+from mend.server.documents import DocumentKind
 
 SHORT_BODY_BYTES = 64 * 1024
 LARGE_BODY_BYTES = 8 * 1024 * 1024

@@ -6,13 +6,13 @@ from uuid import UUID
 from fastapi import APIRouter, Body, Query
 from pydantic import BaseModel, ConfigDict, Field
 
-from server.access.principal import Caller
-from server.api.parts import DialogueId, HelperName, Limit, Offset, WithCaller, WithParts
-from server.api.problems import documented
-from server.api.repeatable import RepeatableRoute
-from server.errors import InvalidError
-from server.journal.events import Answered, DeadlineExtended
-from server.runtime.views import DialogueView
+from mend.server.access.principal import Caller
+from mend.server.api.parts import DialogueId, HelperName, Limit, Offset, WithCaller, WithParts
+from mend.server.api.problems import documented
+from mend.server.api.repeatable import RepeatableRoute
+from mend.server.errors import InvalidError
+from mend.server.journal.events import Answered, DeadlineExtended
+from mend.server.runtime.views import DialogueView
 
 router = APIRouter(prefix="/api/dialogues", tags=["dialogues"], route_class=RepeatableRoute)
 

@@ -2,9 +2,9 @@
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
-from server.api.mistakes import validation_sentences
-from server.errors import InvalidError
-from tasks.scene import Name
+from mend.server.api.mistakes import validation_sentences
+from mend.server.errors import InvalidError
+from mend.tasks.scene import Name
 
 
 class DocumentUpload(BaseModel):

@@ -6,12 +6,20 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request, Response
 
-from server.api.document_upload import DocumentUpload, read_upload
-from server.api.json_answer import json_answer
-from server.api.parts import DocumentName, Limit, Offset, Parts, WithCaller, WithParts, parts_of
-from server.api.problems import ProblemError, documented
-from server.api.repeatable import RepeatableRoute
-from server.documents import (
+from mend.server.api.document_upload import DocumentUpload, read_upload
+from mend.server.api.json_answer import json_answer
+from mend.server.api.parts import (
+    DocumentName,
+    Limit,
+    Offset,
+    Parts,
+    WithCaller,
+    WithParts,
+    parts_of,
+)
+from mend.server.api.problems import ProblemError, documented
+from mend.server.api.repeatable import RepeatableRoute
+from mend.server.documents import (
     SPOKEN,
     DocumentCheck,
     DocumentKind,
@@ -22,8 +30,8 @@ from server.documents import (
     ScenarioSummary,
     SceneSummary,
 )
-from server.journal.events import Author
-from tasks.scene import Name
+from mend.server.journal.events import Author
+from mend.tasks.scene import Name
 
 YAML_TYPES = ("application/yaml", "application/x-yaml", "text/yaml", "text/x-yaml")
 

@@ -5,13 +5,13 @@ That is for requests whose answer was not kept, as the service ended before it w
 
 from pydantic import BaseModel
 
-from server.api.json_answer import JSON
-from server.api.parts import Parts
-from server.documents import DocumentKind, DocumentLibrary
-from server.errors import ConflictError
-from server.journal import events as ev
-from server.journal.keyed_request import FirstAnswer
-from server.runtime.journaled_tree import read_without_tree
+from mend.server.api.json_answer import JSON
+from mend.server.api.parts import Parts
+from mend.server.documents import DocumentKind, DocumentLibrary
+from mend.server.errors import ConflictError
+from mend.server.journal import events as ev
+from mend.server.journal.keyed_request import FirstAnswer
+from mend.server.runtime.journaled_tree import read_without_tree
 
 
 async def answer_of(seq: int, parts: Parts) -> FirstAnswer:

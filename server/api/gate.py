@@ -8,15 +8,15 @@ from starlette.requests import HTTPConnection
 from starlette.responses import Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from server.access.access import Access
-from server.access.permissions import needed_for_request
-from server.access.roles import Role
-from server.api.body_sizes import LARGE_BODY_BYTES, IncomingBodies, most_bytes
-from server.api.problems import forbidden, problem, problem_response
-from server.api.safe_headers import OVER_TLS, SAFE_HEADERS
-from server.asking import NOBODY, asker
-from server.limits import Limits
-from server.refusals import Refusals
+from mend.server.access.access import Access
+from mend.server.access.permissions import needed_for_request
+from mend.server.access.roles import Role
+from mend.server.api.body_sizes import LARGE_BODY_BYTES, IncomingBodies, most_bytes
+from mend.server.api.problems import forbidden, problem, problem_response
+from mend.server.api.safe_headers import OVER_TLS, SAFE_HEADERS
+from mend.server.asking import NOBODY, asker
+from mend.server.limits import Limits
+from mend.server.refusals import Refusals
 
 PROTECTED = ("/api/", "/metrics")
 TOO_MANY_BODIES = "too many large bodies of requests come at once: send this one again later"

@@ -5,10 +5,10 @@ from typing import Literal
 from fastapi import APIRouter
 from pydantic import BaseModel
 
-from server.access.roles import Role
-from server.api.parts import ObservedJournal, WithCallerIfKnown, WithParts
-from server.api.problems import ProblemError, documented
-from server.journal.journal import JournalReadError, JournalWriteError
+from mend.server.access.roles import Role
+from mend.server.api.parts import ObservedJournal, WithCallerIfKnown, WithParts
+from mend.server.api.problems import ProblemError, documented
+from mend.server.journal.journal import JournalReadError, JournalWriteError
 
 router = APIRouter(tags=["health"])
 

@@ -12,15 +12,15 @@ from typing import Any, Generic, TypeVar
 from pydantic import BaseModel, ConfigDict, TypeAdapter, ValidationError
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
-from server.access.admission import REFUSED
-from server.access.permissions import SOCKETS, needed_for_message
-from server.access.principal import Caller
-from server.api.helper_messages import Auth, Error, HelperMessage
-from server.api.mistakes import validation_sentences
-from server.api.parts import HelperName, Parts, parts_of
-from server.api.problems import Problem, forbidden, problem, problem_response
-from server.journal.events import Author
-from server.pace import Pace
+from mend.server.access.admission import REFUSED
+from mend.server.access.permissions import SOCKETS, needed_for_message
+from mend.server.access.principal import Caller
+from mend.server.api.helper_messages import Auth, Error, HelperMessage
+from mend.server.api.mistakes import validation_sentences
+from mend.server.api.parts import HelperName, Parts, parts_of
+from mend.server.api.problems import Problem, forbidden, problem, problem_response
+from mend.server.journal.events import Author
+from mend.server.pace import Pace
 
 THE_END = 1000
 GOING_AWAY = 1001

@@ -5,7 +5,7 @@ from uuid import UUID
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
 
-from server.runtime.views import DialogueView, RunSummary
+from mend.server.runtime.views import DialogueView, RunSummary
 
 CommandId = Annotated[str, Field(max_length=128)] | Annotated[int, Field(ge=0, le=2**53 - 1)]
 

@@ -7,14 +7,14 @@ from fastapi import APIRouter
 from pydantic import BaseModel, Field
 from starlette.websockets import WebSocket
 
-from server.api.helper_connection import (
+from mend.server.api.helper_connection import (
     GOING_AWAY,
     TRY_AGAIN_LATER,
     HelperConnection,
     HelperQuery,
     until_one_ends,
 )
-from server.api.helper_messages import (
+from mend.server.api.helper_messages import (
     Answer,
     AnyClientMessage,
     Auth,
@@ -27,11 +27,11 @@ from server.api.helper_messages import (
     TroubleMessage,
     client_message,
 )
-from server.api.parts import MAX_SEQ
-from server.api.problems import count_refusal, problem, problem_of
-from server.journal.events import NO_RUN
-from server.journal.journal import JournalClosedError
-from server.journal.subscriptions import PrunedEventsError, SubscriptionOverflowError
+from mend.server.api.parts import MAX_SEQ
+from mend.server.api.problems import count_refusal, problem, problem_of
+from mend.server.journal.events import NO_RUN
+from mend.server.journal.journal import JournalClosedError
+from mend.server.journal.subscriptions import PrunedEventsError, SubscriptionOverflowError
 
 router = APIRouter()
 

@@ -5,7 +5,7 @@ from typing import Any
 
 from starlette.requests import HTTPConnection
 
-from server.api.problems import ProblemError, documented
+from mend.server.api.problems import ProblemError, documented
 
 HEADER = "Idempotency-Key"
 REPLAYED = "Idempotency-Replayed"

@@ -4,7 +4,7 @@ from collections.abc import AsyncIterator, Mapping, Sequence
 
 from starlette.responses import Response, StreamingResponse
 
-from server.turns import Turns
+from mend.server.turns import Turns
 
 JSON = "application/json"
 PIECE_BYTES = 64 * 1024

@@ -5,17 +5,17 @@ from uuid import UUID
 from fastapi import APIRouter
 from starlette.websockets import WebSocket
 
-from server.api.helper_connection import (
+from mend.server.api.helper_connection import (
     GOING_AWAY,
     THE_END,
     HelperConnection,
     HelperQuery,
     until_one_ends,
 )
-from server.api.problems import problem, problem_of
-from server.errors import NotFoundError, UnreadableError
-from server.poses.feed import RunPoses
-from server.poses.layout import Layout
+from mend.server.api.problems import problem, problem_of
+from mend.server.errors import NotFoundError, UnreadableError
+from mend.server.poses.feed import RunPoses
+from mend.server.poses.layout import Layout
 
 router = APIRouter()
 

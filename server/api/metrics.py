@@ -8,9 +8,9 @@ from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily, Histo
 from prometheus_client.metrics_core import Metric
 from prometheus_client.registry import Collector
 
-from server.api.parts import Parts, WithParts
-from server.api.problems import documented
-from server.runtime.views import RunStatus
+from mend.server.api.parts import Parts, WithParts
+from mend.server.api.problems import documented
+from mend.server.runtime.views import RunStatus
 
 router = APIRouter(tags=["health"])
 

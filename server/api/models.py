@@ -6,8 +6,8 @@ from fastapi import APIRouter, Path, Request, Response
 from starlette.concurrency import run_in_threadpool
 from starlette.responses import FileResponse
 
-from server.api.parts import WithParts
-from server.api.problems import documented
+from mend.server.api.parts import WithParts
+from mend.server.api.problems import documented
 
 router = APIRouter(prefix="/api/models", tags=["models"])
 

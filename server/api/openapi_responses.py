@@ -2,8 +2,8 @@
 
 from typing import Any
 
-from server.access.permissions import ENDPOINTS
-from server.api.problems import documented
+from mend.server.access.permissions import ENDPOINTS
+from mend.server.api.problems import documented
 
 ANYWHERE = (413, 421, 429, 500, 503)
 """A body that is too large, an unknown Host; who has to wait; what cannot be read or written now.

@@ -11,27 +11,27 @@ from fastapi import Depends, Path, Query
 from pydantic import Field
 from starlette.requests import HTTPConnection
 
-from robots.link.shown_name import SHOWN
-from server.access.access import Access
-from server.access.deed_log import DeedLog
-from server.access.principal import Caller
-from server.documents import DocumentLibrary
-from server.journal.journal import Journal
-from server.journal.subscriptions import Subscribers
-from server.journal.writer import CommitStatistics
-from server.models import RobotModels
-from server.off_loop import OffLoop
-from server.poses.feed import PoseSource
-from server.refusals import Refusals
-from server.runtime.service import RunService
-from server.runtime.views import WorldView
-from server.settings import Settings
-from server.speech.abilities import NO_SPEECH, SpeechAbilities
-from tasks.spellings import NAME, SEEN_CHARACTERS
+from mend.robots.link.shown_name import SHOWN
+from mend.server.access.access import Access
+from mend.server.access.deed_log import DeedLog
+from mend.server.access.principal import Caller
+from mend.server.documents import DocumentLibrary
+from mend.server.journal.journal import Journal
+from mend.server.journal.subscriptions import Subscribers
+from mend.server.journal.writer import CommitStatistics
+from mend.server.models import RobotModels
+from mend.server.off_loop import OffLoop
+from mend.server.poses.feed import PoseSource
+from mend.server.refusals import Refusals
+from mend.server.runtime.service import RunService
+from mend.server.runtime.views import WorldView
+from mend.server.settings import Settings
+from mend.server.speech.abilities import NO_SPEECH, SpeechAbilities
+from mend.tasks.spellings import NAME, SEEN_CHARACTERS
 
 if TYPE_CHECKING:
     # It refuses with problem documents, which know the parts.
-    from server.api.repeats import Repeats
+    from mend.server.api.repeats import Repeats
 
 MAX_SEQ = 2**63 - 1
 

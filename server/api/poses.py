@@ -5,11 +5,11 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query, Response
 
-from server.api.parts import RunId, WithParts
-from server.api.problems import documented
-from server.errors import NotFoundError
-from server.poses.frame import framed
-from server.poses.layout import Layout
+from mend.server.api.parts import RunId, WithParts
+from mend.server.api.problems import documented
+from mend.server.errors import NotFoundError
+from mend.server.poses.frame import framed
+from mend.server.poses.layout import Layout
 
 router = APIRouter(prefix="/api/runs", tags=["runs"])
 

@@ -9,17 +9,17 @@ from fastapi import APIRouter, Path, Query
 from pydantic import AwareDatetime, BaseModel, ConfigDict, Field
 from starlette.concurrency import run_in_threadpool
 
-from server.access.changes import LONGEST_DAYS, PrincipalsEditor
-from server.access.deeds import DEEDS, Deed, deed_of
-from server.access.principals_file import PrincipalName, RobotName
-from server.access.roles import Role
-from server.api.parts import After, Limit, Parts, WithCaller, WithParts
-from server.api.problems import ProblemError, documented
-from server.api.repeatable import SecretRoute
-from server.journal.events import Author
-from server.journal.journal import JournalReadError, JournalWriteError
-from server.journal.subscriptions import Record
-from server.runtime.journaled_tree import read_without_tree
+from mend.server.access.changes import LONGEST_DAYS, PrincipalsEditor
+from mend.server.access.deeds import DEEDS, Deed, deed_of
+from mend.server.access.principals_file import PrincipalName, RobotName
+from mend.server.access.roles import Role
+from mend.server.api.parts import After, Limit, Parts, WithCaller, WithParts
+from mend.server.api.problems import ProblemError, documented
+from mend.server.api.repeatable import SecretRoute
+from mend.server.journal.events import Author
+from mend.server.journal.journal import JournalReadError, JournalWriteError
+from mend.server.journal.subscriptions import Record
+from mend.server.runtime.journaled_tree import read_without_tree
 
 router = APIRouter(prefix="/api/access", tags=["access"], route_class=SecretRoute)
 

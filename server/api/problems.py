@@ -13,15 +13,15 @@ from pydantic import BaseModel, ConfigDict
 from starlette.exceptions import HTTPException
 from starlette.responses import Response
 
-from server.access.changes import EnrolmentRefusedError
-from server.access.deed_log import ToldLaterError
-from server.access.principals_file import PrincipalsFileError
-from server.access.roles import Role, with_article
-from server.api.mistakes import MOST_TOLD, validation_sentences
-from server.api.parts import parts_of
-from server.api.safe_headers import SAFE_HEADERS
-from server.descriptors import NO_DESCRIPTOR
-from server.errors import (
+from mend.server.access.changes import EnrolmentRefusedError
+from mend.server.access.deed_log import ToldLaterError
+from mend.server.access.principals_file import PrincipalsFileError
+from mend.server.access.roles import Role, with_article
+from mend.server.api.mistakes import MOST_TOLD, validation_sentences
+from mend.server.api.parts import parts_of
+from mend.server.api.safe_headers import SAFE_HEADERS
+from mend.server.descriptors import NO_DESCRIPTOR
+from mend.server.errors import (
     BusyError,
     ConflictError,
     InvalidError,
@@ -30,9 +30,9 @@ from server.errors import (
     ServiceError,
     UnreadableError,
 )
-from server.journal.journal import JournalClosedError, JournalReadError, JournalWriteError
-from server.limits import LimitName
-from server.refusals import Refusals
+from mend.server.journal.journal import JournalClosedError, JournalReadError, JournalWriteError
+from mend.server.limits import LimitName
+from mend.server.refusals import Refusals
 
 log = logging.getLogger(__name__)
 

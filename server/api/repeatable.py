@@ -9,16 +9,16 @@ from starlette.requests import Request
 from starlette.responses import Response, StreamingResponse
 from starlette.types import Message
 
-from server.access.access import address_of
-from server.access.principal import Caller
-from server.access.tokens import bytes_of
-from server.api.first_answers import answer_of
-from server.api.idempotency_key import REPLAYED, key_in
-from server.api.parts import parts_of
-from server.api.repeats import Repeats
-from server.api.strict_json import StrictJsonRoute
-from server.household import household_of
-from server.journal.keyed_request import FirstAnswer, KeptRequest, KeyedRequest
+from mend.server.access.access import address_of
+from mend.server.access.principal import Caller
+from mend.server.access.tokens import bytes_of
+from mend.server.api.first_answers import answer_of
+from mend.server.api.idempotency_key import REPLAYED, key_in
+from mend.server.api.parts import parts_of
+from mend.server.api.repeats import Repeats
+from mend.server.api.strict_json import StrictJsonRoute
+from mend.server.household import household_of
+from mend.server.journal.keyed_request import FirstAnswer, KeptRequest, KeyedRequest
 
 KEY_CHARS = 16
 """So much of what a credential is known by tells it from a later one."""

@@ -5,17 +5,17 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 
-from server.api.idempotency_key import HEADER
-from server.api.problems import ProblemError
-from server.journal.journal import (
+from mend.server.api.idempotency_key import HEADER
+from mend.server.api.problems import ProblemError
+from mend.server.journal.journal import (
     Journal,
     JournalClosedError,
     JournalReadError,
     JournalWriteError,
 )
-from server.journal.keyed_request import FirstAnswer, KeptRequest, KeyedRequest
-from server.limits import Limits
-from server.refusals import Refusals
+from mend.server.journal.keyed_request import FirstAnswer, KeptRequest, KeyedRequest
+from mend.server.limits import Limits
+from mend.server.refusals import Refusals
 
 MOST_KEPT_BYTES = 64 * 1024
 """A longer answer is not kept in the journal, but made again from what came of the request."""

@@ -9,14 +9,14 @@ from starlette.responses import Response
 from starlette.types import Message
 from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketState
 
-from robots.link.channel import ChannelClosedError
-from robots.link.messages import LinkError
-from server.access.access import Access
-from server.access.principal import Caller
-from server.api.problems import problem, problem_response
-from server.robots.passes import Pass
-from server.robots.registry import RobotRegistry
-from server.robots.session import LAST_WORD_S
+from mend.robots.link.channel import ChannelClosedError
+from mend.robots.link.messages import LinkError
+from mend.server.access.access import Access
+from mend.server.access.principal import Caller
+from mend.server.api.problems import problem, problem_response
+from mend.server.robots.passes import Pass
+from mend.server.robots.registry import RobotRegistry
+from mend.server.robots.session import LAST_WORD_S
 
 ROBOT_PATH = "/ws/robot"
 

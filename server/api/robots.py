@@ -3,16 +3,16 @@
 from fastapi import APIRouter, Request
 from pydantic import BaseModel, ConfigDict, Field
 
-from server.access.access import address_of
-from server.access.changes import EnrolmentRefusedError
-from server.access.principals_file import RobotName
-from server.access.roles import Role
-from server.api.parts import Limit, Offset, WithParts
-from server.api.principals import edited
-from server.api.problems import ProblemError, documented
-from server.api.repeatable import SecretRoute
-from server.journal.events import Author
-from server.runtime.views import RobotView
+from mend.server.access.access import address_of
+from mend.server.access.changes import EnrolmentRefusedError
+from mend.server.access.principals_file import RobotName
+from mend.server.access.roles import Role
+from mend.server.api.parts import Limit, Offset, WithParts
+from mend.server.api.principals import edited
+from mend.server.api.problems import ProblemError, documented
+from mend.server.api.repeatable import SecretRoute
+from mend.server.journal.events import Author
+from mend.server.runtime.views import RobotView
 
 router = APIRouter(prefix="/api/robots", tags=["robots"], route_class=SecretRoute)
 

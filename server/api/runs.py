@@ -5,16 +5,16 @@ from uuid import UUID
 
 from fastapi import APIRouter, Body, Path, Query, Response
 
-from server.api.json_answer import json_answer
-from server.api.parts import After, Limit, Offset, RunId, WithCaller, WithParts
-from server.api.problems import documented
-from server.api.repeatable import RepeatableRoute
-from server.journal.events import NO_RUN, AnyEvent
-from server.journal.run_index import RunPage
-from server.runtime.requests import RunRequest
-from server.runtime.views import RunStatus, RunSummary, RunView
-from tasks.intervention import Intervention
-from tasks.spellings import CAMERA
+from mend.server.api.json_answer import json_answer
+from mend.server.api.parts import After, Limit, Offset, RunId, WithCaller, WithParts
+from mend.server.api.problems import documented
+from mend.server.api.repeatable import RepeatableRoute
+from mend.server.journal.events import NO_RUN, AnyEvent
+from mend.server.journal.run_index import RunPage
+from mend.server.runtime.requests import RunRequest
+from mend.server.runtime.views import RunStatus, RunSummary, RunView
+from mend.tasks.intervention import Intervention
+from mend.tasks.spellings import CAMERA
 
 router = APIRouter(prefix="/api/runs", tags=["runs"], route_class=RepeatableRoute)
 

@@ -5,14 +5,14 @@ import math
 from fastapi import APIRouter, Request, Response
 from pydantic import BaseModel, ConfigDict, Field
 
-from server.access.access import SESSION_COOKIE, address_of
-from server.access.principal import Caller
-from server.access.roles import Role
-from server.access.sessions import SESSION_LIFETIME_S, TooManySessionsError
-from server.api.parts import WithCallerIfKnown, WithParts
-from server.api.problems import ProblemError, documented
-from server.api.repeatable import SecretRoute
-from server.journal.journal import JournalWriteError
+from mend.server.access.access import SESSION_COOKIE, address_of
+from mend.server.access.principal import Caller
+from mend.server.access.roles import Role
+from mend.server.access.sessions import SESSION_LIFETIME_S, TooManySessionsError
+from mend.server.api.parts import WithCallerIfKnown, WithParts
+from mend.server.api.problems import ProblemError, documented
+from mend.server.api.repeatable import SecretRoute
+from mend.server.journal.journal import JournalWriteError
 
 router = APIRouter(prefix="/api", tags=["session"], route_class=SecretRoute)
 

@@ -6,15 +6,15 @@ from uuid import UUID
 from fastapi import APIRouter, Path, Response
 from pydantic import BaseModel, ConfigDict
 
-from server.api.parts import DialogueId, Parts, WithParts
-from server.api.problems import ProblemError, documented
-from server.errors import NotFoundError
-from server.speech.commands import PHRASES, Command
-from server.speech.ear import NoEars
-from server.speech.phrases import FIXED, effect_text, help_text
-from server.speech.question import find_prompt
-from server.speech.voice import NoVoice, VoiceError
-from tasks.spellings import PHRASE
+from mend.server.api.parts import DialogueId, Parts, WithParts
+from mend.server.api.problems import ProblemError, documented
+from mend.server.errors import NotFoundError
+from mend.server.speech.commands import PHRASES, Command
+from mend.server.speech.ear import NoEars
+from mend.server.speech.phrases import FIXED, effect_text, help_text
+from mend.server.speech.question import find_prompt
+from mend.server.speech.voice import NoVoice, VoiceError
+from mend.tasks.spellings import PHRASE
 
 router = APIRouter(tags=["speech"])
 

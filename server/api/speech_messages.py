@@ -5,9 +5,9 @@ from uuid import UUID
 
 from pydantic import Field, TypeAdapter
 
-from server.api.helper_messages import Auth, Error, HelperMessage, ServerMessage
-from server.speech.commands import Command
-from server.speech.conversation import EndReason, Saying
+from mend.server.api.helper_messages import Auth, Error, HelperMessage, ServerMessage
+from mend.server.speech.commands import Command
+from mend.server.speech.conversation import EndReason, Saying
 
 
 class Listen(HelperMessage):

@@ -7,10 +7,10 @@ from fastapi import APIRouter
 from pydantic import BaseModel
 from starlette.websockets import WebSocket
 
-from server.api.helper_connection import HelperConnection, HelperQuery
-from server.api.helper_messages import Auth
-from server.api.problems import count_refusal, problem, problem_of
-from server.api.speech_messages import (
+from mend.server.api.helper_connection import HelperConnection, HelperQuery
+from mend.server.api.helper_messages import Auth
+from mend.server.api.problems import count_refusal, problem, problem_of
+from mend.server.api.speech_messages import (
     AnySpeechClientMessage,
     Cancel,
     Ended,
@@ -23,20 +23,20 @@ from server.api.speech_messages import (
     Spoken,
     speech_client_message,
 )
-from server.errors import ServiceError
-from server.speech import conversation as talking
-from server.speech.conversation import (
+from mend.server.errors import ServiceError
+from mend.server.speech import conversation as talking
+from mend.server.speech.conversation import (
     Act,
     Conversation,
     EndReason,
     IllegalTransitionError,
     Saying,
 )
-from server.speech.ear import NoEars, TooManyConversationsError
-from server.speech.phrases import help_text
-from server.speech.question import open_question, wait_until_over
-from server.speech.talk import Talk
-from server.speech.voice import NoVoice
+from mend.server.speech.ear import NoEars, TooManyConversationsError
+from mend.server.speech.phrases import help_text
+from mend.server.speech.question import open_question, wait_until_over
+from mend.server.speech.talk import Talk
+from mend.server.speech.voice import NoVoice
 
 router = APIRouter()
 

@@ -8,11 +8,11 @@ from starlette.exceptions import HTTPException
 from starlette.requests import Request
 from starlette.responses import Response
 
-from server.api.json_text import NotJsonError, TooManyValuesError, may_have, read_json
-from server.api.parts import parts_of
-from server.api.problems import ProblemError
-from server.errors import ServiceError
-from server.off_loop import MUCH_CHARS
+from mend.server.api.json_text import NotJsonError, TooManyValuesError, may_have, read_json
+from mend.server.api.parts import parts_of
+from mend.server.api.problems import ProblemError
+from mend.server.errors import ServiceError
+from mend.server.off_loop import MUCH_CHARS
 
 OTHER_VALUES = 1000
 """So many values a body may have beside scripted answers and options of a world."""

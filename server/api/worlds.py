@@ -2,9 +2,9 @@
 
 from fastapi import APIRouter
 
-from server.api.parts import Limit, Offset, WithParts
-from server.api.problems import documented
-from server.runtime.views import WorldView
+from mend.server.api.parts import Limit, Offset, WithParts
+from mend.server.api.problems import documented
+from mend.server.runtime.views import WorldView
 
 router = APIRouter(prefix="/api", tags=["worlds"])
 

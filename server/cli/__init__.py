@@ -8,23 +8,23 @@ from typing import Annotated
 
 import typer
 
-from server.cli.access import access_app
-from server.cli.check import check
-from server.cli.failures import CommandLineError
-from server.cli.journal import journal_app
-from server.cli.localize import localize
-from server.cli.map import maps_app
-from server.cli.replay import replay
-from server.cli.run import run
-from server.cli.scenarios import scenarios
-from server.cli.scene import scene_app
-from server.cli.scenes import scenes
-from server.cli.schedule import schedule
-from server.cli.schema import schema
-from server.cli.serve import serve
-from server.cli.talk import talk
-from server.cli.train_colors import train_colors
-from server.cli.trees import trees
+from mend.server.cli.access import access_app
+from mend.server.cli.check import check
+from mend.server.cli.failures import CommandLineError
+from mend.server.cli.journal import journal_app
+from mend.server.cli.localize import localize
+from mend.server.cli.map import maps_app
+from mend.server.cli.replay import replay
+from mend.server.cli.run import run
+from mend.server.cli.scenarios import scenarios
+from mend.server.cli.scene import scene_app
+from mend.server.cli.scenes import scenes
+from mend.server.cli.schedule import schedule
+from mend.server.cli.schema import schema
+from mend.server.cli.serve import serve
+from mend.server.cli.talk import talk
+from mend.server.cli.train_colors import train_colors
+from mend.server.cli.trees import trees
 
 PIPE_CLOSED = 141
 """Exit code when whoever read the output went away (128 and the number of SIGPIPE)."""
@@ -41,7 +41,7 @@ app = typer.Typer(
 
 def _show_version(wanted: bool) -> None:
     if wanted:
-        typer.echo(f"mend {version('mend')}")
+        typer.echo(f"mend {version('mend-robots')}")
         raise typer.Exit
 
 

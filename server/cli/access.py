@@ -9,13 +9,13 @@ from typing import Annotated
 
 import typer
 
-from server.access.changes import LONGEST_DAYS, PrincipalsEditor
-from server.access.principals_file import read_principals
-from server.access.roles import Role
-from server.cli.failures import NOT_FINISHED, CommandLineError, told_plainly
-from server.cli.local_user import local_user
-from server.cli.output import print_rows
-from server.settings import Settings, load_settings
+from mend.server.access.changes import LONGEST_DAYS, PrincipalsEditor
+from mend.server.access.principals_file import read_principals
+from mend.server.access.roles import Role
+from mend.server.cli.failures import NOT_FINISHED, CommandLineError, told_plainly
+from mend.server.cli.local_user import local_user
+from mend.server.cli.output import print_rows
+from mend.server.settings import Settings, load_settings
 
 MOST_DAMAGE_TOLD = 20
 
@@ -120,7 +120,7 @@ def audit(
     exit code is 1.
     """
     # Imported only here: events bring half of the service with them.
-    from server.access.deeds import audit_of
+    from mend.server.access.deeds import audit_of
 
     with told_plainly():
         audit = audit_of(journal or load_settings(config).journal_path)

@@ -2,7 +2,7 @@
 
 from typing import Literal, cast
 
-from server.cli.failures import CommandLineError
+from mend.server.cli.failures import CommandLineError
 
 Answers = list[Literal["yes", "no", "silence"]] | Literal["random", "none"]
 

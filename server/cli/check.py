@@ -8,8 +8,8 @@ from typing import Annotated
 
 import typer
 
-from server.cli.failures import NOT_FINISHED, CommandLineError, told_plainly
-from server.cli.mistakes import (
+from mend.server.cli.failures import NOT_FINISHED, CommandLineError, told_plainly
+from mend.server.cli.mistakes import (
     Checked,
     delivery_mistakes,
     in_worlds,
@@ -17,8 +17,8 @@ from server.cli.mistakes import (
     scene_mistakes,
     task_mistakes,
 )
-from server.cli.task_files import read_text
-from server.scene_checks import WorldChecks, load_world_checks
+from mend.server.cli.task_files import read_text
+from mend.server.scene_checks import WorldChecks, load_world_checks
 
 CHECKERS: Mapping[str, Callable[[Path, WorldChecks], Checked]] = {
     "task": task_mistakes,

@@ -4,14 +4,14 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from fleet.scheduling.contradictions import contradictions
-from fleet.scheduling.instances.li_lim import read_li_lim
-from fleet.scheduling.instances.numbers import InstanceError
-from fleet.scheduling.instances.transfer_benchmark import HEADER, read_transfer_benchmark
-from fleet.scheduling.problem import Problem, ProblemError
-from fleet.scheduling.problem_file import read_delivery_file
-from server.cli.failures import CommandLineError
-from server.cli.task_files import read_text
+from mend.fleet.scheduling.contradictions import contradictions
+from mend.fleet.scheduling.instances.li_lim import read_li_lim
+from mend.fleet.scheduling.instances.numbers import InstanceError
+from mend.fleet.scheduling.instances.transfer_benchmark import HEADER, read_transfer_benchmark
+from mend.fleet.scheduling.problem import Problem, ProblemError
+from mend.fleet.scheduling.problem_file import read_delivery_file
+from mend.server.cli.failures import CommandLineError
+from mend.server.cli.task_files import read_text
 
 SUFFIXES = (".yaml", ".yml", ".json")
 READERS: Mapping[str, Callable[[str, str], Problem]] = {

@@ -5,13 +5,13 @@ from dataclasses import dataclass
 
 from rich.console import Console
 
-from fleet.scheduling.exact.clash import clash_words
-from fleet.scheduling.methods import solve
-from fleet.scheduling.no_place import left_over_words
-from fleet.scheduling.solution import Solution, Status, UnsupportedError
-from server.cli import schedule_output as output
-from server.cli.delivery_files import ReadFile
-from server.cli.failures import INTERRUPTED, CommandLineError
+from mend.fleet.scheduling.exact.clash import clash_words
+from mend.fleet.scheduling.methods import solve
+from mend.fleet.scheduling.no_place import left_over_words
+from mend.fleet.scheduling.solution import Solution, Status, UnsupportedError
+from mend.server.cli import schedule_output as output
+from mend.server.cli.delivery_files import ReadFile
+from mend.server.cli.failures import INTERRUPTED, CommandLineError
 
 EXPLAINING_S = 10.0
 """At most, and never more than the search was given."""

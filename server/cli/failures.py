@@ -3,22 +3,22 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from maps.vector_map import VectorMapError
-from robots.localization.logs.log import LogError
-from robots.localization.pictures.failure import PictureError
-from robots.localization.scan import InvalidScanError
-from robots.vision.color_model import ColorModelError
-from server.access.principals_file import PrincipalsFileError
-from server.errors import InvalidError, ServiceError
-from server.journal.backup import BackupError
-from server.journal.file_lock import JournalLockedError
-from server.journal.journal import JournalOpenError, JournalReadError
-from server.journal.migrations import JournalSchemaError
-from server.settings import WrongSettingsError
-from sim.world import WorldUnavailableError
-from tasks.library import NotInLibraryError
-from tasks.plugins import PluginError
-from tasks.problem import InvalidFileError
+from mend.localization.logs.log import LogError
+from mend.localization.pictures.failure import PictureError
+from mend.localization.scan import InvalidScanError
+from mend.maps.vector_map import VectorMapError
+from mend.robots.vision.color_model import ColorModelError
+from mend.server.access.principals_file import PrincipalsFileError
+from mend.server.errors import InvalidError, ServiceError
+from mend.server.journal.backup import BackupError
+from mend.server.journal.file_lock import JournalLockedError
+from mend.server.journal.journal import JournalOpenError, JournalReadError
+from mend.server.journal.migrations import JournalSchemaError
+from mend.server.settings import WrongSettingsError
+from mend.sim.world import WorldUnavailableError
+from mend.tasks.library import NotInLibraryError
+from mend.tasks.plugins import PluginError
+from mend.tasks.problem import InvalidFileError
 
 NOT_FINISHED = 1
 """Exit code: the task did not finish, or a checked file is wrong."""

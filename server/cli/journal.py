@@ -10,11 +10,11 @@ from uuid import UUID
 import typer
 from pydantic import ValidationError
 
-from server.cli.failures import NOT_FINISHED, CommandLineError, told_plainly
-from server.journal.events import Event
-from server.journal.full_check import Finding
-from server.retention import KeepSettings
-from server.settings import load_settings
+from mend.server.cli.failures import NOT_FINISHED, CommandLineError, told_plainly
+from mend.server.journal.events import Event
+from mend.server.journal.full_check import Finding
+from mend.server.retention import KeepSettings
+from mend.server.settings import load_settings
 
 MOST_RUNS_NAMED = 10
 
@@ -42,9 +42,9 @@ def check(
     The exit code is 1 if anything is wrong; one sentence then says what, and which runs it
     concerns.
     """
-    from dialogue.registry import load_scripts
-    from server.journal.full_check import check_journal
-    from server.runtime.history import fold_event
+    from mend.dialogue.registry import load_scripts
+    from mend.server.journal.full_check import check_journal
+    from mend.server.runtime.history import fold_event
 
     with told_plainly():
         path = _journal(file)
@@ -90,7 +90,7 @@ def prune(
 
     Without options the settings say what is kept. Runs that have not ended are always kept.
     """
-    from server.journal.offline_pruning import prune_file
+    from mend.server.journal.offline_pruning import prune_file
 
     with told_plainly():
         path = _journal(journal)
@@ -131,7 +131,7 @@ def backup(
     force: Force = False,
 ) -> None:
     """Copy a journal as it is at one moment; a service may go on writing meanwhile."""
-    from server.journal.backup import back_up
+    from mend.server.journal.backup import back_up
 
     with told_plainly():
         path = _journal(journal)
@@ -146,7 +146,7 @@ def restore(
     force: Force = False,
 ) -> None:
     """Put a backup in a journal's place; the service must be stopped."""
-    from server.journal.backup import restore as put_back
+    from mend.server.journal.backup import restore as put_back
 
     with told_plainly():
         path = _journal(journal)

@@ -4,8 +4,8 @@ from datetime import UTC, datetime
 from pathlib import Path
 from uuid import uuid4
 
-from server.journal.file_mode import OWNERS_FOLDER
-from server.settings import Settings, load_settings
+from mend.server.journal.file_mode import OWNERS_FOLDER
+from mend.server.settings import Settings, load_settings
 
 
 def known_journals() -> list[Path]:

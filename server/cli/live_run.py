@@ -8,22 +8,22 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 from uuid import UUID
 
-from server.cli.failures import INTERRUPTED, NOT_FINISHED, CommandLineError
-from server.cli.local_user import local_author
-from server.cli.output import EventOutput, JsonLines
-from server.cli.reports import write_run_report
-from server.cli.terminal_helper import TerminalHelper
-from server.errors import ConflictError
-from server.journal import events as ev
-from server.journal.reader import JournalReader
-from server.journal.subscriptions import SubscriptionOverflowError
-from server.runtime.requests import RunRequest
-from server.runtime.views import RunStatus
-from server.settings import Settings
-from server.transcript import Transcript
+from mend.server.cli.failures import INTERRUPTED, NOT_FINISHED, CommandLineError
+from mend.server.cli.local_user import local_author
+from mend.server.cli.output import EventOutput, JsonLines
+from mend.server.cli.reports import write_run_report
+from mend.server.cli.terminal_helper import TerminalHelper
+from mend.server.errors import ConflictError
+from mend.server.journal import events as ev
+from mend.server.journal.reader import JournalReader
+from mend.server.journal.subscriptions import SubscriptionOverflowError
+from mend.server.runtime.requests import RunRequest
+from mend.server.runtime.views import RunStatus
+from mend.server.settings import Settings
+from mend.server.transcript import Transcript
 
 if TYPE_CHECKING:
-    from server.composition import Service
+    from mend.server.composition import Service
 
 ENDS = (ev.RunFinished, ev.RunFailed, ev.RunAborted)
 

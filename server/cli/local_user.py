@@ -3,8 +3,8 @@
 import getpass
 import os
 
-from server.access.roles import Role
-from server.journal.events import Author
+from mend.server.access.roles import Role
+from mend.server.journal.events import Author
 
 
 def local_user() -> str:

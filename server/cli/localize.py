@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from server.cli.failures import INTERRUPTED, CommandLineError, told_plainly
-from server.cli.output import print_rows
+from mend.server.cli.failures import INTERRUPTED, CommandLineError, told_plainly
+from mend.server.cli.output import print_rows
 
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from robots.localization.evaluation import Summary
-    from robots.localization.pose import Poses
+    from mend.localization.evaluation import Summary
+    from mend.localization.pose import Poses
 
 HEADINGS = ("figure", "value")
 
@@ -49,12 +49,12 @@ def localize(
     # Imported only here: compiled code would make every other command wait.
     from rich.console import Console
 
-    from maps.vector_map_file import read_vector_map
-    from robots.localization.evaluation import follow, summarize
-    from robots.localization.localizer import Estimate, Timed
-    from robots.localization.logs.reading import read_log
-    from robots.localization.methods import METHODS
-    from robots.localization.pictures.drive import ANIMATION_SUFFIXES, PICTURE_SUFFIXES, Drive
+    from mend.localization.evaluation import follow, summarize
+    from mend.localization.localizer import Estimate, Timed
+    from mend.localization.logs.reading import read_log
+    from mend.localization.methods import METHODS
+    from mend.localization.pictures.drive import ANIMATION_SUFFIXES, PICTURE_SUFFIXES, Drive
+    from mend.maps.vector_map_file import read_vector_map
 
     if method not in METHODS:
         names = ", ".join(METHODS)
@@ -125,7 +125,7 @@ def _pose(text: str) -> "Poses":
 
 def _get_ready(console: "Console", method: str) -> None:
     """Say what takes so long: on a machine's first use the method's kernels are compiled."""
-    from robots.localization.methods import warm_up
+    from mend.localization.methods import warm_up
 
     words = f"getting {method} ready (compiled on first use, about a minute; then kept)"
     if console.is_terminal:

@@ -5,8 +5,8 @@ from typing import Annotated
 
 import typer
 
-from server.cli.failures import CommandLineError, told_plainly
-from server.cli.localize import checked_suffix, progress
+from mend.server.cli.failures import CommandLineError, told_plainly
+from mend.server.cli.localize import checked_suffix, progress
 
 maps_app = typer.Typer(
     name="map", help="Build and clean up vector maps.", no_args_is_help=True, rich_markup_mode=None
@@ -32,11 +32,11 @@ def build(
     import numpy as np
     from rich.console import Console
 
-    from maps.vector_map_file import write_vector_map
-    from robots.localization.logs.reading import read_log
-    from robots.localization.mapping import map_of
-    from robots.localization.pictures.drive import PICTURE_SUFFIXES, save_map_picture
-    from robots.localization.scan_matching import matched_poses
+    from mend.localization.logs.reading import read_log
+    from mend.localization.mapping import map_of
+    from mend.localization.pictures.drive import PICTURE_SUFFIXES, save_map_picture
+    from mend.localization.scan_matching import matched_poses
+    from mend.maps.vector_map_file import write_vector_map
 
     checked_suffix("map", output, (".txt", ".json"))
     checked_suffix("picture", plot, PICTURE_SUFFIXES)
@@ -66,9 +66,9 @@ def clean(
     plot: PlotFile = None,
 ) -> None:
     """Make duplicates and overlaps one segment each, and drop slivers."""
-    from maps.clean_up import clean_up
-    from maps.vector_map_file import read_vector_map, write_vector_map
-    from robots.localization.pictures.drive import PICTURE_SUFFIXES, save_map_picture
+    from mend.localization.pictures.drive import PICTURE_SUFFIXES, save_map_picture
+    from mend.maps.clean_up import clean_up
+    from mend.maps.vector_map_file import read_vector_map, write_vector_map
 
     checked_suffix("map", output, (".txt", ".json"))
     checked_suffix("picture", plot, PICTURE_SUFFIXES)

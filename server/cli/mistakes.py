@@ -4,19 +4,19 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from server.behaviors import behavior_step_counts
-from server.cli.task_files import (
+from mend.server.behaviors import behavior_step_counts
+from mend.server.cli.task_files import (
     SceneSource,
     read_task,
     scene_of_task_file,
     task_of_scenario_file,
 )
-from server.scene_checks import WorldChecks
-from tasks.library import NotInLibraryError
-from tasks.problem import InvalidFileError, Problem
-from tasks.scenario_file import Misfit, find_misfits, read_scenario_file
-from tasks.scene_file import read_scene_file
-from tasks.scene_problem import SceneProblem
+from mend.server.scene_checks import WorldChecks
+from mend.tasks.library import NotInLibraryError
+from mend.tasks.problem import InvalidFileError, Problem
+from mend.tasks.scenario_file import Misfit, find_misfits, read_scenario_file
+from mend.tasks.scene_file import read_scene_file
+from mend.tasks.scene_problem import SceneProblem
 
 InWorlds = Mapping[str, Iterable[SceneProblem]]
 """What each world's robot cannot do."""
@@ -69,7 +69,7 @@ def scenario_mistakes(path: Path, worlds: WorldChecks) -> Checked:  # noqa: ARG0
 def delivery_mistakes(path: Path, worlds: WorldChecks) -> Checked:  # noqa: ARG001
     """Every mistake of a delivery file, else what contradicts itself in it."""
     # Imported only here: schedulers would make every other command wait.
-    from fleet.scheduling.problem_file import read_delivery_file
+    from mend.fleet.scheduling.problem_file import read_delivery_file
 
     try:
         delivery = read_delivery_file(path)

@@ -8,9 +8,9 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from server.journal.events import Event
-from server.plain_text import plain
-from server.transcript import Line, Tone, Transcript
+from mend.server.journal.events import Event
+from mend.server.plain_text import plain
+from mend.server.transcript import Line, Tone, Transcript
 
 STYLES: dict[Tone, str] = {
     Tone.RUN: "bold",

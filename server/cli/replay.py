@@ -8,12 +8,12 @@ from uuid import UUID
 
 import typer
 
-from server.cli.failures import CommandLineError, told_plainly
-from server.cli.journals import known_journals
-from server.cli.output import EventOutput, JsonLines, LiveTranscript
-from server.cli.reports import write_run_report
-from server.journal.migrations import JournalSchemaError
-from server.journal.reader import JournalReader
+from mend.server.cli.failures import CommandLineError, told_plainly
+from mend.server.cli.journals import known_journals
+from mend.server.cli.output import EventOutput, JsonLines, LiveTranscript
+from mend.server.cli.reports import write_run_report
+from mend.server.journal.migrations import JournalSchemaError
+from mend.server.journal.reader import JournalReader
 
 MAX_LISTED = 5
 

@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from server.journal.events import Event, IssueRaised
-from server.journal.reader import JournalReader
-from server.report.page import write_report
+from mend.server.journal.events import Event, IssueRaised
+from mend.server.journal.reader import JournalReader
+from mend.server.report.page import write_report
 
 
 def write_run_report(path: Path, events: Sequence[Event], journal: JournalReader) -> None:

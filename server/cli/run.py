@@ -12,17 +12,17 @@ import typer
 from pydantic import SecretStr, ValidationError
 from pydantic_core import ErrorDetails
 
-from server.cli.answers import Answers, read_answers
-from server.cli.failures import CommandLineError, told_plainly
-from server.cli.journals import new_run_journal
-from server.cli.live_run import LiveRun
-from server.cli.output import JsonLines, LiveTranscript
-from server.cli.run_files import RunFiles, read_run_files
-from server.errors import ImpossibleError
-from server.runtime.requests import RunRequest
-from server.settings import Settings, load_settings
-from tasks.scenario import Person, Scenario
-from tasks.validation import what_is_right
+from mend.server.cli.answers import Answers, read_answers
+from mend.server.cli.failures import CommandLineError, told_plainly
+from mend.server.cli.journals import new_run_journal
+from mend.server.cli.live_run import LiveRun
+from mend.server.cli.output import JsonLines, LiveTranscript
+from mend.server.cli.run_files import RunFiles, read_run_files
+from mend.server.errors import ImpossibleError
+from mend.server.runtime.requests import RunRequest
+from mend.server.settings import Settings, load_settings
+from mend.tasks.scenario import Person, Scenario
+from mend.tasks.validation import what_is_right
 
 
 def run(
@@ -92,7 +92,7 @@ def run(
     said so. Ctrl-C aborts the run.
     """
     # Imported only here: the whole service would make every other command wait.
-    from server.composition import open_service
+    from mend.server.composition import open_service
 
     with told_plainly():
         files = read_run_files(tree, scene, scenario)

@@ -4,24 +4,24 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from server.behaviors import behavior_parameters, behavior_step_counts
-from server.cli.failures import CommandLineError
-from server.cli.task_files import SceneSource, read_task, read_text
-from server.documents import DocumentKind
-from server.fixed_documents import GivenFiles
-from tasks.library import TREES
-from tasks.scenario import Scenario
-from tasks.scenario_file import (
+from mend.server.behaviors import behavior_parameters, behavior_step_counts
+from mend.server.cli.failures import CommandLineError
+from mend.server.cli.task_files import SceneSource, read_task, read_text
+from mend.server.documents import DocumentKind
+from mend.server.fixed_documents import GivenFiles
+from mend.tasks.library import TREES
+from mend.tasks.scenario import Scenario
+from mend.tasks.scenario_file import (
     Misfit,
     ScenarioFileError,
     built_in_scenario,
     find_misfits,
     read_scenario_file,
 )
-from tasks.scene import Scene
-from tasks.scene_file import built_in_scene, check_scene_file, read_scene_file
-from tasks.scene_problem import SceneProblem
-from tasks.task_file import CheckedTask, check_built_in_task
+from mend.tasks.scene import Scene
+from mend.tasks.scene_file import built_in_scene, check_scene_file, read_scene_file
+from mend.tasks.scene_problem import SceneProblem
+from mend.tasks.task_file import CheckedTask, check_built_in_task
 
 SUFFIXES = (".yaml", ".yml", ".json")
 

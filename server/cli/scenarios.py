@@ -1,9 +1,9 @@
 """`mend scenarios`: the scenarios that come with Mend."""
 
-from server.cli.failures import told_plainly
-from server.cli.output import print_rows
-from tasks.library import SCENARIOS
-from tasks.scenario_file import built_in_scenario
+from mend.server.cli.failures import told_plainly
+from mend.server.cli.output import print_rows
+from mend.tasks.library import SCENARIOS
+from mend.tasks.scenario_file import built_in_scenario
 
 
 def scenarios() -> None:

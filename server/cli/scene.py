@@ -5,7 +5,7 @@ from typing import Annotated
 import typer
 import yaml
 
-from server.cli.failures import CommandLineError, told_plainly
+from mend.server.cli.failures import CommandLineError, told_plainly
 
 scene_app = typer.Typer(
     name="scene", help="Make up scenes.", no_args_is_help=True, rich_markup_mode=None
@@ -35,8 +35,8 @@ def random(
     Its parts have any size, colour and pose that the world's robot can do. Keep the scene as
     scenes/random_SEED.yaml beside the task file, or give it to `mend run` with --scene.
     """
-    from server.scene_checks import load_world_checks
-    from sim.random_scene import NoRoomError, random_scene, scene_document
+    from mend.server.scene_checks import load_world_checks
+    from mend.sim.random_scene import NoRoomError, random_scene, scene_document
 
     with told_plainly():
         try:

@@ -1,9 +1,9 @@
 """`mend scenes`: the scenes that come with Mend."""
 
-from server.cli.failures import told_plainly
-from server.cli.output import print_rows
-from tasks.library import SCENES
-from tasks.scene_file import built_in_scene
+from mend.server.cli.failures import told_plainly
+from mend.server.cli.output import print_rows
+from mend.tasks.library import SCENES
+from mend.tasks.scene_file import built_in_scene
 
 
 def scenes() -> None:

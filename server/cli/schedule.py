@@ -6,8 +6,8 @@ from typing import Annotated
 
 import typer
 
-from server.cli.failures import NOT_FINISHED, CommandLineError, told_plainly
-from server.cli.output import print_rows
+from mend.server.cli.failures import NOT_FINISHED, CommandLineError, told_plainly
+from mend.server.cli.output import print_rows
 
 
 def schedule(
@@ -39,14 +39,14 @@ def schedule(
     """
     if importlib.util.find_spec("ortools") is None:
         raise CommandLineError(
-            "planning deliveries needs OR-Tools: install Mend as 'mend[scheduling]'"
+            "planning deliveries needs OR-Tools: install Mend as 'mend-robots[scheduling]'"
         )
     # Imported only here: solvers would make every other command wait.
-    from fleet.scheduling.drawing.picture import picture
-    from fleet.scheduling.methods import METHODS
-    from server.cli import schedule_output as output
-    from server.cli.delivery_files import read_delivery
-    from server.cli.delivery_search import Search, searched
+    from mend.fleet.scheduling.drawing.picture import picture
+    from mend.fleet.scheduling.methods import METHODS
+    from mend.server.cli import schedule_output as output
+    from mend.server.cli.delivery_files import read_delivery
+    from mend.server.cli.delivery_search import Search, searched
 
     if method not in ("auto", *METHODS):
         names = ", ".join(("auto", *METHODS))

@@ -7,10 +7,10 @@ from typing import Any
 from rich.console import Console
 from rich.status import Status as Spinner
 
-from fleet.scheduling.objective import route_distance_m
-from fleet.scheduling.problem import Problem
-from fleet.scheduling.schedule import Action, Schedule, Stop
-from fleet.scheduling.solution import Progress, Solution
+from mend.fleet.scheduling.objective import route_distance_m
+from mend.fleet.scheduling.problem import Problem
+from mend.fleet.scheduling.schedule import Action, Schedule, Stop
+from mend.fleet.scheduling.solution import Progress, Solution
 
 BOUND_EVERY_S = 1.0
 """How often a better bound alone is worth a line."""

@@ -7,9 +7,9 @@ from typing import Annotated, Any
 
 import typer
 
-from server.behaviors import behavior_parameters
-from server.cli.failures import told_plainly
-from tasks.json_schema import scenario_schema, scene_schema, task_schema
+from mend.server.behaviors import behavior_parameters
+from mend.server.cli.failures import told_plainly
+from mend.tasks.json_schema import scenario_schema, scene_schema, task_schema
 
 
 class SchemaName(StrEnum):
@@ -45,31 +45,31 @@ def schema(
 
 
 def _openapi() -> dict[str, Any]:
-    from server.schemas import openapi
+    from mend.server.schemas import openapi
 
     return openapi()
 
 
 def _asyncapi() -> dict[str, Any]:
-    from server.schemas import asyncapi
+    from mend.server.schemas import asyncapi
 
     return asyncapi()
 
 
 def _console() -> dict[str, Any]:
-    from server.console_schema import console
+    from mend.server.console_schema import console
 
     return console()
 
 
 def _events() -> dict[str, Any]:
-    from server.schemas import json_schemas
+    from mend.server.schemas import json_schemas
 
     return json_schemas()["event"]
 
 
 def _delivery() -> dict[str, Any]:
-    from fleet.scheduling.problem_file import delivery_schema
+    from mend.fleet.scheduling.problem_file import delivery_schema
 
     return delivery_schema()
 

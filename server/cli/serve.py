@@ -7,10 +7,10 @@ from typing import Annotated
 
 import typer
 
-from server.cli.failures import told_plainly
-from server.cli.live_run import OpenService
-from server.garbage import settle_garbage
-from server.settings import Settings, load_settings
+from mend.server.cli.failures import told_plainly
+from mend.server.cli.live_run import OpenService
+from mend.server.garbage import settle_garbage
+from mend.server.settings import Settings, load_settings
 
 
 def serve(
@@ -27,7 +27,7 @@ def serve(
     not ended when the service stopped go on. Ctrl-C stops it.
     """
     # Imported only here: the whole service would make every other command wait.
-    from server.composition import open_service
+    from mend.server.composition import open_service
 
     with told_plainly():
         settings = load_settings(config, host=host, port=port, journal=journal)

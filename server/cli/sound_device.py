@@ -7,7 +7,7 @@ from collections.abc import AsyncIterator
 from types import ModuleType
 from typing import Any, Protocol
 
-from server.cli.failures import CommandLineError
+from mend.server.cli.failures import CommandLineError
 
 SAMPLE_RATE_HZ = 16_000
 FRAME_SAMPLES = 320
@@ -109,7 +109,9 @@ def _sounddevice() -> ModuleType:
     try:
         import sounddevice
     except ImportError as error:
-        raise CommandLineError("sounddevice is not installed: pip install 'mend[talk]'") from error
+        raise CommandLineError(
+            "sounddevice is not installed: pip install 'mend-robots[talk]'"
+        ) from error
     except OSError as error:
         # The package is there, but the library that it wraps is not.
         raise CommandLineError(

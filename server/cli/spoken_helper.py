@@ -6,8 +6,8 @@ from contextlib import suppress
 from dataclasses import dataclass
 from uuid import UUID
 
-from server.api.helper_messages import Error
-from server.api.speech_messages import (
+from mend.server.api.helper_messages import Error
+from mend.server.api.speech_messages import (
     AnySpeechServerMessage,
     Ended,
     GaveUp,
@@ -15,14 +15,14 @@ from server.api.speech_messages import (
     Listening,
     Say,
 )
-from server.cli.sound_device import SoundDevice
-from server.client import MendClient
-from server.client_errors import CommandRefusedError, RefusedError
-from server.client_speech import SpeechStream
-from server.client_stream import EventStream
-from server.journal.events import Answered, DialogueClosed, Prompt
-from server.runtime.views import Snapshot
-from server.speech.commands import Command
+from mend.server.cli.sound_device import SoundDevice
+from mend.server.client import MendClient
+from mend.server.client_errors import CommandRefusedError, RefusedError
+from mend.server.client_speech import SpeechStream
+from mend.server.client_stream import EventStream
+from mend.server.journal.events import Answered, DialogueClosed, Prompt
+from mend.server.runtime.views import Snapshot
+from mend.server.speech.commands import Command
 
 
 @dataclass(frozen=True, slots=True)

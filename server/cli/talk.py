@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from server.cli.failures import INTERRUPTED, CommandLineError
+from mend.server.cli.failures import INTERRUPTED, CommandLineError
 
 TOKEN_VARIABLE = "MEND_TOKEN"
 
@@ -28,10 +28,10 @@ def talk(
     is understood. Ctrl-C ends it; the runs go on.
     """
     # Imported only here: the client brings the whole API with it.
-    from server.cli.sound_device import PortAudioDevice
-    from server.cli.spoken_helper import SpokenHelper
-    from server.client import MendClient
-    from server.client_errors import ClientError
+    from mend.server.cli.sound_device import PortAudioDevice
+    from mend.server.cli.spoken_helper import SpokenHelper
+    from mend.server.client import MendClient
+    from mend.server.client_errors import ClientError
 
     sound = PortAudioDevice(device)
     name = helper or getpass.getuser()

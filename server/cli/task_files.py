@@ -3,14 +3,14 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from server.behaviors import behavior_parameters
-from server.cli.failures import CommandLineError
-from tasks.library import SCENES, NotInLibraryError
-from tasks.problem import Problem
-from tasks.scene import Scene
-from tasks.scene_file import ReadScene, check_scene_file, read_scene_file, read_scene_text
-from tasks.scene_problem import SceneProblem
-from tasks.task_file import CheckedTask, check_built_in_task, check_task_file
+from mend.server.behaviors import behavior_parameters
+from mend.server.cli.failures import CommandLineError
+from mend.tasks.library import SCENES, NotInLibraryError
+from mend.tasks.problem import Problem
+from mend.tasks.scene import Scene
+from mend.tasks.scene_file import ReadScene, check_scene_file, read_scene_file, read_scene_text
+from mend.tasks.scene_problem import SceneProblem
+from mend.tasks.task_file import CheckedTask, check_built_in_task, check_task_file
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,10 +5,10 @@ import getpass
 import sys
 from typing import Literal
 
-from server.cli.output import EventOutput
-from server.errors import ConflictError
-from server.journal import events as ev
-from server.runtime.service import RunService
+from mend.server.cli.output import EventOutput
+from mend.server.errors import ConflictError
+from mend.server.journal import events as ev
+from mend.server.runtime.service import RunService
 
 WORDS: dict[str, Literal["yes", "no"]] = {"y": "yes", "yes": "yes", "n": "no", "no": "no"}
 

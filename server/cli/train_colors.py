@@ -5,12 +5,12 @@ from typing import Annotated
 
 import typer
 
-from robots.vision.color_model import ColorModel
-from robots.vision.training import load_samples
-from server.cli.failures import CommandLineError, told_plainly
-from server.cli.task_files import read_scene
-from sim.world import ColorTeacher
-from tasks.plugins import load_plugins
+from mend.robots.vision.color_model import ColorModel
+from mend.robots.vision.training import load_samples
+from mend.server.cli.failures import CommandLineError, told_plainly
+from mend.server.cli.task_files import read_scene
+from mend.sim.world import ColorTeacher
+from mend.tasks.plugins import load_plugins
 
 
 def train_colors(

@@ -1,11 +1,11 @@
 """`mend trees`: the task trees that come with Mend."""
 
-from server.behaviors import behavior_parameters
-from server.cli.failures import told_plainly
-from server.cli.output import print_rows
-from tasks.definition import BehaviorNode, TaskTreeDefinition
-from tasks.library import TREES
-from tasks.task_file import check_built_in_task
+from mend.server.behaviors import behavior_parameters
+from mend.server.cli.failures import told_plainly
+from mend.server.cli.output import print_rows
+from mend.tasks.definition import BehaviorNode, TaskTreeDefinition
+from mend.tasks.library import TREES
+from mend.tasks.task_file import check_built_in_task
 
 
 def trees() -> None:

@@ -10,8 +10,8 @@ from typing import Literal, Protocol
 
 import numpy as np
 
-from server.runtime.requests import RunRequest
-from tasks.scenario import Scenario
+from mend.server.runtime.requests import RunRequest
+from mend.tasks.scenario import Scenario
 
 DEFAULT_DELAY_S = 2.0
 RANDOM_DELAY_S = (0.5, 6.0)

@@ -130,7 +130,7 @@ class Mailer:
     def __init__(self, settings: MailSettings) -> None:
         self._settings = settings
         environment = Environment(
-            loader=PackageLoader("server.dialogues", "."),
+            loader=PackageLoader("mend.server.dialogues", "."),
             undefined=StrictUndefined,
             trim_blocks=True,
             autoescape=False,

@@ -5,10 +5,10 @@ import sqlite3
 from contextlib import closing
 from pathlib import Path
 
-from server.journal.file_lock import FileLock
-from server.journal.file_mode import OWNERS_FOLDER, keep_to_owner
-from server.journal.reader import JournalReader
-from server.journal.sqlite_errors import SQLITE_ERRORS
+from mend.server.journal.file_lock import FileLock
+from mend.server.journal.file_mode import OWNERS_FOLDER, keep_to_owner
+from mend.server.journal.reader import JournalReader
+from mend.server.journal.sqlite_errors import SQLITE_ERRORS
 
 BUSY_TIMEOUT_S = 5.0
 

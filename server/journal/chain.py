@@ -11,8 +11,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 
-from server.journal.events import NO_RUN
-from server.journal.sqlite_errors import SQLITE_ERRORS
+from mend.server.journal.events import NO_RUN
+from mend.server.journal.sqlite_errors import SQLITE_ERRORS
 
 DIGEST_BYTES = 16
 FIRST_LINK = bytes(DIGEST_BYTES)

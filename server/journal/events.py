@@ -10,13 +10,13 @@ from uuid import UUID
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
 
-from dialogue.evidence import Change
-from dialogue.outlook import Outlook
-from dialogue.script import CloseReason, Expectation, Help
-from robots.link.messages import Detection
-from server.access.roles import Role
-from tasks.intervention import Intervention
-from tasks.resolution import Resolution
+from mend.dialogue.evidence import Change
+from mend.dialogue.outlook import Outlook
+from mend.dialogue.script import CloseReason, Expectation, Help
+from mend.robots.link.messages import Detection
+from mend.server.access.roles import Role
+from mend.tasks.intervention import Intervention
+from mend.tasks.resolution import Resolution
 
 
 class EventModel(BaseModel):

@@ -4,7 +4,7 @@ import fcntl
 from pathlib import Path
 from typing import IO
 
-from server.journal.file_mode import keep_to_owner
+from mend.server.journal.file_mode import keep_to_owner
 
 MADE = "made\n"
 

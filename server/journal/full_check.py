@@ -7,14 +7,14 @@ from functools import partial
 from pathlib import Path
 from uuid import UUID
 
-from server.errors import ServiceError
-from server.journal import events as ev
-from server.journal.chain import SELECT_ROWS, Row, breaks
-from server.journal.journal import JournalReadError
-from server.journal.migrations import MIGRATIONS, WITH_CHAIN
-from server.journal.run_index import ENDINGS, UNREADABLE
-from server.journal.sqlite_errors import text_or_marks
-from server.journal.stored_event import read_event
+from mend.server.errors import ServiceError
+from mend.server.journal import events as ev
+from mend.server.journal.chain import SELECT_ROWS, Row, breaks
+from mend.server.journal.journal import JournalReadError
+from mend.server.journal.migrations import MIGRATIONS, WITH_CHAIN
+from mend.server.journal.run_index import ENDINGS, UNREADABLE
+from mend.server.journal.sqlite_errors import text_or_marks
+from mend.server.journal.stored_event import read_event
 
 MOST_PAGE_FINDINGS = 20
 FoldRun = Callable[[UUID, Iterable[ev.Event]], None]

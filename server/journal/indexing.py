@@ -5,10 +5,10 @@ import sqlite3
 
 from pydantic import ValidationError
 
-from server.journal.chain import chain_anew
-from server.journal.events import Event, any_event
-from server.journal.run_index import INDEXED_TYPES, insert_unreadable, note
-from server.journal.upgrades import UnknownEventVersionError, upgrade_text
+from mend.server.journal.chain import chain_anew
+from mend.server.journal.events import Event, any_event
+from mend.server.journal.run_index import INDEXED_TYPES, insert_unreadable, note
+from mend.server.journal.upgrades import UnknownEventVersionError, upgrade_text
 
 log = logging.getLogger(__name__)
 

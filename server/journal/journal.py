@@ -5,12 +5,12 @@ from dataclasses import dataclass, field
 from typing import Any, Protocol
 from uuid import UUID
 
-from server.journal.chain import Break, Seal
-from server.journal.events import Event
-from server.journal.keyed_request import FirstAnswer, KeptRequest, KeyedRequest
-from server.journal.run_index import RunIndex
-from server.journal.subscriptions import DEFAULT_CAPACITY, Record, Subscription
-from server.journal.trouble import Trouble
+from mend.server.journal.chain import Break, Seal
+from mend.server.journal.events import Event
+from mend.server.journal.keyed_request import FirstAnswer, KeptRequest, KeyedRequest
+from mend.server.journal.run_index import RunIndex
+from mend.server.journal.subscriptions import DEFAULT_CAPACITY, Record, Subscription
+from mend.server.journal.trouble import Trouble
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,7 +12,7 @@ from uuid import UUID
 
 from pydantic import Field
 
-from server.journal.events import Author, Event
+from mend.server.journal.events import Author, Event
 
 
 @dataclass(frozen=True, slots=True)

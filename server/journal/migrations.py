@@ -5,7 +5,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import UTC, datetime
 
-from server.journal.indexing import index_events
+from mend.server.journal.indexing import index_events
 
 VERSION_1 = """
 CREATE TABLE events (

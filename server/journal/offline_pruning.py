@@ -10,11 +10,11 @@ from pathlib import Path
 from typing import Any
 from uuid import UUID
 
-from server.journal.file_lock import FileLock, JournalLockedError
-from server.journal.journal import JournalDamagedError, JournalOpenError
-from server.journal.migrations import MIGRATIONS, migrate
-from server.journal.pruning import Keep, Pruned, prune
-from server.journal.reader import JournalReader
+from mend.server.journal.file_lock import FileLock, JournalLockedError
+from mend.server.journal.journal import JournalDamagedError, JournalOpenError
+from mend.server.journal.migrations import MIGRATIONS, migrate
+from mend.server.journal.pruning import Keep, Pruned, prune
+from mend.server.journal.reader import JournalReader
 
 BUSY_TIMEOUT_S = 30.0
 SHORTEST_PAUSE_S = 0.005

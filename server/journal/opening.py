@@ -6,15 +6,15 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-from server.journal.chain import Break, Chain
-from server.journal.file_lock import FileLock
-from server.journal.file_mode import OWNERS_FOLDER, keep_to_owner
-from server.journal.journal import JournalDamagedError, JournalOpenError
-from server.journal.migrations import migrate
-from server.journal.other_writers import OtherWriters
-from server.journal.quick_check import DamagedPagesError, quick_check
-from server.journal.same_file import SameFile
-from server.journal.sqlite_errors import SQLITE_ERRORS
+from mend.server.journal.chain import Break, Chain
+from mend.server.journal.file_lock import FileLock
+from mend.server.journal.file_mode import OWNERS_FOLDER, keep_to_owner
+from mend.server.journal.journal import JournalDamagedError, JournalOpenError
+from mend.server.journal.migrations import migrate
+from mend.server.journal.other_writers import OtherWriters
+from mend.server.journal.quick_check import DamagedPagesError, quick_check
+from mend.server.journal.same_file import SameFile
+from mend.server.journal.sqlite_errors import SQLITE_ERRORS
 
 IN_MEMORY = ":memory:"
 

@@ -10,7 +10,7 @@ from functools import partial
 from typing import Any, Protocol
 from uuid import UUID
 
-from server.journal.chain import (
+from mend.server.journal.chain import (
     DAMAGED,
     NOTHING_LEFT,
     Batch,
@@ -18,7 +18,7 @@ from server.journal.chain import (
     digest_of,
     rows_of,
 )
-from server.journal.keyed_request import forget_requests_of_run
+from mend.server.journal.keyed_request import forget_requests_of_run
 
 EVENTS_AT_ONCE = 500
 RUNS_AT_ONCE = 20

@@ -5,7 +5,7 @@ import sqlite3
 import time
 from collections.abc import Callable
 
-from server.journal.chain import Break, breaks
+from mend.server.journal.chain import Break, breaks
 
 TAIL_BATCHES = 256
 MOST_BREAKS = 20

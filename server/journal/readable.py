@@ -5,11 +5,11 @@ from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from uuid import UUID
 
-from server.journal.events import NO_RUN, Event
-from server.journal.journal import UnreadableEvent
-from server.journal.pages import page_of
-from server.journal.sqlite_errors import SQLITE_ERRORS
-from server.journal.stored_event import UnreadableEventError, read_event
+from mend.server.journal.events import NO_RUN, Event
+from mend.server.journal.journal import UnreadableEvent
+from mend.server.journal.pages import page_of
+from mend.server.journal.sqlite_errors import SQLITE_ERRORS
+from mend.server.journal.stored_event import UnreadableEventError, read_event
 
 COLUMNS = "SELECT seq, run, body, version FROM events"
 

@@ -8,13 +8,13 @@ from types import TracebackType
 from typing import Any, Self
 from uuid import UUID
 
-from server.journal.chain import Seals, at_one_moment, breaks
-from server.journal.events import Event
-from server.journal.journal import JournalReadError, UnreadableEvent
-from server.journal.migrations import MIGRATIONS, WITH_CHAIN, JournalSchemaError
-from server.journal.readable import event_of
-from server.journal.sqlite_errors import SQLITE_ERRORS, text_or_marks
-from server.journal.stored_event import read_event
+from mend.server.journal.chain import Seals, at_one_moment, breaks
+from mend.server.journal.events import Event
+from mend.server.journal.journal import JournalReadError, UnreadableEvent
+from mend.server.journal.migrations import MIGRATIONS, WITH_CHAIN, JournalSchemaError
+from mend.server.journal.readable import event_of
+from mend.server.journal.sqlite_errors import SQLITE_ERRORS, text_or_marks
+from mend.server.journal.stored_event import read_event
 
 
 class JournalReader:

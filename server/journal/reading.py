@@ -7,8 +7,8 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any, TypeVar
 
-from server.journal.journal import JournalClosedError, JournalReadError
-from server.journal.sqlite_errors import SQLITE_ERRORS
+from mend.server.journal.journal import JournalClosedError, JournalReadError
+from mend.server.journal.sqlite_errors import SQLITE_ERRORS
 
 T = TypeVar("T")
 

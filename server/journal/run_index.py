@@ -8,7 +8,7 @@ from datetime import UTC, datetime
 from typing import Any, Literal
 from uuid import UUID
 
-from server.journal import events as ev
+from mend.server.journal import events as ev
 
 UNREADABLE = "unreadable"
 """The status of a run whose events cannot be read; every other one is that of its events."""

@@ -15,9 +15,9 @@ from pathlib import Path
 from typing import Any, NoReturn
 from uuid import UUID
 
-from server.journal.chain import Break, Row, Seal, Seals, at_one_moment, is_whole
-from server.journal.events import Event
-from server.journal.journal import (
+from mend.server.journal.chain import Break, Row, Seal, Seals, at_one_moment, is_whole
+from mend.server.journal.events import Event
+from mend.server.journal.journal import (
     Document,
     DuplicateReceiptError,
     Entry,
@@ -27,7 +27,7 @@ from server.journal.journal import (
     Receipt,
     UnreadableEvent,
 )
-from server.journal.keyed_request import (
+from mend.server.journal.keyed_request import (
     FirstAnswer,
     KeptRequest,
     KeyedRequest,
@@ -36,18 +36,18 @@ from server.journal.keyed_request import (
     keep_answer,
     note_request,
 )
-from server.journal.opening import IN_MEMORY, open_journal
-from server.journal.pages import page_of
-from server.journal.pruning import Keep, Pruned, prune, pruned_through
-from server.journal.readable import read_readable
-from server.journal.reading import ReadingThread
-from server.journal.run_index import RunIndex, note, note_readable, note_unreadable
-from server.journal.same_file import FileGoneError
-from server.journal.stored_event import current_text, read_event
-from server.journal.subscriptions import DEFAULT_CAPACITY, Record, Subscribers, Subscription
-from server.journal.trouble import Sleep, Trouble
-from server.journal.upgrades import current_version
-from server.journal.writer import CommitStatistics, Done, GroupCommitWriter
+from mend.server.journal.opening import IN_MEMORY, open_journal
+from mend.server.journal.pages import page_of
+from mend.server.journal.pruning import Keep, Pruned, prune, pruned_through
+from mend.server.journal.readable import read_readable
+from mend.server.journal.reading import ReadingThread
+from mend.server.journal.run_index import RunIndex, note, note_readable, note_unreadable
+from mend.server.journal.same_file import FileGoneError
+from mend.server.journal.stored_event import current_text, read_event
+from mend.server.journal.subscriptions import DEFAULT_CAPACITY, Record, Subscribers, Subscription
+from mend.server.journal.trouble import Sleep, Trouble
+from mend.server.journal.upgrades import current_version
+from mend.server.journal.writer import CommitStatistics, Done, GroupCommitWriter
 
 __all__ = ["IN_MEMORY", "SqliteJournal"]
 

@@ -2,9 +2,9 @@
 
 from pydantic import ValidationError
 
-from server.journal.events import Event, any_event
-from server.journal.journal import JournalReadError
-from server.journal.upgrades import UnknownEventVersionError, current_version, upgrade_text
+from mend.server.journal.events import Event, any_event
+from mend.server.journal.journal import JournalReadError
+from mend.server.journal.upgrades import UnknownEventVersionError, current_version, upgrade_text
 
 
 class UnreadableEventError(JournalReadError):

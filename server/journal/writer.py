@@ -10,7 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from server.journal.journal import JournalClosedError, JournalWriteError
+from mend.server.journal.journal import JournalClosedError, JournalWriteError
 
 MAX_BATCH = 1000
 

@@ -6,11 +6,11 @@ from contextlib import contextmanager
 from typing import Protocol
 from uuid import UUID
 
-from robots.link.messages import Hello, Poses
-from server.poses.frame import Frame, encode
-from server.poses.layout import RATE_HZ, Layout, lay_out
-from server.poses.record import PoseRecord, PoseRecords, RecordedPoses
-from server.runtime.run_state import RunState
+from mend.robots.link.messages import Hello, Poses
+from mend.server.poses.frame import Frame, encode
+from mend.server.poses.layout import RATE_HZ, Layout, lay_out
+from mend.server.poses.record import PoseRecord, PoseRecords, RecordedPoses
+from mend.server.runtime.run_state import RunState
 
 ShowPoses = Callable[[str, float], None]
 """Has a robot send its poses so often per second of its clock; 0 is not at all."""

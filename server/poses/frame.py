@@ -3,7 +3,7 @@
 import struct
 from collections.abc import Iterable, Iterator
 
-from robots.link.messages import Poses
+from mend.robots.link.messages import Poses
 
 _HEAD = struct.Struct("<dIHH")
 _LENGTH = struct.Struct("<I")

@@ -3,10 +3,10 @@
 from typing import Literal
 from uuid import UUID
 
-from robots.link.messages import Hello, PoseLayout, Poses
-from server.runtime.run_state import RunState
-from server.runtime.views import View
-from tasks.scene import Place, Scene
+from mend.robots.link.messages import Hello, PoseLayout, Poses
+from mend.server.runtime.run_state import RunState
+from mend.server.runtime.views import View
+from mend.tasks.scene import Place, Scene
 
 RATE_HZ = 20.0
 """Frames per second of the robot's clock, at most."""

@@ -13,8 +13,8 @@ from uuid import UUID
 
 from pydantic import ValidationError
 
-from server.poses.frame import Frame, framed, time_of, unframed
-from server.poses.layout import Layout
+from mend.server.poses.frame import Frame, framed, time_of, unframed
+from mend.server.poses.layout import Layout
 
 log = logging.getLogger(__name__)
 

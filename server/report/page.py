@@ -10,12 +10,12 @@ from uuid import UUID
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from server.journal import events as ev
-from server.report.record import Fault, RunRecord
-from server.report.timeline import lay_out_timeline
-from server.report.tree_drawing import draw_tree
-from server.report.tree_state import node_states
-from server.transcript import (
+from mend.server.journal import events as ev
+from mend.server.report.record import Fault, RunRecord
+from mend.server.report.timeline import lay_out_timeline
+from mend.server.report.tree_drawing import draw_tree
+from mend.server.report.tree_state import node_states
+from mend.server.transcript import (
     SPOKEN,
     Line,
     Transcript,
@@ -49,7 +49,7 @@ def render_report(events: Sequence[ev.Event], pictures: Mapping[UUID, bytes]) ->
     lines = [line for event in events for line in transcript.lines(event)]
     states = node_states(record)
     environment = Environment(
-        loader=PackageLoader("server.report"),
+        loader=PackageLoader("mend.server.report"),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
@@ -69,7 +69,7 @@ def render_report(events: Sequence[ev.Event], pictures: Mapping[UUID, bytes]) ->
         choices=[_choice(each.started) for each in record.executions],
         transcript=list(grouped(lines)),
         spoken=SPOKEN,
-        version=version("mend"),
+        version=version("mend-robots"),
     )
 
 

@@ -6,9 +6,9 @@ from functools import singledispatchmethod
 from typing import Literal
 from uuid import UUID
 
-from dialogue.script import CloseReason
-from server.journal import events as ev
-from tasks.resolution import Resolution
+from mend.dialogue.script import CloseReason
+from mend.server.journal import events as ev
+from mend.tasks.resolution import Resolution
 
 RunEnd = ev.RunFinished | ev.RunFailed | ev.RunAborted
 

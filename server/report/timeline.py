@@ -3,8 +3,8 @@
 import math
 from dataclasses import dataclass, field
 
-from server.report.record import Execution, Fault, RunRecord
-from server.transcript import deed_text
+from mend.server.report.record import Execution, Fault, RunRecord
+from mend.server.transcript import deed_text
 
 LABELS_PX = 150
 MARGIN_PX = 16

@@ -2,11 +2,11 @@
 
 from collections import Counter
 
-from server.journal import events as ev
-from server.report.record import RunRecord
-from server.report.tree_drawing import NodeFate, NodeState
-from tasks.definition import NodeKind, TaskTreeDefinition
-from tasks.task_tree import TaskTree
+from mend.server.journal import events as ev
+from mend.server.report.record import RunRecord
+from mend.server.report.tree_drawing import NodeFate, NodeState
+from mend.tasks.definition import NodeKind, TaskTreeDefinition
+from mend.tasks.task_tree import TaskTree
 
 DOERS: dict[ev.DoneBy, str] = {
     "robot": "by the robot",

@@ -7,8 +7,8 @@ from collections.abc import Callable, Coroutine
 from typing import Any
 from uuid import uuid4
 
-from robots.link.jpeg import NotJpegError, read_jpeg
-from robots.link.messages import (
+from mend.robots.link.jpeg import NotJpegError, read_jpeg
+from mend.robots.link.messages import (
     PROTOCOL_VERSION,
     Ack,
     ClipTaken,
@@ -25,20 +25,20 @@ from robots.link.messages import (
     TakePicture,
     Welcome,
 )
-from server.errors import ConflictError, NotFoundError
-from server.journal.journal import DuplicateReceiptError, Entry, Journal, Receipt
-from server.limits import LimitName
-from server.pace import CHARS_OF_ONE
-from server.plain_text import plain
-from server.refusals import Refusals
-from server.robots.session import (
+from mend.server.errors import ConflictError, NotFoundError
+from mend.server.journal.journal import DuplicateReceiptError, Entry, Journal, Receipt
+from mend.server.limits import LimitName
+from mend.server.pace import CHARS_OF_ONE
+from mend.server.plain_text import plain
+from mend.server.refusals import Refusals
+from mend.server.robots.session import (
     MissingReportError,
     PictureError,
     RobotSession,
     TooManyReportsError,
 )
-from server.robots.sink import RobotSink
-from server.robots.times import LinkTimes
+from mend.server.robots.sink import RobotSink
+from mend.server.robots.times import LinkTimes
 
 log = logging.getLogger(__name__)
 

@@ -1,7 +1,7 @@
 """A robot from outside is listened to at its pace: one that floods waits, and nobody else does."""
 
-from robots.link.channel import Channel
-from server.pace import Pace
+from mend.robots.link.channel import Channel
+from mend.server.pace import Pace
 
 
 class PacedChannel:

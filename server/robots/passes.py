@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Protocol
 
-from server.access.tokens import NewToken, fits, id_in, new_token
+from mend.server.access.tokens import NewToken, fits, id_in, new_token
 
 
 class Pass(Protocol):

@@ -14,23 +14,23 @@ from pathlib import Path
 from typing import Protocol
 from uuid import uuid4
 
-from robots.link.channel import Channel, memory_channel
-from robots.link.client import Aside, run_agent
-from robots.link.clock import LoopClock
-from robots.link.outbox import IN_MEMORY, Outbox
-from server.descriptors import (
+from mend.robots.link.channel import Channel, memory_channel
+from mend.robots.link.client import Aside, run_agent
+from mend.robots.link.clock import LoopClock
+from mend.robots.link.outbox import IN_MEMORY, Outbox
+from mend.server.descriptors import (
     is_for_want_of_descriptors,
     once_there_are_descriptors,
     until_there_are_descriptors,
 )
-from server.errors import InvalidError
-from server.plain_text import plain
-from server.robots.passes import OwnRobots
-from server.robots.registry import RobotRegistry
-from server.robots.silence import Silence
-from sim.robot_process import RobotProcessSetup, find_world
-from sim.world import WorldAdapter, WorldSetup, WorldUnavailableError
-from tasks.plugins import PluginError
+from mend.server.errors import InvalidError
+from mend.server.plain_text import plain
+from mend.server.robots.passes import OwnRobots
+from mend.server.robots.registry import RobotRegistry
+from mend.server.robots.silence import Silence
+from mend.sim.robot_process import RobotProcessSetup, find_world
+from mend.sim.world import WorldAdapter, WorldSetup, WorldUnavailableError
+from mend.tasks.plugins import PluginError
 
 log = logging.getLogger(__name__)
 
@@ -148,7 +148,7 @@ class RobotProcess:
                 sys.executable,
                 "-P",
                 "-m",
-                "sim.robot_process",
+                "mend.sim.robot_process",
                 stdin=PIPE,
                 stdout=DEVNULL,
                 stderr=PIPE,

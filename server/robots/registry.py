@@ -9,19 +9,19 @@ from functools import partial
 
 from pydantic import ValidationError
 
-from robots.link.channel import Channel, ChannelClosedError
-from robots.link.messages import PROTOCOL_VERSION, CommandBody, Hello, LinkError
-from server.errors import ConflictError
-from server.journal.journal import Journal, JournalClosedError, JournalReadError
-from server.limits import Limits
-from server.pace import Pace
-from server.refusals import Refusals
-from server.robots.known_robot import KnownRobot, ReplacedError
-from server.robots.paced_channel import PacedChannel
-from server.robots.passes import Anyone, Pass
-from server.robots.session import NoSenseError, RobotSession, read_message, sentence
-from server.robots.sink import RobotSink
-from server.robots.times import LinkTimes
+from mend.robots.link.channel import Channel, ChannelClosedError
+from mend.robots.link.messages import PROTOCOL_VERSION, CommandBody, Hello, LinkError
+from mend.server.errors import ConflictError
+from mend.server.journal.journal import Journal, JournalClosedError, JournalReadError
+from mend.server.limits import Limits
+from mend.server.pace import Pace
+from mend.server.refusals import Refusals
+from mend.server.robots.known_robot import KnownRobot, ReplacedError
+from mend.server.robots.paced_channel import PacedChannel
+from mend.server.robots.passes import Anyone, Pass
+from mend.server.robots.session import NoSenseError, RobotSession, read_message, sentence
+from mend.server.robots.sink import RobotSink
+from mend.server.robots.times import LinkTimes
 
 __all__ = ["RobotRegistry", "RobotSink"]
 

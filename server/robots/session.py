@@ -8,8 +8,8 @@ from typing import Protocol
 
 from pydantic import ValidationError
 
-from robots.link.channel import Channel, ChannelClosedError
-from robots.link.messages import (
+from mend.robots.link.channel import Channel, ChannelClosedError
+from mend.robots.link.messages import (
     Ack,
     AnyRobotMessage,
     AnyServiceMessage,
@@ -21,12 +21,12 @@ from robots.link.messages import (
     Taken,
     robot_message,
 )
-from server.errors import ServiceError
-from server.journal.journal import JournalClosedError
-from server.limits import LimitName
-from server.robots.silence import Silence
-from server.robots.times import LinkTimes
-from tasks.plain_mistakes import what_it_must_be
+from mend.server.errors import ServiceError
+from mend.server.journal.journal import JournalClosedError
+from mend.server.limits import LimitName
+from mend.server.robots.silence import Silence
+from mend.server.robots.times import LinkTimes
+from mend.tasks.plain_mistakes import what_it_must_be
 
 log = logging.getLogger(__name__)
 

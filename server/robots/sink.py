@@ -2,8 +2,8 @@
 
 from typing import Protocol
 
-from robots.link.messages import Hello, Poses, Report
-from server.journal.journal import Receipt
+from mend.robots.link.messages import Hello, Poses, Report
+from mend.server.journal.journal import Receipt
 
 
 class RobotSink(Protocol):

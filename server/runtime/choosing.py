@@ -5,10 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from server.journal.events import Candidate
-from server.runtime.robot_side import RobotSide
-from server.runtime.run_state import RunState
-from tasks.potential import leaf_potentials
+from mend.server.journal.events import Candidate
+from mend.server.runtime.robot_side import RobotSide
+from mend.server.runtime.run_state import RunState
+from mend.tasks.potential import leaf_potentials
 
 MAX_RECORDED_CANDIDATES = 100
 """More candidates than this are not journaled; the best are kept."""

@@ -5,11 +5,11 @@ A claim is a courtesy with a lease (wall time); it never keeps anybody from answ
 
 from datetime import timedelta
 
-from server.errors import ConflictError
-from server.journal.events import Author
-from server.runtime.context import RunContext
-from server.runtime.dialogue_events import DialogueEvents
-from server.runtime.dialogue_state import DialogueState
+from mend.server.errors import ConflictError
+from mend.server.journal.events import Author
+from mend.server.runtime.context import RunContext
+from mend.server.runtime.dialogue_events import DialogueEvents
+from mend.server.runtime.dialogue_state import DialogueState
 
 MOST_CLAIMS = 10_000
 """Of one dialogue, renewals included: who renews as the console does needs days for so many."""

@@ -7,12 +7,12 @@ from datetime import datetime
 from typing import Any
 from uuid import UUID
 
-from server.journal.events import Event
-from server.journal.journal import Entry, Journal, Receipt
-from server.limits import Limits
-from server.refusals import Refusals
-from server.runtime.clock import RunClock
-from server.runtime.run_state import RunState
+from mend.server.journal.events import Event
+from mend.server.journal.journal import Entry, Journal, Receipt
+from mend.server.limits import Limits
+from mend.server.refusals import Refusals
+from mend.server.runtime.clock import RunClock
+from mend.server.runtime.run_state import RunState
 
 
 @dataclass(frozen=True, slots=True)

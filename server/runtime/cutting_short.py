@@ -2,11 +2,11 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 
-from server.journal import events as ev
-from server.runtime.context import RunContext
-from server.runtime.dialogue_driver import DialogueDriver
-from server.runtime.report_events import ReportEvents
-from server.runtime.robot_side import Doing, RobotSide
+from mend.server.journal import events as ev
+from mend.server.runtime.context import RunContext
+from mend.server.runtime.dialogue_driver import DialogueDriver
+from mend.server.runtime.report_events import ReportEvents
+from mend.server.runtime.robot_side import Doing, RobotSide
 
 
 class CuttingShort:

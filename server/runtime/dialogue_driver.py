@@ -4,10 +4,10 @@ from collections.abc import Callable, Sequence
 from typing import Literal
 from uuid import UUID, uuid4
 
-from dialogue.outlook import Outlook
-from dialogue.script import Ask, Turn
-from server.dialogues.answers import AnswerSource
-from server.dialogues.escalation import (
+from mend.dialogue.outlook import Outlook
+from mend.dialogue.script import Ask, Turn
+from mend.server.dialogues.answers import AnswerSource
+from mend.server.dialogues.escalation import (
     EscalationPolicy,
     Exhausted,
     Mail,
@@ -16,17 +16,17 @@ from server.dialogues.escalation import (
     first_helper,
     next_rung,
 )
-from server.errors import ConflictError, LostRaceError, NotFoundError
-from server.journal import events as ev
-from server.runtime.clock import has_come
-from server.runtime.context import RunContext
-from server.runtime.dialogue_events import DialogueEvents
-from server.runtime.dialogue_looks import DialogueLooks, seen_at
-from server.runtime.dialogue_state import MOST_EXTENSIONS, DialogueState, rehearse
-from server.runtime.outlooks import is_suspect, outlook_at, outlook_now
-from server.runtime.promises import Promises
-from server.runtime.robot_side import Purpose, RobotSide
-from tasks.scenario import Person
+from mend.server.errors import ConflictError, LostRaceError, NotFoundError
+from mend.server.journal import events as ev
+from mend.server.runtime.clock import has_come
+from mend.server.runtime.context import RunContext
+from mend.server.runtime.dialogue_events import DialogueEvents
+from mend.server.runtime.dialogue_looks import DialogueLooks, seen_at
+from mend.server.runtime.dialogue_state import MOST_EXTENSIONS, DialogueState, rehearse
+from mend.server.runtime.outlooks import is_suspect, outlook_at, outlook_now
+from mend.server.runtime.promises import Promises
+from mend.server.runtime.robot_side import Purpose, RobotSide
+from mend.tasks.scenario import Person
 
 SendMail = Callable[[ev.Escalated | ev.SuspectedFalseAlarm, DialogueState], None]
 """Writes to the operators: about a question that nobody answered, or a suspected false alarm."""

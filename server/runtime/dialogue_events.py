@@ -5,10 +5,10 @@ from datetime import datetime
 from typing import Any
 from uuid import UUID, uuid4
 
-from dialogue.evidence import Change, Look
-from dialogue.script import Ask, AwaitHelp, Close, CloseReason, Say, Turn
-from server.journal import events as ev
-from tasks.resolution import Resolution
+from mend.dialogue.evidence import Change, Look
+from mend.dialogue.script import Ask, AwaitHelp, Close, CloseReason, Say, Turn
+from mend.server.journal import events as ev
+from mend.tasks.resolution import Resolution
 
 
 class DialogueEvents:

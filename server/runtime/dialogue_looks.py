@@ -3,7 +3,7 @@
 from dataclasses import replace
 from uuid import UUID
 
-from dialogue.evidence import (
+from mend.dialogue.evidence import (
     Change,
     Look,
     Point,
@@ -13,13 +13,13 @@ from dialogue.evidence import (
     has_moved,
     put_right,
 )
-from dialogue.script import EXPECTED, Expectation, Help
-from robots.link.messages import FinishedResult
-from server.journal import events as ev
-from server.runtime.clock import has_come
-from server.runtime.context import RunContext
-from server.runtime.dialogue_state import DialogueState
-from server.runtime.robot_side import Doing, Purpose, RobotSide
+from mend.dialogue.script import EXPECTED, Expectation, Help
+from mend.robots.link.messages import FinishedResult
+from mend.server.journal import events as ev
+from mend.server.runtime.clock import has_come
+from mend.server.runtime.context import RunContext
+from mend.server.runtime.dialogue_state import DialogueState
+from mend.server.runtime.robot_side import Doing, Purpose, RobotSide
 
 FIRST_LOOK_S = 1.0
 """So long the first look may take to see whether an object rests within reach."""

@@ -7,13 +7,13 @@ from functools import singledispatchmethod
 from typing import Self
 from uuid import UUID
 
-from dialogue.conversation import Conversation
-from dialogue.evidence import Change, PutRight
-from dialogue.outlook import Outlook
-from dialogue.script import CloseReason, Expectation, Script, Turn
-from robots.link.messages import Detection
-from server.journal import events as ev
-from tasks.issue import Issue, Sensed
+from mend.dialogue.conversation import Conversation
+from mend.dialogue.evidence import Change, PutRight
+from mend.dialogue.outlook import Outlook
+from mend.dialogue.script import CloseReason, Expectation, Script, Turn
+from mend.robots.link.messages import Detection
+from mend.server.journal import events as ev
+from mend.tasks.issue import Issue, Sensed
 
 MOST_EXTENSIONS = 10
 """So often the deadline of one question may be moved."""

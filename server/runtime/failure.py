@@ -1,9 +1,9 @@
 """How a run fails: its dialogues are aborted, and it says why."""
 
-from server.errors import ServiceError
-from server.journal import events as ev
-from server.runtime.context import RunContext
-from server.runtime.dialogue_events import DialogueEvents
+from mend.server.errors import ServiceError
+from mend.server.journal import events as ev
+from mend.server.runtime.context import RunContext
+from mend.server.runtime.dialogue_events import DialogueEvents
 
 
 async def fail_run(context: RunContext, reason: str, node: str | None = None) -> None:

@@ -4,13 +4,13 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from server.journal import events as ev
-from server.runtime.choosing import suitabilities
-from server.runtime.context import RunContext
-from server.runtime.cutting_short import CuttingShort
-from server.runtime.failure import fail_run
-from server.runtime.report_events import ReportEvents
-from server.runtime.robot_side import RobotSide
+from mend.server.journal import events as ev
+from mend.server.runtime.choosing import suitabilities
+from mend.server.runtime.context import RunContext
+from mend.server.runtime.cutting_short import CuttingShort
+from mend.server.runtime.failure import fail_run
+from mend.server.runtime.report_events import ReportEvents
+from mend.server.runtime.robot_side import RobotSide
 
 
 class GivingUp:

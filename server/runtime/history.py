@@ -4,17 +4,17 @@ from collections import OrderedDict
 from collections.abc import Mapping
 from uuid import UUID
 
-from dialogue.script import Script
-from server.errors import UnreadableError
-from server.journal import events as ev
-from server.journal.journal import Journal, JournalReadError
-from server.journal.stored_event import read_event
-from server.journal.subscriptions import Record
-from server.runtime.journaled_tree import read_started
-from server.runtime.run_state import RunState
-from server.runtime.shared_work import SharedWork
-from server.turns import Turns
-from tasks.node_table import NodeTable
+from mend.dialogue.script import Script
+from mend.server.errors import UnreadableError
+from mend.server.journal import events as ev
+from mend.server.journal.journal import Journal, JournalReadError
+from mend.server.journal.stored_event import read_event
+from mend.server.journal.subscriptions import Record
+from mend.server.runtime.journaled_tree import read_started
+from mend.server.runtime.run_state import RunState
+from mend.server.runtime.shared_work import SharedWork
+from mend.server.turns import Turns
+from mend.tasks.node_table import NodeTable
 
 MOST_KEPT = 16
 PAGE = 1000

@@ -3,11 +3,11 @@
 import logging
 from uuid import uuid4
 
-from server.errors import ConflictError
-from server.journal import events as ev
-from server.runtime.context import RunContext
-from server.runtime.robot_side import RobotSide
-from tasks.intervention import Intervention
+from mend.server.errors import ConflictError
+from mend.server.journal import events as ev
+from mend.server.runtime.context import RunContext
+from mend.server.runtime.robot_side import RobotSide
+from mend.tasks.intervention import Intervention
 
 MOST_WAITING = 100
 """So many may have been accepted and not be done yet."""

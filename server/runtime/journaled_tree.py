@@ -10,12 +10,12 @@ from typing import Any
 
 from pydantic import TypeAdapter
 
-from server.journal import events as ev
-from server.journal.stored_event import UnreadableEventError, read_event
-from server.journal.subscriptions import Record
-from server.turns import Turns
-from tasks.definition import BehaviorNode, GoalNode, NodeDefinition
-from tasks.node_table import NodeTable
+from mend.server.journal import events as ev
+from mend.server.journal.stored_event import UnreadableEventError, read_event
+from mend.server.journal.subscriptions import Record
+from mend.server.turns import Turns
+from mend.tasks.definition import BehaviorNode, GoalNode, NodeDefinition
+from mend.tasks.node_table import NodeTable
 
 _BEGIN = '"tree":'
 _SPACE = " \t\r\n"

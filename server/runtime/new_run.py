@@ -5,13 +5,13 @@ from dataclasses import dataclass
 from datetime import datetime
 from uuid import uuid4
 
-from server.errors import InvalidError
-from server.journal import events as ev
-from server.limits import Limits
-from server.runtime.journaled_tree import read_nodes
-from server.runtime.ports import LIVE, Preparation, Worlds
-from server.runtime.requests import RunRequest
-from tasks.node_table import NodeTable
+from mend.server.errors import InvalidError
+from mend.server.journal import events as ev
+from mend.server.limits import Limits
+from mend.server.runtime.journaled_tree import read_nodes
+from mend.server.runtime.ports import LIVE, Preparation, Worlds
+from mend.server.runtime.requests import RunRequest
+from mend.tasks.node_table import NodeTable
 
 
 @dataclass(frozen=True, slots=True)

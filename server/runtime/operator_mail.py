@@ -6,11 +6,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from datetime import datetime, timedelta
 
-from server.dialogues.mail import Mailer, MailError, MailNotice, MailRequest
-from server.journal.events import Escalated, SuspectedFalseAlarm
-from server.journal.trouble import Sleep
-from server.runtime.dialogue_state import DialogueState
-from server.runtime.run_state import RunState
+from mend.server.dialogues.mail import Mailer, MailError, MailNotice, MailRequest
+from mend.server.journal.events import Escalated, SuspectedFalseAlarm
+from mend.server.journal.trouble import Sleep
+from mend.server.runtime.dialogue_state import DialogueState
+from mend.server.runtime.run_state import RunState
 
 log = logging.getLogger(__name__)
 

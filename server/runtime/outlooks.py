@@ -5,16 +5,16 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from dialogue.evidence import has_moved
-from dialogue.outlook import Next, Outlook, Sequel
-from dialogue.script import Expectation
-from server.journal import events as ev
-from server.runtime.choosing import able_mask
-from server.runtime.dialogue_state import DialogueState
-from server.runtime.robot_side import RobotSide
-from server.runtime.run_state import RunState
-from tasks.definition import NodeKind
-from tasks.task_tree import TaskTree
+from mend.dialogue.evidence import has_moved
+from mend.dialogue.outlook import Next, Outlook, Sequel
+from mend.dialogue.script import Expectation
+from mend.server.journal import events as ev
+from mend.server.runtime.choosing import able_mask
+from mend.server.runtime.dialogue_state import DialogueState
+from mend.server.runtime.robot_side import RobotSide
+from mend.server.runtime.run_state import RunState
+from mend.tasks.definition import NodeKind
+from mend.tasks.task_tree import TaskTree
 
 
 def outlook_at(

@@ -6,13 +6,13 @@ from collections.abc import Mapping, Sequence
 from itertools import groupby
 from uuid import UUID
 
-from dialogue.script import Script
-from server.journal import events as ev
-from server.journal.journal import JournalReadError
-from server.journal.run_index import IndexedDialogue, RunIndex
-from server.journal.stored_event import read_event
-from server.runtime.dialogue_state import DialogueState
-from server.turns import Turns
+from mend.dialogue.script import Script
+from mend.server.journal import events as ev
+from mend.server.journal.journal import JournalReadError
+from mend.server.journal.run_index import IndexedDialogue, RunIndex
+from mend.server.journal.stored_event import read_event
+from mend.server.runtime.dialogue_state import DialogueState
+from mend.server.turns import Turns
 
 PAGE = 500
 OF_DIALOGUE = re.compile(r'"dialogue":"([^"]+)"')

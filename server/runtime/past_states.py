@@ -6,9 +6,9 @@ from collections.abc import Callable
 from functools import partial
 from uuid import UUID
 
-from server.runtime.history import History
-from server.runtime.run_state import RunState
-from server.runtime.shared_work import SharedWork
+from mend.server.runtime.history import History
+from mend.server.runtime.run_state import RunState
+from mend.server.runtime.shared_work import SharedWork
 
 KEPT_S = 60.0
 MOST_KEPT = 8

@@ -5,15 +5,15 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 from uuid import UUID
 
-from robots.link.messages import Hello
-from server.runtime.hardware import Hardware
-from server.runtime.pose_sink import PoseSink
-from server.runtime.requests import RunRequest
-from server.runtime.robot_side import CommandSender
-from server.runtime.run import Run
-from server.runtime.run_state import RunState
-from tasks.scenario import Scenario
-from tasks.scene import Scene
+from mend.robots.link.messages import Hello
+from mend.server.runtime.hardware import Hardware
+from mend.server.runtime.pose_sink import PoseSink
+from mend.server.runtime.requests import RunRequest
+from mend.server.runtime.robot_side import CommandSender
+from mend.server.runtime.run import Run
+from mend.server.runtime.run_state import RunState
+from mend.tasks.scenario import Scenario
+from mend.tasks.scene import Scene
 
 LIVE = "live"
 """The world of real robots."""

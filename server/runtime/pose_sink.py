@@ -2,7 +2,7 @@
 
 from typing import Protocol
 
-from robots.link.messages import Hello, Poses
+from mend.robots.link.messages import Hello, Poses
 
 
 class PoseSink(Protocol):

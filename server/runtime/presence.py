@@ -4,19 +4,19 @@ import asyncio
 import logging
 from collections.abc import Callable, Mapping
 
-from robots.link.messages import Hello
-from server.journal import events as ev
-from server.runtime.context import RunContext
-from server.runtime.dialogue_driver import DialogueDriver
-from server.runtime.failure import fail_run
-from server.runtime.hardware import Hardware
-from server.runtime.inbox import Task
-from server.runtime.interventions import Interventions
-from server.runtime.livelock import MOST_FRUITLESS_COMMANDS
-from server.runtime.pose_sink import PoseSink
-from server.runtime.report_events import ReportEvents
-from server.runtime.robot_side import Doing, RobotSide
-from server.runtime.run_state import Execution
+from mend.robots.link.messages import Hello
+from mend.server.journal import events as ev
+from mend.server.runtime.context import RunContext
+from mend.server.runtime.dialogue_driver import DialogueDriver
+from mend.server.runtime.failure import fail_run
+from mend.server.runtime.hardware import Hardware
+from mend.server.runtime.inbox import Task
+from mend.server.runtime.interventions import Interventions
+from mend.server.runtime.livelock import MOST_FRUITLESS_COMMANDS
+from mend.server.runtime.pose_sink import PoseSink
+from mend.server.runtime.report_events import ReportEvents
+from mend.server.runtime.robot_side import Doing, RobotSide
+from mend.server.runtime.run_state import Execution
 
 log = logging.getLogger(__name__)
 

@@ -2,13 +2,13 @@
 
 import numpy as np
 
-from server.journal import events as ev
-from server.runtime.context import RunContext
-from server.runtime.dialogue_state import DialogueState
-from server.runtime.robot_side import RobotSide
-from sim.interventions import HELPER
-from sim.person import Promise, deed
-from tasks.scenario import Person
+from mend.server.journal import events as ev
+from mend.server.runtime.context import RunContext
+from mend.server.runtime.dialogue_state import DialogueState
+from mend.server.runtime.robot_side import RobotSide
+from mend.sim.interventions import HELPER
+from mend.sim.person import Promise, deed
+from mend.tasks.scenario import Person
 
 
 class Promises:

@@ -3,8 +3,8 @@
 import logging
 from uuid import UUID, uuid4
 
-from robots.link.jpeg import NotJpegError, read_jpeg
-from robots.link.messages import (
+from mend.robots.link.jpeg import NotJpegError, read_jpeg
+from mend.robots.link.messages import (
     ClipTaken,
     Finished,
     Holding,
@@ -15,13 +15,13 @@ from robots.link.messages import (
     Resumed,
     StepStarted,
 )
-from server.journal import events as ev
-from server.plain_text import plain
-from server.runtime.context import RunContext
-from server.runtime.dialogue_driver import DialogueDriver
-from server.runtime.robot_side import Doing, RobotSide
-from server.runtime.run_state import Execution
-from tasks.resolution import Resolution
+from mend.server.journal import events as ev
+from mend.server.plain_text import plain
+from mend.server.runtime.context import RunContext
+from mend.server.runtime.dialogue_driver import DialogueDriver
+from mend.server.runtime.robot_side import Doing, RobotSide
+from mend.server.runtime.run_state import Execution
+from mend.tasks.resolution import Resolution
 
 log = logging.getLogger(__name__)
 

@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from tasks.scenario import Person
+from mend.tasks.scenario import Person
 
 MOST = 2**53 - 1
 """Up to here any reader of JSON can tell whole numbers from their neighbours."""

@@ -2,13 +2,13 @@
 
 from collections.abc import Collection, Iterable
 
-from robots.link.messages import FinishedResult, Looked
-from server.journal import events as ev
-from server.runtime.context import RunContext
-from server.runtime.cutting_short import CuttingShort
-from server.runtime.report_events import ReportEvents
-from server.runtime.robot_side import RobotSide
-from server.runtime.run_state import RunState
+from mend.robots.link.messages import FinishedResult, Looked
+from mend.server.journal import events as ev
+from mend.server.runtime.context import RunContext
+from mend.server.runtime.cutting_short import CuttingShort
+from mend.server.runtime.report_events import ReportEvents
+from mend.server.runtime.robot_side import RobotSide
+from mend.server.runtime.run_state import RunState
 
 
 def results_of(state: RunState) -> dict[FinishedResult, int]:

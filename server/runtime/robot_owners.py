@@ -4,10 +4,10 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from uuid import UUID
 
-from server.errors import ConflictError, InvalidError, NotFoundError
-from server.journal.events import RunStarted
-from server.runtime.ports import Robots
-from server.runtime.run import Run
+from mend.server.errors import ConflictError, InvalidError, NotFoundError
+from mend.server.journal.events import RunStarted
+from mend.server.runtime.ports import Robots
+from mend.server.runtime.run import Run
 
 
 class RobotOwners:

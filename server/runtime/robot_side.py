@@ -5,7 +5,7 @@ from enum import StrEnum
 from typing import Any, Protocol
 from uuid import uuid4
 
-from robots.link.messages import (
+from mend.robots.link.messages import (
     CommandBody,
     FinishedResult,
     Hello,
@@ -21,10 +21,10 @@ from robots.link.messages import (
     Start,
     WasDone,
 )
-from server.runtime.livelock import Livelock
-from server.runtime.run_state import Execution
-from tasks.intervention import Intervention
-from tasks.potential import Point
+from mend.server.runtime.livelock import Livelock
+from mend.server.runtime.run_state import Execution
+from mend.tasks.intervention import Intervention
+from mend.tasks.potential import Point
 
 
 class Doing(StrEnum):

@@ -12,7 +12,7 @@ from functools import partial
 from typing import Any
 from uuid import uuid4
 
-from robots.link.messages import (
+from mend.robots.link.messages import (
     Finished,
     Held,
     Hello,
@@ -28,28 +28,28 @@ from robots.link.messages import (
     StepStarted,
     WasDone,
 )
-from server.errors import BusyError, ConflictError, ServiceError
-from server.journal import events as ev
-from server.journal.journal import DuplicateReceiptError, JournalWriteError, Receipt
-from server.runtime.choosing import choose
-from server.runtime.claims import Claims
-from server.runtime.context import RunContext
-from server.runtime.cutting_short import CuttingShort
-from server.runtime.dialogue_driver import DialogueDriver
-from server.runtime.dialogue_state import DialogueState
-from server.runtime.failure import fail_run, why_it_stopped
-from server.runtime.giving_up import GivingUp
-from server.runtime.hardware import Hardware
-from server.runtime.inbox import Inbox, Item, Task, log_failure
-from server.runtime.interventions import Interventions
-from server.runtime.pose_sink import PoseSink
-from server.runtime.presence import Presence
-from server.runtime.report_events import ReportEvents
-from server.runtime.results import Results, missing_parts, results_of, unseen_parts
-from server.runtime.robot_side import JUDGING, Doing, Purpose, RobotSide
-from server.runtime.run_state import Execution
-from server.runtime.views import RunStatus
-from tasks.intervention import Intervention
+from mend.server.errors import BusyError, ConflictError, ServiceError
+from mend.server.journal import events as ev
+from mend.server.journal.journal import DuplicateReceiptError, JournalWriteError, Receipt
+from mend.server.runtime.choosing import choose
+from mend.server.runtime.claims import Claims
+from mend.server.runtime.context import RunContext
+from mend.server.runtime.cutting_short import CuttingShort
+from mend.server.runtime.dialogue_driver import DialogueDriver
+from mend.server.runtime.dialogue_state import DialogueState
+from mend.server.runtime.failure import fail_run, why_it_stopped
+from mend.server.runtime.giving_up import GivingUp
+from mend.server.runtime.hardware import Hardware
+from mend.server.runtime.inbox import Inbox, Item, Task, log_failure
+from mend.server.runtime.interventions import Interventions
+from mend.server.runtime.pose_sink import PoseSink
+from mend.server.runtime.presence import Presence
+from mend.server.runtime.report_events import ReportEvents
+from mend.server.runtime.results import Results, missing_parts, results_of, unseen_parts
+from mend.server.runtime.robot_side import JUDGING, Doing, Purpose, RobotSide
+from mend.server.runtime.run_state import Execution
+from mend.server.runtime.views import RunStatus
+from mend.tasks.intervention import Intervention
 
 log = logging.getLogger(__name__)
 

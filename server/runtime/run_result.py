@@ -1,8 +1,8 @@
 """How a run ended, as the event that ended it says."""
 
-from server.journal import events as ev
-from server.runtime.views import RunResult
-from server.transcript import finished_text
+from mend.server.journal import events as ev
+from mend.server.runtime.views import RunResult
+from mend.server.transcript import finished_text
 
 Ending = ev.RunFinished | ev.RunFailed | ev.RunAborted
 

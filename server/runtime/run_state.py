@@ -7,20 +7,20 @@ from datetime import datetime
 from functools import singledispatchmethod
 from uuid import UUID
 
-from dialogue.script import Script
-from robots.link.messages import FinishedResult
-from server.journal import events as ev
-from server.runtime.dialogue_state import DialogueState
-from server.runtime.requests import RunRequest
-from server.runtime.run_result import Ending, result_of
-from server.runtime.views import RunResult, RunStatus
-from tasks.definition import TaskTreeDefinition
-from tasks.node_table import NodeTable
-from tasks.resolution import Resolution
-from tasks.scenario import Scenario
-from tasks.scenario_file import built_in_scenario
-from tasks.scene import Scene
-from tasks.task_tree import TaskTree
+from mend.dialogue.script import Script
+from mend.robots.link.messages import FinishedResult
+from mend.server.journal import events as ev
+from mend.server.runtime.dialogue_state import DialogueState
+from mend.server.runtime.requests import RunRequest
+from mend.server.runtime.run_result import Ending, result_of
+from mend.server.runtime.views import RunResult, RunStatus
+from mend.tasks.definition import TaskTreeDefinition
+from mend.tasks.node_table import NodeTable
+from mend.tasks.resolution import Resolution
+from mend.tasks.scenario import Scenario
+from mend.tasks.scenario_file import built_in_scenario
+from mend.tasks.scene import Scene
+from mend.tasks.task_tree import TaskTree
 
 
 @dataclass(slots=True)

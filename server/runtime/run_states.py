@@ -6,15 +6,15 @@ from contextlib import suppress
 from typing import Literal
 from uuid import UUID
 
-from dialogue.script import Script
-from server.errors import NotFoundError, UnreadableError
-from server.journal.journal import Journal, JournalClosedError, JournalWriteError
-from server.journal.run_index import UNREADABLE, IndexedRun
-from server.runtime.dialogue_state import DialogueState
-from server.runtime.history import History
-from server.runtime.past_dialogues import PastDialogues
-from server.runtime.past_states import PastStates
-from server.runtime.run_state import RunState
+from mend.dialogue.script import Script
+from mend.server.errors import NotFoundError, UnreadableError
+from mend.server.journal.journal import Journal, JournalClosedError, JournalWriteError
+from mend.server.journal.run_index import UNREADABLE, IndexedRun
+from mend.server.runtime.dialogue_state import DialogueState
+from mend.server.runtime.history import History
+from mend.server.runtime.past_dialogues import PastDialogues
+from mend.server.runtime.past_states import PastStates
+from mend.server.runtime.run_state import RunState
 
 log = logging.getLogger(__name__)
 

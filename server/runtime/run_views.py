@@ -6,14 +6,14 @@ from typing import Literal, cast
 
 from pydantic import TypeAdapter
 
-from robots.link.messages import Hello
-from server.journal.journal import JournalReadError
-from server.journal.run_index import UNREADABLE, IndexedRun
-from server.journal.stored_event import read_event
-from server.runtime.dialogue_state import DialogueState
-from server.runtime.run_result import Ending, result_of
-from server.runtime.run_state import RunState
-from server.runtime.views import (
+from mend.robots.link.messages import Hello
+from mend.server.journal.journal import JournalReadError
+from mend.server.journal.run_index import UNREADABLE, IndexedRun
+from mend.server.journal.stored_event import read_event
+from mend.server.runtime.dialogue_state import DialogueState
+from mend.server.runtime.run_result import Ending, result_of
+from mend.server.runtime.run_state import RunState
+from mend.server.runtime.views import (
     AwaitedHelp,
     DialogueView,
     NodeView,
@@ -24,8 +24,8 @@ from server.runtime.views import (
     RunSummary,
     RunView,
 )
-from server.turns import Turns
-from tasks.activation import FullEvaluation
+from mend.server.turns import Turns
+from mend.tasks.activation import FullEvaluation
 
 
 def summary(state: RunState, time: float, trouble: str | None) -> RunSummary:

@@ -12,10 +12,10 @@ from uuid import UUID
 
 import numpy as np
 
-from dialogue.script import Script
-from server.dialogues.answers import answer_source
-from server.dialogues.escalation import EscalationPolicy
-from server.errors import (
+from mend.dialogue.script import Script
+from mend.server.dialogues.answers import answer_source
+from mend.server.dialogues.escalation import EscalationPolicy
+from mend.server.errors import (
     BusyError,
     ConflictError,
     InvalidError,
@@ -23,32 +23,32 @@ from server.errors import (
     NotFoundError,
     UnreadableError,
 )
-from server.journal import events as ev
-from server.journal.journal import Entry, Journal
-from server.journal.run_index import UNREADABLE, IndexedRun, RunPage
-from server.refusals import Refusals
-from server.runtime.choosing import potentials_for
-from server.runtime.clock import RunClock, SimulatedClock, WallClock
-from server.runtime.context import RunContext, RunSettings
-from server.runtime.dialogue_driver import DialogueDriver
-from server.runtime.dialogue_state import DialogueState
-from server.runtime.failure import fail_run, why_it_stopped
-from server.runtime.new_run import NewRun, NewRuns
-from server.runtime.ports import LIVE, Poses, Preparation, RealRobots, Robots, Worlds
-from server.runtime.requests import RunRequest
-from server.runtime.robot_owners import RobotOwners
-from server.runtime.robot_side import RobotSide
-from server.runtime.run import Run
-from server.runtime.run_state import RunState
-from server.runtime.run_states import RunStates
-from server.runtime.run_views import (
+from mend.server.journal import events as ev
+from mend.server.journal.journal import Entry, Journal
+from mend.server.journal.run_index import UNREADABLE, IndexedRun, RunPage
+from mend.server.refusals import Refusals
+from mend.server.runtime.choosing import potentials_for
+from mend.server.runtime.clock import RunClock, SimulatedClock, WallClock
+from mend.server.runtime.context import RunContext, RunSettings
+from mend.server.runtime.dialogue_driver import DialogueDriver
+from mend.server.runtime.dialogue_state import DialogueState
+from mend.server.runtime.failure import fail_run, why_it_stopped
+from mend.server.runtime.new_run import NewRun, NewRuns
+from mend.server.runtime.ports import LIVE, Poses, Preparation, RealRobots, Robots, Worlds
+from mend.server.runtime.requests import RunRequest
+from mend.server.runtime.robot_owners import RobotOwners
+from mend.server.runtime.robot_side import RobotSide
+from mend.server.runtime.run import Run
+from mend.server.runtime.run_state import RunState
+from mend.server.runtime.run_states import RunStates
+from mend.server.runtime.run_views import (
     RunViewing,
     dialogue_view,
     robot_view,
     summary,
     summary_of_indexed,
 )
-from server.runtime.views import (
+from mend.server.runtime.views import (
     DialogueView,
     RobotView,
     RunStatus,
@@ -56,9 +56,9 @@ from server.runtime.views import (
     RunView,
     Snapshot,
 )
-from tasks.intervention import Intervention
-from tasks.scenario import Person, Scenario
-from tasks.scene import Scene
+from mend.tasks.intervention import Intervention
+from mend.tasks.scenario import Person, Scenario
+from mend.tasks.scene import Scene
 
 log = logging.getLogger(__name__)
 

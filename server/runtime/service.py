@@ -4,10 +4,10 @@ from collections.abc import Mapping
 from typing import Literal, Protocol
 from uuid import UUID
 
-from server.journal.events import Answered, Author, DeadlineExtended
-from server.journal.run_index import RunPage
-from server.runtime.requests import RunRequest
-from server.runtime.views import (
+from mend.server.journal.events import Answered, Author, DeadlineExtended
+from mend.server.journal.run_index import RunPage
+from mend.server.runtime.requests import RunRequest
+from mend.server.runtime.views import (
     DialogueView,
     RobotView,
     RunStatus,
@@ -15,7 +15,7 @@ from server.runtime.views import (
     RunView,
     Snapshot,
 )
-from tasks.intervention import Intervention
+from mend.tasks.intervention import Intervention
 
 
 class RunService(Protocol):

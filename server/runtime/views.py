@@ -7,9 +7,9 @@ from uuid import UUID
 
 from pydantic import BaseModel, ConfigDict
 
-from dialogue.script import Help
-from robots.link.messages import Detection
-from server.journal.events import AnswerOption, ClipPicture, MissingPart, UnseenPart
+from mend.dialogue.script import Help
+from mend.robots.link.messages import Detection
+from mend.server.journal.events import AnswerOption, ClipPicture, MissingPart, UnseenPart
 
 
 class View(BaseModel):

@@ -6,16 +6,16 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from server.errors import InvalidError
-from server.journal.journal import Journal
-from server.runtime.ports import LIVE
-from server.runtime.run import Run
-from server.runtime.run_state import RunState
-from server.runtime.views import WorldView
-from sim.mischief import random_interventions
-from sim.world import WorldAdapter, WorldSetup, WorldUnavailableError
-from sim.world_options import WorldOptionError, read_options
-from tasks.scenario import ScriptedIntervention
+from mend.server.errors import InvalidError
+from mend.server.journal.journal import Journal
+from mend.server.runtime.ports import LIVE
+from mend.server.runtime.run import Run
+from mend.server.runtime.run_state import RunState
+from mend.server.runtime.views import WorldView
+from mend.sim.mischief import random_interventions
+from mend.sim.world import WorldAdapter, WorldSetup, WorldUnavailableError
+from mend.sim.world_options import WorldOptionError, read_options
+from mend.tasks.scenario import ScriptedIntervention
 
 
 class RobotHandle(Protocol):

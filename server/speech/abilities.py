@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass
 
-from server.speech.ear import Ears, NoEars
-from server.speech.rendering import SpokenTexts
-from server.speech.voice import NoVoice
+from mend.server.speech.ear import Ears, NoEars
+from mend.server.speech.rendering import SpokenTexts
+from mend.server.speech.voice import NoVoice
 
 
 @dataclass(frozen=True, slots=True)

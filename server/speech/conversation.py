@@ -7,8 +7,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum
 
-from server.speech.commands import Command
-from server.speech.phrases import SORRY
+from mend.server.speech.commands import Command
+from mend.server.speech.phrases import SORRY
 
 PAUSE_S = 0.2
 """Between the end of what the robot says and listening: the room has to fall silent."""

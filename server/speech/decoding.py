@@ -14,8 +14,13 @@ import numpy as np
 import numpy.typing as npt
 import pocketsphinx
 
-from server.speech.commands import Command
-from server.speech.language_model import COMMAND_MARK, Weights, command_in, write_language_model
+from mend.server.speech.commands import Command
+from mend.server.speech.language_model import (
+    COMMAND_MARK,
+    Weights,
+    command_in,
+    write_language_model,
+)
 
 Cepstrum = npt.NDArray[np.float64]
 

@@ -17,8 +17,8 @@ from typing import Literal, Protocol, Self
 
 from pydantic import BaseModel, ConfigDict
 
-from server.errors import ServiceError
-from server.speech.commands import Command
+from mend.server.errors import ServiceError
+from mend.server.speech.commands import Command
 
 log = logging.getLogger(__name__)
 
@@ -112,7 +112,7 @@ def choose_ears(wanted: bool, at_once: int) -> "ProcessEars | NoEars":
     if not wanted:
         return NoEars("the setting 'speech_recognition' is off")
     if find_spec("pocketsphinx") is None:
-        return NoEars("pocketsphinx is not installed: pip install 'mend[speech]'")
+        return NoEars("pocketsphinx is not installed: pip install 'mend-robots[speech]'")
     return ProcessEars(at_once)
 
 
@@ -214,7 +214,7 @@ class RecognizerProcess:
         """Start one; returns when it is ready. Raises `EarLostError`."""
         process = await asyncio.create_subprocess_exec(
             # -P: nothing is imported from wherever the service was started.
-            sys.executable, "-P", "-m", "server.speech.ear_process",
+            sys.executable, "-P", "-m", "mend.server.speech.ear_process",
             stdin=PIPE, stdout=PIPE,
         )  # fmt: skip
         started = cls(process)

@@ -9,9 +9,9 @@ import sys
 import time
 from typing import BinaryIO
 
-from server.speech.decoding import SphinxDecoder
-from server.speech.ear import AFRESH, BREAK, HEADER, Report
-from server.speech.recognizer import Heard, Recognizer, SpeechBegan
+from mend.server.speech.decoding import SphinxDecoder
+from mend.server.speech.ear import AFRESH, BREAK, HEADER, Report
+from mend.server.speech.recognizer import Heard, Recognizer, SpeechBegan
 
 
 def main() -> None:

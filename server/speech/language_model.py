@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from server.speech.commands import AMBIGUOUS, Command, phrase_commands
+from mend.server.speech.commands import AMBIGUOUS, Command, phrase_commands
 
 COMMON_WORDS = Path(__file__).with_name("common_words.txt")
 

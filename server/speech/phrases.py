@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 
-from server.journal.events import AnswerOption
+from mend.server.journal.events import AnswerOption
 
 SORRY = "Sorry, please say yes or no."
 

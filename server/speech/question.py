@@ -3,8 +3,8 @@
 from collections.abc import AsyncIterator
 from uuid import UUID
 
-from server.errors import ConflictError, NotFoundError
-from server.journal.events import (
+from mend.server.errors import ConflictError, NotFoundError
+from mend.server.journal.events import (
     Answered,
     DialogueClosed,
     DialogueEvent,
@@ -12,11 +12,11 @@ from server.journal.events import (
     Prompt,
     any_event,
 )
-from server.journal.journal import Journal, JournalClosedError
-from server.journal.subscriptions import PrunedEventsError, SubscriptionOverflowError
-from server.runtime.service import RunService
-from server.runtime.views import PromptView
-from server.speech.conversation import EndReason
+from mend.server.journal.journal import Journal, JournalClosedError
+from mend.server.journal.subscriptions import PrunedEventsError, SubscriptionOverflowError
+from mend.server.runtime.service import RunService
+from mend.server.runtime.views import PromptView
+from mend.server.speech.conversation import EndReason
 
 PAGE = 500
 

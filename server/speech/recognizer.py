@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from server.speech.commands import Command
-from server.speech.decoding import Decoder
-from server.speech.endpointing import FRAME_S, FRAME_SAMPLES, Edge, Endpointer, level_db
-from server.speech.sureness import is_sure
+from mend.server.speech.commands import Command
+from mend.server.speech.decoding import Decoder
+from mend.server.speech.endpointing import FRAME_S, FRAME_SAMPLES, Edge, Endpointer, level_db
+from mend.server.speech.sureness import is_sure
 
 FRAME_BYTES = FRAME_SAMPLES * 2
 

@@ -5,11 +5,11 @@ import logging
 from collections import OrderedDict
 from collections.abc import Iterable
 
-from server.journal.events import Prompt, any_event
-from server.journal.journal import Journal, JournalClosedError
-from server.journal.subscriptions import PrunedEventsError, SubscriptionOverflowError
-from server.speech.phrases import FIXED, help_text
-from server.speech.voice import Voice, VoiceError
+from mend.server.journal.events import Prompt, any_event
+from mend.server.journal.journal import Journal, JournalClosedError
+from mend.server.journal.subscriptions import PrunedEventsError, SubscriptionOverflowError
+from mend.server.speech.phrases import FIXED, help_text
+from mend.server.speech.voice import Voice, VoiceError
 
 log = logging.getLogger(__name__)
 

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from server.speech.commands import Command
-from server.speech.decoding import Hypothesis
+from mend.server.speech.commands import Command
+from mend.server.speech.decoding import Hypothesis
 
 QUIET_MARGIN = 0.03
 NOISY_MARGIN = 0.035

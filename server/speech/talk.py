@@ -5,8 +5,8 @@ import logging
 from collections.abc import Awaitable, Callable, Coroutine
 from typing import Any
 
-from server.speech.conversation import Act, Conversation, EndReason, State
-from server.speech.ear import Ear, EarLostError, Ears, Report, TooManyConversationsError
+from mend.server.speech.conversation import Act, Conversation, EndReason, State
+from mend.server.speech.ear import Ear, EarLostError, Ears, Report, TooManyConversationsError
 
 log = logging.getLogger(__name__)
 

@@ -2,23 +2,23 @@
 
 from collections.abc import Iterable, Sequence
 
-from robots.catalogue import Catalogue
-from robots.feasibility.check import check_scene
-from robots.robot import Robot
-from robots.vision.color_model import ColorModel
-from robots.vision.lookalikes import find_lookalikes
-from sim.simulated_agent import SimulatedAgent
-from sim.tabletop.body import StraightPlanner
-from sim.tabletop.colors import learn_colors
-from sim.tabletop.layout import lay_out
-from sim.tabletop.scenery import head_viewpoint
-from sim.tabletop.world import TabletopOptions, TabletopWorld, reach_for
-from sim.world import WorldSetup
-from sim.world_options import read_options
-from tasks.definition import BehaviorNode, GoalNode
-from tasks.plugins import load_plugins
-from tasks.scene import Scene
-from tasks.scene_problem import SceneProblem
+from mend.robots.catalogue import Catalogue
+from mend.robots.feasibility.check import check_scene
+from mend.robots.robot import Robot
+from mend.robots.vision.color_model import ColorModel
+from mend.robots.vision.lookalikes import find_lookalikes
+from mend.sim.simulated_agent import SimulatedAgent
+from mend.sim.tabletop.body import StraightPlanner
+from mend.sim.tabletop.colors import learn_colors
+from mend.sim.tabletop.layout import lay_out
+from mend.sim.tabletop.scenery import head_viewpoint
+from mend.sim.tabletop.world import TabletopOptions, TabletopWorld, reach_for
+from mend.sim.world import WorldSetup
+from mend.sim.world_options import read_options
+from mend.tasks.definition import BehaviorNode, GoalNode
+from mend.tasks.plugins import load_plugins
+from mend.tasks.scene import Scene
+from mend.tasks.scene_problem import SceneProblem
 
 
 class TabletopAdapter:

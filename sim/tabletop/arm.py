@@ -4,9 +4,9 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from robots.body import ToolPose
-from robots.gripper import GripperModel, Slab
-from sim.tabletop.blocker import Blocker, between, shares_between
+from mend.robots.body import ToolPose
+from mend.robots.gripper import GripperModel, Slab
+from mend.sim.tabletop.blocker import Blocker, between, shares_between
 
 SEGMENT_S = 0.5
 """How long a segment of a path takes at full speed, however long it is."""

@@ -7,13 +7,13 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
-from robots.body import ArmPath, Camera, Leg, Matrix4, NoWay, Reach, ToolPose
-from robots.gripper import GripperModel
-from robots.vision.seen_box import SeenBox
-from sim.tabletop.arm import GRIPPER, StraightPath
-from sim.tabletop.gripper_shape import finger_hulls
-from sim.tabletop.state import CONTROL_PERIOD_S, TabletopState
-from tasks.scene import Table
+from mend.robots.body import ArmPath, Camera, Leg, Matrix4, NoWay, Reach, ToolPose
+from mend.robots.gripper import GripperModel
+from mend.robots.vision.seen_box import SeenBox
+from mend.sim.tabletop.arm import GRIPPER, StraightPath
+from mend.sim.tabletop.gripper_shape import finger_hulls
+from mend.sim.tabletop.state import CONTROL_PERIOD_S, TabletopState
+from mend.tasks.scene import Table
 
 _HIGHEST_M = 1.2
 """How far above the table the tool can go."""

@@ -1,11 +1,11 @@
 """The colour model of a tabletop world."""
 
-from robots.vision.color_model import ColorModel
-from sim.color_lessons import Studio, teach_colors
-from sim.raster import Light
-from sim.tabletop.scenery import TABLE_COLOR
-from sim.tabletop.world import TabletopOptions
-from tasks.scene import Scene
+from mend.robots.vision.color_model import ColorModel
+from mend.sim.color_lessons import Studio, teach_colors
+from mend.sim.raster import Light
+from mend.sim.tabletop.scenery import TABLE_COLOR
+from mend.sim.tabletop.world import TabletopOptions
+from mend.tasks.scene import Scene
 
 
 def learn_colors(scene: Scene, options: TabletopOptions) -> ColorModel:

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.raster import Triangles, box_triangles
+from mend.sim.raster import Triangles, box_triangles
 
 _FINGER_THICKNESS_M = 0.012
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from tasks.scene import Place, Pose, Scene, SceneObject, Table
+from mend.tasks.scene import Place, Pose, Scene, SceneObject, Table
 
 MOST_OBJECTS = 64
 """So many colours survive shading and are still told apart by hue and saturation."""

@@ -4,9 +4,9 @@ import math
 from dataclasses import dataclass
 from enum import StrEnum
 
-from tasks.footprint import Footprint
-from tasks.part_boxes import boxes_of, height_of
-from tasks.scene import SceneObject
+from mend.tasks.footprint import Footprint
+from mend.tasks.part_boxes import boxes_of, height_of
+from mend.tasks.scene import SceneObject
 
 
 class Whereabouts(StrEnum):

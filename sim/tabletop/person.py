@@ -3,12 +3,12 @@
 import math
 from dataclasses import dataclass, replace
 
-from sim.acts import PULL_M_PER_S, Acts
-from sim.tabletop.arm import GRIPPER
-from sim.tabletop.part import PartPose, TablePart, Whereabouts
-from sim.tabletop.state import CONTROL_PERIOD_S, TabletopState
-from tasks.footprint import Footprint
-from tasks.scene import Pose
+from mend.sim.acts import PULL_M_PER_S, Acts
+from mend.sim.tabletop.arm import GRIPPER
+from mend.sim.tabletop.part import PartPose, TablePart, Whereabouts
+from mend.sim.tabletop.state import CONTROL_PERIOD_S, TabletopState
+from mend.tasks.footprint import Footprint
+from mend.tasks.scene import Pose
 
 _PULLED_OUT_M = 0.30
 """So far from where it was, a pulled part is out of sight."""

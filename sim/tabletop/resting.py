@@ -4,8 +4,8 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
-from sim.tabletop.part import PartPose, TablePart, Whereabouts
-from tasks.scene import Table
+from mend.sim.tabletop.part import PartPose, TablePart, Whereabouts
+from mend.tasks.scene import Table
 
 FLOOR_M = 0.0
 

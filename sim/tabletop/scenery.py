@@ -7,17 +7,17 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from robots.body import CameraImage, Matrix4, ToolPose
-from robots.vision.viewpoint import Viewpoint
-from sim.depth_noise import DepthNoise, Pinhole
-from sim.lighting import Lighting
-from sim.raster import Light, Mesh, Rasterizer, RenderedImage, box_triangles
-from sim.tabletop.blocker import SIZE_M as BLOCKER_SIZE_M
-from sim.tabletop.gripper_shape import FINGER, PALM, finger_offset_m
-from sim.tabletop.part import PartPose, TablePart
-from sim.tabletop.state import CONTROL_PERIOD_S, TabletopState
-from tasks.part_boxes import boxes_of
-from tasks.scene import Table
+from mend.robots.body import CameraImage, Matrix4, ToolPose
+from mend.robots.vision.viewpoint import Viewpoint
+from mend.sim.depth_noise import DepthNoise, Pinhole
+from mend.sim.lighting import Lighting
+from mend.sim.raster import Light, Mesh, Rasterizer, RenderedImage, box_triangles
+from mend.sim.tabletop.blocker import SIZE_M as BLOCKER_SIZE_M
+from mend.sim.tabletop.gripper_shape import FINGER, PALM, finger_offset_m
+from mend.sim.tabletop.part import PartPose, TablePart
+from mend.sim.tabletop.state import CONTROL_PERIOD_S, TabletopState
+from mend.tasks.part_boxes import boxes_of
+from mend.tasks.scene import Table
 
 HEAD_SIZE = (640, 480)
 HEAD_FOCAL_PX = 526.0

@@ -2,8 +2,8 @@
 
 from typing import Literal
 
-from sim.tabletop.part import PartPose
-from tasks.scene import Metres, Name, StrictModel
+from mend.sim.tabletop.part import PartPose
+from mend.tasks.scene import Metres, Name, StrictModel
 
 _DECIMALS = 6
 """A micrometre is enough, and a snapshot is written at every step."""

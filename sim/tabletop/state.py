@@ -7,12 +7,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from robots.body import ToolPose
-from sim.tabletop.arm import GRIPPER, Arm, Gripper
-from sim.tabletop.blocker import SIZE_M, Blocker, on_the_way
-from sim.tabletop.part import PartPose, TablePart, Whereabouts
-from sim.tabletop.resting import on_top, settle
-from tasks.scene import Scene
+from mend.robots.body import ToolPose
+from mend.sim.tabletop.arm import GRIPPER, Arm, Gripper
+from mend.sim.tabletop.blocker import SIZE_M, Blocker, on_the_way
+from mend.sim.tabletop.part import PartPose, TablePart, Whereabouts
+from mend.sim.tabletop.resting import on_top, settle
+from mend.tasks.scene import Scene
 
 CONTROL_PERIOD_S = 0.1
 

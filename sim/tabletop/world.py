@@ -9,22 +9,22 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import ConfigDict, Field
 
-from robots.body import Reach
-from robots.link.messages import ShownObject, ShownPose
-from sim.camera_cover import CoverableCamera
-from sim.depth_noise import DepthNoise
-from sim.lighting import Lighting
-from sim.raster import Light
-from sim.tabletop.blocker import SIZE_M as BLOCKER_SIZE_M
-from sim.tabletop.blocker import Blocker
-from sim.tabletop.body import TabletopBody
-from sim.tabletop.part import PartPose, TablePart, Whereabouts
-from sim.tabletop.person import Person
-from sim.tabletop.scenery import BLOCKER_COLOR, ForearmCamera, HeadCamera, Scenery
-from sim.tabletop.snapshot import TabletopSnapshot, to_rest_pose
-from sim.tabletop.state import TabletopState
-from tasks.intervention import Intervention
-from tasks.scene import Scene, StrictModel
+from mend.robots.body import Reach
+from mend.robots.link.messages import ShownObject, ShownPose
+from mend.sim.camera_cover import CoverableCamera
+from mend.sim.depth_noise import DepthNoise
+from mend.sim.lighting import Lighting
+from mend.sim.raster import Light
+from mend.sim.tabletop.blocker import SIZE_M as BLOCKER_SIZE_M
+from mend.sim.tabletop.blocker import Blocker
+from mend.sim.tabletop.body import TabletopBody
+from mend.sim.tabletop.part import PartPose, TablePart, Whereabouts
+from mend.sim.tabletop.person import Person
+from mend.sim.tabletop.scenery import BLOCKER_COLOR, ForearmCamera, HeadCamera, Scenery
+from mend.sim.tabletop.snapshot import TabletopSnapshot, to_rest_pose
+from mend.sim.tabletop.state import TabletopState
+from mend.tasks.intervention import Intervention
+from mend.tasks.scene import Scene, StrictModel
 
 REACH_ORIGIN = (0.0, -0.19)
 REACH_MIN_M = 0.40

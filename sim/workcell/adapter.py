@@ -3,21 +3,21 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from robots.catalogue import Catalogue
-from robots.feasibility.check import check_scene
-from robots.robot import Robot
-from robots.vision.color_model import ColorModel
-from robots.vision.lookalikes import find_lookalikes
-from sim.simulated_agent import SimulatedAgent
-from sim.workcell.arm_planner import neutral_arm
-from sim.workcell.options import WorkcellOptions
-from sim.workcell.robot_model import MODEL, check_installed, robot_urdf
-from sim.world import WorldSetup
-from sim.world_options import read_options
-from tasks.definition import BehaviorNode, GoalNode
-from tasks.plugins import load_plugins
-from tasks.scene import Scene
-from tasks.scene_problem import SceneProblem
+from mend.robots.catalogue import Catalogue
+from mend.robots.feasibility.check import check_scene
+from mend.robots.robot import Robot
+from mend.robots.vision.color_model import ColorModel
+from mend.robots.vision.lookalikes import find_lookalikes
+from mend.sim.simulated_agent import SimulatedAgent
+from mend.sim.workcell.arm_planner import neutral_arm
+from mend.sim.workcell.options import WorkcellOptions
+from mend.sim.workcell.robot_model import MODEL, check_installed, robot_urdf
+from mend.sim.world import WorldSetup
+from mend.sim.world_options import read_options
+from mend.tasks.definition import BehaviorNode, GoalNode
+from mend.tasks.plugins import load_plugins
+from mend.tasks.scene import Scene
+from mend.tasks.scene_problem import SceneProblem
 
 
 class WorkcellAdapter:
@@ -44,8 +44,8 @@ class WorkcellAdapter:
         """
         check_installed()
         # Only here, so that the world can be listed where the physics engine is not installed.
-        from sim.workcell.colors import learn_colors
-        from sim.workcell.world import WorkcellWorld
+        from mend.sim.workcell.colors import learn_colors
+        from mend.sim.workcell.world import WorkcellWorld
 
         options = read_options(WorkcellOptions, "workcell", setup.options)
         world = WorkcellWorld(setup.scene, setup.seed, options)
@@ -72,8 +72,8 @@ class WorkcellAdapter:
     ) -> list[SceneProblem]:
         """What keeps the robot from doing the leaves among `nodes` in a scene."""
         check_installed()
-        from sim.workcell.cameras import head_viewpoint
-        from sim.workcell.colors import learn_colors
+        from mend.sim.workcell.cameras import head_viewpoint
+        from mend.sim.workcell.colors import learn_colors
 
         lookalikes = find_lookalikes(scene, nodes, learn_colors(scene))
         return [*check_scene(scene, nodes, neutral_arm(), head_viewpoint()), *lookalikes]
@@ -81,7 +81,7 @@ class WorkcellAdapter:
     def train_colors(self, scene: Scene) -> ColorModel:
         """Learn the colours of a scene's objects from rendered pictures of them."""
         check_installed()
-        from sim.workcell.colors import learn_colors
+        from mend.sim.workcell.colors import learn_colors
 
         return learn_colors(scene, camera_noise=0.0)
 

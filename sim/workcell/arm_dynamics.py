@@ -8,8 +8,8 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
-from sim.workcell.gripper import FINGERS_OPEN_RAD
-from sim.workcell.robot_model import ARM_JOINTS, FINGER_JOINTS, TOOL_FRAME
+from mend.sim.workcell.gripper import FINGERS_OPEN_RAD
+from mend.sim.workcell.robot_model import ARM_JOINTS, FINGER_JOINTS, TOOL_FRAME
 
 Vector = NDArray[np.float64]
 

@@ -6,15 +6,15 @@ from functools import cache
 
 import numpy as np
 
-from robots.body import ArmPath, Leg, NoWay
-from robots.gripper import GripperModel
-from robots.motion.collision import CollisionModel, Hand
-from robots.motion.kinematics import Joints, KinematicChain
-from robots.motion.obstacles import PathObstacles
-from robots.motion.planner import JointPath, PathPlanner
-from robots.vision.seen_box import SeenBox
-from sim.workcell.gripper import PR2_GRIPPER, finger_angle_rad
-from sim.workcell.robot_model import (
+from mend.robots.body import ArmPath, Leg, NoWay
+from mend.robots.gripper import GripperModel
+from mend.robots.motion.collision import CollisionModel, Hand
+from mend.robots.motion.kinematics import Joints, KinematicChain
+from mend.robots.motion.obstacles import PathObstacles
+from mend.robots.motion.planner import JointPath, PathPlanner
+from mend.robots.vision.seen_box import SeenBox
+from mend.sim.workcell.gripper import PR2_GRIPPER, finger_angle_rad
+from mend.sim.workcell.robot_model import (
     ARM_JOINTS,
     FINGER_JOINTS,
     NEUTRAL_RAD,

@@ -4,10 +4,10 @@ from collections.abc import Callable, Iterator, Mapping
 
 import numpy as np
 
-from sim.workcell.parts import Part, PartPose
-from sim.workcell.physics import LEAST_DISTANCE_M, Client
-from sim.workcell.pr2 import Pr2
-from tasks.scene import Scene, Table
+from mend.sim.workcell.parts import Part, PartPose
+from mend.sim.workcell.physics import LEAST_DISTANCE_M, Client
+from mend.sim.workcell.pr2 import Pr2
+from mend.tasks.scene import Scene, Table
 
 _FLOOR_HALF_M = 4.0
 _SLAB_M = 0.04

@@ -5,29 +5,29 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from robots.body import ArmPath, Camera, Leg, Matrix4, NoWay, Reach, ToolPose
-from robots.gripper import GripperModel
-from robots.motion.curve import JointCurve
-from robots.motion.kinematics import Joints
-from robots.motion.limits import MotionLimits
-from robots.motion.planner import JointPath, PathPlanner, PathSegment
-from robots.motion.timing import TimedMotion
-from robots.vision.seen_box import SeenBox
-from sim.workcell.arm_planner import plan_legs
-from sim.workcell.effort_sensors import ENCODER_NOISE_M, FINGER_NOISE_N
-from sim.workcell.finger_hulls import Hull
-from sim.workcell.finger_motion import FingerMotion
-from sim.workcell.gripper import PR2_GRIPPER, finger_angle_rad
-from sim.workcell.physics import CONTROL_HZ
-from sim.workcell.pr2 import JOINT_DAMPING_NM_S, Pr2
-from sim.workcell.robot_model import (
+from mend.robots.body import ArmPath, Camera, Leg, Matrix4, NoWay, Reach, ToolPose
+from mend.robots.gripper import GripperModel
+from mend.robots.motion.curve import JointCurve
+from mend.robots.motion.kinematics import Joints
+from mend.robots.motion.limits import MotionLimits
+from mend.robots.motion.planner import JointPath, PathPlanner, PathSegment
+from mend.robots.motion.timing import TimedMotion
+from mend.robots.vision.seen_box import SeenBox
+from mend.sim.workcell.arm_planner import plan_legs
+from mend.sim.workcell.effort_sensors import ENCODER_NOISE_M, FINGER_NOISE_N
+from mend.sim.workcell.finger_hulls import Hull
+from mend.sim.workcell.finger_motion import FingerMotion
+from mend.sim.workcell.gripper import PR2_GRIPPER, finger_angle_rad
+from mend.sim.workcell.physics import CONTROL_HZ
+from mend.sim.workcell.pr2 import JOINT_DAMPING_NM_S, Pr2
+from mend.sim.workcell.robot_model import (
     ARM_JOINTS,
     FINGER_JOINTS,
     MODEL,
     NEUTRAL_RAD,
     PREFERRED_RAD,
 )
-from sim.workcell.touch import Touch
+from mend.sim.workcell.touch import Touch
 
 PERIOD_S = 1.0 / CONTROL_HZ
 

@@ -7,13 +7,13 @@ from functools import cache
 
 import numpy as np
 
-from robots.body import CameraImage, Matrix4
-from robots.motion.kinematics import KinematicChain
-from robots.vision.viewpoint import Viewpoint
-from sim.depth_noise import DepthNoise, Pinhole
-from sim.lighting import Lighting
-from sim.workcell.rendering import Renderer, Rendering, View
-from sim.workcell.robot_model import (
+from mend.robots.body import CameraImage, Matrix4
+from mend.robots.motion.kinematics import KinematicChain
+from mend.robots.vision.viewpoint import Viewpoint
+from mend.sim.depth_noise import DepthNoise, Pinhole
+from mend.sim.lighting import Lighting
+from mend.sim.workcell.rendering import Renderer, Rendering, View
+from mend.sim.workcell.robot_model import (
     FOREARM_FOV_RAD,
     HEAD_CAMERA_FRAME,
     HEAD_FOV_RAD,

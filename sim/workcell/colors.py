@@ -1,10 +1,10 @@
 """The colour model of a workcell."""
 
-from robots.vision.color_model import ColorModel
-from sim.color_lessons import Studio, teach_colors
-from sim.workcell.bench import TABLE_COLOR
-from sim.workcell.world import LIGHT
-from tasks.scene import Scene
+from mend.robots.vision.color_model import ColorModel
+from mend.sim.color_lessons import Studio, teach_colors
+from mend.sim.workcell.bench import TABLE_COLOR
+from mend.sim.workcell.world import LIGHT
+from mend.tasks.scene import Scene
 
 
 def learn_colors(scene: Scene, camera_noise: float = 0.0) -> ColorModel:

@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 from scipy.spatial.transform import Rotation
 
-from robots.motion.kinematics import KinematicChain
-from sim.workcell.mesh_repair import read_stl
-from sim.workcell.robot_model import ARM_JOINTS, FINGER_JOINTS, TOOL_FRAME
+from mend.robots.motion.kinematics import KinematicChain
+from mend.sim.workcell.mesh_repair import read_stl
+from mend.sim.workcell.robot_model import ARM_JOINTS, FINGER_JOINTS, TOOL_FRAME
 
 Hull = NDArray[np.float64]
 """Corners (n, 3)."""

@@ -1,6 +1,6 @@
 """Opening and closing: where the fingers are commanded to, cycle by cycle."""
 
-from sim.workcell.gripper import FINGERS_OPEN_RAD
+from mend.sim.workcell.gripper import FINGERS_OPEN_RAD
 
 _GRIPPER_CYCLES = 120
 _GRIPPER_RAMP_CYCLES = 60

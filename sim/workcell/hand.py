@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sim.workcell.parts import Part, PartPose
-from sim.workcell.physics import Client, Point
+from mend.sim.workcell.parts import Part, PartPose
+from mend.sim.workcell.physics import Client, Point
 
 HOLD_FORCE_N = 30.0
 PULL_FORCE_N = 60.0

@@ -4,11 +4,11 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
-from robots.body import Matrix4
-from robots.link.messages import ShownObject, ShownPose
-from robots.motion.curve import JointCurve
-from robots.motion.kinematics import KinematicChain
-from sim.workcell.physics import Client, Point
+from mend.robots.body import Matrix4
+from mend.robots.link.messages import ShownObject, ShownPose
+from mend.robots.motion.curve import JointCurve
+from mend.robots.motion.kinematics import KinematicChain
+from mend.sim.workcell.physics import Client, Point
 
 _HALF_M = (0.05, 0.05, 0.05)
 _COLOR = (0.25, 0.27, 0.30, 1.0)

@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field
 
-from tasks.scene import StrictModel
+from mend.tasks.scene import StrictModel
 
 
 class WorkcellOptions(StrictModel):

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sim.workcell.physics import Client, Point, Quaternion, to_matrix, wake, yaw_quaternion
-from tasks.scene import Pose, SceneObject
+from mend.sim.workcell.physics import Client, Point, Quaternion, to_matrix, wake, yaw_quaternion
+from mend.tasks.scene import Pose, SceneObject
 
 _FRICTION = 0.8
 _SPIN_FRICTION = 0.01

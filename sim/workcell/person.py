@@ -7,24 +7,24 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from robots.catalogue import Part as CataloguePart
-from robots.grasp import can_grasp, grasp_of
-from sim.acts import PULL_M_PER_S, Acts, Impossible
-from sim.workcell.bench import Bench
-from sim.workcell.body import PERIOD_S, WorkcellBody
-from sim.workcell.hand import HOLD_FORCE_N, PULL_FORCE_N, Hand
-from sim.workcell.obstacle import (
+from mend.robots.catalogue import Part as CataloguePart
+from mend.robots.grasp import can_grasp, grasp_of
+from mend.sim.acts import PULL_M_PER_S, Acts, Impossible
+from mend.sim.workcell.bench import Bench
+from mend.sim.workcell.body import PERIOD_S, WorkcellBody
+from mend.sim.workcell.hand import HOLD_FORCE_N, PULL_FORCE_N, Hand
+from mend.sim.workcell.obstacle import (
     Obstacle,
     center_above,
     centers_ahead,
     centers_below,
     sinks,
 )
-from sim.workcell.parts import Part, PartPose
-from sim.workcell.physics import LEAST_DISTANCE_M, Client, Point
-from sim.workcell.pr2 import Pr2
-from tasks.footprint import Footprint
-from tasks.scene import Pose
+from mend.sim.workcell.parts import Part, PartPose
+from mend.sim.workcell.physics import LEAST_DISTANCE_M, Client, Point
+from mend.sim.workcell.pr2 import Pr2
+from mend.tasks.footprint import Footprint
+from mend.tasks.scene import Pose
 
 PULLED_OUT_M = 0.5
 _CLEAR_M = 0.15

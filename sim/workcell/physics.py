@@ -4,8 +4,8 @@ from typing import Any
 
 import numpy as np
 
-from robots.body import Matrix4
-from sim.workcell.quiet import silenced
+from mend.robots.body import Matrix4
+from mend.sim.workcell.quiet import silenced
 
 Client = Any
 """A `pybullet_utils.bullet_client.BulletClient`; PyBullet has no types."""

@@ -5,15 +5,15 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from robots.body import Matrix4
-from robots.motion.collision import CollisionModel
-from robots.motion.kinematics import Joints, KinematicChain
-from sim.workcell.arm_dynamics import LinkInertia, Pr2ArmDynamics
-from sim.workcell.finger_hulls import FingerHulls, Hull
-from sim.workcell.gripper import FINGERS_OPEN_RAD, inner_side_m
-from sim.workcell.physics import Client, Point, to_matrix
-from sim.workcell.quiet import silenced
-from sim.workcell.robot_model import (
+from mend.robots.body import Matrix4
+from mend.robots.motion.collision import CollisionModel
+from mend.robots.motion.kinematics import Joints, KinematicChain
+from mend.sim.workcell.arm_dynamics import LinkInertia, Pr2ArmDynamics
+from mend.sim.workcell.finger_hulls import FingerHulls, Hull
+from mend.sim.workcell.gripper import FINGERS_OPEN_RAD, inner_side_m
+from mend.sim.workcell.physics import Client, Point, to_matrix
+from mend.sim.workcell.quiet import silenced
+from mend.sim.workcell.robot_model import (
     ARM_JOINTS,
     FINGER_JOINTS,
     FOREARM_CAMERA_FRAME,

@@ -8,10 +8,10 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from robots.body import Matrix4
-from sim.raster import Light, Mesh, Rasterizer, Triangles, box_triangles
-from sim.workcell.mesh_repair import read_stl
-from sim.workcell.physics import Client, to_matrix
+from mend.robots.body import Matrix4
+from mend.sim.raster import Light, Mesh, Rasterizer, Triangles, box_triangles
+from mend.sim.workcell.mesh_repair import read_stl
+from mend.sim.workcell.physics import Client, to_matrix
 
 _FAR_M = 4.0
 _LIGHT_DISTANCE_M = 5.0

@@ -13,8 +13,8 @@ import xml.etree.ElementTree as ElementTree
 from importlib import metadata
 from pathlib import Path
 
-from sim.workcell.mesh_repair import repair_stl
-from sim.world import WorldUnavailableError
+from mend.sim.workcell.mesh_repair import repair_stl
+from mend.sim.world import WorldUnavailableError
 
 ARM_JOINTS = (
     "r_shoulder_pan_joint",
@@ -88,12 +88,12 @@ def check_installed() -> None:
     if importlib.util.find_spec("pybullet") is None:
         raise WorldUnavailableError(
             "the workcell world needs PyBullet, which has wheels for Python 3.10 and 3.11 only: "
-            "run Mend with Python 3.11 and install it as 'mend[workcell]'"
+            "run Mend with Python 3.11 and install it as 'mend-robots[workcell]'"
         )
     for module, called in _MODULES.items():
         if importlib.util.find_spec(module) is None:
             raise WorldUnavailableError(
-                f"the workcell world needs {called}: install Mend as 'mend[workcell]'"
+                f"the workcell world needs {called}: install Mend as 'mend-robots[workcell]'"
             )
     _find_description()
 
@@ -116,7 +116,7 @@ def _find_description() -> tuple[Path, str]:
     except metadata.PackageNotFoundError:
         raise WorldUnavailableError(
             "the workcell world needs the package example-robot-data: "
-            "install Mend as 'mend[workcell]'"
+            "install Mend as 'mend-robots[workcell]'"
         ) from None
     folder = Path(
         str(package.locate_file("cmeel.prefix/share/example-robot-data/robots/pr2_description"))

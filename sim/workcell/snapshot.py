@@ -2,8 +2,8 @@
 
 from typing import Literal
 
-from sim.workcell.parts import PartPose
-from tasks.scene import Name, StrictModel
+from mend.sim.workcell.parts import PartPose
+from mend.tasks.scene import Name, StrictModel
 
 Triple = tuple[float, float, float]
 

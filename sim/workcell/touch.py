@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from robots.motion.momentum_observer import ArmDynamics, MomentumObserver, force_at_tool
-from sim.workcell.effort_sensors import ARM_NOISE_NM, EffortSensors
+from mend.robots.motion.momentum_observer import ArmDynamics, MomentumObserver, force_at_tool
+from mend.sim.workcell.effort_sensors import ARM_NOISE_NM, EffortSensors
 
 Vector = NDArray[np.float64]
 

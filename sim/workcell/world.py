@@ -7,35 +7,35 @@ from typing import Any, Literal
 
 import numpy as np
 
-from robots.body import Matrix4
-from robots.link.messages import ShownObject, ShownPose
-from sim.camera_cover import CoverableCamera
-from sim.depth_noise import DepthNoise
-from sim.lighting import Lighting
-from sim.raster import Light
-from sim.workcell.bench import Bench
-from sim.workcell.body import PERIOD_S, WorkcellBody
-from sim.workcell.cameras import (
+from mend.robots.body import Matrix4
+from mend.robots.link.messages import ShownObject, ShownPose
+from mend.sim.camera_cover import CoverableCamera
+from mend.sim.depth_noise import DepthNoise
+from mend.sim.lighting import Lighting
+from mend.sim.raster import Light
+from mend.sim.workcell.bench import Bench
+from mend.sim.workcell.body import PERIOD_S, WorkcellBody
+from mend.sim.workcell.cameras import (
     Optics,
     WorkcellCamera,
     forearm_optics,
     head_camera_pose,
     head_optics,
 )
-from sim.workcell.options import WorkcellOptions
-from sim.workcell.parts import Part
-from sim.workcell.person import Person
-from sim.workcell.physics import arrangement, connect
-from sim.workcell.pr2 import Pr2
-from sim.workcell.rendering import BulletRenderer, FastRenderer, Renderer
-from sim.workcell.snapshot import (
+from mend.sim.workcell.options import WorkcellOptions
+from mend.sim.workcell.parts import Part
+from mend.sim.workcell.person import Person
+from mend.sim.workcell.physics import arrangement, connect
+from mend.sim.workcell.pr2 import Pr2
+from mend.sim.workcell.rendering import BulletRenderer, FastRenderer, Renderer
+from mend.sim.workcell.snapshot import (
     HandOverSnapshot,
     PartSnapshot,
     PoseSnapshot,
     WorkcellSnapshot,
 )
-from tasks.intervention import Intervention
-from tasks.scene import Scene
+from mend.tasks.intervention import Intervention
+from mend.tasks.scene import Scene
 
 _GRAVITY_M_S2 = -9.81
 LIGHT = Light(direction=(0.6, -0.4, 2.0), ambient=0.60, diffuse=0.35)

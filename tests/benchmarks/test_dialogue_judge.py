@@ -11,12 +11,12 @@ from sample_events import RUN, WALL_TIME
 from task_documents import definition_of
 from untruths import Rest
 
-from dialogue import missing
-from dialogue.script import HelpState
-from server.journal import events as ev
-from sim.tabletop.layout import lay_out
-from tasks.intervention import Act, Intervention
-from tasks.scene import Scene
+from mend.dialogue import missing
+from mend.dialogue.script import HelpState
+from mend.server.journal import events as ev
+from mend.sim.tabletop.layout import lay_out
+from mend.tasks.intervention import Act, Intervention
+from mend.tasks.scene import Scene
 
 NAMES = [("part_1", "spot_1"), ("part_2", "spot_2")]
 SCENE = lay_out(NAMES, seed=1)

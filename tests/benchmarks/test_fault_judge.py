@@ -8,10 +8,10 @@ pytest.importorskip("pybullet")
 
 from fault_judge import Judge, place_of
 
-from sim.workcell.options import WorkcellOptions
-from sim.workcell.world import WorkcellWorld
-from tasks.intervention import Act, Intervention
-from tasks.scene import Place, Pose, Scene, SceneObject
+from mend.sim.workcell.options import WorkcellOptions
+from mend.sim.workcell.world import WorkcellWorld
+from mend.tasks.intervention import Act, Intervention
+from mend.tasks.scene import Place, Pose, Scene, SceneObject
 
 RED, BLUE = (0.8, 0.1, 0.1), (0.1, 0.1, 0.8)
 BAR = (0.03, 0.12, 0.04)

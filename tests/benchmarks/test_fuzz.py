@@ -13,9 +13,9 @@ from fuzz_said import said
 from websockets.asyncio.client import connect
 from websockets.asyncio.server import ServerConnection, serve
 
-from server.access.admission import Admission
-from server.access.principal import ANYBODY, Caller
-from server.cli.failures import CommandLineError
+from mend.server.access.admission import Admission
+from mend.server.access.principal import ANYBODY, Caller
+from mend.server.cli.failures import CommandLineError
 
 FEW, MANY = 4, 30
 """Of files that take long to read, and of others."""
@@ -51,7 +51,7 @@ async def test_mutated_requests_and_messages_do_no_harm() -> None:
 async def test_a_service_that_lets_strangers_do_what_others_may_is_found(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("server.access.access.REFUSED", Admission(Caller(ANYBODY)))
+    monkeypatch.setattr("mend.server.access.access.REFUSED", Admission(Caller(ANYBODY)))
     async with bench() as made:
         found = await fuzz_strangers(made, 30, 7)
     assert any("without a credential" in each.sentence for each in found.findings)

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from peers import mrpt
 
-from maps.vector_map import VectorMap
-from robots.localization.logs.log import Log, LogStep
-from robots.localization.scan import Scan
+from mend.localization.logs.log import Log, LogStep
+from mend.localization.scan import Scan
+from mend.maps.vector_map import VectorMap
 
 WALLS = VectorMap(np.array([[1.0, 2.0, 5.0, 2.0], [5.0, 2.0, 5.0, 4.0]]))
 

@@ -6,11 +6,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from dialogue.conversation import Conversation, IllegalTransitionError, Phase
-from dialogue.evidence import Change, PutRight
-from dialogue.outlook import Next, Outlook, Sequel
-from dialogue.registry import load_scripts
-from dialogue.script import (
+from mend.dialogue.conversation import Conversation, IllegalTransitionError, Phase
+from mend.dialogue.evidence import Change, PutRight
+from mend.dialogue.outlook import Next, Outlook, Sequel
+from mend.dialogue.registry import load_scripts
+from mend.dialogue.script import (
     Ask,
     AwaitHelp,
     Close,
@@ -20,8 +20,8 @@ from dialogue.script import (
     Say,
     Turn,
 )
-from tasks.issue import Issue, Sensed
-from tasks.resolution import Resolution
+from mend.tasks.issue import Issue, Sensed
+from mend.tasks.resolution import Resolution
 
 SCRIPTS = load_scripts()
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 from hypothesis import given
 from hypothesis import strategies as st
 
-from dialogue.evidence import (
+from mend.dialogue.evidence import (
     MOVED_M,
     Change,
     Look,
@@ -16,7 +16,7 @@ from dialogue.evidence import (
     contradiction,
     put_right,
 )
-from dialogue.script import Expectation
+from mend.dialogue.script import Expectation
 
 LOST = (Expectation.AT_PLACE, Expectation.IN_REACH)
 HERE, THERE = (0.5, 0.1, 0.7), (0.5, 0.3, 0.7)

@@ -2,12 +2,12 @@
 
 import pytest
 
-from dialogue.conversation import Conversation
-from dialogue.outlook import Outlook
-from dialogue.registry import load_scripts
-from dialogue.script import Ask, AskState, CloseState, Help, HelpState, Script
-from tasks.issue import Issue
-from tasks.resolution import Resolution
+from mend.dialogue.conversation import Conversation
+from mend.dialogue.outlook import Outlook
+from mend.dialogue.registry import load_scripts
+from mend.dialogue.script import Ask, AskState, CloseState, Help, HelpState, Script
+from mend.tasks.issue import Issue
+from mend.tasks.resolution import Resolution
 
 ISSUE = Issue("odd", "pr2", "/0", "cup", "cup", None, 1)
 

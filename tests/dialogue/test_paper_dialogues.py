@@ -2,14 +2,14 @@
 
 from collections.abc import Iterator
 
-from dialogue.conversation import Conversation, Phase
-from dialogue.evidence import Change
-from dialogue.outlook import Outlook
-from dialogue.registry import load_scripts
-from dialogue.script import Close
-from tasks.issue import Issue
-from tasks.resolution import Resolution
-from tasks.scenario_file import built_in_scenario
+from mend.dialogue.conversation import Conversation, Phase
+from mend.dialogue.evidence import Change
+from mend.dialogue.outlook import Outlook
+from mend.dialogue.registry import load_scripts
+from mend.dialogue.script import Close
+from mend.tasks.issue import Issue
+from mend.tasks.resolution import Resolution
+from mend.tasks.scenario_file import built_in_scenario
 
 ISSUES = [
     ("dropped", "pink_bar"),

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import pytest
 
-from dialogue.registry import load_scripts, make_script
-from dialogue.script import (
+from mend.dialogue.registry import load_scripts, make_script
+from mend.dialogue.script import (
     AskState,
     CloseState,
     Expectation,
@@ -15,10 +15,10 @@ from dialogue.script import (
     ScriptWithParameters,
     State,
 )
-from dialogue.soundness import UnsoundScriptError, check_script
-from tasks.plugins import PluginError
-from tasks.resolution import Resolution
-from tasks.scene import StrictModel
+from mend.dialogue.soundness import UnsoundScriptError, check_script
+from mend.tasks.plugins import PluginError
+from mend.tasks.resolution import Resolution
+from mend.tasks.scene import StrictModel
 
 LATER = CloseState("I will try again later.", Resolution.ROBOT_RETRY)
 

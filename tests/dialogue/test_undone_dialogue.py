@@ -2,13 +2,13 @@
 
 import pytest
 
-from dialogue.conversation import Conversation, Phase
-from dialogue.evidence import Change
-from dialogue.outlook import Next, Outlook, Sequel
-from dialogue.registry import load_scripts
-from dialogue.script import Ask, Close, CloseReason, Expectation, Say, Turn
-from tasks.issue import Issue, Sensed
-from tasks.resolution import Resolution
+from mend.dialogue.conversation import Conversation, Phase
+from mend.dialogue.evidence import Change
+from mend.dialogue.outlook import Next, Outlook, Sequel
+from mend.dialogue.registry import load_scripts
+from mend.dialogue.script import Ask, Close, CloseReason, Expectation, Say, Turn
+from mend.tasks.issue import Issue, Sensed
+from mend.tasks.resolution import Resolution
 
 LAST_CHANCE = Outlook(attempt=3, attempts=3, failed=Sequel(Next.RUN_FAILS))
 

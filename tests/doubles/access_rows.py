@@ -4,9 +4,9 @@ from dataclasses import dataclass
 from typing import Any, get_args
 from uuid import UUID
 
-from robots.link import messages as link
-from server.api import helper_messages, speech_messages
-from server.app import described_app
+from mend.robots.link import messages as link
+from mend.server.api import helper_messages, speech_messages
+from mend.server.app import described_app
 
 NOBODY = UUID("00000000-0000-4000-8000-000000000000")
 

@@ -4,8 +4,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
-from robots.agent import AgentCore
-from robots.link.messages import CommandBody, IssueDetected, Picture, ReportBody, Start
+from mend.robots.agent import AgentCore
+from mend.robots.link.messages import CommandBody, IssueDetected, Picture, ReportBody, Start
 
 
 @dataclass

@@ -11,9 +11,9 @@ from uuid import UUID
 from pretend_service import PretendService, pretend_service
 from task_documents import definition_of
 
-from server.errors import ConflictError, LostRaceError
-from server.journal import events as ev
-from server.runtime.requests import RunRequest
+from mend.server.errors import ConflictError, LostRaceError
+from mend.server.journal import events as ev
+from mend.server.runtime.requests import RunRequest
 
 ONE_PART = definition_of({"behavior": "pick_and_place", "object": "part_1", "place": "spot_1"})
 

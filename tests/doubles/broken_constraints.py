@@ -8,7 +8,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from uuid import UUID
 
-from server.journal import events as ev
+from mend.server.journal import events as ev
 
 
 def broken_constraints(events: Sequence[ev.Event], kinds: Mapping[str, str]) -> list[str]:

@@ -4,10 +4,10 @@ from collections.abc import Iterable
 from pathlib import Path
 from uuid import UUID
 
-from dialogue.registry import load_scripts
-from server.journal.events import Event
-from server.journal.full_check import JournalCheck, check_journal
-from server.runtime.history import fold_event
+from mend.dialogue.registry import load_scripts
+from mend.server.journal.events import Event
+from mend.server.journal.full_check import JournalCheck, check_journal
+from mend.server.runtime.history import fold_event
 
 SCRIPTS = load_scripts()
 

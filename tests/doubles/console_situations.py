@@ -6,10 +6,10 @@ from uuid import UUID
 from console_in_browser import OpenPage
 from playwright.async_api import Page, expect
 
-from server.composition import Service
-from server.runtime.requests import RunRequest
-from tasks.intervention import Intervention
-from tasks.scenario import Person
+from mend.server.composition import Service
+from mend.server.runtime.requests import RunRequest
+from mend.tasks.intervention import Intervention
+from mend.tasks.scenario import Person
 
 STEAL = Intervention.model_validate({"act": "steal", "object": "green_leg"})
 PATIENCE_MS = 60_000

@@ -4,8 +4,8 @@ import base64
 from collections import deque
 from typing import Any
 
-from robots.agent import Emit, EmitPicture
-from robots.link.messages import (
+from mend.robots.agent import Emit, EmitPicture
+from mend.robots.link.messages import (
     ActiveExecution,
     CommandBody,
     Finished,

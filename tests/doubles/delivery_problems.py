@@ -6,9 +6,9 @@ from math import inf
 
 from hypothesis import strategies as st
 
-from fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit, Weights, Window
-from fleet.scheduling.schedule import Action, Route, Task
-from fleet.scheduling.travel import Travel
+from mend.fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit, Weights, Window
+from mend.fleet.scheduling.schedule import Action, Route, Task
+from mend.fleet.scheduling.travel import Travel
 
 CORRIDOR = ((0.0, 0.0), (10.0, 0.0), (20.0, 0.0), (30.0, 0.0), (40.0, 0.0))
 """Five places in a row, 10 m apart; robots drive 1 m/s."""

@@ -4,11 +4,11 @@ from collections.abc import Hashable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TypeVar
 
-from dialogue.conversation import Conversation, Phase
-from dialogue.outlook import Outlook
-from dialogue.script import Ask, Script, Turn
-from server.runtime.dialogue_state import converse
-from tasks.issue import Issue
+from mend.dialogue.conversation import Conversation, Phase
+from mend.dialogue.outlook import Outlook
+from mend.dialogue.script import Ask, Script, Turn
+from mend.server.runtime.dialogue_state import converse
+from mend.tasks.issue import Issue
 
 Path = tuple[str, ...]
 

@@ -7,8 +7,8 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from robots.body import CameraImage
-from robots.catalogue import Part
+from mend.robots.body import CameraImage
+from mend.robots.catalogue import Part
 
 TABLE_Z = 0.70
 TABLE = ((0.35, -0.75), (1.05, 0.55))

@@ -1,6 +1,6 @@
 """A channel whose connection drops after so many messages; what was on its way is lost."""
 
-from robots.link.channel import Channel, ChannelClosedError
+from mend.robots.link.channel import Channel, ChannelClosedError
 
 
 class DroppingChannel:

@@ -6,14 +6,14 @@ from datetime import UTC, datetime, timedelta
 from typing import Any, Literal
 from uuid import UUID, uuid4
 
-from dialogue.script import CloseReason
-from server.documents import CheckedDocument, DocumentMistake, Uploaded, WrongDocumentError
-from server.errors import ConflictError, InvalidError, LostRaceError, NotFoundError
-from server.journal import events as ev
-from server.journal.journal import Entry, Journal
-from server.journal.run_index import RunPage
-from server.runtime.requests import RunRequest
-from server.runtime.views import (
+from mend.dialogue.script import CloseReason
+from mend.server.documents import CheckedDocument, DocumentMistake, Uploaded, WrongDocumentError
+from mend.server.errors import ConflictError, InvalidError, LostRaceError, NotFoundError
+from mend.server.journal import events as ev
+from mend.server.journal.journal import Entry, Journal
+from mend.server.journal.run_index import RunPage
+from mend.server.runtime.requests import RunRequest
+from mend.server.runtime.views import (
     DialogueView,
     NodeView,
     PromptView,
@@ -25,7 +25,7 @@ from server.runtime.views import (
     Snapshot,
     WorldView,
 )
-from tasks.intervention import Intervention
+from mend.tasks.intervention import Intervention
 
 TREES = {"eket": "then: []", "tea_table": "and: []"}
 JPEG = b"\xff\xd8\xff\xd9"

@@ -2,9 +2,9 @@
 
 from collections.abc import Sequence
 
-from fleet.scheduling.replanning.fleet_state import Done
-from fleet.scheduling.replanning.running_fleet import RunningFleet
-from fleet.scheduling.schedule import Action
+from mend.fleet.scheduling.replanning.fleet_state import Done
+from mend.fleet.scheduling.replanning.running_fleet import RunningFleet
+from mend.fleet.scheduling.schedule import Action
 
 
 class Ledger:

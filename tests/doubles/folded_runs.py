@@ -19,16 +19,16 @@ from typing import Any
 import numpy as np
 from recorded_service import recorded_events
 
-from dialogue.registry import load_scripts
-from server.composition import open_service
-from server.journal import events as ev
-from server.journal.sqlite import IN_MEMORY
-from server.runtime.requests import RunRequest
-from server.runtime.run_state import RunState
-from server.runtime.run_views import RunViewing, dialogue_view
-from server.settings import Settings
-from tasks.random_task import random_task
-from tasks.scenario import Person
+from mend.dialogue.registry import load_scripts
+from mend.server.composition import open_service
+from mend.server.journal import events as ev
+from mend.server.journal.sqlite import IN_MEMORY
+from mend.server.runtime.requests import RunRequest
+from mend.server.runtime.run_state import RunState
+from mend.server.runtime.run_views import RunViewing, dialogue_view
+from mend.server.settings import Settings
+from mend.tasks.random_task import random_task
+from mend.tasks.scenario import Person
 
 LEAVES = 12
 PAUSED_EVERY = 7

@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from server.journal.sqlite import SqliteJournal
+from mend.server.journal.sqlite import SqliteJournal
 
 
 class Passing:

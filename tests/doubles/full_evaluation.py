@@ -12,7 +12,7 @@ from random import Random
 
 from hypothesis import strategies as st
 
-from tasks.definition import BehaviorNode, GoalNode, TaskTreeDefinition
+from mend.tasks.definition import BehaviorNode, GoalNode, TaskTreeDefinition
 
 
 @dataclass(eq=False)

@@ -12,11 +12,11 @@ import numpy as np
 from broken_constraints import broken_constraints
 from service_process import ServiceProcess
 
-from server.client import ENDS, MendClient
-from server.journal import events as ev
-from server.journal.reader import JournalReader
-from server.runtime.requests import RunRequest
-from server.runtime.views import RunStatus, Snapshot
+from mend.server.client import ENDS, MendClient
+from mend.server.journal import events as ev
+from mend.server.journal.reader import JournalReader
+from mend.server.runtime.requests import RunRequest
+from mend.server.runtime.views import RunStatus, Snapshot
 
 PATIENCE_S = 60.0
 """A run of which nothing is heard for so long hangs."""

@@ -9,15 +9,15 @@ from datetime import UTC, datetime
 from loopback import served
 from pretend_service import OneTree, PretendWorlds
 
-from dialogue.registry import load_scripts
-from server.dialogues.escalation import EscalationPolicy
-from server.journal.sqlite import SqliteJournal
-from server.poses.feed import PoseFeed
-from server.refusals import Refusals
-from server.robots.registry import RobotRegistry
-from server.robots.times import LinkTimes
-from server.runtime.context import RunSettings
-from server.runtime.runtime import Runtime
+from mend.dialogue.registry import load_scripts
+from mend.server.dialogues.escalation import EscalationPolicy
+from mend.server.journal.sqlite import SqliteJournal
+from mend.server.poses.feed import PoseFeed
+from mend.server.refusals import Refusals
+from mend.server.robots.registry import RobotRegistry
+from mend.server.robots.times import LinkTimes
+from mend.server.runtime.context import RunSettings
+from mend.server.runtime.runtime import Runtime
 
 
 @dataclass(frozen=True)

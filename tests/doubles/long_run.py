@@ -5,7 +5,7 @@ from datetime import UTC, datetime
 from typing import Any
 from uuid import UUID, uuid4
 
-from server.journal import events as ev
+from mend.server.journal import events as ev
 
 STEPS = ("above pick", "pick", "close gripper", "above pick", "above place", "place")
 STEPS += ("open gripper", "above place")

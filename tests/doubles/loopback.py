@@ -9,11 +9,11 @@ from contextlib import asynccontextmanager, contextmanager
 import uvicorn
 from fastapi import FastAPI
 
-from server.access.access import Access
-from server.api.robot_socket import ROBOT_PATH, add_robot_route
-from server.robots.registry import RobotRegistry
-from server.serving import MAX_SOCKET_MESSAGE_BYTES
-from server.websocket_protocol import WebSocketProtocol
+from mend.server.access.access import Access
+from mend.server.api.robot_socket import ROBOT_PATH, add_robot_route
+from mend.server.robots.registry import RobotRegistry
+from mend.server.serving import MAX_SOCKET_MESSAGE_BYTES
+from mend.server.websocket_protocol import WebSocketProtocol
 
 
 class _Server(uvicorn.Server):

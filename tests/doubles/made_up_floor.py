@@ -1,6 +1,6 @@
 """A small floor of our own: a corridor with offices on both sides."""
 
-from maps.vector_map import VectorMap
+from mend.maps.vector_map import VectorMap
 
 FLOOR = VectorMap.of(
     [

@@ -3,11 +3,11 @@
 import numpy as np
 from drawn_scene import PARTS, TABLE_Z
 
-from robots.behaviors.phase import Phase
-from robots.body import Reach
-from robots.monitors.monitor import MonitorView
-from robots.vision.blob import Blob
-from robots.vision.head import HeadSighting
+from mend.robots.behaviors.phase import Phase
+from mend.robots.body import Reach
+from mend.robots.monitors.monitor import MonitorView
+from mend.robots.vision.blob import Blob
+from mend.robots.vision.head import HeadSighting
 
 BLOB = Blob((50.0, 60.0), 200, (40, 50, 20, 20), np.zeros((120, 160), np.uint8))
 SEEN = HeadSighting(0.5, -0.2, TABLE_Z, 0.0, TABLE_Z + 0.04, True, 1.0, BLOB, 0.0)

@@ -8,8 +8,8 @@ from typing import Any
 
 from service_under_test import ServiceUnderTest, serving
 
-from server.access.changes import PrincipalsEditor
-from server.access.roles import Role
+from mend.server.access.changes import PrincipalsEditor
+from mend.server.access.roles import Role
 
 NAMES = {
     Role.VIEWER: "vera",

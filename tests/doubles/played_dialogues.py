@@ -10,17 +10,17 @@ import cv2
 import numpy as np
 from fake_runs import FakeRuns
 
-from dialogue.evidence import Change
-from dialogue.outlook import Outlook
-from dialogue.registry import load_scripts
-from dialogue.script import Ask
-from robots.link.messages import Detection
-from server.errors import ConflictError, LostRaceError
-from server.journal import events as ev
-from server.journal.journal import Entry, Journal
-from server.runtime.dialogue_events import DialogueEvents
-from server.runtime.dialogue_state import rehearse
-from server.runtime.views import AwaitedHelp, DialogueView, PromptView
+from mend.dialogue.evidence import Change
+from mend.dialogue.outlook import Outlook
+from mend.dialogue.registry import load_scripts
+from mend.dialogue.script import Ask
+from mend.robots.link.messages import Detection
+from mend.server.errors import ConflictError, LostRaceError
+from mend.server.journal import events as ev
+from mend.server.journal.journal import Entry, Journal
+from mend.server.runtime.dialogue_events import DialogueEvents
+from mend.server.runtime.dialogue_state import rehearse
+from mend.server.runtime.views import AwaitedHelp, DialogueView, PromptView
 
 WIDTH_PX, HEIGHT_PX = 320, 240
 DETECTION = Detection(

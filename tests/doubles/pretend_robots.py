@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Protocol
 
-from robots.link.messages import (
+from mend.robots.link.messages import (
     ClipPicture,
     ClipTaken,
     CommandBody,
@@ -34,9 +34,9 @@ from robots.link.messages import (
     Start,
     StepStarted,
 )
-from server.journal.journal import Receipt
-from server.runtime.dialogue_looks import FIRST_LOOK_S
-from tasks.intervention import Act
+from mend.server.journal.journal import Receipt
+from mend.server.runtime.dialogue_looks import FIRST_LOOK_S
+from mend.tasks.intervention import Act
 
 FIRST_JPEG, SECOND_JPEG = b"\xff\xd8\xff first \xff\xd9", b"\xff\xd8\xff second \xff\xd9"
 

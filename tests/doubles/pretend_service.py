@@ -11,23 +11,23 @@ from typing import Any
 
 from pretend_robots import PretendRobot, PretendRobots
 
-from dialogue.registry import load_scripts
-from dialogue.script import Script
-from server.dialogues.escalation import EscalationPolicy
-from server.journal import events as ev
-from server.journal.sqlite import SqliteJournal
-from server.journal.trouble import Sleep
-from server.poses.feed import PoseFeed
-from server.runtime.context import RunSettings
-from server.runtime.dialogue_state import DialogueState
-from server.runtime.ports import PreparedRun
-from server.runtime.requests import RunRequest
-from server.runtime.run import Run
-from server.runtime.run_state import RunState
-from server.runtime.runtime import Runtime
-from server.runtime.views import RunView
-from tasks.definition import TaskTreeDefinition
-from tasks.scene import Scene
+from mend.dialogue.registry import load_scripts
+from mend.dialogue.script import Script
+from mend.server.dialogues.escalation import EscalationPolicy
+from mend.server.journal import events as ev
+from mend.server.journal.sqlite import SqliteJournal
+from mend.server.journal.trouble import Sleep
+from mend.server.poses.feed import PoseFeed
+from mend.server.runtime.context import RunSettings
+from mend.server.runtime.dialogue_state import DialogueState
+from mend.server.runtime.ports import PreparedRun
+from mend.server.runtime.requests import RunRequest
+from mend.server.runtime.run import Run
+from mend.server.runtime.run_state import RunState
+from mend.server.runtime.runtime import Runtime
+from mend.server.runtime.views import RunView
+from mend.tasks.definition import TaskTreeDefinition
+from mend.tasks.scene import Scene
 
 BARE = Scene(name="bare", objects={}, places={})
 

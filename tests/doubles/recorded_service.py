@@ -9,14 +9,14 @@ from types import SimpleNamespace
 from typing import Any
 from uuid import UUID, uuid4
 
-from server.errors import NotFoundError
-from server.fixed_documents import GivenFiles
-from server.journal import events as ev
-from server.journal.journal import Entry
-from server.journal.sqlite import SqliteJournal
-from server.runtime.requests import RunRequest
-from server.runtime.views import RunStatus
-from server.settings import Settings
+from mend.server.errors import NotFoundError
+from mend.server.fixed_documents import GivenFiles
+from mend.server.journal import events as ev
+from mend.server.journal.journal import Entry
+from mend.server.journal.sqlite import SqliteJournal
+from mend.server.runtime.requests import RunRequest
+from mend.server.runtime.views import RunStatus
+from mend.server.settings import Settings
 
 RECORDED = Path(__file__).parents[1] / "server" / "recorded" / "eket_paper.jsonl"
 ENDS = {

@@ -4,8 +4,8 @@ import asyncio
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from robots.link.messages import Hello, Poses, Report
-from server.journal.journal import Entry, Journal, Receipt
+from mend.robots.link.messages import Hello, Poses, Report
+from mend.server.journal.journal import Entry, Journal, Receipt
 
 
 @dataclass

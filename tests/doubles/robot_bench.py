@@ -5,9 +5,9 @@ from typing import Any, TypeVar
 
 from scripted_body import STARTS, ScriptedBody, catalogue, trained_model
 
-from robots.link.messages import CommandBody, Look, Picture, ReportBody, Start
-from robots.robot import Robot
-from tasks.plugins import load_plugins
+from mend.robots.link.messages import CommandBody, Look, Picture, ReportBody, Start
+from mend.robots.robot import Robot
+from mend.tasks.plugins import load_plugins
 
 MODEL = trained_model()
 LONGEST_S = 120.0

@@ -6,10 +6,10 @@ from typing import Any
 
 from playwright.async_api import Page
 
-from server.journal import events as ev
-from server.runtime.run_state import RunState
-from server.runtime.run_views import RunViewing
-from server.runtime.views import NodeView
+from mend.server.journal import events as ev
+from mend.server.runtime.run_state import RunState
+from mend.server.runtime.run_views import RunViewing
+from mend.server.runtime.views import NodeView
 
 SHOWN = """() => JSON.stringify([...document.querySelectorAll('[role=treeitem]')].map((node) => ({
     node: node.dataset.path,

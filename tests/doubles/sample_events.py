@@ -3,8 +3,8 @@
 from datetime import UTC, datetime
 from uuid import UUID
 
-from robots.link.messages import Detection
-from server.journal.events import IssueRaised, RunPaused, RunStarted
+from mend.robots.link.messages import Detection
+from mend.server.journal.events import IssueRaised, RunPaused, RunStarted
 
 RUN = UUID("11111111-1111-4111-8111-111111111111")
 WALL_TIME = datetime(2026, 1, 2, 3, 4, 5, tzinfo=UTC)

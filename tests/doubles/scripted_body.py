@@ -8,17 +8,17 @@ from functools import cache
 import numpy as np
 from drawn_scene import HEAD_POSE, PARTS, TABLE_Z, DrawnScene, Resting
 
-from robots.body import CameraImage, NoWay, Reach, ToolPose
-from robots.catalogue import Catalogue, Part
-from robots.grasp import grasp_of
-from robots.gripper import GripperModel
-from robots.link.messages import Location
-from robots.vision.color_model import ColorModel, Sample
-from robots.vision.projection import project
-from robots.vision.table_view import TableView, view_table
-from robots.vision.tracking import LastSeen
-from sim.tabletop.arm import GRIPPER
-from tasks.scene import Table
+from mend.robots.body import CameraImage, NoWay, Reach, ToolPose
+from mend.robots.catalogue import Catalogue, Part
+from mend.robots.grasp import grasp_of
+from mend.robots.gripper import GripperModel
+from mend.robots.link.messages import Location
+from mend.robots.vision.color_model import ColorModel, Sample
+from mend.robots.vision.projection import project
+from mend.robots.vision.table_view import TableView, view_table
+from mend.robots.vision.tracking import LastSeen
+from mend.sim.tabletop.arm import GRIPPER
+from mend.tasks.scene import Table
 
 NEUTRAL = ToolPose(0.30, -0.85, 1.05, 0.0)
 HAND_OVER = ToolPose(0.45, -0.20, 1.00, 0.0)

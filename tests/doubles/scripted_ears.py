@@ -5,9 +5,9 @@ import io
 import wave
 from dataclasses import dataclass, field
 
-from server.speech.commands import Command
-from server.speech.ear import Ear, EarLostError, Report, TooManyConversationsError
-from server.speech.voice import VoiceError
+from mend.server.speech.commands import Command
+from mend.server.speech.ear import Ear, EarLostError, Report, TooManyConversationsError
+from mend.server.speech.voice import VoiceError
 
 
 class ScriptedEar:

@@ -13,8 +13,8 @@ from pathlib import Path
 
 import psutil
 
-from server.client import MendClient
-from server.journal.reader import JournalReader
+from mend.server.client import MendClient
+from mend.server.journal.reader import JournalReader
 
 START_S = 60.0
 """Patience with a start, on a machine that is busy."""

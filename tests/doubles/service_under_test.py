@@ -16,25 +16,25 @@ import httpx
 from fake_runs import TREES, FakeRuns, FakeTreeChecker, FakeWorlds
 from fastapi import FastAPI
 
-from server.access.access import Access
-from server.access.deed_log import DeedLog
-from server.app import build_access, create_app
-from server.documents import DocumentKind
-from server.fixed_documents import GivenFiles, NamedTexts, fixed_documents
-from server.journal.sqlite import SqliteJournal
-from server.journaled_documents import JournaledDocuments
-from server.library import build_library
-from server.limits import LimitName
-from server.listening import listen
-from server.models import RobotModels
-from server.pace import Sleep
-from server.poses.feed import PoseFeed
-from server.poses.record import PoseRecords
-from server.refusals import Refusals
-from server.scene_checks import WorldChecks
-from server.serving import Server, serve_config
-from server.settings import Settings
-from server.speech.abilities import NO_SPEECH, SpeechAbilities
+from mend.server.access.access import Access
+from mend.server.access.deed_log import DeedLog
+from mend.server.app import build_access, create_app
+from mend.server.documents import DocumentKind
+from mend.server.fixed_documents import GivenFiles, NamedTexts, fixed_documents
+from mend.server.journal.sqlite import SqliteJournal
+from mend.server.journaled_documents import JournaledDocuments
+from mend.server.library import build_library
+from mend.server.limits import LimitName
+from mend.server.listening import listen
+from mend.server.models import RobotModels
+from mend.server.pace import Sleep
+from mend.server.poses.feed import PoseFeed
+from mend.server.poses.record import PoseRecords
+from mend.server.refusals import Refusals
+from mend.server.scene_checks import WorldChecks
+from mend.server.serving import Server, serve_config
+from mend.server.settings import Settings
+from mend.server.speech.abilities import NO_SPEECH, SpeechAbilities
 
 TOKEN = "correct-horse-battery"
 

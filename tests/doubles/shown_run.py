@@ -5,12 +5,12 @@ from uuid import UUID
 from sample_events import RUN, WALL_TIME
 from task_documents import definition_of
 
-from dialogue.registry import load_scripts
-from robots.link.messages import Hello, PoseLayout, Poses, ReachLimits, ShownObject, ShownPose
-from server.journal.events import RunStarted
-from server.runtime.requests import RunRequest
-from server.runtime.run_state import RunState
-from tasks.scene import Place, Pose, Scene, SceneObject
+from mend.dialogue.registry import load_scripts
+from mend.robots.link.messages import Hello, PoseLayout, Poses, ReachLimits, ShownObject, ShownPose
+from mend.server.journal.events import RunStarted
+from mend.server.runtime.requests import RunRequest
+from mend.server.runtime.run_state import RunState
+from mend.tasks.scene import Place, Pose, Scene, SceneObject
 
 SCENE = Scene(
     name="bench",

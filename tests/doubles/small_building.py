@@ -2,12 +2,12 @@
 
 from random import Random
 
-from fleet.scheduling.instances.building import BuildingPlan, building_deliveries
-from fleet.scheduling.problem import Problem
-from fleet.scheduling.problem_file import navigation_graph, problem_of
-from fleet.scheduling.replanning.open_ways import OpenWays
-from fleet.scheduling.replanning.running_fleet import RunningFleet
-from maps.navigation import NavigationGraph
+from mend.fleet.scheduling.instances.building import BuildingPlan, building_deliveries
+from mend.fleet.scheduling.problem import Problem
+from mend.fleet.scheduling.problem_file import navigation_graph, problem_of
+from mend.fleet.scheduling.replanning.open_ways import OpenWays
+from mend.fleet.scheduling.replanning.running_fleet import RunningFleet
+from mend.maps.navigation import NavigationGraph
 
 PLAN = BuildingPlan(floors=2, offices=6, robots=3, items=2, shift_s=2400.0)
 

@@ -2,8 +2,8 @@
 
 import math
 
-from robots.body import ToolPose
-from sim.tabletop.world import TabletopWorld
+from mend.robots.body import ToolPose
+from mend.sim.tabletop.world import TabletopWorld
 
 TABLE_M = 0.70
 

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from tasks.definition import TaskTreeDefinition
+from mend.tasks.definition import TaskTreeDefinition
 
 
 def definition_of(tree: dict[str, Any]) -> TaskTreeDefinition:

@@ -12,13 +12,13 @@ from live_service import LiveService, live_service
 from pretend_service import BARE, OneTree
 from task_documents import definition_of
 
-from robots.link.channel import Channel, ChannelClosedError, memory_channel
-from robots.link.messages import Command, service_message
-from server.journal.sqlite import SqliteJournal
-from server.robots.times import LinkTimes
-from server.runtime.context import RunSettings
-from server.runtime.requests import RunRequest
-from server.runtime.views import RunView
+from mend.robots.link.channel import Channel, ChannelClosedError, memory_channel
+from mend.robots.link.messages import Command, service_message
+from mend.server.journal.sqlite import SqliteJournal
+from mend.server.robots.times import LinkTimes
+from mend.server.runtime.context import RunSettings
+from mend.server.runtime.requests import RunRequest
+from mend.server.runtime.views import RunView
 
 PARTS = ("green_leg", "blue_leg", "pink_bar", "yellow_bar")
 GRIPPER = {"x": 0.3, "y": 0.0, "z": 1.0}

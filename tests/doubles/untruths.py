@@ -9,9 +9,9 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from server.journal import events as ev
-from tasks.definition import BehaviorNode, TaskTreeDefinition
-from tasks.scene import Place, Scene
+from mend.server.journal import events as ev
+from mend.tasks.definition import BehaviorNode, TaskTreeDefinition
+from mend.tasks.scene import Place, Scene
 
 
 @dataclass(frozen=True, slots=True)

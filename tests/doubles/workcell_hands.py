@@ -7,12 +7,12 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from robots.body import ArmPath, ToolPose
-from robots.catalogue import Part
-from robots.grasp import RELEASE_CLEARANCE_M, grasp_of, half_turn
-from sim.workcell.parts import PartPose
-from sim.workcell.world import WorkcellWorld
-from tasks.intervention import Act, Intervention
+from mend.robots.body import ArmPath, ToolPose
+from mend.robots.catalogue import Part
+from mend.robots.grasp import RELEASE_CLEARANCE_M, grasp_of, half_turn
+from mend.sim.workcell.parts import PartPose
+from mend.sim.workcell.world import WorkcellWorld
+from mend.tasks.intervention import Act, Intervention
 
 TABLE_M = 0.70
 APPROACH_M = 0.14

@@ -19,10 +19,10 @@ from playwright.async_api import (
 )
 from service_under_test import serving
 
-from server.api.console import BUILT
-from server.composition import Service, open_service
-from server.runtime.requests import RunRequest
-from server.settings import Settings
+from mend.server.api.console import BUILT
+from mend.server.composition import Service, open_service
+from mend.server.runtime.requests import RunRequest
+from mend.server.settings import Settings
 
 CHROMIUM = shutil.which("chromium") or shutil.which("google-chrome")
 HERE = Path(__file__).parent

@@ -9,7 +9,7 @@ from console_in_browser import OpenPage, settle
 from console_situations import SITUATIONS, Situation, live_run, open_question
 from playwright.async_api import Page, ViewportSize
 
-from server.composition import Service
+from mend.server.composition import Service
 
 # One event loop for all tests of the console, and so one browser.
 pytestmark = pytest.mark.asyncio(loop_scope="session")

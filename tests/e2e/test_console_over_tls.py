@@ -7,8 +7,8 @@ from certificates import make_certificate
 from console_in_browser import TOKEN
 from playwright.async_api import Browser, expect
 
-from server.composition import open_service
-from server.settings import Settings
+from mend.server.composition import open_service
+from mend.server.settings import Settings
 
 # One event loop for all tests of the console, and so one browser.
 pytestmark = pytest.mark.asyncio(loop_scope="session")

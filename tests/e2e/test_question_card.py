@@ -6,9 +6,9 @@ import pytest
 from console_in_browser import OpenPage
 from playwright.async_api import expect
 
-from server.composition import Service
-from server.runtime.requests import RunRequest
-from tasks.intervention import Intervention
+from mend.server.composition import Service
+from mend.server.runtime.requests import RunRequest
+from mend.tasks.intervention import Intervention
 
 # One event loop for all tests of the console, and so one browser.
 pytestmark = pytest.mark.asyncio(loop_scope="session")

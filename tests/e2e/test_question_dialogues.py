@@ -9,12 +9,12 @@ from dialogue_paths import Path, every_branch, every_kind_of_answer
 from played_dialogues import DETECTION
 from playwright.async_api import Page, expect
 
-from dialogue.conversation import Conversation
-from dialogue.outlook import Outlook
-from dialogue.registry import load_scripts
-from dialogue.script import Ask, AwaitHelp, Close, Say, Turn
-from server.runtime.dialogue_state import converse
-from tasks.issue import Issue
+from mend.dialogue.conversation import Conversation
+from mend.dialogue.outlook import Outlook
+from mend.dialogue.registry import load_scripts
+from mend.dialogue.script import Ask, AwaitHelp, Close, Say, Turn
+from mend.server.runtime.dialogue_state import converse
+from mend.tasks.issue import Issue
 
 pytestmark = pytest.mark.asyncio(loop_scope="session")
 

@@ -10,11 +10,11 @@ from playwright.async_api import Locator, Page, expect
 from recorded_service import recorded_events
 from run_page import WAIT_MS, texts_in_order, told_after, wait_for_tree
 
-from dialogue.registry import load_scripts
-from server.composition import Service
-from server.journal import events as ev
-from server.journal.journal import Entry
-from server.runtime.run_state import RunState
+from mend.dialogue.registry import load_scripts
+from mend.server.composition import Service
+from mend.server.journal import events as ev
+from mend.server.journal.journal import Entry
+from mend.server.runtime.run_state import RunState
 
 # One event loop for all tests of the console, and so one browser.
 pytestmark = pytest.mark.asyncio(loop_scope="session")

@@ -10,8 +10,8 @@ from played_dialogues import PlayedDialogues
 from playwright.async_api import Browser, Page, expect
 from service_under_test import ServiceUnderTest, serving
 
-from server.access.roles import Role
-from server.runtime.requests import RunRequest
+from mend.server.access.roles import Role
+from mend.server.runtime.requests import RunRequest
 
 # One event loop for all tests of the console, and so one browser.
 pytestmark = pytest.mark.asyncio(loop_scope="session")

@@ -7,10 +7,10 @@ from console_in_browser import OpenPage
 from playwright.async_api import Page, expect
 from run_page import WAIT_MS, told, wait_for_tree
 
-from server.composition import Service
-from server.runtime.requests import RunRequest
-from server.runtime.views import RunStatus, RunView
-from tasks.intervention import Intervention
+from mend.server.composition import Service
+from mend.server.runtime.requests import RunRequest
+from mend.server.runtime.views import RunStatus, RunView
+from mend.tasks.intervention import Intervention
 
 # One event loop for all tests of the console, and so one browser.
 pytestmark = pytest.mark.asyncio(loop_scope="session")

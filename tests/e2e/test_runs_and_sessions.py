@@ -6,9 +6,9 @@ import pytest
 from console_in_browser import TOKEN, OpenPage
 from playwright.async_api import Page, expect
 
-from server.composition import Service
-from server.journal.run_index import RunPage
-from server.runtime.requests import RunRequest
+from mend.server.composition import Service
+from mend.server.journal.run_index import RunPage
+from mend.server.runtime.requests import RunRequest
 
 # One event loop for all tests of the console, and so one browser.
 pytestmark = pytest.mark.asyncio(loop_scope="session")

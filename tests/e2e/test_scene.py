@@ -14,9 +14,9 @@ from console_in_browser import TOKEN, OpenPage
 from numpy.typing import NDArray
 from playwright.async_api import Browser, Locator, Page, async_playwright, expect
 
-from server.composition import Service
-from server.runtime.requests import RunRequest
-from tasks.intervention import Intervention
+from mend.server.composition import Service
+from mend.server.runtime.requests import RunRequest
+from mend.tasks.intervention import Intervention
 
 # One event loop for all tests of the console, and so one browser.
 pytestmark = pytest.mark.asyncio(loop_scope="session")

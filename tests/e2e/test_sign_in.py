@@ -4,7 +4,7 @@ import pytest
 from console_in_browser import TOKEN
 from playwright.async_api import Browser, expect
 
-from server.composition import Service
+from mend.server.composition import Service
 
 # One event loop for all tests of the console, and so one browser.
 pytestmark = pytest.mark.asyncio(loop_scope="session")

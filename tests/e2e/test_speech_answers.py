@@ -16,11 +16,11 @@ from playwright.async_api import Page, async_playwright, expect
 from scripted_ears import MishearingEars
 from service_under_test import serving
 
-from server.runtime.requests import RunRequest
-from server.speech.abilities import NO_SPEECH, SpeechAbilities
-from server.speech.ear import choose_ears
-from server.speech.rendering import SpokenTexts
-from server.speech.voice import NoVoice, choose_voice
+from mend.server.runtime.requests import RunRequest
+from mend.server.speech.abilities import NO_SPEECH, SpeechAbilities
+from mend.server.speech.ear import choose_ears
+from mend.server.speech.rendering import SpokenTexts
+from mend.server.speech.voice import NoVoice, choose_voice
 
 pytestmark = [
     pytest.mark.asyncio(loop_scope="session"),

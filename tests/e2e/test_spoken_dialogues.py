@@ -22,14 +22,14 @@ from service_under_test import serving
 from spoken_console import SpokenConsole
 from test_question_dialogues import SCRIPTS, expect_shown, issue_of
 
-from dialogue.conversation import Conversation
-from dialogue.outlook import Outlook
-from server.runtime.dialogue_state import converse
-from server.runtime.requests import RunRequest
-from server.runtime.run_state import RunStatus
-from server.speech.abilities import SpeechAbilities
-from server.speech.ear import ProcessEars
-from server.speech.rendering import SpokenTexts
+from mend.dialogue.conversation import Conversation
+from mend.dialogue.outlook import Outlook
+from mend.server.runtime.dialogue_state import converse
+from mend.server.runtime.requests import RunRequest
+from mend.server.runtime.run_state import RunStatus
+from mend.server.speech.abilities import SpeechAbilities
+from mend.server.speech.ear import ProcessEars
+from mend.server.speech.rendering import SpokenTexts
 
 pytestmark = [
     pytest.mark.asyncio(loop_scope="session"),

@@ -15,8 +15,8 @@ from people import People, serving_people
 from service_under_test import ServiceUnderTest
 from websockets.asyncio.client import connect
 
-from server.access import permissions
-from server.access.roles import PEOPLE, Role
+from mend.server.access import permissions
+from mend.server.access.roles import PEOPLE, Role
 
 DOCUMENT = Path(__file__).parents[2] / "docs" / "access.md"
 ROLES = (*PEOPLE, Role.ROBOT)

@@ -154,7 +154,7 @@ async def test_socket_closes_after_a_wrong_first_message(
 async def test_socket_closes_when_no_token_comes(
     service: ServiceUnderTest, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("server.api.helper_connection.FIRST_MESSAGE_S", 0.01)
+    monkeypatch.setattr("mend.server.api.helper_connection.FIRST_MESSAGE_S", 0.01)
     async with connect(f"{service.ws}?helper=anna") as socket:
         assert await close_code(socket) == 1008
     assert service.refusals.counts["first_message_s"] == 1

@@ -4,7 +4,7 @@ import httpx
 import pytest
 from service_under_test import TOKEN, serving
 
-from server.limits import Limits
+from mend.server.limits import Limits
 
 LIMITS = Limits(wrong_tokens=1)
 PROXY = ["127.0.0.0/8"]

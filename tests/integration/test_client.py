@@ -11,20 +11,20 @@ from recorded_service import recorded_events
 from sample_events import detected, paused
 from service_under_test import TOKEN, ServiceUnderTest, build, serving
 
-from server.client import IDLE_S, MendClient
-from server.client_errors import (
+from mend.server.client import IDLE_S, MendClient
+from mend.server.client_errors import (
     CommandRefusedError,
     RefusedError,
     StreamRefusedError,
     UnreachableError,
 )
-from server.journal.events import Answered, Event, RunAborted, RunStarted
-from server.journal.journal import Entry
-from server.runtime.requests import RunRequest
-from server.runtime.views import RunStatus, Snapshot
-from server.serving import serve_config
-from server.settings import Settings
-from tasks.intervention import Act, Intervention
+from mend.server.journal.events import Answered, Event, RunAborted, RunStarted
+from mend.server.journal.journal import Entry
+from mend.server.runtime.requests import RunRequest
+from mend.server.runtime.views import RunStatus, Snapshot
+from mend.server.serving import serve_config
+from mend.server.settings import Settings
+from mend.tasks.intervention import Act, Intervention
 
 REQUEST = RunRequest(tree="eket", world="tabletop", speed="max", seed=7)
 
@@ -119,7 +119,7 @@ async def collect(messages: AsyncIterator[Snapshot | Event], count: int) -> list
 async def test_stream_goes_on_after_lost_connections_without_gap(
     client: MendClient, service: ServiceUnderTest, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("server.client_stream.FIRST_PAUSE_S", 0.01)
+    monkeypatch.setattr("mend.server.client_stream.FIRST_PAUSE_S", 0.01)
     run = uuid4()
     async with client.follow("anna") as stream:
         messages = aiter(stream)
@@ -166,7 +166,7 @@ def told(event: Snapshot | Event) -> dict[str, Any]:
 async def test_stream_ends_with_a_sentence_at_what_it_cannot_read(
     client: MendClient, service: ServiceUnderTest, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("server.client_stream.any_event", TypeAdapter(RunAborted))
+    monkeypatch.setattr("mend.server.client_stream.any_event", TypeAdapter(RunAborted))
     async with client.follow("anna") as stream:
         messages = aiter(stream)
         await anext(messages)

@@ -6,11 +6,11 @@ import httpx
 import pytest
 from service_under_test import ServiceUnderTest, build
 
-from server.client import MendClient
-from server.client_errors import RefusedError, UnreachableError
-from server.client_retries import PAUSES_S
-from server.journal import events as ev
-from server.runtime.requests import RunRequest
+from mend.server.client import MendClient
+from mend.server.client_errors import RefusedError, UnreachableError
+from mend.server.client_retries import PAUSES_S
+from mend.server.journal import events as ev
+from mend.server.runtime.requests import RunRequest
 
 REQUEST = RunRequest(tree="eket", world="tabletop", speed="max")
 

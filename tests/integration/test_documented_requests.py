@@ -9,8 +9,8 @@ from uuid import UUID
 import httpx
 import pytest
 
-from server.composition import open_service
-from server.settings import Settings
+from mend.server.composition import open_service
+from mend.server.settings import Settings
 
 ROOT = Path(__file__).parents[2]
 

@@ -8,7 +8,7 @@ from raw_client import raw_client
 from service_under_test import ServiceUnderTest, serving
 from websockets.frames import Close, Frame, Opcode
 
-from server.websocket_protocol import MOST_FRAGMENTS, PINGS_AT_ONCE
+from mend.server.websocket_protocol import MOST_FRAGMENTS, PINGS_AT_ONCE
 
 FIRST_PART = Frame(Opcode.TEXT, b"{", fin=False).serialize(mask=True)
 EMPTY_PART = Frame(Opcode.CONT, b"", fin=False).serialize(mask=True)

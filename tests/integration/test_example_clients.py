@@ -35,7 +35,7 @@ async def test_an_example_client_sees_its_run_to_the_end(tmp_path: Path, client:
 
 
 def test_the_example_robot_calls_where_a_service_listens_unless_told() -> None:
-    from server.settings import Settings
+    from mend.server.settings import Settings
 
     assert f"127.0.0.1:{Settings.model_fields['port'].default}/ws/robot" in ROBOT.read_text()
     assert "8000" not in ROBOT.read_text()

@@ -11,9 +11,9 @@ from example_robot import TOKEN, example_robot
 from loopback import served
 from recording_sink import RecordingSink
 
-from robots.link.messages import Interrupt, Location, Look, Looked, Resume, Start
-from server.journal.sqlite import SqliteJournal
-from server.robots.registry import RobotRegistry
+from mend.robots.link.messages import Interrupt, Location, Look, Looked, Resume, Start
+from mend.server.journal.sqlite import SqliteJournal
+from mend.server.robots.registry import RobotRegistry
 
 pytestmark = pytest.mark.slow
 

@@ -14,9 +14,9 @@ from service_under_test import ServiceUnderTest, serving
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed
 
-from server.journal.pruning import Keep
-from server.limits import Limits
-from server.runtime.requests import RunRequest
+from mend.server.journal.pruning import Keep
+from mend.server.limits import Limits
+from mend.server.runtime.requests import RunRequest
 
 REQUEST = RunRequest(tree="eket", world="tabletop", speed="max")
 
@@ -318,7 +318,7 @@ async def test_stuck_client_is_closed_with_1013_while_others_get_everything() ->
 
 def big(run: UUID) -> Any:
     """An event that fills the buffers of a socket soon."""
-    from server.journal.events import RunFailed
+    from mend.server.journal.events import RunFailed
 
     return RunFailed(
         **paused(run=run).model_dump(exclude={"type", "seq", "author"}), reason="x" * 20_000

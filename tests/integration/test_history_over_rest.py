@@ -13,12 +13,12 @@ import pytest
 from made_up_history import BETWEEN_RUNS, made_up_run, picture_id, run_id, write_history
 from typer.testing import CliRunner
 
-from server.cli import app
-from server.client import MendClient
-from server.composition import open_service
-from server.retention import KeepSettings
-from server.runtime.views import Snapshot
-from server.settings import Settings
+from mend.server.cli import app
+from mend.server.client import MendClient
+from mend.server.composition import open_service
+from mend.server.retention import KeepSettings
+from mend.server.runtime.views import Snapshot
+from mend.server.settings import Settings
 
 RUNS = 12
 EVENTS = len(made_up_run())
@@ -122,7 +122,7 @@ async def test_an_ended_run_that_turns_out_to_be_damaged_is_listed_so_from_then_
 ) -> None:
     first = str(run_id(0))
     alter(folder, "UPDATE events SET body = '{}' WHERE type = 'answered' AND run = ?", first)
-    monkeypatch.setattr("server.journal.quick_check.TAIL_BATCHES", 2)
+    monkeypatch.setattr("mend.server.journal.quick_check.TAIL_BATCHES", 2)
     async with service(folder) as client:
         assert (await client.get("/readyz")).json()["status"] == "ok"
     for _ in range(2):

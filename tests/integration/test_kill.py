@@ -10,11 +10,11 @@ import pytest
 from kills import Ordeal
 from service_process import ServiceProcess, service_process
 
-from server.client import MendClient
-from server.journal import events as ev
-from server.runtime.requests import RunRequest
-from server.runtime.views import DialogueView, RunStatus
-from tasks.intervention import Act, Intervention
+from mend.server.client import MendClient
+from mend.server.journal import events as ev
+from mend.server.runtime.requests import RunRequest
+from mend.server.runtime.views import DialogueView, RunStatus
+from mend.tasks.intervention import Act, Intervention
 
 pytestmark = pytest.mark.slow
 

@@ -13,8 +13,8 @@ import pytest
 from service_process import ServiceProcess, service_process
 from service_under_test import TOKEN
 
-from server.access.access import SESSION_COOKIE
-from server.access.deeds import Deed, audit_of
+from mend.server.access.access import SESSION_COOKIE
+from mend.server.access.deeds import Deed, audit_of
 
 pytestmark = pytest.mark.slow
 

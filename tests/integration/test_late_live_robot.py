@@ -10,11 +10,11 @@ from live_service import LiveService, live_service
 from pretend_service import BARE, OneTree
 from task_documents import definition_of
 
-from robots.link.channel import Channel, memory_channel
-from robots.link.messages import Command, service_message
-from server.journal.sqlite import SqliteJournal
-from server.runtime.requests import RunRequest
-from server.runtime.views import DialogueView, RunStatus
+from mend.robots.link.channel import Channel, memory_channel
+from mend.robots.link.messages import Command, service_message
+from mend.server.journal.sqlite import SqliteJournal
+from mend.server.runtime.requests import RunRequest
+from mend.server.runtime.views import DialogueView, RunStatus
 
 PART = "green_leg"
 ONE_PART = {"behavior": "pick_and_place", "object": PART, "place": "left"}

@@ -10,13 +10,13 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from recording_sink import RecordingSink
 
-from robots.link.channel import Channel, memory_channel
-from robots.link.client import LinkSettings, run_agent
-from robots.link.clock import LoopClock
-from robots.link.messages import Shutdown, Start
-from robots.link.outbox import IN_MEMORY, Outbox
-from server.journal.sqlite import SqliteJournal
-from server.robots.registry import RobotRegistry
+from mend.robots.link.channel import Channel, memory_channel
+from mend.robots.link.client import LinkSettings, run_agent
+from mend.robots.link.clock import LoopClock
+from mend.robots.link.messages import Shutdown, Start
+from mend.robots.link.outbox import IN_MEMORY, Outbox
+from mend.server.journal.sqlite import SqliteJournal
+from mend.server.robots.registry import RobotRegistry
 
 EXECUTIONS = 3
 STEPS = 4

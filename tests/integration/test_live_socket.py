@@ -15,11 +15,11 @@ from shown_run import hello, poses, run_state
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed
 
-from server.composition import open_service
-from server.poses.feed import RunPoses
-from server.poses.frame import time_of, unframed
-from server.runtime.requests import RunRequest
-from server.settings import Settings
+from mend.server.composition import open_service
+from mend.server.poses.feed import RunPoses
+from mend.server.poses.frame import time_of, unframed
+from mend.server.runtime.requests import RunRequest
+from mend.server.settings import Settings
 
 NOBODY = "2dc8e3f6-6479-4c12-9baf-d2534d0b7e34"
 REQUEST = RunRequest(tree="eket", world="tabletop", speed="max")

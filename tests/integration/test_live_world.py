@@ -17,13 +17,13 @@ from pretend_service import OneTree
 from recording_sink import RecordingSink
 from task_documents import definition_of
 
-import tasks
-from robots.link.channel import memory_channel
-from robots.link.messages import Hello, Holding, ReachLimits, Report
-from server.journal.sqlite import SqliteJournal
-from server.runtime.requests import RunRequest
-from server.runtime.views import RunStatus, RunSummary
-from tasks.scene import Scene
+import mend.tasks
+from mend.robots.link.channel import memory_channel
+from mend.robots.link.messages import Hello, Holding, ReachLimits, Report
+from mend.server.journal.sqlite import SqliteJournal
+from mend.server.runtime.requests import RunRequest
+from mend.server.runtime.views import RunStatus, RunSummary
+from mend.tasks.scene import Scene
 
 pytestmark = pytest.mark.slow
 
@@ -38,7 +38,7 @@ def eket() -> OneTree:
     green, pink, yellow, blue = (part(name) for name in PARTS)
     tops = [part(name, "top_place") for name in ("purple_top", "orange_top")]
     tree = {"then": [green, {"and": [pink, yellow]}, blue, {"or": tops}]}
-    scene = yaml.safe_load((Path(tasks.__file__).parent / "scenes" / "eket.yaml").read_text())
+    scene = yaml.safe_load((Path(mend.tasks.__file__).parent / "scenes" / "eket.yaml").read_text())
     return OneTree(definition_of(tree), Scene.model_validate_json(json.dumps(scene)))
 
 

@@ -7,12 +7,12 @@ import httpx
 import pytest
 from smtp_inbox import Inbox, Watched, listening, smtp_server
 
-from server.composition import open_service
-from server.dialogues.mail import MailSettings
-from server.journal import events as ev
-from server.runtime.requests import RunRequest
-from server.runtime.views import RunStatus
-from server.settings import Settings
+from mend.server.composition import open_service
+from mend.server.dialogues.mail import MailSettings
+from mend.server.journal import events as ev
+from mend.server.runtime.requests import RunRequest
+from mend.server.runtime.views import RunStatus
+from mend.server.settings import Settings
 
 NOBODY_ANSWERS = RunRequest(
     tree="eket",

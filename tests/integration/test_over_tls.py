@@ -14,14 +14,14 @@ from certificates import Certificate, make_certificate
 from raw_client import raw_client
 from websockets.asyncio.client import connect
 
-from robots.link.channel import ChannelClosedError
-from robots.link.pinned_tls import pinned_tls
-from robots.link.websocket import websocket_channel
-from server.api.robot_socket import ROBOT_PATH
-from server.composition import Service, open_service
-from server.limits import Limits
-from server.runtime.requests import RunRequest
-from server.settings import Settings, WrongSettingsError
+from mend.robots.link.channel import ChannelClosedError
+from mend.robots.link.pinned_tls import pinned_tls
+from mend.robots.link.websocket import websocket_channel
+from mend.server.api.robot_socket import ROBOT_PATH
+from mend.server.composition import Service, open_service
+from mend.server.limits import Limits
+from mend.server.runtime.requests import RunRequest
+from mend.server.settings import Settings, WrongSettingsError
 
 TOKEN = "correct-horse-battery"
 RIGHT = {"Authorization": f"Bearer {TOKEN}"}

@@ -5,11 +5,11 @@ from pathlib import Path
 import pytest
 from broken_constraints import broken_constraints
 
-from server.composition import open_service
-from server.journal import events as ev
-from server.runtime.requests import RunRequest
-from server.runtime.views import RunStatus
-from server.settings import Settings
+from mend.server.composition import open_service
+from mend.server.journal import events as ev
+from mend.server.runtime.requests import RunRequest
+from mend.server.runtime.views import RunStatus
+from mend.server.settings import Settings
 
 ISSUES = [
     ("pink_bar", "dropped"),

@@ -17,15 +17,15 @@ from shown_run import hello, run_state
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import InvalidStatus
 
-from server.access.deeds import audit_of
-from server.access.principals_file import read_principals
-from server.access.roles import Role
-from server.access.sessions import SESSION_LIFETIME_S
-from server.client import MendClient
-from server.composition import open_service
-from server.journal import events as ev
-from server.limits import Limits
-from server.settings import Settings
+from mend.server.access.deeds import audit_of
+from mend.server.access.principals_file import read_principals
+from mend.server.access.roles import Role
+from mend.server.access.sessions import SESSION_LIFETIME_S
+from mend.server.client import MendClient
+from mend.server.composition import open_service
+from mend.server.journal import events as ev
+from mend.server.limits import Limits
+from mend.server.settings import Settings
 
 Served = tuple[ServiceUnderTest, People]
 RUN = {"tree": "eket", "world": "tabletop"}

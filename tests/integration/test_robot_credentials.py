@@ -18,21 +18,21 @@ from service_under_test import TOKEN, ServiceUnderTest, serving, until
 from websockets.asyncio.client import connect
 from websockets.exceptions import InvalidStatus
 
-from robots.link.channel import ChannelClosedError, LinkRefusedError
-from robots.link.enrolment import robot_credential
-from robots.link.messages import Hello, LinkError, Welcome, service_message
-from robots.link.websocket import websocket_channel
-from server.access.access import Access
-from server.access.roles import PEOPLE, Role
-from server.api.robot_socket import ROBOT_PATH, add_robot_route
-from server.composition import open_service
-from server.journal import events as ev
-from server.limits import Limits
-from server.robots.passes import OwnRobots
-from server.robots.registry import RobotRegistry
-from server.robots.times import LinkTimes
-from server.runtime.requests import RunRequest
-from server.settings import Settings
+from mend.robots.link.channel import ChannelClosedError, LinkRefusedError
+from mend.robots.link.enrolment import robot_credential
+from mend.robots.link.messages import Hello, LinkError, Welcome, service_message
+from mend.robots.link.websocket import websocket_channel
+from mend.server.access.access import Access
+from mend.server.access.roles import PEOPLE, Role
+from mend.server.api.robot_socket import ROBOT_PATH, add_robot_route
+from mend.server.composition import open_service
+from mend.server.journal import events as ev
+from mend.server.limits import Limits
+from mend.server.robots.passes import OwnRobots
+from mend.server.robots.registry import RobotRegistry
+from mend.server.robots.times import LinkTimes
+from mend.server.runtime.requests import RunRequest
+from mend.server.settings import Settings
 
 
 @dataclass

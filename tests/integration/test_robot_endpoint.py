@@ -9,9 +9,9 @@ from loopback import served
 from websockets.asyncio.client import connect
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
-from server.journal.sqlite import SqliteJournal
-from server.robots.registry import RobotRegistry
-from server.websocket_protocol import TOO_BIG
+from mend.server.journal.sqlite import SqliteJournal
+from mend.server.robots.registry import RobotRegistry
+from mend.server.websocket_protocol import TOO_BIG
 
 RIGHT = {"Authorization": "Bearer secret"}
 

@@ -11,14 +11,14 @@ from counting_agent import CountingAgent
 from loopback import served
 from recording_sink import RecordingSink
 
-from robots.link.channel import LinkRefusedError
-from robots.link.client import run_agent
-from robots.link.clock import LoopClock
-from robots.link.messages import Shutdown, Start
-from robots.link.outbox import IN_MEMORY, Outbox
-from robots.link.websocket import websocket_channel
-from server.journal.sqlite import SqliteJournal
-from server.robots.registry import RobotRegistry
+from mend.robots.link.channel import LinkRefusedError
+from mend.robots.link.client import run_agent
+from mend.robots.link.clock import LoopClock
+from mend.robots.link.messages import Shutdown, Start
+from mend.robots.link.outbox import IN_MEMORY, Outbox
+from mend.robots.link.websocket import websocket_channel
+from mend.server.journal.sqlite import SqliteJournal
+from mend.server.robots.registry import RobotRegistry
 
 
 @pytest.fixture

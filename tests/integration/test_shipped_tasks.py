@@ -3,7 +3,7 @@
 import pytest
 from library import run_task
 
-from tasks.library import TREES
+from mend.tasks.library import TREES
 
 
 @pytest.mark.slow

@@ -16,17 +16,17 @@ from loopback import served
 from recording_sink import RecordingSink
 from ticking_clock import TickingClock
 
-from robots.link.messages import Interrupt, Shutdown, Start
-from server.access.access import Access
-from server.errors import InvalidError
-from server.journal.sqlite import SqliteJournal
-from server.robots.passes import OwnRobots
-from server.robots.process import RobotProcess, launch
-from server.robots.registry import RobotRegistry
-from server.robots.simulation_thread import SimulationThread
-from sim.world import WorldSetup
-from tasks.plugins import load_plugins
-from tasks.scene import Scene
+from mend.robots.link.messages import Interrupt, Shutdown, Start
+from mend.server.access.access import Access
+from mend.server.errors import InvalidError
+from mend.server.journal.sqlite import SqliteJournal
+from mend.server.robots.passes import OwnRobots
+from mend.server.robots.process import RobotProcess, launch
+from mend.server.robots.registry import RobotRegistry
+from mend.server.robots.simulation_thread import SimulationThread
+from mend.sim.world import WorldSetup
+from mend.tasks.plugins import load_plugins
+from mend.tasks.scene import Scene
 
 DOUBLES = Path(counting_world.__file__).parent
 SETUP = WorldSetup(
@@ -202,7 +202,7 @@ async def test_a_world_that_cannot_run_here_is_refused_with_its_reason(
 async def test_a_process_whose_parent_died_ends_while_it_builds_its_world() -> None:
     told = {"world": "endless", "url": "ws://unused", "setup": SETUP.model_dump(mode="json")}
     process = await asyncio.create_subprocess_exec(
-        sys.executable, "-P", "-m", "sim.robot_process",
+        sys.executable, "-P", "-m", "mend.sim.robot_process",
         stdin=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.PIPE,
     )  # fmt: skip
     assert process.stdin is not None
@@ -216,7 +216,7 @@ async def test_a_process_whose_parent_died_ends_while_it_builds_its_world() -> N
 
 async def run_process(told: bytes) -> tuple[int | None, str]:
     process = await asyncio.create_subprocess_exec(
-        sys.executable, "-P", "-m", "sim.robot_process",
+        sys.executable, "-P", "-m", "mend.sim.robot_process",
         stdin=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.PIPE,
     )  # fmt: skip
     assert process.stdin is not None

@@ -14,12 +14,12 @@ from shown_run import hello
 from ticking_clock import TickingClock
 from websockets.frames import Frame, Opcode
 
-from server.api.robot_socket import add_robot_route
-from server.journal.events import RunFailed
-from server.journal.journal import Entry
-from server.limits import Limits
-from server.robots.registry import RobotRegistry
-from server.robots.times import LinkTimes
+from mend.server.api.robot_socket import add_robot_route
+from mend.server.journal.events import RunFailed
+from mend.server.journal.journal import Entry
+from mend.server.limits import Limits
+from mend.server.robots.registry import RobotRegistry
+from mend.server.robots.times import LinkTimes
 
 # Robots may talk as fast as they like here: it is what they do not read that is looked at.
 SOON = Limits(stuck_client_s=0.5, robot_messages_per_s=1_000_000)

@@ -12,11 +12,11 @@ from service_under_test import TOKEN, ServiceUnderTest, serving
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
-from server.runtime.requests import RunRequest
-from server.runtime.views import DialogueView
-from server.speech.abilities import SpeechAbilities
-from server.speech.rendering import SpokenTexts
-from server.speech.voice import NoVoice
+from mend.server.runtime.requests import RunRequest
+from mend.server.runtime.views import DialogueView
+from mend.server.speech.abilities import SpeechAbilities
+from mend.server.speech.rendering import SpokenTexts
+from mend.server.speech.voice import NoVoice
 
 REQUEST = RunRequest(tree="eket", world="tabletop", speed="max")
 BEGINS, ENDS = b"\1\0" * 320, b"\2\0" * 320

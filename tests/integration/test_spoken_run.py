@@ -7,14 +7,14 @@ from pathlib import Path
 import pytest
 from wav_device import WavDevice
 
-from server.cli.spoken_helper import SpokenHelper
-from server.client import MendClient
-from server.composition import open_service
-from server.journal.events import Answered, DialogueClosed
-from server.runtime.requests import RunRequest
-from server.settings import Settings
-from server.speech.ear import NoEars, choose_ears
-from server.speech.voice import NoVoice, choose_voice
+from mend.server.cli.spoken_helper import SpokenHelper
+from mend.server.client import MendClient
+from mend.server.composition import open_service
+from mend.server.journal.events import Answered, DialogueClosed
+from mend.server.runtime.requests import RunRequest
+from mend.server.settings import Settings
+from mend.server.speech.ear import NoEars, choose_ears
+from mend.server.speech.voice import NoVoice, choose_voice
 
 
 @pytest.mark.slow

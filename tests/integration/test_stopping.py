@@ -12,10 +12,10 @@ import pytest
 from raw_client import RawClient, raw_client
 from service_under_test import ServiceUnderTest, serving, until
 
-from server.composition import open_service
-from server.journal.journal import Document, Entry
-from server.rendered import Rendered
-from server.settings import Settings
+from mend.server.composition import open_service
+from mend.server.journal.journal import Document, Entry
+from mend.server.rendered import Rendered
+from mend.server.settings import Settings
 
 MORE_THAN_IS_BUFFERED = 32 * 1024**2
 HALF = (
@@ -51,7 +51,7 @@ def errors(caplog: pytest.LogCaptureFixture) -> list[str]:
 @pytest.fixture
 def endless_grace(monkeypatch: pytest.MonkeyPatch) -> None:
     """What would be waited for now is waited for in vain."""
-    monkeypatch.setattr("server.serving.GRACE_S", 3600.0)
+    monkeypatch.setattr("mend.server.serving.GRACE_S", 3600.0)
 
 
 @asynccontextmanager

@@ -13,7 +13,7 @@ from raw_client import RawClient, raw_client
 from service_under_test import TOKEN, ServiceUnderTest, serving
 from websockets.asyncio.client import connect
 
-from server.limits import LimitName, Limits
+from mend.server.limits import LimitName, Limits
 
 SOON = Limits(head_s=0.3, body_s=0.3)
 PATIENT = {"head_s": 60.0, "body_s": 60.0}
@@ -148,7 +148,7 @@ async def first_message(socket: Any) -> Any:
 async def test_websockets_that_never_show_the_token_are_strangers_until_they_are_ended(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("server.api.helper_connection.FIRST_MESSAGE_S", 1.0)
+    monkeypatch.setattr("mend.server.api.helper_connection.FIRST_MESSAGE_S", 1.0)
     limits = Limits(strangers_per_address=2, **PATIENT)
     async with serving(token=TOKEN, limits=limits) as service, AsyncExitStack() as stack:
         for _ in range(2):

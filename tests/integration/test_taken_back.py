@@ -7,11 +7,11 @@ import pytest
 import yaml
 from broken_constraints import broken_constraints
 
-from server.composition import open_service
-from server.journal import events as ev
-from server.runtime.requests import RunRequest
-from server.runtime.views import RunStatus, RunView
-from server.settings import Settings
+from mend.server.composition import open_service
+from mend.server.journal import events as ev
+from mend.server.runtime.requests import RunRequest
+from mend.server.runtime.views import RunStatus, RunView
+from mend.server.settings import Settings
 
 FRAME = ("green_leg", "pink_bar", "yellow_bar", "blue_leg")
 ALL = (*FRAME, "purple_top")

@@ -9,15 +9,15 @@ from scripted_ears import ToneVoice
 from service_under_test import ServiceUnderTest, serving
 from wav_device import WavDevice, pcm_of
 
-from server.cli.spoken_helper import SpokenHelper
-from server.client import MendClient
-from server.journal.events import Answered, DialogueClosed, RunPaused
-from server.runtime.requests import RunRequest
-from server.speech.abilities import SpeechAbilities
-from server.speech.commands import Command
-from server.speech.ear import NoEars, ProcessEars, TooManyConversationsError, choose_ears
-from server.speech.rendering import SpokenTexts
-from server.speech.voice import CommandVoice, choose_voice
+from mend.server.cli.spoken_helper import SpokenHelper
+from mend.server.client import MendClient
+from mend.server.journal.events import Answered, DialogueClosed, RunPaused
+from mend.server.runtime.requests import RunRequest
+from mend.server.speech.abilities import SpeechAbilities
+from mend.server.speech.commands import Command
+from mend.server.speech.ear import NoEars, ProcessEars, TooManyConversationsError, choose_ears
+from mend.server.speech.rendering import SpokenTexts
+from mend.server.speech.voice import CommandVoice, choose_voice
 
 REQUEST = RunRequest(tree="eket", world="tabletop", speed="max")
 

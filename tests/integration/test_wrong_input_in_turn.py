@@ -19,12 +19,12 @@ from schemathesis.specs.openapi.checks import (
 )
 from service_under_test import TOKEN, ServiceUnderTest, build
 
-from server.api.openapi_links import LINKS
-from server.app import described_app
-from server.journal.events import Author
-from server.limits import Limits
-from server.runtime.requests import RunRequest
-from server.runtime.views import RunView
+from mend.server.api.openapi_links import LINKS
+from mend.server.app import described_app
+from mend.server.journal.events import Author
+from mend.server.limits import Limits
+from mend.server.runtime.requests import RunRequest
+from mend.server.runtime.views import RunView
 
 CHECKS = [
     not_a_server_error,

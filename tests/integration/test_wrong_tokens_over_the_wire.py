@@ -16,15 +16,15 @@ from service_under_test import TOKEN, ServiceUnderTest, serving
 from websockets.asyncio.client import connect
 from websockets.exceptions import InvalidStatus
 
-from robots.link.channel import ChannelClosedError, LinkRefusedError
-from robots.link.enrolment import enrol
-from robots.link.websocket import websocket_channel
-from server.access.roles import Role
-from server.api.robot_socket import ROBOT_PATH, add_robot_route
-from server.client import MendClient
-from server.client_errors import UnreachableError
-from server.limits import Limits
-from server.robots.registry import RobotRegistry
+from mend.robots.link.channel import ChannelClosedError, LinkRefusedError
+from mend.robots.link.enrolment import enrol
+from mend.robots.link.websocket import websocket_channel
+from mend.server.access.roles import Role
+from mend.server.api.robot_socket import ROBOT_PATH, add_robot_route
+from mend.server.client import MendClient
+from mend.server.client_errors import UnreachableError
+from mend.server.limits import Limits
+from mend.server.robots.registry import RobotRegistry
 
 LIMITS = Limits(wrong_tokens=2)
 ONE_CONNECTION = httpx.Limits(max_connections=1)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from maps.building_vector_map import build_vector_map
+from mend.maps.building_vector_map import build_vector_map
 
 
 def _wall(x0: float, y0: float, x1: float, y1: float, seed: int) -> tuple[np.ndarray, np.ndarray]:

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from maps.clean_up import clean_up
-from maps.vector_map import VectorMap
+from mend.maps.clean_up import clean_up
+from mend.maps.vector_map import VectorMap
 
 
 def test_duplicates_become_one_whichever_way_they_run() -> None:

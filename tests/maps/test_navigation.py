@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from maps.navigation import NavigationError, NavigationGraph, Place, Way, WayKind
+from mend.maps.navigation import NavigationError, NavigationGraph, Place, Way, WayKind
 
 PLACES = (Place("hall", 0, 0), Place("office", 30, 40), Place("lab", 30, 40, floor=1))
 ELEVATOR = Way("office", "lab", WayKind.ELEVATOR, length_m=0.0, delay_s=100.0)

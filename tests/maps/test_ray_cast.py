@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from maps.ray_cast import NOTHING, cast
+from mend.maps.ray_cast import NOTHING, cast
 
 Matrix = NDArray[np.float64]
 

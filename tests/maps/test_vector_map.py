@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from localization_data import DATA
 
-from maps.vector_map import VectorMap, VectorMapError
-from maps.vector_map_file import read_vector_map, write_vector_map
+from mend.maps.vector_map import VectorMap, VectorMapError
+from mend.maps.vector_map_file import read_vector_map, write_vector_map
 
 
 def test_it_knows_its_bounds_and_lengths() -> None:

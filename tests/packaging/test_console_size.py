@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from server.api.console import BUILT
+from mend.server.api.console import BUILT
 
 MAX_BYTES = 45 * 1024
 

@@ -119,7 +119,7 @@ def test_bill_of_materials_has_every_locked_package_of_both_kinds(sbom: Any) -> 
     assert set(purls) == python | npm
     assert set(purls.values()) == {1}
     assert all(each["hashes"] for each in sbom["components"])
-    assert sbom["metadata"]["component"]["name"] == "mend"
+    assert sbom["metadata"]["component"]["name"] == "mend-robots"
 
 
 def test_bill_of_materials_says_what_a_service_needs_and_what_only_developers_do(sbom: Any) -> None:

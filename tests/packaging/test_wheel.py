@@ -10,10 +10,10 @@ from pathlib import Path
 
 import pytest
 
-from server.api.console import BUILT
+from mend.server.api.console import BUILT
 
 ROOT = Path(__file__).parents[2]
-PACKAGES = ("tasks", "maps", "dialogue", "robots", "fleet", "sim", "server")
+PACKAGES = ("tasks", "maps", "dialogue", "localization", "robots", "fleet", "sim", "server")
 
 ASSET = re.compile(r'"/(assets/[^"]+)"')
 IMPORT = re.compile(r"""(?:\bfrom|\bimport)\s*\(?\s*["']\./([\w.-]+)["']""")
@@ -31,14 +31,15 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
         check=True,
         capture_output=True,
     )
-    (built,) = folder.glob("mend-*.whl")
+    (built,) = folder.glob("mend_robots-*.whl")
     return built
 
 
 def package_files() -> set[str]:
     """Every file of the packages, code or not."""
-    return {
-        path.relative_to(ROOT).as_posix()
+    own = {"mend/__init__.py", "mend/py.typed"}
+    return own | {
+        f"mend/{path.relative_to(ROOT).as_posix()}"
         for package in PACKAGES
         for path in (ROOT / package).rglob("*")
         if path.is_file() and "__pycache__" not in path.parts
@@ -49,13 +50,12 @@ def test_every_file_of_the_packages_is_in_the_wheel_and_no_other(wheel: Path) ->
     with zipfile.ZipFile(wheel) as archive:
         names = {name for name in archive.namelist() if ".dist-info/" not in name}
     assert names == package_files()
-    assert {f"{package}/py.typed" for package in PACKAGES} <= names
     assert {
-        "tasks/library/eket.yaml",
-        "tasks/scenes/eket.yaml",
-        "tasks/scenarios/eket_paper.yaml",
-        "server/dialogues/mail_request.txt.j2",
-        "server/report/templates/report.html",
+        "mend/tasks/library/eket.yaml",
+        "mend/tasks/scenes/eket.yaml",
+        "mend/tasks/scenarios/eket_paper.yaml",
+        "mend/server/dialogues/mail_request.txt.j2",
+        "mend/server/report/templates/report.html",
     } <= names
 
 
@@ -63,7 +63,7 @@ def test_every_file_of_the_packages_is_in_the_wheel_and_no_other(wheel: Path) ->
     not (BUILT / "index.html").is_file(), reason="the console is not built (make console)"
 )
 def test_console_in_the_wheel_has_every_asset_that_it_names(wheel: Path) -> None:
-    folder = "server/api/console/built/"
+    folder = "mend/server/api/console/built/"
     with zipfile.ZipFile(wheel) as archive:
         names = {name for name in archive.namelist() if name.startswith(folder)}
         text = {name: archive.read(name).decode() for name in names if not name.endswith(".gz")}
@@ -97,7 +97,8 @@ def test_unpacked_wheel_runs_anywhere_and_takes_nothing_from_the_working_folder(
         (elsewhere / f"{module}.py").write_text("raise RuntimeError('the wrong module')\n")
     arguments = ["run", "eket", "--world", "tabletop", "--scenario", "eket_paper", "--speed", "max"]
     start = (
-        "import sys; sys.path.insert(0, sys.argv.pop(1)); from server.cli import main, __file__; "
+        "import sys; sys.path.insert(0, sys.argv.pop(1)); "
+        "from mend.server.cli import main, __file__; "
         "assert __file__.startswith(sys.path[0]); main()"
     )
     environment = {name: value for name, value in os.environ.items() if name[:5] != "MEND_"}

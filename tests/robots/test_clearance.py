@@ -8,10 +8,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scripted_body import GRIPPER
 
-from robots.body import ToolPose
-from robots.clearance import beside, in_the_way, room_around
-from robots.vision.seen_box import SeenBox
-from sim.workcell.gripper import PR2_GRIPPER
+from mend.robots.body import ToolPose
+from mend.robots.clearance import beside, in_the_way, room_around
+from mend.robots.vision.seen_box import SeenBox
+from mend.sim.workcell.gripper import PR2_GRIPPER
 
 TOOL = ToolPose(0.5, -0.2, 0.73, 0.0)
 OPENING_M = 0.05

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from robot_bench import RobotBench
 
-from robots.body import CameraImage
-from robots.clip import LENGTH_S, MOST_CHARS, PERIOD_S, Clip, encode_clip
-from robots.link.messages import ClipTaken, Finished, IssueDetected
+from mend.robots.body import CameraImage
+from mend.robots.clip import LENGTH_S, MOST_CHARS, PERIOD_S, Clip, encode_clip
+from mend.robots.link.messages import ClipTaken, Finished, IssueDetected
 
 
 def image(time_s: float, size: tuple[int, int] = (4, 4), noise: int = 0) -> CameraImage:

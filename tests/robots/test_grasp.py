@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scripted_body import GRIPPER, part_in_tool, tool_matrix
 
-from robots.grasp import corners_in_tool, grasp_of, half_turn
-from robots.grasp import part_in_tool as grasped_part_in_tool
+from mend.robots.grasp import corners_in_tool, grasp_of, half_turn
+from mend.robots.grasp import part_in_tool as grasped_part_in_tool
 
 
 @pytest.mark.parametrize(

@@ -11,10 +11,10 @@ from typing import TypeVar
 import pytest
 from counting_agent import CountingAgent
 
-from robots.link.channel import Channel, ChannelClosedError, LinkRefusedError, memory_channel
-from robots.link.client import Aside, LinkSettings, run_agent
-from robots.link.clock import LoopClock
-from robots.link.messages import (
+from mend.robots.link.channel import Channel, ChannelClosedError, LinkRefusedError, memory_channel
+from mend.robots.link.client import Aside, LinkSettings, run_agent
+from mend.robots.link.clock import LoopClock
+from mend.robots.link.messages import (
     Ack,
     AnyServiceMessage,
     Command,
@@ -34,7 +34,7 @@ from robots.link.messages import (
     Welcome,
     robot_message,
 )
-from robots.link.outbox import IN_MEMORY, Outbox
+from mend.robots.link.outbox import IN_MEMORY, Outbox
 
 START = Start(execution="e1", node="/0", behavior="count", parameters={})
 IMPATIENT = LinkSettings(first_backoff_s=0.001, longest_backoff_s=0.002, goodbye_s=0.05)

@@ -3,9 +3,9 @@ import random
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robots.link.backoff import Backoff
-from robots.link.command_memory import CommandMemory
-from robots.link.pacing import HORIZON_S, LONGEST_S, SHORTEST_S, WALL_BUDGET_S, Pacer
+from mend.robots.link.backoff import Backoff
+from mend.robots.link.command_memory import CommandMemory
+from mend.robots.link.pacing import HORIZON_S, LONGEST_S, SHORTEST_S, WALL_BUDGET_S, Pacer
 
 
 def drive(pacer: Pacer, pace: float | None, cost: float, wall_s: float) -> tuple[float, float]:

@@ -7,9 +7,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from pydantic import BaseModel
 
-from robots.link import messages
-from robots.link.messages import Held, Holding, Report, robot_message
-from robots.link.outbox import IN_MEMORY, Outbox, OutboxError, OutboxFullError
+from mend.robots.link import messages
+from mend.robots.link.messages import Held, Holding, Report, robot_message
+from mend.robots.link.outbox import IN_MEMORY, Outbox, OutboxError, OutboxFullError
 
 
 def held(n: int) -> Held:

@@ -5,7 +5,7 @@ from itertools import pairwise
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robots.link.sampling import SHORTEST_WALL_S, PoseSampling
+from mend.robots.link.sampling import SHORTEST_WALL_S, PoseSampling
 
 
 def test_nothing_is_due_before_somebody_asks_or_after_nobody_does() -> None:

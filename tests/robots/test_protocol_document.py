@@ -8,8 +8,8 @@ from typing import get_args
 import pytest
 from pydantic import BaseModel
 
-from robots.link import messages as m
-from tasks.intervention import Intervention
+from mend.robots.link import messages as m
+from mend.tasks.intervention import Intervention
 
 DOCUMENT = Path(__file__).parents[2] / "docs" / "robot_protocol.md"
 

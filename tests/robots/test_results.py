@@ -7,7 +7,7 @@ from drawn_scene import TABLE_Z, Resting
 from robot_bench import RobotBench
 from scripted_body import PLACES
 
-from robots.link.messages import (
+from mend.robots.link.messages import (
     Finished,
     FinishedResult,
     IssueDetected,

@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from robot_bench import RobotBench
 from scripted_body import STARTS, ScriptedBody, catalogue, trained_model
 
-from robots.body import NoWay
-from robots.link.messages import (
+from mend.robots.body import NoWay
+from mend.robots.link.messages import (
     Finished,
     Hold,
     Holding,
@@ -31,10 +31,10 @@ from robots.link.messages import (
     StepStarted,
     TakePicture,
 )
-from robots.robot import Robot
-from robots.senses.head import HeadSense
-from robots.vision.obstruction import Obstruction
-from tasks.plugins import load_plugins
+from mend.robots.robot import Robot
+from mend.robots.senses.head import HeadSense
+from mend.robots.vision.obstruction import Obstruction
+from mend.tasks.plugins import load_plugins
 
 
 def placed(bench: RobotBench, name: str) -> tuple[float, float]:

@@ -2,7 +2,7 @@
 
 from datetime import UTC, datetime, timedelta
 
-from server.believed_time import DOUBT_S, LEAP, BelievedTime
+from mend.server.believed_time import DOUBT_S, LEAP, BelievedTime
 
 NOON = datetime(2026, 5, 4, 12, tzinfo=UTC)
 

@@ -12,9 +12,14 @@ import pytest
 from people import People
 from service_under_test import build
 
-from server.access.permissions import ENDPOINTS
-from server.access.roles import Role
-from server.api.body_sizes import LARGE_BODY_BYTES, SHORT_BODY_BYTES, TAKE_LARGE_BODIES, most_bytes
+from mend.server.access.permissions import ENDPOINTS
+from mend.server.access.roles import Role
+from mend.server.api.body_sizes import (
+    LARGE_BODY_BYTES,
+    SHORT_BODY_BYTES,
+    TAKE_LARGE_BODIES,
+    most_bytes,
+)
 
 YAML = {"content-type": "application/yaml"}
 

@@ -18,13 +18,13 @@ import numpy as np
 import pytest
 from recorded_service import RecordedService, recorded_events
 
-from server.cli import main
-from server.cli.check import kind_of_file
-from server.cli.local_user import local_user
-from server.documents import DocumentKind
-from server.journal import events as ev
-from server.journal.reader import JournalReader
-from server.journal.sqlite import SqliteJournal
+from mend.server.cli import main
+from mend.server.cli.check import kind_of_file
+from mend.server.cli.local_user import local_user
+from mend.server.documents import DocumentKind
+from mend.server.journal import events as ev
+from mend.server.journal.reader import JournalReader
+from mend.server.journal.sqlite import SqliteJournal
 
 SCENE = """\
 name: bench
@@ -102,7 +102,7 @@ def service(monkeypatch: pytest.MonkeyPatch) -> Callable[..., RecordedService]:
 
     def install(events: Sequence[ev.Event] | None = None, **options: Any) -> RecordedService:
         recorded = RecordedService(recorded_events() if events is None else events, **options)
-        monkeypatch.setattr("server.composition.open_service", recorded.open)
+        monkeypatch.setattr("mend.server.composition.open_service", recorded.open)
         return recorded
 
     return install
@@ -574,7 +574,7 @@ def test_colors_are_learned_from_supplied_pictures(mend: Mend, tmp_path: Path) -
 # --- As a process -----------------------------------------------------------------------------
 
 
-COMMAND = [sys.executable, "-c", "from server.cli import main; main()"]
+COMMAND = [sys.executable, "-c", "from mend.server.cli import main; main()"]
 
 
 def begin(data_dir: Path, *arguments: str) -> subprocess.Popen[str]:

@@ -10,13 +10,13 @@ from uuid import uuid4
 
 import pytest
 
-from server.access.known_principals import KnownPrincipals
-from server.access.roles import Role
-from server.cli import main
-from server.cli.output import print_rows
-from server.journal import events as ev
-from server.journal.journal import Entry
-from server.journal.sqlite import SqliteJournal
+from mend.server.access.known_principals import KnownPrincipals
+from mend.server.access.roles import Role
+from mend.server.cli import main
+from mend.server.cli.output import print_rows
+from mend.server.journal import events as ev
+from mend.server.journal.journal import Entry
+from mend.server.journal.sqlite import SqliteJournal
 
 Mend = Callable[..., tuple[int, str, str]]
 

@@ -7,15 +7,15 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-import server.cli
-from server.cli.failures import CommandLineError
+import mend.server.cli
+from mend.server.cli.failures import CommandLineError
 
 EXAMPLE = Path(__file__).parents[2] / "examples/localization"
 DRIVE, FLOOR = EXAMPLE / "drive.csv", EXAMPLE / "floor.vectormap.txt"
 
 
 def _run(*arguments: object) -> str:
-    done = CliRunner().invoke(server.cli.app, [str(each) for each in arguments])
+    done = CliRunner().invoke(mend.server.cli.app, [str(each) for each in arguments])
     if done.exception is not None:
         raise done.exception
     return done.stdout

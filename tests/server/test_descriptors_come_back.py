@@ -12,20 +12,20 @@ import pytest
 from full_disk import Passing
 from recording_sink import RecordingSink
 
-from robots.link.messages import Look
-from server.descriptors import (
+from mend.robots.link.messages import Look
+from mend.server.descriptors import (
     TRY_AGAIN_S,
     once_there_are_descriptors,
     until_there_are_descriptors,
 )
-from server.journal.sqlite import SqliteJournal
-from server.robots.passes import OwnRobots
-from server.robots.process import InProcessRobot, RobotProcess
-from server.robots.registry import RobotRegistry
-from server.robots.simulation_thread import SimulationThread
-from sim.tabletop.adapter import adapter
-from sim.tabletop.layout import lay_out
-from sim.world import WorldSetup
+from mend.server.journal.sqlite import SqliteJournal
+from mend.server.robots.passes import OwnRobots
+from mend.server.robots.process import InProcessRobot, RobotProcess
+from mend.server.robots.registry import RobotRegistry
+from mend.server.robots.simulation_thread import SimulationThread
+from mend.sim.tabletop.adapter import adapter
+from mend.sim.tabletop.layout import lay_out
+from mend.sim.world import WorldSetup
 
 
 @pytest.fixture
@@ -77,7 +77,7 @@ class ShortOfDescriptors:
 async def test_a_robot_within_the_service_starts_once_there_are_descriptors(
     journal: SqliteJournal, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("server.descriptors.TRY_AGAIN_S", 0.0)
+    monkeypatch.setattr("mend.server.descriptors.TRY_AGAIN_S", 0.0)
     registry = RobotRegistry(journal, time.monotonic)
     sink = RecordingSink(journal)
     registry.assign("arm", sink)
@@ -96,7 +96,7 @@ async def test_a_robot_within_the_service_starts_once_there_are_descriptors(
 async def test_a_process_of_a_robot_starts_once_there_are_descriptors(
     journal: SqliteJournal, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("server.descriptors.TRY_AGAIN_S", 0.0)
+    monkeypatch.setattr("mend.server.descriptors.TRY_AGAIN_S", 0.0)
     really_start = asyncio.create_subprocess_exec
     failures = [errno.EMFILE, errno.ENFILE]
 
@@ -140,7 +140,7 @@ async def test_a_robot_that_fails_for_that_says_so_without_a_traceback(
     async def until_there_are() -> None:
         waited.append(not ended)
 
-    monkeypatch.setattr("server.robots.process.until_there_are_descriptors", until_there_are)
+    monkeypatch.setattr("mend.server.robots.process.until_there_are_descriptors", until_there_are)
     registry = RobotRegistry(journal, time.monotonic)
     registry.assign("arm", RecordingSink(journal))
     ended: list[str] = []
@@ -176,6 +176,6 @@ async def test_it_is_waited_for_until_something_can_be_opened(
         return really_open(*arguments)
 
     with monkeypatch.context() as patched:
-        patched.setattr("server.descriptors.os.open", open_late)
+        patched.setattr("mend.server.descriptors.os.open", open_late)
         await until_there_are_descriptors(passing)
     assert passing.pauses == [TRY_AGAIN_S] * 3

@@ -9,18 +9,18 @@ import pytest
 from noon import at_noon
 from service_under_test import build
 
-from server.documents import MOST_MISTAKES, DocumentKind
-from server.errors import ConflictError
-from server.fixed_documents import GivenFiles, fixed_documents
-from server.journal.journal import Document, Entry
-from server.journal.sqlite import SqliteJournal
-from server.library import Library, build_library
-from server.limits import Limits
-from server.off_loop import MUCH_CHARS
-from server.runtime.requests import RunRequest
-from server.scene_checks import WorldChecks
-from tasks.library import SCENES
-from tasks.scene_problem import SceneProblem
+from mend.server.documents import MOST_MISTAKES, DocumentKind
+from mend.server.errors import ConflictError
+from mend.server.fixed_documents import GivenFiles, fixed_documents
+from mend.server.journal.journal import Document, Entry
+from mend.server.journal.sqlite import SqliteJournal
+from mend.server.library import Library, build_library
+from mend.server.limits import Limits
+from mend.server.off_loop import MUCH_CHARS
+from mend.server.runtime.requests import RunRequest
+from mend.server.scene_checks import WorldChecks
+from mend.tasks.library import SCENES
+from mend.tasks.scene_problem import SceneProblem
 
 SCENE = """\
 name: bench

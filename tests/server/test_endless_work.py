@@ -10,14 +10,14 @@ from typing import Any, cast
 
 import pytest
 
-from server.accepting import Acceptor
-from server.access.access import Access
-from server.access.deed_log import DeedLog
-from server.background import Endless
-from server.composition import _watch_access
-from server.limits import Limits
-from server.refusals import Refusals
-from server.visitors import Beyond, End, Visitor, Visitors
+from mend.server.accepting import Acceptor
+from mend.server.access.access import Access
+from mend.server.access.deed_log import DeedLog
+from mend.server.background import Endless
+from mend.server.composition import _watch_access
+from mend.server.limits import Limits
+from mend.server.refusals import Refusals
+from mend.server.visitors import Beyond, End, Visitor, Visitors
 
 IN_TIME_S = 60.0
 
@@ -143,7 +143,7 @@ async def test_without_descriptors_it_is_not_tried_again_and_again(
         tries += 1
         raise OSError(errno.EMFILE, "too many open files")
 
-    monkeypatch.setattr("server.accepting.TRY_AGAIN_S", 3600.0)
+    monkeypatch.setattr("mend.server.accepting.TRY_AGAIN_S", 3600.0)
     monkeypatch.setattr(asyncio.get_running_loop(), "sock_accept", accept)
     async with accepting(Visitors(Limits(), Refusals(), lambda: 0.0)):
         for _ in range(100):

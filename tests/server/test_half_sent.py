@@ -9,8 +9,8 @@ import pytest
 from people import People
 from service_under_test import TOKEN, ServiceUnderTest, build
 
-from server.access.principals_file import read_principals
-from server.access.roles import Role
+from mend.server.access.principals_file import read_principals
+from mend.server.access.roles import Role
 
 Receive = Callable[[], Awaitable[Any]]
 

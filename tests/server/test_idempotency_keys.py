@@ -15,16 +15,16 @@ import pytest
 from people import People
 from service_under_test import ServiceUnderTest, build
 
-from server.access.roles import Role
-from server.api.repeats import Repeats
-from server.app import described_app
-from server.journal import events as ev
-from server.journal.journal import Document, Entry, JournalWriteError
-from server.journal.keyed_request import FirstAnswer, KeyedAuthor, KeyedRequest
-from server.journal.pruning import Keep
-from server.journal.sqlite import SqliteJournal
-from server.limits import Limits
-from server.runtime.requests import RunRequest
+from mend.server.access.roles import Role
+from mend.server.api.repeats import Repeats
+from mend.server.app import described_app
+from mend.server.journal import events as ev
+from mend.server.journal.journal import Document, Entry, JournalWriteError
+from mend.server.journal.keyed_request import FirstAnswer, KeyedAuthor, KeyedRequest
+from mend.server.journal.pruning import Keep
+from mend.server.journal.sqlite import SqliteJournal
+from mend.server.limits import Limits
+from mend.server.runtime.requests import RunRequest
 
 RUN: dict[str, Any] = {"tree": "eket", "world": "tabletop", "speed": "max", "seed": 7}
 STEAL = {"act": "steal", "object": "pink_bar"}

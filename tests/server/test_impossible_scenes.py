@@ -6,14 +6,14 @@ from typing import Any
 
 import pytest
 
-from server.behaviors import behavior_parameters
-from server.errors import InvalidError
-from server.scene_checks import load_world_checks
-from tasks.library import SCENES
-from tasks.problem import InvalidFileError
-from tasks.scene import Scene
-from tasks.scene_file import built_in_scene, check_scene_text
-from tasks.task_file import check_task_text
+from mend.server.behaviors import behavior_parameters
+from mend.server.errors import InvalidError
+from mend.server.scene_checks import load_world_checks
+from mend.tasks.library import SCENES
+from mend.tasks.problem import InvalidFileError
+from mend.tasks.scene import Scene
+from mend.tasks.scene_file import built_in_scene, check_scene_text
+from mend.tasks.task_file import check_task_text
 
 WORLDS = ("tabletop", "workcell")
 

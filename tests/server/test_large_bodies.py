@@ -8,9 +8,9 @@ import httpx
 import pytest
 from service_under_test import TOKEN, ServiceUnderTest, build
 
-from server.api.mistakes import KEY_CHARS, MOST_TOLD
-from server.limits import Limits
-from server.off_loop import MUCH_CHARS
+from mend.server.api.mistakes import KEY_CHARS, MOST_TOLD
+from mend.server.limits import Limits
+from mend.server.off_loop import MUCH_CHARS
 
 OPEN_DOORS = pytest.mark.parametrize("path", ["/api/session", "/api/robots/enrol"])
 JSON = {"content-type": "application/json"}

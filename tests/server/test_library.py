@@ -4,11 +4,11 @@ from pathlib import Path
 
 import pytest
 
-from server.document_checks import TreeChecker
-from server.documents import DocumentKind, WrongDocumentError
-from server.fixed_documents import GivenFiles, fixed_documents
-from server.scene_checks import WorldChecks
-from tasks.library import SCENES, NotInLibraryError
+from mend.server.document_checks import TreeChecker
+from mend.server.documents import DocumentKind, WrongDocumentError
+from mend.server.fixed_documents import GivenFiles, fixed_documents
+from mend.server.scene_checks import WorldChecks
+from mend.tasks.library import SCENES, NotInLibraryError
 
 TREE = """\
 name: mine

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from server.listening import listen
-from server.settings import Settings
+from mend.server.listening import listen
+from mend.server.settings import Settings
 
 
 async def test_small_messages_are_not_held_back(tmp_path: Path) -> None:

@@ -7,11 +7,11 @@ import pytest
 from uvicorn.logging import AccessFormatter
 from websockets.frames import Frame, Opcode
 
-from server.access.tokens import new_token
-from server.app import described_app
-from server.log_secrets import ACCESS, LONGEST_CHARS, HideSecrets
-from server.serving import serve_config
-from server.settings import Settings
+from mend.server.access.tokens import new_token
+from mend.server.app import described_app
+from mend.server.log_secrets import ACCESS, LONGEST_CHARS, HideSecrets
+from mend.server.serving import serve_config
+from mend.server.settings import Settings
 
 OWN = "what-the-service-was-given"
 

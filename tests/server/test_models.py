@@ -8,9 +8,9 @@ import httpx
 import pytest
 from service_under_test import build
 
-from server.errors import NotFoundError
-from server.models import RobotModels
-from sim.world import WorldUnavailableError
+from mend.server.errors import NotFoundError
+from mend.server.models import RobotModels
+from mend.sim.world import WorldUnavailableError
 
 
 @dataclass(frozen=True)

@@ -10,10 +10,10 @@ from pathlib import Path
 import psutil
 import pytest
 
-from server.documents import DocumentMistake, WrongDocumentError
-from server.errors import BusyError
-from server.limits import Limits
-from server.off_loop import MUCH_CHARS, OffLoop
+from mend.server.documents import DocumentMistake, WrongDocumentError
+from mend.server.errors import BusyError
+from mend.server.limits import Limits
+from mend.server.off_loop import MUCH_CHARS, OffLoop
 
 
 @pytest.fixture
@@ -109,7 +109,7 @@ async def test_what_is_under_way_or_waits_when_it_is_closed_is_abandoned() -> No
 
 HAS_A_PROCESS = """
 import asyncio, os, signal
-from server.off_loop import MUCH_CHARS, OffLoop
+from mend.server.off_loop import MUCH_CHARS, OffLoop
 
 async def work():
     off_loop = OffLoop()

@@ -6,10 +6,10 @@ from contextvars import copy_context
 import pytest
 from service_under_test import TOKEN, build
 
-from server.access.principal import TOKEN_NAME
-from server.asking import asker
-from server.errors import BusyError, NotFoundError
-from server.one_by_one import OneByOne
+from mend.server.access.principal import TOKEN_NAME
+from mend.server.asking import asker
+from mend.server.errors import BusyError, NotFoundError
+from mend.server.one_by_one import OneByOne
 
 
 class Shop:

@@ -2,7 +2,7 @@
 
 from ticking_clock import TickingClock
 
-from server.pace import BURST_S, CHARS_OF_ONE, Pace, Paces
+from mend.server.pace import BURST_S, CHARS_OF_ONE, Pace, Paces
 
 
 def test_so_many_at_once_and_then_one_after_the_other() -> None:

@@ -6,9 +6,9 @@ from uuid import UUID
 from rich.console import Console
 from sample_events import RUN, WALL_TIME
 
-from server.cli.output import LiveTranscript
-from server.journal.events import StepStarted
-from server.plain_text import plain
+from mend.server.cli.output import LiveTranscript
+from mend.server.journal.events import StepStarted
+from mend.server.plain_text import plain
 
 
 def test_control_characters_are_spelt_out_and_all_else_is_kept() -> None:

@@ -2,7 +2,7 @@
 
 import pytest
 
-from server.proxies import TrustedProxies
+from mend.server.proxies import TrustedProxies
 
 
 @pytest.mark.parametrize(

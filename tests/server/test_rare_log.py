@@ -4,7 +4,7 @@ import logging
 
 import pytest
 
-from server.rare_log import RareLog
+from mend.server.rare_log import RareLog
 
 
 def test_a_subject_is_told_once_a_minute_with_how_often_it_came_since(

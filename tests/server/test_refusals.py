@@ -11,9 +11,9 @@ import pytest
 from service_under_test import TOKEN, build, serving
 from websockets.asyncio.client import connect
 
-from server.errors import ConflictError
-from server.limits import FixedLimitName, LimitName, Limits, SetLimitName
-from server.refusals import Refusals
+from mend.server.errors import ConflictError
+from mend.server.limits import FixedLimitName, LimitName, Limits, SetLimitName
+from mend.server.refusals import Refusals
 
 RUN = {"tree": "eket", "world": "tabletop"}
 
@@ -56,7 +56,7 @@ async def test_what_is_refused_over_a_socket_is_counted_too(
 
 
 async def test_sign_ins_without_end_are_counted(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("server.access.sessions.SESSIONS_AN_HOUR", 1)
+    monkeypatch.setattr("mend.server.access.sessions.SESSIONS_AN_HOUR", 1)
     service = build(token=TOKEN)
     async with service.client() as client:
         answers = [await client.post("/api/session", json={"token": TOKEN}) for _ in range(2)]

@@ -7,13 +7,13 @@ from pathlib import Path
 import pytest
 from noon import at_noon
 
-from server import remembered_views
-from server.errors import InvalidError
-from server.fixed_documents import GivenFiles, fixed_documents
-from server.journal.sqlite import SqliteJournal
-from server.library import Library, build_library
-from server.off_loop import MUCH_CHARS
-from server.scene_checks import WorldChecks
+from mend.server import remembered_views
+from mend.server.errors import InvalidError
+from mend.server.fixed_documents import GivenFiles, fixed_documents
+from mend.server.journal.sqlite import SqliteJournal
+from mend.server.library import Library, build_library
+from mend.server.off_loop import MUCH_CHARS
+from mend.server.scene_checks import WorldChecks
 
 BENCH = """\
 name: bench

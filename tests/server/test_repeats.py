@@ -3,13 +3,13 @@
 import pytest
 from sample_events import paused
 
-from server.access.roles import Role
-from server.api.repeats import MOST_KEPT_BYTES, MOST_REMEMBERED_BYTES, Repeats
-from server.journal.journal import Entry
-from server.journal.keyed_request import FirstAnswer, KeptRequest, KeyedAuthor, KeyedRequest
-from server.journal.sqlite import SqliteJournal
-from server.limits import Limits
-from server.refusals import Refusals
+from mend.server.access.roles import Role
+from mend.server.api.repeats import MOST_KEPT_BYTES, MOST_REMEMBERED_BYTES, Repeats
+from mend.server.journal.journal import Entry
+from mend.server.journal.keyed_request import FirstAnswer, KeptRequest, KeyedAuthor, KeyedRequest
+from mend.server.journal.sqlite import SqliteJournal
+from mend.server.limits import Limits
+from mend.server.refusals import Refusals
 
 LASTS_S = 100.0
 MOST = 2

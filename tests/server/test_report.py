@@ -14,18 +14,18 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from server.journal import events as ev
-from server.report.page import render_report, write_report
-from server.report.record import RunRecord
-from server.report.timeline import CHARACTER_PX, lay_out_timeline
-from server.report.tree_drawing import (
+from mend.server.journal import events as ev
+from mend.server.report.page import render_report, write_report
+from mend.server.report.record import RunRecord
+from mend.server.report.timeline import CHARACTER_PX, lay_out_timeline
+from mend.server.report.tree_drawing import (
     MAX_TOUCHED,
     NODE_HEIGHT_PX,
     NodeState,
     draw_tree,
     parent_path,
 )
-from server.report.tree_state import node_states
+from mend.server.report.tree_state import node_states
 
 RECORDED = Path(__file__).parent / "recorded" / "eket_paper.jsonl"
 JPEG = b"\xff\xd8 a picture \xff\xd9"

@@ -12,12 +12,12 @@ import pytest
 from people import People
 from service_under_test import ServiceUnderTest, build
 
-from server.access.roles import Role
-from server.journal import events as ev
-from server.journal.run_index import RunPage
-from server.runtime.requests import RunRequest
-from server.runtime.views import RunSummary, RunView
-from tasks.library import SCENARIOS
+from mend.server.access.roles import Role
+from mend.server.journal import events as ev
+from mend.server.journal.run_index import RunPage
+from mend.server.runtime.requests import RunRequest
+from mend.server.runtime.views import RunSummary, RunView
+from mend.tasks.library import SCENARIOS
 
 # Fixed, so that every worker collects the same tests.
 NOBODY = "2dc8e3f6-6479-4c12-9baf-d2534d0b7e34"

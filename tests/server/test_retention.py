@@ -7,9 +7,9 @@ from uuid import UUID, uuid4
 
 import pytest
 
-from server.journal.journal import JournalClosedError, JournalWriteError
-from server.journal.pruning import Keep, Pruned
-from server.retention import EVERY_S, prune_regularly
+from mend.server.journal.journal import JournalClosedError, JournalWriteError
+from mend.server.journal.pruning import Keep, Pruned
+from mend.server.retention import EVERY_S, prune_regularly
 
 NOW = datetime(2026, 1, 1, tzinfo=UTC)
 

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from server.journal.events import AnyEvent
-from server.journal.migrations import MIGRATIONS
-from server.journal.run_index import RunPage
-from server.journal.sqlite import SqliteJournal
-from server.journal.upgrades import (
+from mend.server.journal.events import AnyEvent
+from mend.server.journal.migrations import MIGRATIONS
+from mend.server.journal.run_index import RunPage
+from mend.server.journal.sqlite import SqliteJournal
+from mend.server.journal.upgrades import (
     UnknownEventVersionError,
     current_version,
     upgrade_text,

@@ -9,8 +9,8 @@ from typing import Any
 
 import pytest
 
-from server.cli import main
-from server.cli.check import kind_of_file
+from mend.server.cli import main
+from mend.server.cli.check import kind_of_file
 
 EXAMPLES = Path(__file__).parents[2] / "examples/deliveries"
 CORRIDOR = str(EXAMPLES / "corridor.yaml")
@@ -232,12 +232,12 @@ def test_without_or_tools_it_says_what_to_install(
     monkeypatch.setattr("importlib.util.find_spec", lambda _: None)
     code, _, err = mend("schedule", CORRIDOR)
     assert code == 2
-    assert "planning deliveries needs OR-Tools: install Mend as 'mend[scheduling]'" in err
+    assert "planning deliveries needs OR-Tools: install Mend as 'mend-robots[scheduling]'" in err
 
 
 def test_what_serves_and_checks_delivery_files_does_without_or_tools() -> None:
     program = (
-        "import sys; sys.modules['ortools'] = None; import server.composition; "
-        "from server.cli import main; sys.argv = ['mend', 'check', sys.argv[1]]; main()"
+        "import sys; sys.modules['ortools'] = None; import mend.server.composition; "
+        "from mend.server.cli import main; sys.argv = ['mend', 'check', sys.argv[1]]; main()"
     )
     subprocess.run([sys.executable, "-c", program, CORRIDOR], check=True, capture_output=True)

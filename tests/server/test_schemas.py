@@ -7,7 +7,7 @@ import jsonschema_rs
 import pytest
 from sample_events import paused, started
 
-from server.schemas import asyncapi, json_schemas, openapi
+from mend.server.schemas import asyncapi, json_schemas, openapi
 
 
 def references(node: Any) -> Iterator[str]:

@@ -7,8 +7,8 @@ import pytest
 from certificates import make_certificate
 from cryptography.hazmat.primitives import serialization
 
-from server.server_tls import server_tls
-from server.settings import WrongSettingsError
+from mend.server.server_tls import server_tls
+from mend.server.settings import WrongSettingsError
 
 
 def refusal(certificate: Path, key: Path) -> str:

@@ -5,7 +5,7 @@ import sys
 
 _LOADED = """
 import sys
-import server.composition
+import mend.server.composition
 print(*sorted({"numba", "scipy", "pybullet", "pinocchio", "coal", "ortools"} & sys.modules.keys()))
 """
 

@@ -5,9 +5,9 @@ from pathlib import Path
 import pytest
 from starlette.requests import HTTPConnection
 
-from server.access.access import Access
-from server.access.sessions import KEY_BYTES
-from server.session_key import session_key
+from mend.server.access.access import Access
+from mend.server.access.sessions import KEY_BYTES
+from mend.server.session_key import session_key
 
 
 def test_the_key_is_kept_for_its_owner_alone(tmp_path: Path) -> None:

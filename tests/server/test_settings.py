@@ -3,9 +3,9 @@ from pathlib import Path
 
 import pytest
 
-from server.journal.pruning import Keep
-from server.limits import Limits
-from server.settings import Settings, WrongSettingsError, default_data_dir, load_settings
+from mend.server.journal.pruning import Keep
+from mend.server.limits import Limits
+from mend.server.settings import Settings, WrongSettingsError, default_data_dir, load_settings
 
 TOKEN = "a-long-enough-token"
 

@@ -9,8 +9,8 @@ import pytest
 from full_disk import FailingConnection, Passing, failing
 from sample_events import RUN, paused, started
 
-from server.journal.file_lock import JournalLockedError
-from server.journal.journal import (
+from mend.server.journal.file_lock import JournalLockedError
+from mend.server.journal.journal import (
     Document,
     DuplicateReceiptError,
     Entry,
@@ -19,8 +19,8 @@ from server.journal.journal import (
     JournalWriteError,
     Receipt,
 )
-from server.journal.migrations import JournalSchemaError
-from server.journal.sqlite import SqliteJournal
+from mend.server.journal.migrations import JournalSchemaError
+from mend.server.journal.sqlite import SqliteJournal
 
 
 @pytest.fixture(params=["file", "memory"])
@@ -218,7 +218,7 @@ def test_a_disk_that_fails_as_a_journal_is_opened_is_told(
     def fail(_: object) -> None:
         raise sqlite3.OperationalError("disk I/O error")
 
-    monkeypatch.setattr("server.journal.opening.migrate", fail)
+    monkeypatch.setattr("mend.server.journal.opening.migrate", fail)
     with pytest.raises(JournalOpenError, match=r"journal\.db' cannot be opened: disk I/O error"):
         SqliteJournal(tmp_path / "journal.db")
 

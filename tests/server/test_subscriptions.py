@@ -7,9 +7,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from sample_events import paused
 
-from server.journal.journal import Entry
-from server.journal.sqlite import SqliteJournal
-from server.journal.subscriptions import SubscriptionOverflowError
+from mend.server.journal.journal import Entry
+from mend.server.journal.sqlite import SqliteJournal
+from mend.server.journal.subscriptions import SubscriptionOverflowError
 
 
 @pytest.fixture

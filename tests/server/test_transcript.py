@@ -7,13 +7,13 @@ from uuid import UUID
 
 import pytest
 
-from dialogue.script import CloseReason, Help
-from server.access.roles import Role
-from server.journal import events as ev
-from server.transcript import Line, Tone, Transcript, grouped
-from tasks.intervention import Act, Intervention
-from tasks.resolution import Resolution
-from tasks.scene import Pose
+from mend.dialogue.script import CloseReason, Help
+from mend.server.access.roles import Role
+from mend.server.journal import events as ev
+from mend.server.transcript import Line, Tone, Transcript, grouped
+from mend.tasks.intervention import Act, Intervention
+from mend.tasks.resolution import Resolution
+from mend.tasks.scene import Pose
 
 RECORDED = Path(__file__).parent / "recorded" / "eket_paper.jsonl"
 RUN, OTHER = UUID(int=1), UUID(int=2)

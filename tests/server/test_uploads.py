@@ -8,15 +8,15 @@ import pytest
 from noon import at_noon
 from service_under_test import build
 
-from server.documents import DocumentKind
-from server.errors import BusyError, ConflictError
-from server.fixed_documents import GivenFiles, fixed_documents
-from server.journal.journal import Document, Entry
-from server.journal.sqlite import SqliteJournal
-from server.library import Library, build_library
-from server.limits import Limits
-from server.scene_checks import WorldChecks
-from server.uploads import Uploads
+from mend.server.documents import DocumentKind
+from mend.server.errors import BusyError, ConflictError
+from mend.server.fixed_documents import GivenFiles, fixed_documents
+from mend.server.journal.journal import Document, Entry
+from mend.server.journal.sqlite import SqliteJournal
+from mend.server.library import Library, build_library
+from mend.server.limits import Limits
+from mend.server.scene_checks import WorldChecks
+from mend.server.uploads import Uploads
 
 TREE, SCENE, SCENARIO = DocumentKind.TREE, DocumentKind.SCENE, DocumentKind.SCENARIO
 

@@ -4,9 +4,9 @@ from dataclasses import dataclass, field
 
 import pytest
 
-from server.limits import Limits
-from server.refusals import Refusals
-from server.visitors import Beyond, Phase, Visitor, Visitors
+from mend.server.limits import Limits
+from mend.server.refusals import Refusals
+from mend.server.visitors import Beyond, Phase, Visitor, Visitors
 
 LIMITS = Limits(connections=4, strangers=3, strangers_per_address=2, head_s=10, body_s=60)
 

@@ -8,7 +8,7 @@ import httpx
 import pytest
 from service_under_test import TOKEN, ServiceUnderTest, build
 
-from server.journal import events as ev
+from mend.server.journal import events as ev
 
 LONG_AGO = datetime(2001, 2, 3, 4, 5, 6, tzinfo=UTC)
 SCENE = """\

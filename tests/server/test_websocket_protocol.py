@@ -16,7 +16,7 @@ from starlette.websockets import WebSocket
 from uvicorn.protocols.utils import ClientDisconnected
 from websockets.frames import Close, Frame, Opcode
 
-from server.websocket_protocol import READ_BYTES, WebSocketProtocol
+from mend.server.websocket_protocol import READ_BYTES, WebSocketProtocol
 
 HELLO = (
     b"GET / HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"

@@ -2,7 +2,7 @@
 
 import pytest
 
-from server.access.wrong_tokens import MOST_ADDRESSES, WrongTokens
+from mend.server.access.wrong_tokens import MOST_ADDRESSES, WrongTokens
 
 
 class Guesser:

@@ -2,9 +2,9 @@
 
 import pytest
 
-from robots.link.messages import Intervene
-from sim.interventions import PendingInterventions
-from tasks.intervention import Act, Intervention
+from mend.robots.link.messages import Intervene
+from mend.sim.interventions import PendingInterventions
+from mend.tasks.intervention import Act, Intervention
 
 
 @pytest.mark.parametrize(

@@ -4,10 +4,10 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sim.mischief import random_interventions
-from tasks.intervention import Act
-from tasks.scenario import ScriptedIntervention
-from tasks.scene import Place, Pose, Scene, SceneObject
+from mend.sim.mischief import random_interventions
+from mend.tasks.intervention import Act
+from mend.tasks.scenario import ScriptedIntervention
+from mend.tasks.scene import Place, Pose, Scene, SceneObject
 
 NAMES = [f"cup_{index}" for index in range(8)]
 SCENE = Scene(

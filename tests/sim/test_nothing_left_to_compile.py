@@ -8,10 +8,10 @@ import pytest
 AT_WORK = """
 import sys
 from numba.core.dispatcher import Dispatcher
-from robots.link.messages import Look, Start
-from sim.robot_process import find_world
-from sim.world import WorldSetup
-from tasks.scene_file import built_in_scene
+from mend.robots.link.messages import Look, Start
+from mend.sim.robot_process import find_world
+from mend.sim.world import WorldSetup
+from mend.tasks.scene_file import built_in_scene
 
 def compiled():
     return {

@@ -5,11 +5,11 @@ import math
 import numpy as np
 import pytest
 
-from sim.free_pose import PLACE_RADIUS_M, free_pose, radius_m
-from sim.person import Deed, Promise, deed
-from tasks.intervention import Act, Intervention
-from tasks.scenario import Person
-from tasks.scene import Place, Pose, Scene, SceneObject, Table
+from mend.sim.free_pose import PLACE_RADIUS_M, free_pose, radius_m
+from mend.sim.person import Deed, Promise, deed
+from mend.tasks.intervention import Act, Intervention
+from mend.tasks.scenario import Person
+from mend.tasks.scene import Place, Pose, Scene, SceneObject, Table
 
 SCENE = Scene(
     name="two_cups",

@@ -6,18 +6,18 @@ import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robots.catalogue import Part
-from server.behaviors import behavior_parameters
-from sim.random_parts import DrawnSizes
-from sim.random_scene import MOST_PARTS, random_scene, scene_document
-from sim.standing_room import standing
-from tasks.definition import BehaviorNode
-from tasks.footprint import Footprint
-from tasks.library import NotInLibraryError
-from tasks.scene import Pose, Scene, SceneObject
-from tasks.scene_file import check_scene_text
-from tasks.scene_problem import SceneProblem
-from tasks.task_file import check_task_text
+from mend.robots.catalogue import Part
+from mend.server.behaviors import behavior_parameters
+from mend.sim.random_parts import DrawnSizes
+from mend.sim.random_scene import MOST_PARTS, random_scene, scene_document
+from mend.sim.standing_room import standing
+from mend.tasks.definition import BehaviorNode
+from mend.tasks.footprint import Footprint
+from mend.tasks.library import NotInLibraryError
+from mend.tasks.scene import Pose, Scene, SceneObject
+from mend.tasks.scene_file import check_scene_text
+from mend.tasks.scene_problem import SceneProblem
+from mend.tasks.task_file import check_task_text
 
 SEEDS = st.integers(0, 10**9)
 COUNTS = st.integers(1, MOST_PARTS)

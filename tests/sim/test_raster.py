@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from robots.body import Matrix4
-from sim.raster import Light, Mesh, Rasterizer, box_triangles
+from mend.robots.body import Matrix4
+from mend.sim.raster import Light, Mesh, Rasterizer, box_triangles
 
 SIZE = (160, 120)
 FOCAL = SIZE[1] / 2 / math.tan(math.radians(60) / 2)

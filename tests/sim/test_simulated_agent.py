@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 from agent_driver import Driver
 
-from robots.link.messages import (
+from mend.robots.link.messages import (
     Finished,
     Held,
     Hold,
@@ -21,13 +21,13 @@ from robots.link.messages import (
     StepStarted,
     TakePicture,
 )
-from sim.simulated_agent import SimulatedAgent
-from sim.tabletop.adapter import TabletopAdapter
-from sim.tabletop.arm import SEGMENT_S
-from sim.tabletop.layout import lay_out
-from sim.world import WorldSetup
-from tasks.intervention import Act, Intervention
-from tasks.scenario import ScriptedIntervention, Trigger
+from mend.sim.simulated_agent import SimulatedAgent
+from mend.sim.tabletop.adapter import TabletopAdapter
+from mend.sim.tabletop.arm import SEGMENT_S
+from mend.sim.tabletop.layout import lay_out
+from mend.sim.world import WorldSetup
+from mend.tasks.intervention import Act, Intervention
+from mend.tasks.scenario import ScriptedIntervention, Trigger
 
 SCENE = lay_out([("a", "at_a"), ("b", "at_b"), ("c", "at_c")], seed=11)
 STEAL_A = Intervention(act=Act.STEAL, object="a")

@@ -6,9 +6,9 @@ import pytest
 from counting_world import NoOptions
 from pydantic import BaseModel
 
-from sim.tabletop.world import TabletopOptions
-from sim.workcell.options import WorkcellOptions
-from sim.world_options import WorldOptionError, read_options
+from mend.sim.tabletop.world import TabletopOptions
+from mend.sim.workcell.options import WorkcellOptions
+from mend.sim.world_options import WorldOptionError, read_options
 
 
 @pytest.mark.parametrize(

@@ -2,8 +2,8 @@
 
 from trees import Written, and_, or_, then
 
-from tasks.alternatives import distinct_alternatives
-from tasks.definition import BehaviorNode, GoalNode
+from mend.tasks.alternatives import distinct_alternatives
+from mend.tasks.definition import BehaviorNode, GoalNode
 
 
 def nodes_of(written: Written) -> list[GoalNode | BehaviorNode]:

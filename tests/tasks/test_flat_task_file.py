@@ -6,8 +6,8 @@ import pytest
 import yaml
 from trees import BEHAVIORS
 
-from tasks.task_file import TaskFileError, check_task_text
-from tasks.task_tree import TaskTree
+from mend.tasks.task_file import TaskFileError, check_task_text
+from mend.tasks.task_tree import TaskTree
 
 Nodes = dict[str, dict[str, Any]]
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from tasks.part_boxes import boxes_of, height_of
+from mend.tasks.part_boxes import boxes_of, height_of
 
 PLATE, KNOB = (0.12, 0.10, 0.02), (0.03, 0.02, 0.04)
 

@@ -5,11 +5,11 @@ from pathlib import Path
 
 import pytest
 
-from tasks.definition import BehaviorNode, TaskTreeDefinition
-from tasks.intervention import Act
-from tasks.library import SCENARIOS, NotInLibraryError
-from tasks.scenario import Scenario, Trigger
-from tasks.scenario_file import (
+from mend.tasks.definition import BehaviorNode, TaskTreeDefinition
+from mend.tasks.intervention import Act
+from mend.tasks.library import SCENARIOS, NotInLibraryError
+from mend.tasks.scenario import Scenario, Trigger
+from mend.tasks.scenario_file import (
     ScenarioFileError,
     built_in_scenario,
     check_scenario_file,
@@ -17,7 +17,7 @@ from tasks.scenario_file import (
     find_misfits,
     read_scenario_text,
 )
-from tasks.scene import Place, Pose, Scene, SceneObject
+from mend.tasks.scene import Place, Pose, Scene, SceneObject
 
 WHEN = "when: {object: pink_bar, step: 5, fraction: 0.5}"
 GOOD = """\

@@ -7,10 +7,10 @@ import jsonschema_rs
 import pytest
 from trees import BEHAVIORS
 
-from tasks.document import read_document
-from tasks.json_schema import scenario_schema, scene_schema, task_schema
-from tasks.library import SCENES, TREES, NotInLibraryError
-from tasks.scene_file import (
+from mend.tasks.document import read_document
+from mend.tasks.json_schema import scenario_schema, scene_schema, task_schema
+from mend.tasks.library import SCENES, TREES, NotInLibraryError
+from mend.tasks.scene_file import (
     SceneFileError,
     built_in_scene,
     check_scene_file,

@@ -3,7 +3,7 @@
 import pytest
 from trees import Written, and_, eligible_names, node_called, or_, running_tree, then
 
-from tasks.task_tree import IllegalTransitionError, TaskTree
+from mend.tasks.task_tree import IllegalTransitionError, TaskTree
 
 
 def after(written: Written, *done: str, active: str | None = None) -> TaskTree:

@@ -8,17 +8,17 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from trees import BEHAVIORS
 
-from tasks.draft import MAX_NODE_DEPTH
-from tasks.library import SCENES, TREES, NotInLibraryError, Shelf
-from tasks.scene_file import built_in_scene
-from tasks.task_file import (
+from mend.tasks.draft import MAX_NODE_DEPTH
+from mend.tasks.library import SCENES, TREES, NotInLibraryError, Shelf
+from mend.tasks.scene_file import built_in_scene
+from mend.tasks.task_file import (
     CheckedTask,
     TaskFileError,
     check_built_in_task,
     check_task_file,
     check_task_text,
 )
-from tasks.task_tree import TaskTree
+from mend.tasks.task_tree import TaskTree
 
 LEAF = "{behavior: pick_and_place, object: a, place: b}"
 

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from trees import and_, eligible_names, node_called, or_, running_tree, then
 
-from tasks.definition import BehaviorNode, GoalNode, TaskTreeDefinition
-from tasks.resolution import Resolution
-from tasks.task_tree import IllegalTransitionError, TaskTree
-from tasks.tree_shape import UnknownNodeError
+from mend.tasks.definition import BehaviorNode, GoalNode, TaskTreeDefinition
+from mend.tasks.resolution import Resolution
+from mend.tasks.task_tree import IllegalTransitionError, TaskTree
+from mend.tasks.tree_shape import UnknownNodeError
 
 
 def test_then_opens_its_children_in_order() -> None:

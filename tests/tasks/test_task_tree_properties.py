@@ -11,9 +11,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, precondition, rule
 
-from tasks import eligible
-from tasks.resolution import Resolution
-from tasks.task_tree import IllegalTransitionError, TaskTree
+from mend.tasks import eligible
+from mend.tasks.resolution import Resolution
+from mend.tasks.task_tree import IllegalTransitionError, TaskTree
 
 
 class TreeAgainstFullEvaluation(RuleBasedStateMachine):

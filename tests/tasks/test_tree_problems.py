@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from trees import BEHAVIORS
 
-from tasks.random_task import random_ordered_nesting, random_task
-from tasks.scene import Place, Pose, Scene, SceneObject
-from tasks.task_file import TaskFileError, check_task_text
+from mend.tasks.random_task import random_ordered_nesting, random_task
+from mend.tasks.scene import Place, Pose, Scene, SceneObject
+from mend.tasks.task_file import TaskFileError, check_task_text
 
 SLAB = (0.10, 0.10, 0.05)
 

@@ -2,9 +2,9 @@
 
 import pytest
 
-from tasks.scene import Name, Place, Pose, Scene, SceneObject, StrictModel, Table
-from tasks.scene_file import SceneFileError, check_scene_text
-from tasks.unit import unit_at, unit_of_name
+from mend.tasks.scene import Name, Place, Pose, Scene, SceneObject, StrictModel, Table
+from mend.tasks.scene_file import SceneFileError, check_scene_text
+from mend.tasks.unit import unit_at, unit_of_name
 
 
 class Shelf(StrictModel):

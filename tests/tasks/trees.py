@@ -2,8 +2,8 @@
 
 from pydantic import BaseModel
 
-from tasks.definition import BehaviorNode, GoalNode, TaskTreeDefinition
-from tasks.task_tree import TaskTree
+from mend.tasks.definition import BehaviorNode, GoalNode, TaskTreeDefinition
+from mend.tasks.task_tree import TaskTree
 
 Written = str | tuple[str, tuple["Written", ...]]
 

@@ -1,7 +1,7 @@
 """The script for `slipping`: one sentence, and both place the object together."""
 
-from dialogue.script import CloseState, Script
-from tasks.resolution import Resolution
+from mend.dialogue.script import CloseState, Script
+from mend.tasks.resolution import Resolution
 
 script = Script(
     opening="steady",

@@ -4,11 +4,11 @@ from typing import ClassVar
 
 from pydantic import Field
 
-from robots.behaviors import Phase
-from robots.grip import GripState
-from robots.link.messages import Detection
-from robots.monitors import Meanwhile, Monitor, MonitorView
-from tasks.scene import StrictModel
+from mend.robots.behaviors import Phase
+from mend.robots.grip import GripState
+from mend.robots.link.messages import Detection
+from mend.robots.monitors import Meanwhile, Monitor, MonitorView
+from mend.tasks.scene import StrictModel
 
 
 class SlippingParameters(StrictModel):

@@ -4,9 +4,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from math import floor, log10
 
-from fleet.scheduling.drawing.svg import Svg, color, text_width_px
-from fleet.scheduling.problem import Problem
-from fleet.scheduling.schedule import Action, RobotSchedule, Schedule
+from mend.fleet.scheduling.drawing.svg import Svg, color, text_width_px
+from mend.fleet.scheduling.problem import Problem
+from mend.fleet.scheduling.schedule import Action, RobotSchedule, Schedule
 
 STRIP_PX = 9.0
 LANE_PX = 20.0

@@ -1,10 +1,10 @@
 """The whole picture of a schedule: what it costs, when who does what, and where."""
 
-from fleet.scheduling.drawing.gantt import draw_gantt
-from fleet.scheduling.drawing.route_map import draw_map
-from fleet.scheduling.drawing.svg import Svg
-from fleet.scheduling.problem import Problem
-from fleet.scheduling.schedule import Schedule
+from mend.fleet.scheduling.drawing.gantt import draw_gantt
+from mend.fleet.scheduling.drawing.route_map import draw_map
+from mend.fleet.scheduling.drawing.svg import Svg
+from mend.fleet.scheduling.problem import Problem
+from mend.fleet.scheduling.schedule import Schedule
 
 WIDTH_PX = 1000.0
 

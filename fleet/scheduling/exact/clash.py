@@ -6,11 +6,11 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from math import inf, isfinite
 
-from fleet.scheduling.constraint import Constraint, ConstraintKind, sentence
-from fleet.scheduling.exact.solve import solve_exactly
-from fleet.scheduling.problem import Item, Problem, Robot, Weights, Window
-from fleet.scheduling.schedule import Action, Task
-from fleet.scheduling.solution import Status
+from mend.fleet.scheduling.constraint import Constraint, ConstraintKind, sentence
+from mend.fleet.scheduling.exact.solve import solve_exactly
+from mend.fleet.scheduling.problem import Item, Problem, Robot, Weights, Window
+from mend.fleet.scheduling.schedule import Action, Task
+from mend.fleet.scheduling.solution import Status
 
 ANYTHING = Weights(distance=0.0, lateness=0.0)
 """Costs with which any schedule is as good as another: only whether there is one counts."""

@@ -5,17 +5,17 @@ from dataclasses import dataclass
 
 from ortools.sat.python import cp_model
 
-from fleet.scheduling.checker import require_valid
-from fleet.scheduling.exact.hint import hint_from
-from fleet.scheduling.exact.model import SCALE, ExactModel, Rounding
-from fleet.scheduling.exact.route_bound import RobotRoute
-from fleet.scheduling.exact.route_choice import choose_routes
-from fleet.scheduling.exact.routes import routes_in
-from fleet.scheduling.objective import cost
-from fleet.scheduling.problem import Problem
-from fleet.scheduling.schedule import Schedule
-from fleet.scheduling.solution import Progress, Solution, Status
-from fleet.scheduling.timing import Untimeable, earliest_schedule
+from mend.fleet.scheduling.checker import require_valid
+from mend.fleet.scheduling.exact.hint import hint_from
+from mend.fleet.scheduling.exact.model import SCALE, ExactModel, Rounding
+from mend.fleet.scheduling.exact.route_bound import RobotRoute
+from mend.fleet.scheduling.exact.route_choice import choose_routes
+from mend.fleet.scheduling.exact.routes import routes_in
+from mend.fleet.scheduling.objective import cost
+from mend.fleet.scheduling.problem import Problem
+from mend.fleet.scheduling.schedule import Schedule
+from mend.fleet.scheduling.solution import Progress, Solution, Status
+from mend.fleet.scheduling.timing import Untimeable, earliest_schedule
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,10 +11,10 @@ from math import inf, isfinite
 
 import numpy as np
 
-from fleet.scheduling.exact.linear_program import LinearProgram
-from fleet.scheduling.exact.nodes import Node, NodeKind, arcs, nodes_of, travel
-from fleet.scheduling.problem import Problem, Visit
-from fleet.scheduling.travel import shortest_ways
+from mend.fleet.scheduling.exact.linear_program import LinearProgram
+from mend.fleet.scheduling.exact.nodes import Node, NodeKind, arcs, nodes_of, travel
+from mend.fleet.scheduling.problem import Problem, Visit
+from mend.fleet.scheduling.travel import shortest_ways
 
 TOLERANCE = 1e-6
 """The share by which HiGHS may be wrong."""

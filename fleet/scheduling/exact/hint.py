@@ -2,9 +2,9 @@
 
 from itertools import pairwise
 
-from fleet.scheduling.exact.model import SCALE, ExactModel, RobotVariables
-from fleet.scheduling.exact.nodes import NodeKind
-from fleet.scheduling.schedule import Action, RobotSchedule, Schedule, Stop
+from mend.fleet.scheduling.exact.model import SCALE, ExactModel, RobotVariables
+from mend.fleet.scheduling.exact.nodes import NodeKind
+from mend.fleet.scheduling.schedule import Action, RobotSchedule, Schedule, Stop
 
 
 def hint_from(exact: ExactModel, schedule: Schedule) -> None:

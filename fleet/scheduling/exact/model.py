@@ -11,9 +11,9 @@ from math import ceil, floor, inf, isfinite
 
 from ortools.sat.python import cp_model
 
-from fleet.scheduling.exact.nodes import Node, NodeKind, arcs, nodes_of, travel
-from fleet.scheduling.problem import Problem
-from fleet.scheduling.schedule import Action
+from mend.fleet.scheduling.exact.nodes import Node, NodeKind, arcs, nodes_of, travel
+from mend.fleet.scheduling.problem import Problem
+from mend.fleet.scheduling.schedule import Action
 
 SCALE = 1000
 

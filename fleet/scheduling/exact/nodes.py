@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from enum import Enum, auto
 from math import inf
 
-from fleet.scheduling.problem import Problem, Window
+from mend.fleet.scheduling.problem import Problem, Window
 
 
 class NodeKind(Enum):

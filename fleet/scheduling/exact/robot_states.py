@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fleet.scheduling.exact.state_expansion import (
+from mend.fleet.scheduling.exact.state_expansion import (
     Floats,
     Integers,
     Limits,
@@ -19,8 +19,8 @@ from fleet.scheduling.exact.state_expansion import (
     expand,
     with_robot,
 )
-from fleet.scheduling.problem import Problem
-from fleet.scheduling.travel import shortest_ways
+from mend.fleet.scheduling.problem import Problem
+from mend.fleet.scheduling.travel import shortest_ways
 
 MOST_STATES = 200_000
 MOST_MOVES = 3_000_000

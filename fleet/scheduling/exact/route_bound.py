@@ -15,11 +15,11 @@ import numpy as np
 from scipy.optimize import linprog
 from scipy.sparse import csc_array
 
-from fleet.scheduling.exact.robot_states import RobotStates, states_of
-from fleet.scheduling.exact.route_costs import Staircases, routes_below, staircases
-from fleet.scheduling.exact.state_expansion import Floats, Integers
-from fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit
-from fleet.scheduling.travel import Travel
+from mend.fleet.scheduling.exact.robot_states import RobotStates, states_of
+from mend.fleet.scheduling.exact.route_costs import Staircases, routes_below, staircases
+from mend.fleet.scheduling.exact.state_expansion import Floats, Integers
+from mend.fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit
+from mend.fleet.scheduling.travel import Travel
 
 TOLERANCE = 1e-6
 """The share by which HiGHS may be wrong."""

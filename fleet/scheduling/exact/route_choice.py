@@ -5,9 +5,9 @@ from itertools import pairwise
 
 from ortools.sat.python import cp_model
 
-from fleet.scheduling.exact.model import ExactModel, RobotVariables
-from fleet.scheduling.exact.nodes import NodeKind
-from fleet.scheduling.exact.route_bound import RobotRoute
+from mend.fleet.scheduling.exact.model import ExactModel, RobotVariables
+from mend.fleet.scheduling.exact.nodes import NodeKind
+from mend.fleet.scheduling.exact.route_bound import RobotRoute
 
 Choices = dict[tuple[int, int], list[cp_model.IntVar]]
 

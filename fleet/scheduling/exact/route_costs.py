@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fleet.scheduling.exact.robot_states import RobotStates
-from fleet.scheduling.exact.state_expansion import TOLERANCE, Floats, Integers
-from maps.compiled import compiled
+from mend.fleet.scheduling.exact.robot_states import RobotStates
+from mend.fleet.scheduling.exact.state_expansion import TOLERANCE, Floats, Integers
+from mend.maps.compiled import compiled
 
 MOST_STEPS = 4096
 """On one state's staircase."""

@@ -6,13 +6,13 @@ from collections.abc import Callable
 from dataclasses import replace
 from math import inf, isfinite
 
-from fleet.scheduling.exact.constraint_search import Effort, search
-from fleet.scheduling.exact.model import Rounding
-from fleet.scheduling.exact.route_bound import RobotRoute, RouteBound, route_bound
-from fleet.scheduling.objective import cost
-from fleet.scheduling.problem import Problem
-from fleet.scheduling.schedule import Schedule
-from fleet.scheduling.solution import Progress, Solution, Status
+from mend.fleet.scheduling.exact.constraint_search import Effort, search
+from mend.fleet.scheduling.exact.model import Rounding
+from mend.fleet.scheduling.exact.route_bound import RobotRoute, RouteBound, route_bound
+from mend.fleet.scheduling.objective import cost
+from mend.fleet.scheduling.problem import Problem
+from mend.fleet.scheduling.schedule import Schedule
+from mend.fleet.scheduling.solution import Progress, Solution, Status
 
 BOUND_SHARE = 0.3
 """The share of the time for the bound, at most."""

@@ -2,9 +2,9 @@
 
 from ortools.sat.python import cp_model
 
-from fleet.scheduling.exact.model import ExactModel, RobotVariables
-from fleet.scheduling.exact.nodes import NodeKind
-from fleet.scheduling.schedule import Action, Route, Task
+from mend.fleet.scheduling.exact.model import ExactModel, RobotVariables
+from mend.fleet.scheduling.exact.nodes import NodeKind
+from mend.fleet.scheduling.schedule import Action, Route, Task
 
 
 def routes_in(exact: ExactModel, solver: cp_model.CpSolver) -> tuple[Route, ...]:

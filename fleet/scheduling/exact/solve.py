@@ -4,14 +4,14 @@ from collections.abc import Callable
 from dataclasses import replace
 from math import inf, isfinite
 
-from fleet.scheduling.exact.constraint_search import Effort, search
-from fleet.scheduling.exact.flow_bound import flow_bound, windows_are_wide
-from fleet.scheduling.exact.model import Rounding
-from fleet.scheduling.exact.route_search import at_least, solve_by_routes
-from fleet.scheduling.objective import cost
-from fleet.scheduling.problem import Problem
-from fleet.scheduling.schedule import Schedule
-from fleet.scheduling.solution import Progress, Solution, Status, UnsupportedError
+from mend.fleet.scheduling.exact.constraint_search import Effort, search
+from mend.fleet.scheduling.exact.flow_bound import flow_bound, windows_are_wide
+from mend.fleet.scheduling.exact.model import Rounding
+from mend.fleet.scheduling.exact.route_search import at_least, solve_by_routes
+from mend.fleet.scheduling.objective import cost
+from mend.fleet.scheduling.problem import Problem
+from mend.fleet.scheduling.schedule import Schedule
+from mend.fleet.scheduling.solution import Progress, Solution, Status, UnsupportedError
 
 CONSTRAINTS_SHARE = 0.65
 """The share of the time for constraint programming where flows may give a better bound."""

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from maps.compiled import compiled
+from mend.maps.compiled import compiled
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]

@@ -7,7 +7,7 @@ middle; an elevator stops at every lobby. Robots live in the lobbies, items chan
 from dataclasses import dataclass, replace
 from random import Random
 
-from fleet.scheduling.delivery_document import (
+from mend.fleet.scheduling.delivery_document import (
     DeliveryDocument,
     GraphEntry,
     ItemEntry,
@@ -19,7 +19,7 @@ from fleet.scheduling.delivery_document import (
     WayEntry,
     WeightsEntry,
 )
-from maps.navigation import WayKind
+from mend.maps.navigation import WayKind
 
 OFFICE_DEPTH_M = 4.0
 FLOOR_S = 8.0

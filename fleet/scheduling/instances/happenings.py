@@ -3,8 +3,8 @@
 from collections.abc import Callable, Sequence
 from random import Random
 
-from fleet.scheduling.problem import Item, Visit, Window
-from fleet.scheduling.replanning.events import (
+from mend.fleet.scheduling.problem import Item, Visit, Window
+from mend.fleet.scheduling.replanning.events import (
     Cancelled,
     DoorClosed,
     Event,
@@ -16,8 +16,8 @@ from fleet.scheduling.replanning.events import (
     WayBlocked,
     WayOpen,
 )
-from fleet.scheduling.replanning.running_fleet import RunningFleet
-from maps.navigation import NavigationGraph
+from mend.fleet.scheduling.replanning.running_fleet import RunningFleet
+from mend.maps.navigation import NavigationGraph
 
 LONGEST_DELAY_S = 90.0
 RETRY_S = 120.0

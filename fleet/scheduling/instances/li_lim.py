@@ -2,9 +2,9 @@
 
 from math import inf
 
-from fleet.scheduling.instances.numbers import InstanceError, rows
-from fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit, Weights, Window
-from fleet.scheduling.travel import Travel
+from mend.fleet.scheduling.instances.numbers import InstanceError, rows
+from mend.fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit, Weights, Window
+from mend.fleet.scheduling.travel import Travel
 
 ROBOT_WEIGHT = 1e6
 """Vehicles count first, then distance; no instance's distance comes near it."""

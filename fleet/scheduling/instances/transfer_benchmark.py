@@ -4,9 +4,9 @@ A node's name says what it is: `p0` and `d0` an item's pickup and delivery, `o0`
 vehicle's origin and end, `t0` a transfer place.
 """
 
-from fleet.scheduling.instances.numbers import InstanceError, lines_of_words, number
-from fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit, Window
-from fleet.scheduling.travel import Travel
+from mend.fleet.scheduling.instances.numbers import InstanceError, lines_of_words, number
+from mend.fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit, Window
+from mend.fleet.scheduling.travel import Travel
 
 HEADER = ["nr", "nv", "nt", "capacity"]
 COLUMNS = 6

@@ -2,12 +2,12 @@
 
 from collections.abc import Callable, Sequence
 
-from fleet.scheduling.checker import check
-from fleet.scheduling.objective import cost
-from fleet.scheduling.problem import Problem
-from fleet.scheduling.schedule import Action, Route, Schedule, Task
-from fleet.scheduling.solution import Progress, Solution, Status
-from fleet.scheduling.timing import Untimeable, earliest_schedule
+from mend.fleet.scheduling.checker import check
+from mend.fleet.scheduling.objective import cost
+from mend.fleet.scheduling.problem import Problem
+from mend.fleet.scheduling.schedule import Action, Route, Schedule, Task
+from mend.fleet.scheduling.solution import Progress, Solution, Status
+from mend.fleet.scheduling.timing import Untimeable, earliest_schedule
 
 Visits = Sequence[Sequence[tuple[int, Action]]]
 """By robot: item and PICK or DROP, in order."""

@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 from ortools.constraint_solver import pywrapcp, routing_enums_pb2
 
-from fleet.scheduling.peers.answer import answer
-from fleet.scheduling.peers.whole_numbers import SCALE, WholeNumbers
-from fleet.scheduling.problem import Problem
-from fleet.scheduling.schedule import Action, Schedule
-from fleet.scheduling.solution import Progress, Solution
+from mend.fleet.scheduling.peers.answer import answer
+from mend.fleet.scheduling.peers.whole_numbers import SCALE, WholeNumbers
+from mend.fleet.scheduling.problem import Problem
+from mend.fleet.scheduling.schedule import Action, Schedule
+from mend.fleet.scheduling.solution import Progress, Solution
 
 
 def solve_by_ortools_routing(

@@ -6,11 +6,11 @@ from math import ceil, isfinite
 
 import pyvrp
 
-from fleet.scheduling.peers.answer import answer
-from fleet.scheduling.peers.whole_numbers import SCALE, WholeNumbers
-from fleet.scheduling.problem import Problem
-from fleet.scheduling.schedule import Action, Schedule
-from fleet.scheduling.solution import Progress, Solution, UnsupportedError
+from mend.fleet.scheduling.peers.answer import answer
+from mend.fleet.scheduling.peers.whole_numbers import SCALE, WholeNumbers
+from mend.fleet.scheduling.problem import Problem
+from mend.fleet.scheduling.schedule import Action, Schedule
+from mend.fleet.scheduling.solution import Progress, Solution, UnsupportedError
 
 
 def solve_by_pyvrp(

@@ -7,11 +7,11 @@ from math import ceil, isfinite
 import numpy as np
 import vroom
 
-from fleet.scheduling.peers.answer import answer
-from fleet.scheduling.peers.whole_numbers import SCALE, WholeNumbers
-from fleet.scheduling.problem import Problem, Visit
-from fleet.scheduling.schedule import Action, Schedule
-from fleet.scheduling.solution import Progress, Solution, UnsupportedError
+from mend.fleet.scheduling.peers.answer import answer
+from mend.fleet.scheduling.peers.whole_numbers import SCALE, WholeNumbers
+from mend.fleet.scheduling.problem import Problem, Visit
+from mend.fleet.scheduling.schedule import Action, Schedule
+from mend.fleet.scheduling.solution import Progress, Solution, UnsupportedError
 
 EXPLORATION = 5
 """The most thorough search that it has."""

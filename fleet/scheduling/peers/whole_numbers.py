@@ -5,9 +5,9 @@ from math import isfinite
 import numpy as np
 from numpy.typing import NDArray
 
-from fleet.scheduling.problem import Problem, Window
-from fleet.scheduling.solution import UnsupportedError
-from fleet.scheduling.travel import Matrix
+from mend.fleet.scheduling.problem import Problem, Window
+from mend.fleet.scheduling.solution import UnsupportedError
+from mend.fleet.scheduling.travel import Matrix
 
 SCALE = 1000
 """Times and distances are thousandths; times are rounded up, so that what fits then fits."""

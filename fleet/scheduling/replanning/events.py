@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from fleet.scheduling.problem import Item
+from mend.fleet.scheduling.problem import Item
 
 
 class EventError(Exception):

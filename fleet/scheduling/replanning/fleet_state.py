@@ -3,15 +3,15 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from fleet.scheduling.partial_routes import without_items
-from fleet.scheduling.problem import Problem
-from fleet.scheduling.replanning.events import EventError
-from fleet.scheduling.replanning.item_state import ItemState, TrackedItem
-from fleet.scheduling.replanning.open_ways import OpenWays
-from fleet.scheduling.replanning.rest import Building, Rest, rest_of
-from fleet.scheduling.replanning.robot_state import TrackedRobot
-from fleet.scheduling.schedule import Action, Route, Schedule
-from fleet.scheduling.travel import Travel
+from mend.fleet.scheduling.partial_routes import without_items
+from mend.fleet.scheduling.problem import Problem
+from mend.fleet.scheduling.replanning.events import EventError
+from mend.fleet.scheduling.replanning.item_state import ItemState, TrackedItem
+from mend.fleet.scheduling.replanning.open_ways import OpenWays
+from mend.fleet.scheduling.replanning.rest import Building, Rest, rest_of
+from mend.fleet.scheduling.replanning.robot_state import TrackedRobot
+from mend.fleet.scheduling.schedule import Action, Route, Schedule
+from mend.fleet.scheduling.travel import Travel
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 from math import inf
 
-from fleet.scheduling.problem import Item, Visit, Window
+from mend.fleet.scheduling.problem import Item, Visit, Window
 
 
 class ItemState(StrEnum):

@@ -3,15 +3,15 @@
 from dataclasses import dataclass
 from math import inf
 
-from fleet.scheduling.checker import require_valid
-from fleet.scheduling.constraint import Constraint, ConstraintKind
-from fleet.scheduling.problem import Problem
-from fleet.scheduling.replanning.fleet_state import Done, FleetState
-from fleet.scheduling.replanning.item_state import ItemState
-from fleet.scheduling.replanning.rest import Rest, is_given
-from fleet.scheduling.replanning.robot_state import TrackedRobot, Trip
-from fleet.scheduling.schedule import Action, Schedule, Task
-from fleet.scheduling.timing import TimedRoutes, service_s
+from mend.fleet.scheduling.checker import require_valid
+from mend.fleet.scheduling.constraint import Constraint, ConstraintKind
+from mend.fleet.scheduling.problem import Problem
+from mend.fleet.scheduling.replanning.fleet_state import Done, FleetState
+from mend.fleet.scheduling.replanning.item_state import ItemState
+from mend.fleet.scheduling.replanning.rest import Rest, is_given
+from mend.fleet.scheduling.replanning.robot_state import TrackedRobot, Trip
+from mend.fleet.scheduling.schedule import Action, Schedule, Task
+from mend.fleet.scheduling.timing import TimedRoutes, service_s
 
 TOLERANCE_S = 1e-6
 

@@ -2,8 +2,8 @@
 
 from itertools import pairwise
 
-from fleet.scheduling.replanning.open_ways import OpenWays
-from fleet.scheduling.replanning.robot_state import TrackedRobot
+from mend.fleet.scheduling.replanning.open_ways import OpenWays
+from mend.fleet.scheduling.replanning.robot_state import TrackedRobot
 
 Passing = tuple[int, float]
 """A place, and when the robot is there."""

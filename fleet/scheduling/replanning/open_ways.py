@@ -4,10 +4,10 @@ from collections.abc import Iterable
 from dataclasses import replace
 from math import inf
 
-from fleet.scheduling.building_travel import travel_in
-from fleet.scheduling.replanning.events import EventError
-from fleet.scheduling.travel import Travel
-from maps.navigation import NavigationGraph, Way
+from mend.fleet.scheduling.building_travel import travel_in
+from mend.fleet.scheduling.replanning.events import EventError
+from mend.fleet.scheduling.travel import Travel
+from mend.maps.navigation import NavigationGraph, Way
 
 
 class OpenWays:

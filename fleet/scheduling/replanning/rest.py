@@ -3,11 +3,11 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from fleet.scheduling.problem import Item, Problem, Transfers, Weights
-from fleet.scheduling.replanning.item_state import TrackedItem
-from fleet.scheduling.replanning.robot_state import TrackedRobot
-from fleet.scheduling.schedule import Action, Route, Task
-from fleet.scheduling.travel import Travel
+from mend.fleet.scheduling.problem import Item, Problem, Transfers, Weights
+from mend.fleet.scheduling.replanning.item_state import TrackedItem
+from mend.fleet.scheduling.replanning.robot_state import TrackedRobot
+from mend.fleet.scheduling.schedule import Action, Route, Task
+from mend.fleet.scheduling.travel import Travel
 
 
 @dataclass(frozen=True, slots=True)

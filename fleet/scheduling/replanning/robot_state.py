@@ -3,8 +3,8 @@
 from dataclasses import dataclass, replace
 from math import inf
 
-from fleet.scheduling.problem import Robot, Window
-from fleet.scheduling.travel import Travel
+from mend.fleet.scheduling.problem import Robot, Window
+from mend.fleet.scheduling.travel import Travel
 
 
 @dataclass(frozen=True, slots=True)

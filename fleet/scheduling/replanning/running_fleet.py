@@ -10,9 +10,9 @@ from dataclasses import dataclass, field
 from itertools import chain
 from math import inf
 
-from fleet.scheduling.checker import require_valid
-from fleet.scheduling.problem import Item, Problem, ProblemError
-from fleet.scheduling.replanning.events import (
+from mend.fleet.scheduling.checker import require_valid
+from mend.fleet.scheduling.problem import Item, Problem, ProblemError
+from mend.fleet.scheduling.replanning.events import (
     Cancelled,
     DoorClosed,
     Event,
@@ -25,15 +25,15 @@ from fleet.scheduling.replanning.events import (
     WayBlocked,
     WayOpen,
 )
-from fleet.scheduling.replanning.fleet_state import Done, FleetState
-from fleet.scheduling.replanning.item_state import ItemState, TrackedItem
-from fleet.scheduling.replanning.live_plan import TOLERANCE_S, LivePlan, NextStop
-from fleet.scheduling.replanning.on_the_way import stand_still, turn_before
-from fleet.scheduling.replanning.open_ways import OpenWays
-from fleet.scheduling.replanning.rest import Rest
-from fleet.scheduling.replanning.robot_state import TrackedRobot
-from fleet.scheduling.replanning.settling import Settling
-from fleet.scheduling.schedule import Route, Schedule
+from mend.fleet.scheduling.replanning.fleet_state import Done, FleetState
+from mend.fleet.scheduling.replanning.item_state import ItemState, TrackedItem
+from mend.fleet.scheduling.replanning.live_plan import TOLERANCE_S, LivePlan, NextStop
+from mend.fleet.scheduling.replanning.on_the_way import stand_still, turn_before
+from mend.fleet.scheduling.replanning.open_ways import OpenWays
+from mend.fleet.scheduling.replanning.rest import Rest
+from mend.fleet.scheduling.replanning.robot_state import TrackedRobot
+from mend.fleet.scheduling.replanning.settling import Settling
+from mend.fleet.scheduling.schedule import Route, Schedule
 
 RECONSIDERED = 6
 """How many items are offered again where a way opens, a robot comes back or something is late."""

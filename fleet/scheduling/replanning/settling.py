@@ -8,18 +8,18 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from math import inf
 
-from fleet.scheduling.auction import Sale, sell
-from fleet.scheduling.checker import TOLERANCE_LOAD
-from fleet.scheduling.constraint import Constraint, ConstraintKind
-from fleet.scheduling.contradictions import contradictions
-from fleet.scheduling.no_place import conflict_words, no_place_words
-from fleet.scheduling.objective import cost
-from fleet.scheduling.partial_routes import part_schedule, without_items
-from fleet.scheduling.problem import Problem, Window
-from fleet.scheduling.replanning.item_state import without_deadline
-from fleet.scheduling.schedule import Action, Route
-from fleet.scheduling.temporal_network import Conflict
-from fleet.scheduling.timing import TimedRoutes
+from mend.fleet.scheduling.auction import Sale, sell
+from mend.fleet.scheduling.checker import TOLERANCE_LOAD
+from mend.fleet.scheduling.constraint import Constraint, ConstraintKind
+from mend.fleet.scheduling.contradictions import contradictions
+from mend.fleet.scheduling.no_place import conflict_words, no_place_words
+from mend.fleet.scheduling.objective import cost
+from mend.fleet.scheduling.partial_routes import part_schedule, without_items
+from mend.fleet.scheduling.problem import Problem, Window
+from mend.fleet.scheduling.replanning.item_state import without_deadline
+from mend.fleet.scheduling.schedule import Action, Route
+from mend.fleet.scheduling.temporal_network import Conflict
+from mend.fleet.scheduling.timing import TimedRoutes
 
 DEADLINES = (ConstraintKind.WINDOW_END, ConstraintKind.ON_BOARD)
 BETTER = 1e-6

@@ -5,12 +5,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fleet.scheduling.compiled import compiled
-from fleet.scheduling.dice import Dice, one_of, throw
-from fleet.scheduling.routing.arrays import Flags, Floats, Integers, RoutingArrays
-from fleet.scheduling.routing.insertion import INSERTIONS, insert_items
-from fleet.scheduling.routing.places import Places, places_for
-from fleet.scheduling.routing.plan import (
+from mend.fleet.scheduling.compiled import compiled
+from mend.fleet.scheduling.dice import Dice, one_of, throw
+from mend.fleet.scheduling.routing.arrays import Flags, Floats, Integers, RoutingArrays
+from mend.fleet.scheduling.routing.insertion import INSERTIONS, insert_items
+from mend.fleet.scheduling.routing.places import Places, places_for
+from mend.fleet.scheduling.routing.plan import (
     Plan,
     Undo,
     changed_by,
@@ -21,7 +21,7 @@ from fleet.scheduling.routing.plan import (
     settle,
     undo_for,
 )
-from fleet.scheduling.routing.removal import REMOVALS, remove_items
+from mend.fleet.scheduling.routing.removal import REMOVALS, remove_items
 
 FEWEST, MANY, MOST = 1, 8, 30
 """How many items are taken out in one step: from the first number to the second at least, and to

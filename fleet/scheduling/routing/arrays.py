@@ -11,8 +11,8 @@ from typing import NamedTuple, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from fleet.scheduling.problem import Problem, Robot, Visit
-from fleet.scheduling.solution import UnsupportedError
+from mend.fleet.scheduling.problem import Problem, Robot, Visit
+from mend.fleet.scheduling.solution import UnsupportedError
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]

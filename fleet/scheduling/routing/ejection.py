@@ -9,11 +9,11 @@ from typing import NamedTuple, cast
 
 import numpy as np
 
-from fleet.scheduling.compiled import compiled
-from fleet.scheduling.dice import Dice, one_of, shuffle
-from fleet.scheduling.routing.arrays import NOBODY, Flags, Integers, RoutingArrays
-from fleet.scheduling.routing.places import ANY, FIRST, Places, find_place
-from fleet.scheduling.routing.plan import Plan, put, refresh, take_out
+from mend.fleet.scheduling.compiled import compiled
+from mend.fleet.scheduling.dice import Dice, one_of, shuffle
+from mend.fleet.scheduling.routing.arrays import NOBODY, Flags, Integers, RoutingArrays
+from mend.fleet.scheduling.routing.places import ANY, FIRST, Places, find_place
+from mend.fleet.scheduling.routing.plan import Plan, put, refresh, take_out
 
 HARDEST = cast(int, np.int64(1 << 60))
 """More than any items are hard to place."""

@@ -2,11 +2,11 @@
 
 from math import inf
 
-from fleet.scheduling.compiled import compiled
-from fleet.scheduling.dice import Dice, shuffle, throw
-from fleet.scheduling.routing.arrays import NOBODY, Flags, Integers, RoutingArrays
-from fleet.scheduling.routing.places import CHEAP, Places, extra_cost, find_place
-from fleet.scheduling.routing.plan import Plan, Undo, changed_by, put, remember
+from mend.fleet.scheduling.compiled import compiled
+from mend.fleet.scheduling.dice import Dice, shuffle, throw
+from mend.fleet.scheduling.routing.arrays import NOBODY, Flags, Integers, RoutingArrays
+from mend.fleet.scheduling.routing.places import CHEAP, Places, extra_cost, find_place
+from mend.fleet.scheduling.routing.plan import Plan, Undo, changed_by, put, remember
 
 INSERTIONS = 5
 BLINK = 0.02

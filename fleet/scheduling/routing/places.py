@@ -5,10 +5,10 @@ from typing import NamedTuple, cast
 
 import numpy as np
 
-from fleet.scheduling.compiled import compiled
-from fleet.scheduling.dice import Dice, throw
-from fleet.scheduling.routing.arrays import NOBODY, Floats, Integers, RoutingArrays
-from fleet.scheduling.routing.plan import Plan
+from mend.fleet.scheduling.compiled import compiled
+from mend.fleet.scheduling.dice import Dice, throw
+from mend.fleet.scheduling.routing.arrays import NOBODY, Floats, Integers, RoutingArrays
+from mend.fleet.scheduling.routing.plan import Plan
 
 CHEAPEST, ANY, FIRST, CHEAP = (cast(int, np.int64(wanted)) for wanted in range(4))
 """Which place is wanted: the cheapest, one by chance, the first that is found, or the cheapest of

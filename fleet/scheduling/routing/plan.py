@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fleet.scheduling.compiled import compiled
-from fleet.scheduling.routing.arrays import NOBODY, Flags, Floats, Integers, RoutingArrays
+from mend.fleet.scheduling.compiled import compiled
+from mend.fleet.scheduling.routing.arrays import NOBODY, Flags, Floats, Integers, RoutingArrays
 
 
 class Plan(NamedTuple):

@@ -1,9 +1,9 @@
 """Which items are taken out: five ways to choose, each good where others are not."""
 
-from fleet.scheduling.compiled import compiled
-from fleet.scheduling.dice import Dice, one_of, throw
-from fleet.scheduling.routing.arrays import NOBODY, Integers, RoutingArrays
-from fleet.scheduling.routing.plan import Plan, Undo, remember, take_out
+from mend.fleet.scheduling.compiled import compiled
+from mend.fleet.scheduling.dice import Dice, one_of, throw
+from mend.fleet.scheduling.routing.arrays import NOBODY, Integers, RoutingArrays
+from mend.fleet.scheduling.routing.plan import Plan, Undo, remember, take_out
 
 REMOVALS = 5
 STRING = 10

@@ -5,12 +5,12 @@ from math import inf
 
 import numpy as np
 
-from fleet.scheduling.dice import Dice, dice_from
-from fleet.scheduling.routing.annealing import BEST, CURRENT, Search, anneal, search_for
-from fleet.scheduling.routing.arrays import RoutingArrays
-from fleet.scheduling.routing.ejection import Ejection, ejection_for, empty_route, place_all
-from fleet.scheduling.routing.insertion import insert_items
-from fleet.scheduling.routing.plan import Plan, copy_plan, plan_cost, settle
+from mend.fleet.scheduling.dice import Dice, dice_from
+from mend.fleet.scheduling.routing.annealing import BEST, CURRENT, Search, anneal, search_for
+from mend.fleet.scheduling.routing.arrays import RoutingArrays
+from mend.fleet.scheduling.routing.ejection import Ejection, ejection_for, empty_route, place_all
+from mend.fleet.scheduling.routing.insertion import insert_items
+from mend.fleet.scheduling.routing.plan import Plan, copy_plan, plan_cost, settle
 
 WARM, COOL = 0.5, 0.005
 """The temperatures of a round, in units of what an item costs on average."""

@@ -4,16 +4,16 @@ from collections.abc import Callable
 from functools import cache
 from math import inf
 
-from fleet.scheduling.checker import require_valid
-from fleet.scheduling.objective import cost
-from fleet.scheduling.problem import Item, Problem, Robot, Visit, Weights
-from fleet.scheduling.routing.arrays import routing_arrays
-from fleet.scheduling.routing.plan import Plan, refresh
-from fleet.scheduling.routing.rounds import Rounds
-from fleet.scheduling.schedule import Action, Route, Schedule, Task
-from fleet.scheduling.solution import Progress, Solution, Status
-from fleet.scheduling.timing import Untimeable, earliest_schedule
-from fleet.scheduling.travel import Travel
+from mend.fleet.scheduling.checker import require_valid
+from mend.fleet.scheduling.objective import cost
+from mend.fleet.scheduling.problem import Item, Problem, Robot, Visit, Weights
+from mend.fleet.scheduling.routing.arrays import routing_arrays
+from mend.fleet.scheduling.routing.plan import Plan, refresh
+from mend.fleet.scheduling.routing.rounds import Rounds
+from mend.fleet.scheduling.schedule import Action, Route, Schedule, Task
+from mend.fleet.scheduling.solution import Progress, Solution, Status
+from mend.fleet.scheduling.timing import Untimeable, earliest_schedule
+from mend.fleet.scheduling.travel import Travel
 
 
 def solve_alns(

@@ -3,9 +3,9 @@
 from math import inf, log
 from typing import NamedTuple
 
-from fleet.scheduling.compiled import compiled
-from fleet.scheduling.dice import Dice, one_of, throw
-from fleet.scheduling.vlns.arrays import (
+from mend.fleet.scheduling.compiled import compiled
+from mend.fleet.scheduling.dice import Dice, one_of, throw
+from mend.fleet.scheduling.vlns.arrays import (
     BANKED,
     TOTAL,
     Integers,
@@ -15,10 +15,10 @@ from fleet.scheduling.vlns.arrays import (
     empty_plan,
     take_out,
 )
-from fleet.scheduling.vlns.insertion import Manner, insert_all, items_room, refresh
-from fleet.scheduling.vlns.removal import choose_items
-from fleet.scheduling.vlns.times import Times, times_for
-from fleet.scheduling.vlns.ways import Ways, lift_bars, ways_for
+from mend.fleet.scheduling.vlns.insertion import Manner, insert_all, items_room, refresh
+from mend.fleet.scheduling.vlns.removal import choose_items
+from mend.fleet.scheduling.vlns.times import Times, times_for
+from mend.fleet.scheduling.vlns.ways import Ways, lift_bars, ways_for
 
 TRIED = 12
 """How many items of the bank are tried in one step."""

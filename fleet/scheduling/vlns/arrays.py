@@ -11,8 +11,8 @@ from typing import NamedTuple, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from fleet.scheduling.compiled import compiled
-from fleet.scheduling.problem import Problem
+from mend.fleet.scheduling.compiled import compiled
+from mend.fleet.scheduling.problem import Problem
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]

@@ -5,11 +5,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fleet.scheduling.compiled import compiled
-from fleet.scheduling.dice import Dice, shuffle, throw
-from fleet.scheduling.vlns.arrays import HOME, TOTAL, Integers, Plan, ProblemArrays, take_out
-from fleet.scheduling.vlns.times import Times, find_latest, find_times, find_value
-from fleet.scheduling.vlns.ways import Ways, find_ways, follow
+from mend.fleet.scheduling.compiled import compiled
+from mend.fleet.scheduling.dice import Dice, shuffle, throw
+from mend.fleet.scheduling.vlns.arrays import HOME, TOTAL, Integers, Plan, ProblemArrays, take_out
+from mend.fleet.scheduling.vlns.times import Times, find_latest, find_times, find_value
+from mend.fleet.scheduling.vlns.ways import Ways, find_ways, follow
 
 NONE = -1
 

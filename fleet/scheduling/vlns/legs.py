@@ -6,10 +6,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from fleet.scheduling.compiled import compiled
-from fleet.scheduling.dice import Dice, throw
-from fleet.scheduling.vlns.arrays import NOWHERE, TAKE, Floats, Integers, Plan, ProblemArrays
-from fleet.scheduling.vlns.times import TOLERANCE, Times, drive_s, way_m
+from mend.fleet.scheduling.compiled import compiled
+from mend.fleet.scheduling.dice import Dice, throw
+from mend.fleet.scheduling.vlns.arrays import NOWHERE, TAKE, Floats, Integers, Plan, ProblemArrays
+from mend.fleet.scheduling.vlns.times import TOLERANCE, Times, drive_s, way_m
 
 KEPT = 5
 """How many of the cheapest legs of one robot between two places are remembered."""

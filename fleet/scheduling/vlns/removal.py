@@ -5,9 +5,9 @@ A removed visit may be barred to its robot: others must then do it, or it is don
 
 from math import inf
 
-from fleet.scheduling.compiled import compiled
-from fleet.scheduling.dice import Dice, one_of, throw
-from fleet.scheduling.vlns.arrays import (
+from mend.fleet.scheduling.compiled import compiled
+from mend.fleet.scheduling.dice import Dice, one_of, throw
+from mend.fleet.scheduling.vlns.arrays import (
     BANKED,
     DROP,
     GIVE,
@@ -16,7 +16,7 @@ from fleet.scheduling.vlns.arrays import (
     Plan,
     ProblemArrays,
 )
-from fleet.scheduling.vlns.times import Times, way_m
+from mend.fleet.scheduling.vlns.times import Times, way_m
 
 SMALL = 8
 """Up to so many items, all of them may be removed at once."""

@@ -3,10 +3,10 @@
 from collections.abc import Sequence
 from itertools import pairwise
 
-from fleet.scheduling.item_way import item_ways
-from fleet.scheduling.problem import Problem
-from fleet.scheduling.schedule import Action, Route, Task
-from fleet.scheduling.vlns.arrays import (
+from mend.fleet.scheduling.item_way import item_ways
+from mend.fleet.scheduling.problem import Problem
+from mend.fleet.scheduling.schedule import Action, Route, Task
+from mend.fleet.scheduling.vlns.arrays import (
     DROP,
     GIVE,
     PICK,

@@ -6,20 +6,20 @@ from math import inf, isfinite
 
 import numpy as np
 
-from fleet.scheduling.checker import require_valid
-from fleet.scheduling.dice import Dice, dice_from
-from fleet.scheduling.item_way import item_ways
-from fleet.scheduling.objective import cost
-from fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit
-from fleet.scheduling.routing.arrays import unsupported
-from fleet.scheduling.routing.solve import prepare as prepare_alns
-from fleet.scheduling.routing.solve import solve_alns
-from fleet.scheduling.schedule import Schedule
-from fleet.scheduling.solution import Progress, Solution, Status, UnsupportedError
-from fleet.scheduling.timing import Untimeable, earliest_schedule
-from fleet.scheduling.travel import Travel
-from fleet.scheduling.vlns.annealing import Search, anneal, search_for
-from fleet.scheduling.vlns.arrays import (
+from mend.fleet.scheduling.checker import require_valid
+from mend.fleet.scheduling.dice import Dice, dice_from
+from mend.fleet.scheduling.item_way import item_ways
+from mend.fleet.scheduling.objective import cost
+from mend.fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit
+from mend.fleet.scheduling.routing.arrays import unsupported
+from mend.fleet.scheduling.routing.solve import prepare as prepare_alns
+from mend.fleet.scheduling.routing.solve import solve_alns
+from mend.fleet.scheduling.schedule import Schedule
+from mend.fleet.scheduling.solution import Progress, Solution, Status, UnsupportedError
+from mend.fleet.scheduling.timing import Untimeable, earliest_schedule
+from mend.fleet.scheduling.travel import Travel
+from mend.fleet.scheduling.vlns.annealing import Search, anneal, search_for
+from mend.fleet.scheduling.vlns.arrays import (
     BANKED,
     TOTAL,
     Plan,
@@ -28,8 +28,8 @@ from fleet.scheduling.vlns.arrays import (
     empty_plan,
     problem_arrays,
 )
-from fleet.scheduling.vlns.insertion import refresh
-from fleet.scheduling.vlns.routes import plan_of, routes_in
+from mend.fleet.scheduling.vlns.insertion import refresh
+from mend.fleet.scheduling.vlns.routes import plan_of, routes_in
 
 CHAIN = 3
 """The most transfers of one item, unless the start already has more."""

@@ -5,8 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fleet.scheduling.compiled import compiled
-from fleet.scheduling.vlns.arrays import (
+from mend.fleet.scheduling.compiled import compiled
+from mend.fleet.scheduling.vlns.arrays import (
     BANKED,
     DISTANCE,
     DROP,

@@ -8,9 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fleet.scheduling.compiled import compiled
-from fleet.scheduling.dice import Dice, one_of
-from fleet.scheduling.vlns.arrays import (
+from mend.fleet.scheduling.compiled import compiled
+from mend.fleet.scheduling.dice import Dice, one_of
+from mend.fleet.scheduling.vlns.arrays import (
     HOME,
     NOWHERE,
     UNREACHABLE,
@@ -21,8 +21,8 @@ from fleet.scheduling.vlns.arrays import (
     give_node,
     put,
 )
-from fleet.scheduling.vlns.legs import Ends, Legs, ends_for, find_legs, legs_for
-from fleet.scheduling.vlns.times import TOLERANCE, Times
+from mend.fleet.scheduling.vlns.legs import Ends, Legs, ends_for, find_legs, legs_for
+from mend.fleet.scheduling.vlns.times import TOLERANCE, Times
 
 MOST_PLACES = 6
 """How many transfer places are looked at for one item at a time."""

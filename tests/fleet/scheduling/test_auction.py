@@ -7,13 +7,13 @@ from delivery_problems import corridor, corridor_items, parcel
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from fleet.scheduling.auction import offer, sell
-from fleet.scheduling.growing_routes import GrowingRoutes
-from fleet.scheduling.objective import cost
-from fleet.scheduling.partial_routes import part_schedule, without_items
-from fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit, Weights, Window
-from fleet.scheduling.replanning.settling import Settling
-from fleet.scheduling.schedule import Action, Task
+from mend.fleet.scheduling.auction import offer, sell
+from mend.fleet.scheduling.growing_routes import GrowingRoutes
+from mend.fleet.scheduling.objective import cost
+from mend.fleet.scheduling.partial_routes import part_schedule, without_items
+from mend.fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit, Weights, Window
+from mend.fleet.scheduling.replanning.settling import Settling
+from mend.fleet.scheduling.schedule import Action, Task
 
 ROBOTS = (Robot("left", 0, 0, 2.0, max_duration_s=260.0), Robot("right", 4, None, 2.0))
 kinds_of_transfers = st.sampled_from(

@@ -3,7 +3,7 @@
 import xml.etree.ElementTree as ET
 from math import inf
 
-from fleet.scheduling.drawing.bars import BarGroup, bars
+from mend.fleet.scheduling.drawing.bars import BarGroup, bars
 
 RECT = "{http://www.w3.org/2000/svg}rect"
 

@@ -5,11 +5,11 @@ from dataclasses import replace
 import pytest
 from delivery_problems import HANDED_OVER, corridor, parcel
 
-from fleet.scheduling.checker import ScheduleError, check, require_valid
-from fleet.scheduling.objective import cost
-from fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit, Window
-from fleet.scheduling.schedule import Action, RobotSchedule, Schedule, Stop, Task
-from fleet.scheduling.timing import earliest_schedule
+from mend.fleet.scheduling.checker import ScheduleError, check, require_valid
+from mend.fleet.scheduling.objective import cost
+from mend.fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit, Window
+from mend.fleet.scheduling.schedule import Action, RobotSchedule, Schedule, Stop, Task
+from mend.fleet.scheduling.timing import earliest_schedule
 
 PROBLEM = corridor(items=(parcel(),))
 

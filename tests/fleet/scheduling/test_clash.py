@@ -6,10 +6,10 @@ from dataclasses import replace
 from delivery_problems import corridor, parcel
 from ticking_clock import TickingClock
 
-from fleet.scheduling.exact.clash import clash_words
-from fleet.scheduling.exact.solve import solve_exactly
-from fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit, Window
-from fleet.scheduling.solution import Status
+from mend.fleet.scheduling.exact.clash import clash_words
+from mend.fleet.scheduling.exact.solve import solve_exactly
+from mend.fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit, Window
+from mend.fleet.scheduling.solution import Status
 
 PATIENCE_S = 600.0
 """More than a proof ever takes, on however busy a machine."""

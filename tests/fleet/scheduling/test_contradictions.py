@@ -11,13 +11,13 @@ from delivery_problems import CORRIDOR, corridor, corridor_items, parcel
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fleet.scheduling.contradictions import contradictions
-from fleet.scheduling.exact.solve import solve_exactly
-from fleet.scheduling.instances.li_lim import read_li_lim
-from fleet.scheduling.instances.transfer_benchmark import read_transfer_benchmark
-from fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit, Window
-from fleet.scheduling.solution import Status
-from fleet.scheduling.travel import Epoch, Travel
+from mend.fleet.scheduling.contradictions import contradictions
+from mend.fleet.scheduling.exact.solve import solve_exactly
+from mend.fleet.scheduling.instances.li_lim import read_li_lim
+from mend.fleet.scheduling.instances.transfer_benchmark import read_transfer_benchmark
+from mend.fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit, Window
+from mend.fleet.scheduling.solution import Status
+from mend.fleet.scheduling.travel import Epoch, Travel
 
 
 def sentences(problem: Problem) -> list[str]:

@@ -9,16 +9,16 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fleet.scheduling.building_travel import MAX_CHANGES, travel_in
-from fleet.scheduling.checker import check
-from fleet.scheduling.exact.solve import solve_exactly
-from fleet.scheduling.objective import cost
-from fleet.scheduling.problem import Item, Problem, Robot, Visit, Window
-from fleet.scheduling.schedule import Action, Schedule, Task
-from fleet.scheduling.solution import UnsupportedError
-from fleet.scheduling.timing import Untimeable, earliest_schedule
-from fleet.scheduling.travel import Travel, TravelError
-from maps.navigation import NavigationGraph, Place, Way, WayKind
+from mend.fleet.scheduling.building_travel import MAX_CHANGES, travel_in
+from mend.fleet.scheduling.checker import check
+from mend.fleet.scheduling.exact.solve import solve_exactly
+from mend.fleet.scheduling.objective import cost
+from mend.fleet.scheduling.problem import Item, Problem, Robot, Visit, Window
+from mend.fleet.scheduling.schedule import Action, Schedule, Task
+from mend.fleet.scheduling.solution import UnsupportedError
+from mend.fleet.scheduling.timing import Untimeable, earliest_schedule
+from mend.fleet.scheduling.travel import Travel, TravelError
+from mend.maps.navigation import NavigationGraph, Place, Way, WayKind
 
 COUNT = 5
 PLACES = tuple(Place(f"p{number}", float(number), 0.0) for number in range(COUNT))

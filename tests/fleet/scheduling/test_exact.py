@@ -11,15 +11,15 @@ from benchmark_instances import DATA
 from delivery_problems import HANDED_OVER, corridor, corridor_items, parcel
 from hypothesis import HealthCheck, given, settings
 
-from fleet.scheduling.checker import check
-from fleet.scheduling.exact.solve import solve_exactly
-from fleet.scheduling.instances.transfer_benchmark import read_transfer_benchmark
-from fleet.scheduling.item_way import BrokenWayError
-from fleet.scheduling.objective import cost
-from fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit, Weights, Window
-from fleet.scheduling.schedule import Action, Route, Schedule, Task
-from fleet.scheduling.solution import Status
-from fleet.scheduling.timing import earliest_schedule
+from mend.fleet.scheduling.checker import check
+from mend.fleet.scheduling.exact.solve import solve_exactly
+from mend.fleet.scheduling.instances.transfer_benchmark import read_transfer_benchmark
+from mend.fleet.scheduling.item_way import BrokenWayError
+from mend.fleet.scheduling.objective import cost
+from mend.fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit, Weights, Window
+from mend.fleet.scheduling.schedule import Action, Route, Schedule, Task
+from mend.fleet.scheduling.solution import Status
+from mend.fleet.scheduling.timing import earliest_schedule
 
 PATIENCE_S = 600.0
 """More than a small problem ever takes, on however busy a machine."""

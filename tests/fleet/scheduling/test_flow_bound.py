@@ -9,12 +9,12 @@ import pytest
 from benchmark_instances import DATA
 from delivery_problems import corridor, drawn_problem, parcel
 
-from fleet.scheduling.exact.flow_bound import flow_bound, windows_are_wide
-from fleet.scheduling.exact.linear_program import LinearProgram
-from fleet.scheduling.exact.solve import solve_exactly
-from fleet.scheduling.instances.transfer_benchmark import read_transfer_benchmark
-from fleet.scheduling.problem import Item, Robot, Transfers, Visit, Weights, Window
-from fleet.scheduling.solution import Status
+from mend.fleet.scheduling.exact.flow_bound import flow_bound, windows_are_wide
+from mend.fleet.scheduling.exact.linear_program import LinearProgram
+from mend.fleet.scheduling.exact.solve import solve_exactly
+from mend.fleet.scheduling.instances.transfer_benchmark import read_transfer_benchmark
+from mend.fleet.scheduling.problem import Item, Robot, Transfers, Visit, Weights, Window
+from mend.fleet.scheduling.solution import Status
 
 
 @pytest.mark.slow

@@ -6,10 +6,10 @@ from pathlib import Path
 import pytest
 from benchmark_instances import DATA
 
-from fleet.scheduling.instances.li_lim import read_li_lim
-from fleet.scheduling.instances.numbers import InstanceError
-from fleet.scheduling.instances.transfer_benchmark import read_transfer_benchmark
-from fleet.scheduling.problem import Window
+from mend.fleet.scheduling.instances.li_lim import read_li_lim
+from mend.fleet.scheduling.instances.numbers import InstanceError
+from mend.fleet.scheduling.instances.transfer_benchmark import read_transfer_benchmark
+from mend.fleet.scheduling.problem import Window
 
 LI_LIM = """\
 2\t10\t1

@@ -11,19 +11,19 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from ticking_clock import TickingClock
 
-from fleet.scheduling.checker import check
-from fleet.scheduling.instances.building import BuildingPlan, building_deliveries
-from fleet.scheduling.instances.li_lim import read_li_lim
-from fleet.scheduling.instances.transfer_benchmark import read_transfer_benchmark
-from fleet.scheduling.methods import METHODS, best_heuristic, solve, suited_method
-from fleet.scheduling.objective import cost
-from fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit, Weights, Window
-from fleet.scheduling.problem_file import problem_of
-from fleet.scheduling.schedule import Schedule
-from fleet.scheduling.solution import Progress, Status, UnsupportedError
-from fleet.scheduling.timing import earliest_schedule
-from fleet.scheduling.travel import Epoch, Travel
-from fleet.scheduling.vlns.solve import solve_vlns
+from mend.fleet.scheduling.checker import check
+from mend.fleet.scheduling.instances.building import BuildingPlan, building_deliveries
+from mend.fleet.scheduling.instances.li_lim import read_li_lim
+from mend.fleet.scheduling.instances.transfer_benchmark import read_transfer_benchmark
+from mend.fleet.scheduling.methods import METHODS, best_heuristic, solve, suited_method
+from mend.fleet.scheduling.objective import cost
+from mend.fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit, Weights, Window
+from mend.fleet.scheduling.problem_file import problem_of
+from mend.fleet.scheduling.schedule import Schedule
+from mend.fleet.scheduling.solution import Progress, Status, UnsupportedError
+from mend.fleet.scheduling.timing import earliest_schedule
+from mend.fleet.scheduling.travel import Epoch, Travel
+from mend.fleet.scheduling.vlns.solve import solve_vlns
 
 HEURISTICS = ("auction", "greedy", "insertion", "one_task")
 
@@ -134,7 +134,7 @@ def test_exact_tells_of_the_heuristics_and_ends_optimal() -> None:
 
 
 def test_exact_leaves_to_the_heuristics_what_is_too_large(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("fleet.scheduling.methods.EXACT_SIZE", 10)
+    monkeypatch.setattr("mend.fleet.scheduling.methods.EXACT_SIZE", 10)
     problem = corridor(items=(parcel(), parcel("back", 4, 0)))
     found = solve(problem, "exact", seconds=10.0, clock=TickingClock(0.5))
     assert found.schedule is not None

@@ -10,13 +10,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from ticking_clock import TickingClock
 
-from fleet.scheduling.checker import check
-from fleet.scheduling.exact.solve import solve_exactly
-from fleet.scheduling.methods import solve
-from fleet.scheduling.one_destination import solve_to_one_destination
-from fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit, Weights, Window
-from fleet.scheduling.solution import Status, UnsupportedError
-from fleet.scheduling.travel import Travel
+from mend.fleet.scheduling.checker import check
+from mend.fleet.scheduling.exact.solve import solve_exactly
+from mend.fleet.scheduling.methods import solve
+from mend.fleet.scheduling.one_destination import solve_to_one_destination
+from mend.fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit, Weights, Window
+from mend.fleet.scheduling.solution import Status, UnsupportedError
+from mend.fleet.scheduling.travel import Travel
 
 
 def collection(items: int, robots: int, chance: Random) -> Problem:
@@ -65,7 +65,7 @@ def test_walk_passes_the_checker_and_has_no_worse_tree(items: int, robots: int, 
 def test_walk_around_a_tree_is_at_most_twice_the_tree(monkeypatch: pytest.MonkeyPatch) -> None:
     problem = collection(6, 1, Random(3))
     shortest = solve_to_one_destination(problem, seconds=0.0, clock=TickingClock())
-    monkeypatch.setattr("fleet.scheduling.one_destination.EXACT_PLACES", 0)
+    monkeypatch.setattr("mend.fleet.scheduling.one_destination.EXACT_PLACES", 0)
     around = solve_to_one_destination(problem, seconds=0.0, clock=TickingClock())
     assert around.cost is not None
     assert shortest.cost is not None

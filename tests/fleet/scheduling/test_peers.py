@@ -13,11 +13,11 @@ from benchmark_instances import DATA
 from delivery_problems import corridor, parcel
 from ticking_clock import TickingClock
 
-from fleet.scheduling.checker import check
-from fleet.scheduling.instances.li_lim import read_li_lim
-from fleet.scheduling.problem import Item, Problem, Robot, Visit, Weights, Window
-from fleet.scheduling.solution import Solution, Status, UnsupportedError
-from fleet.scheduling.travel import Epoch, Travel
+from mend.fleet.scheduling.checker import check
+from mend.fleet.scheduling.instances.li_lim import read_li_lim
+from mend.fleet.scheduling.problem import Item, Problem, Robot, Visit, Weights, Window
+from mend.fleet.scheduling.solution import Solution, Status, UnsupportedError
+from mend.fleet.scheduling.travel import Epoch, Travel
 
 Peer = Callable[..., Solution]
 
@@ -26,7 +26,7 @@ Peer = Callable[..., Solution]
 def peer(request: pytest.FixtureRequest) -> Any:
     name = request.param
     if name == "ortools_routing":
-        module = importlib.import_module("fleet.scheduling.peers.ortools_routing")
+        module = importlib.import_module("mend.fleet.scheduling.peers.ortools_routing")
     else:
         pytest.importorskip(name, reason="the extra 'peers' is not installed")
         module = importlib.import_module(f"fleet.scheduling.peers.{name}_search")

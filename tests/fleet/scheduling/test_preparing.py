@@ -12,9 +12,9 @@ method, folder, doubles = sys.argv[1:]
 sys.path.append(doubles)
 from even_clock import EvenClock
 from numba.core.dispatcher import Dispatcher
-from fleet.scheduling.methods import METHODS, solve
-from fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit, Weights
-from fleet.scheduling.travel import Travel
+from mend.fleet.scheduling.methods import METHODS, solve
+from mend.fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit, Weights
+from mend.fleet.scheduling.travel import Travel
 
 def compiled():
     return {

@@ -14,11 +14,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from ticking_clock import TickingClock
 
-from fleet.scheduling.checker import check
-from fleet.scheduling.instances.building import BINDING, LOOSE, BuildingPlan, building_deliveries
-from fleet.scheduling.methods import solve
-from fleet.scheduling.problem import Window
-from fleet.scheduling.problem_file import (
+from mend.fleet.scheduling.checker import check
+from mend.fleet.scheduling.instances.building import (
+    BINDING,
+    LOOSE,
+    BuildingPlan,
+    building_deliveries,
+)
+from mend.fleet.scheduling.methods import solve
+from mend.fleet.scheduling.problem import Window
+from mend.fleet.scheduling.problem_file import (
     DeliveryFileError,
     delivery_schema,
     problem_of,

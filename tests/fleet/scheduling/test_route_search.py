@@ -10,16 +10,16 @@ from benchmark_instances import DATA
 from delivery_problems import corridor, drawn_problem, parcel
 from even_clock import EvenClock
 
-from fleet.scheduling.exact.constraint_search import Effort, search
-from fleet.scheduling.exact.model import Rounding
-from fleet.scheduling.exact.robot_states import MOST_ITEMS
-from fleet.scheduling.exact.route_bound import RouteBound, route_bound
-from fleet.scheduling.exact.route_costs import add_step
-from fleet.scheduling.exact.route_search import solve_by_routes
-from fleet.scheduling.instances.transfer_benchmark import read_transfer_benchmark
-from fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit, Weights, Window
-from fleet.scheduling.schedule import Action
-from fleet.scheduling.solution import Progress, Status
+from mend.fleet.scheduling.exact.constraint_search import Effort, search
+from mend.fleet.scheduling.exact.model import Rounding
+from mend.fleet.scheduling.exact.robot_states import MOST_ITEMS
+from mend.fleet.scheduling.exact.route_bound import RouteBound, route_bound
+from mend.fleet.scheduling.exact.route_costs import add_step
+from mend.fleet.scheduling.exact.route_search import solve_by_routes
+from mend.fleet.scheduling.instances.transfer_benchmark import read_transfer_benchmark
+from mend.fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit, Weights, Window
+from mend.fleet.scheduling.schedule import Action
+from mend.fleet.scheduling.solution import Progress, Status
 
 EFFORT = Effort(600.0, 1, 2)
 """More than it ever takes, on however busy a machine."""

@@ -15,23 +15,23 @@ from even_clock import EvenClock
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fleet.scheduling.checker import check
-from fleet.scheduling.dice import dice_from
-from fleet.scheduling.exact.solve import solve_exactly
-from fleet.scheduling.instances.li_lim import read_li_lim
-from fleet.scheduling.methods import solve, suited_method
-from fleet.scheduling.objective import cost
-from fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit, Weights, Window
-from fleet.scheduling.routing.annealing import take_step
-from fleet.scheduling.routing.arrays import NOBODY, routing_arrays
-from fleet.scheduling.routing.places import CHEAPEST, find_place
-from fleet.scheduling.routing.plan import empty_plan, plan_cost, put, refresh
-from fleet.scheduling.routing.rounds import Rounds
-from fleet.scheduling.routing.solve import routes_in, solve_alns
-from fleet.scheduling.schedule import Schedule
-from fleet.scheduling.solution import Progress, Solution, Status, UnsupportedError
-from fleet.scheduling.timing import earliest_schedule
-from fleet.scheduling.travel import Epoch, Travel
+from mend.fleet.scheduling.checker import check
+from mend.fleet.scheduling.dice import dice_from
+from mend.fleet.scheduling.exact.solve import solve_exactly
+from mend.fleet.scheduling.instances.li_lim import read_li_lim
+from mend.fleet.scheduling.methods import solve, suited_method
+from mend.fleet.scheduling.objective import cost
+from mend.fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit, Weights, Window
+from mend.fleet.scheduling.routing.annealing import take_step
+from mend.fleet.scheduling.routing.arrays import NOBODY, routing_arrays
+from mend.fleet.scheduling.routing.places import CHEAPEST, find_place
+from mend.fleet.scheduling.routing.plan import empty_plan, plan_cost, put, refresh
+from mend.fleet.scheduling.routing.rounds import Rounds
+from mend.fleet.scheduling.routing.solve import routes_in, solve_alns
+from mend.fleet.scheduling.schedule import Schedule
+from mend.fleet.scheduling.solution import Progress, Solution, Status, UnsupportedError
+from mend.fleet.scheduling.timing import earliest_schedule
+from mend.fleet.scheduling.travel import Epoch, Travel
 
 
 def drawn_problem(seed: int, items: int = 4, spare_s: float = 0.0) -> Problem:

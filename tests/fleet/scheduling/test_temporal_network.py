@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fleet.scheduling.temporal_network import ORIGIN, TemporalNetwork
+from mend.fleet.scheduling.temporal_network import ORIGIN, TemporalNetwork
 
 EVENTS = 6
 

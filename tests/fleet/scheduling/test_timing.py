@@ -5,12 +5,12 @@ from delivery_problems import HANDED_OVER, corridor, corridor_items, parcel
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fleet.scheduling.checker import check
-from fleet.scheduling.constraint import ConstraintKind
-from fleet.scheduling.item_way import BrokenWayError
-from fleet.scheduling.problem import Item, Robot, Transfers, Visit, Window
-from fleet.scheduling.schedule import Action, Schedule, Task
-from fleet.scheduling.timing import Untimeable, earliest_schedule
+from mend.fleet.scheduling.checker import check
+from mend.fleet.scheduling.constraint import ConstraintKind
+from mend.fleet.scheduling.item_way import BrokenWayError
+from mend.fleet.scheduling.problem import Item, Robot, Transfers, Visit, Window
+from mend.fleet.scheduling.schedule import Action, Schedule, Task
+from mend.fleet.scheduling.timing import Untimeable, earliest_schedule
 
 
 def test_taker_waits_for_the_giver() -> None:

@@ -10,15 +10,15 @@ from benchmark_instances import DATA
 from delivery_problems import HANDED_OVER, corridor, parcel
 from even_clock import EvenClock
 
-from fleet.scheduling.checker import check
-from fleet.scheduling.exact.solve import solve_exactly
-from fleet.scheduling.instances.transfer_benchmark import read_transfer_benchmark
-from fleet.scheduling.objective import cost
-from fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit, Weights, Window
-from fleet.scheduling.schedule import Schedule
-from fleet.scheduling.solution import Progress, Solution, Status
-from fleet.scheduling.timing import earliest_schedule
-from fleet.scheduling.vlns.solve import solve_vlns
+from mend.fleet.scheduling.checker import check
+from mend.fleet.scheduling.exact.solve import solve_exactly
+from mend.fleet.scheduling.instances.transfer_benchmark import read_transfer_benchmark
+from mend.fleet.scheduling.objective import cost
+from mend.fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit, Weights, Window
+from mend.fleet.scheduling.schedule import Schedule
+from mend.fleet.scheduling.solution import Progress, Solution, Status
+from mend.fleet.scheduling.timing import earliest_schedule
+from mend.fleet.scheduling.vlns.solve import solve_vlns
 
 
 def solved(problem: Problem, **options: object) -> Solution:

@@ -8,15 +8,15 @@ from delivery_problems import corridor, corridor_items, parcel
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from fleet.scheduling.checker import check
-from fleet.scheduling.dice import dice_from, one_of, shuffle, throw
-from fleet.scheduling.objective import cost
-from fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit, Weights, Window
-from fleet.scheduling.schedule import Action, Route, Schedule
-from fleet.scheduling.timing import earliest_schedule
-from fleet.scheduling.travel import Travel
-from fleet.scheduling.vlns.annealing import search_for, take_step
-from fleet.scheduling.vlns.arrays import (
+from mend.fleet.scheduling.checker import check
+from mend.fleet.scheduling.dice import dice_from, one_of, shuffle, throw
+from mend.fleet.scheduling.objective import cost
+from mend.fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit, Weights, Window
+from mend.fleet.scheduling.schedule import Action, Route, Schedule
+from mend.fleet.scheduling.timing import earliest_schedule
+from mend.fleet.scheduling.travel import Travel
+from mend.fleet.scheduling.vlns.annealing import search_for, take_step
+from mend.fleet.scheduling.vlns.arrays import (
     BANKED,
     DISTANCE,
     NOWHERE,
@@ -27,10 +27,10 @@ from fleet.scheduling.vlns.arrays import (
     problem_arrays,
     take_out,
 )
-from fleet.scheduling.vlns.insertion import refresh
-from fleet.scheduling.vlns.removal import choose_items
-from fleet.scheduling.vlns.routes import plan_of, routes_in
-from fleet.scheduling.vlns.ways import find_ways, follow, lift_bars
+from mend.fleet.scheduling.vlns.insertion import refresh
+from mend.fleet.scheduling.vlns.removal import choose_items
+from mend.fleet.scheduling.vlns.routes import plan_of, routes_in
+from mend.fleet.scheduling.vlns.ways import find_ways, follow, lift_bars
 
 STEPS = 40
 CHAIN = 3

@@ -6,8 +6,8 @@ import pytest
 from robot_bench import MODEL, RobotBench
 from scripted_body import STARTS, catalogue
 
-from robots.behaviors import Phase
-from robots.link.messages import (
+from mend.robots.behaviors import Phase
+from mend.robots.link.messages import (
     Detection,
     Finished,
     Holding,
@@ -15,12 +15,12 @@ from robots.link.messages import (
     Resume,
     StepStarted,
 )
-from robots.monitors import Meanwhile, Monitor, MonitorView
-from robots.monitors.monitor import NoParameters
-from robots.robot import Robot
-from robots.vision.presence import Presence
-from tasks.plugins import load_plugins
-from tasks.scene import StrictModel
+from mend.robots.monitors import Meanwhile, Monitor, MonitorView
+from mend.robots.monitors.monitor import NoParameters
+from mend.robots.robot import Robot
+from mend.robots.vision.presence import Presence
+from mend.tasks.plugins import load_plugins
+from mend.tasks.scene import StrictModel
 
 
 class Onlooker(Monitor[NoParameters]):

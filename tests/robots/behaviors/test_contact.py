@@ -9,10 +9,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from robot_bench import RobotBench
 
-from robots.behaviors.contact import ContactWatch, Track, hindering_n, is_arrival
-from robots.behaviors.execution_state import ExecutionState
-from robots.body import ToolPose
-from robots.link.messages import Finished, Holding, IssueDetected, Resume
+from mend.robots.behaviors.contact import ContactWatch, Track, hindering_n, is_arrival
+from mend.robots.behaviors.execution_state import ExecutionState
+from mend.robots.body import ToolPose
+from mend.robots.link.messages import Finished, Holding, IssueDetected, Resume
 
 PERIOD_S = 1 / 240
 

@@ -6,7 +6,14 @@ import pytest
 from drawn_scene import Resting
 from robot_bench import RobotBench
 
-from robots.link.messages import Finished, FinishedResult, Holding, IssueDetected, Resume, Start
+from mend.robots.link.messages import (
+    Finished,
+    FinishedResult,
+    Holding,
+    IssueDetected,
+    Resume,
+    Start,
+)
 
 UNDER = FinishedResult(object="green_leg", place="left")
 

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robots.behaviors.execution_state import (
+from mend.robots.behaviors.execution_state import (
     ExecutionState,
     ExecutionTransitionError,
     follow,

@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 from robot_bench import RobotBench
 from scripted_body import GRIPPER, STARTS, ScriptedBody
 
-from robots.behaviors.behavior import Move, SetGripper, Step
-from robots.behaviors.errand import Errand
-from robots.behaviors.grasp_choice import (
+from mend.robots.behaviors.behavior import Move, SetGripper, Step
+from mend.robots.behaviors.errand import Errand
+from mend.robots.behaviors.grasp_choice import (
     MARGIN_M,
     clear_z,
     crowding,
@@ -20,15 +20,15 @@ from robots.behaviors.grasp_choice import (
     roominess_m,
     ways_to_grasp,
 )
-from robots.behaviors.legs import held_boxes, legs_of
-from robots.behaviors.phase import Phase
-from robots.body import ToolPose
-from robots.catalogue import Part
-from robots.clearance import ROOM_M
-from robots.grasp import grasp_of, half_turn
-from robots.gripper import GripperModel
-from robots.link.messages import IssueDetected, Location, Look, Looked
-from robots.vision.seen_box import SeenBox
+from mend.robots.behaviors.legs import held_boxes, legs_of
+from mend.robots.behaviors.phase import Phase
+from mend.robots.body import ToolPose
+from mend.robots.catalogue import Part
+from mend.robots.clearance import ROOM_M
+from mend.robots.grasp import grasp_of, half_turn
+from mend.robots.gripper import GripperModel
+from mend.robots.link.messages import IssueDetected, Location, Look, Looked
+from mend.robots.vision.seen_box import SeenBox
 
 PLATE = Part("plate", (0.10, 0.10, 0.012), knob=(0.03, 0.03, 0.04))
 PART = Part("part", (0.03, 0.05, 0.05))

@@ -4,7 +4,7 @@ import pytest
 from drawn_scene import Resting
 from robot_bench import RobotBench
 
-from robots.link.messages import Finished, IssueDetected, Looked, Resume, StepStarted
+from mend.robots.link.messages import Finished, IssueDetected, Looked, Resume, StepStarted
 
 ITS_PLACE = (0.55, 0.05)
 

@@ -2,7 +2,7 @@
 
 from robot_bench import RobotBench
 
-from robots.link.messages import IssueDetected, StepStarted
+from mend.robots.link.messages import IssueDetected, StepStarted
 
 CARRY, PLACE = 5, 6
 SELDOM_S = 1.0

@@ -7,13 +7,13 @@ import pytest
 from robot_bench import MODEL, RobotBench
 from scripted_body import catalogue
 
-from robots.behaviors import Behavior, Move, Phase, SetGripper, Situation, Step
-from robots.behaviors.pick_and_place import PickAndPlace
-from robots.body import ToolPose
-from robots.link.messages import Finished, Interrupt, IssueDetected, Start, StepStarted
-from robots.robot import Robot
-from tasks.plugins import load_plugins
-from tasks.scene import Name, StrictModel
+from mend.robots.behaviors import Behavior, Move, Phase, SetGripper, Situation, Step
+from mend.robots.behaviors.pick_and_place import PickAndPlace
+from mend.robots.body import ToolPose
+from mend.robots.link.messages import Finished, Interrupt, IssueDetected, Start, StepStarted
+from mend.robots.robot import Robot
+from mend.tasks.plugins import load_plugins
+from mend.tasks.scene import Name, StrictModel
 
 
 class PushParameters(StrictModel):

@@ -4,10 +4,10 @@ import pytest
 from drawn_scene import PARTS, TABLE_Z
 from scripted_body import GRIPPER
 
-from robots.behaviors.behavior import Move, SetGripper, Situation
-from robots.behaviors.pick_and_place import PickAndPlace, PickAndPlaceParameters
-from robots.grasp import RELEASE_CLEARANCE_M, grasp_of
-from robots.link.messages import Location
+from mend.robots.behaviors.behavior import Move, SetGripper, Situation
+from mend.robots.behaviors.pick_and_place import PickAndPlace, PickAndPlaceParameters
+from mend.robots.grasp import RELEASE_CLEARANCE_M, grasp_of
+from mend.robots.link.messages import Location
 
 PARAMETERS = PickAndPlaceParameters(object="pink_bar", place="left")
 FOUND = Location(x=0.45, y=-0.30, z=TABLE_Z + 0.04, yaw=0.2)

@@ -7,8 +7,8 @@ from drawn_scene import PARTS, TABLE_Z, Resting
 from robot_bench import RobotBench
 from scripted_body import PLACES
 
-from robots.grasp import OPEN_BESIDE_M, OPEN_LEAST_M
-from robots.link.messages import Finished, IssueDetected, Looked, Resume
+from mend.robots.grasp import OPEN_BESIDE_M, OPEN_LEAST_M
+from mend.robots.link.messages import Finished, IssueDetected, Looked, Resume
 
 BESIDE = ((0.75, -0.45, TABLE_Z), (0.06, 0.06, 0.2))
 """Outside the tool point's way, where a forearm may touch it."""

@@ -7,15 +7,15 @@ from dataclasses import dataclass, field, replace
 import pytest
 from scripted_body import GRIPPER
 
-from robots.behaviors.errand import Errand
-from robots.behaviors.pick_and_place import PickAndPlace, PickAndPlaceParameters
-from robots.behaviors.planning import AS_SEEN, Barred, Plan, Spare, at_once, bar_of, plan_amid
-from robots.body import Leg, NoWay
-from robots.catalogue import Part
-from robots.gripper import GripperModel
-from robots.link.messages import Location
-from robots.vision.seen_box import SeenBox
-from tasks.scene import Table
+from mend.robots.behaviors.errand import Errand
+from mend.robots.behaviors.pick_and_place import PickAndPlace, PickAndPlaceParameters
+from mend.robots.behaviors.planning import AS_SEEN, Barred, Plan, Spare, at_once, bar_of, plan_amid
+from mend.robots.body import Leg, NoWay
+from mend.robots.catalogue import Part
+from mend.robots.gripper import GripperModel
+from mend.robots.link.messages import Location
+from mend.robots.vision.seen_box import SeenBox
+from mend.tasks.scene import Table
 
 PART = Part("part", (0.03, 0.05, 0.05))
 TABLE = Table()

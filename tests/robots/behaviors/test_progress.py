@@ -3,14 +3,14 @@
 import pytest
 from drawn_scene import DrawnScene
 
-from robots.behaviors.behavior import Move, SetGripper, Step
-from robots.behaviors.execution_state import ExecutionState, ExecutionTransitionError
-from robots.behaviors.findings import Outcome
-from robots.behaviors.phase import Phase
-from robots.behaviors.planning import Plan
-from robots.behaviors.progress import Progress
-from robots.body import ToolPose
-from robots.vision.presence import Presence
+from mend.robots.behaviors.behavior import Move, SetGripper, Step
+from mend.robots.behaviors.execution_state import ExecutionState, ExecutionTransitionError
+from mend.robots.behaviors.findings import Outcome
+from mend.robots.behaviors.phase import Phase
+from mend.robots.behaviors.planning import Plan
+from mend.robots.behaviors.progress import Progress
+from mend.robots.body import ToolPose
+from mend.robots.vision.presence import Presence
 
 PICK, PLACE = ToolPose(0.5, -0.4, 0.725, 0.0), ToolPose(0.5, 0.0, 0.725, 0.0)
 STEPS = (

@@ -5,13 +5,13 @@ import math
 from robot_bench import RobotBench
 from scripted_body import GRIPPER, STARTS, ScriptedBody
 
-from robots.behaviors.put_down import _free_spots
-from robots.body import ToolPose
-from robots.catalogue import Part
-from robots.grasp import grasp_of
-from robots.link.messages import Interrupt
-from robots.vision.seen_box import SeenBox
-from tasks.scene import Table
+from mend.robots.behaviors.put_down import _free_spots
+from mend.robots.body import ToolPose
+from mend.robots.catalogue import Part
+from mend.robots.grasp import grasp_of
+from mend.robots.link.messages import Interrupt
+from mend.robots.vision.seen_box import SeenBox
+from mend.tasks.scene import Table
 
 HERE = ToolPose(0.6, -0.1, 0.95, 0.3)
 PART = Part("part", (0.03, 0.08, 0.05))

@@ -4,7 +4,7 @@ import math
 
 from robot_bench import RobotBench
 
-from robots.link.messages import Finished, IssueDetected, StepStarted
+from mend.robots.link.messages import Finished, IssueDetected, StepStarted
 
 CLOSE = 3
 

@@ -3,7 +3,7 @@
 from drawn_scene import TABLE_Z
 from robot_bench import RobotBench
 
-from robots.link.messages import Finished, IssueDetected, Looked
+from mend.robots.link.messages import Finished, IssueDetected, Looked
 
 
 def hidden_bench() -> RobotBench:

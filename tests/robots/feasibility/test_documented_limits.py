@@ -6,15 +6,15 @@ from pathlib import Path
 
 import pytest
 
-from robots.clearance import ROOM_M
-from robots.feasibility.stability import PLACED_WITHIN_M
-from robots.feasibility.support import LEAST_STABILITY_RAD
-from robots.grasp import OPEN_BESIDE_M, OPEN_LEAST_M, least_height_m
-from robots.gripper import GripperModel
-from sim.tabletop.arm import GRIPPER
-from sim.tabletop.world import REACH_MAX_M, REACH_MIN_M
-from sim.workcell.gripper import PR2_GRIPPER
-from tasks.scene import RESTS_M
+from mend.robots.clearance import ROOM_M
+from mend.robots.feasibility.stability import PLACED_WITHIN_M
+from mend.robots.feasibility.support import LEAST_STABILITY_RAD
+from mend.robots.grasp import OPEN_BESIDE_M, OPEN_LEAST_M, least_height_m
+from mend.robots.gripper import GripperModel
+from mend.sim.tabletop.arm import GRIPPER
+from mend.sim.tabletop.world import REACH_MAX_M, REACH_MIN_M
+from mend.sim.workcell.gripper import PR2_GRIPPER
+from mend.tasks.scene import RESTS_M
 
 DOCUMENT = (Path(__file__).parents[3] / "docs" / "worlds.md").read_text()
 ROWS = {

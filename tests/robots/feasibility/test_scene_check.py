@@ -11,15 +11,15 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from robots.body import Leg, NoWay
-from robots.feasibility.check import check_scene
-from robots.gripper import GripperModel
-from robots.vision.seen_box import SeenBox
-from robots.vision.viewpoint import Viewpoint
-from sim.workcell.gripper import PR2_GRIPPER
-from tasks.definition import BehaviorNode, GoalNode
-from tasks.scene import Place, Pose, Scatter, Scene, SceneObject
-from tasks.scene_problem import SceneProblem
+from mend.robots.body import Leg, NoWay
+from mend.robots.feasibility.check import check_scene
+from mend.robots.gripper import GripperModel
+from mend.robots.vision.seen_box import SeenBox
+from mend.robots.vision.viewpoint import Viewpoint
+from mend.sim.workcell.gripper import PR2_GRIPPER
+from mend.tasks.definition import BehaviorNode, GoalNode
+from mend.tasks.scene import Place, Pose, Scatter, Scene, SceneObject
+from mend.tasks.scene_problem import SceneProblem
 
 REACH_M = 0.74
 EYE = (0.5, 0.0, 2.5)

@@ -4,10 +4,10 @@ import math
 
 import pytest
 
-from robots.catalogue import Part
-from robots.feasibility.stability import PLACED_WITHIN_M, stability_rad
-from robots.feasibility.standing import Standing, beneath
-from tasks.scene import Pose
+from mend.robots.catalogue import Part
+from mend.robots.feasibility.stability import PLACED_WITHIN_M, stability_rad
+from mend.robots.feasibility.standing import Standing, beneath
+from mend.tasks.scene import Pose
 
 WEIGHTS = {"low": 0.2, "high": 0.1, "third": 0.1, "top": 0.3, "left": 0.1, "right": 0.1}
 

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robots.grip.belief import Belief, Between
+from mend.robots.grip.belief import Belief, Between
 
 LOGS = st.fixed_dictionaries({each: st.floats(-30.0, 30.0) for each in Between})
 HISTORIES = st.lists(LOGS, max_size=30)

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robots.grip.composition import Composition, likeliest
+from mend.robots.grip.composition import Composition, likeliest
 
 
 @pytest.mark.parametrize(

@@ -7,10 +7,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scripted_body import GRIPPER
 
-from robots.grasp import Grasp
-from robots.grip.belief import Belief, Between
-from robots.grip.composition import Composition
-from robots.grip.cues import CueModel, HandReading
+from mend.robots.grasp import Grasp
+from mend.robots.grip.belief import Belief, Between
+from mend.robots.grip.composition import Composition
+from mend.robots.grip.cues import CueModel, HandReading
 
 CUES = CueModel()
 WIDTHS = st.floats(GRIPPER.min_width_m + 0.002, GRIPPER.max_width_m)

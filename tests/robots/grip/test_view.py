@@ -9,11 +9,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scripted_body import forearm_pose, tool_matrix
 
-from robots.body import CameraImage, ToolPose
-from robots.grip.view import composition, in_front, outline
-from robots.vision.color_model import ColorModel, Sample
-from robots.vision.projection import NEAR_M, project
-from robots.vision.seen_box import SeenBox
+from mend.robots.body import CameraImage, ToolPose
+from mend.robots.grip.view import composition, in_front, outline
+from mend.robots.vision.color_model import ColorModel, Sample
+from mend.robots.vision.projection import NEAR_M, project
+from mend.robots.vision.seen_box import SeenBox
 
 DARK, BRIGHT = (13.0, 18.0, 33.0), (80.0, 140.0, 240.0)
 """BGR of one hue; the first is hardly bright enough to have one."""

@@ -9,11 +9,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scripted_body import GRIPPER, forearm_pose, part_in_tool, tool_matrix, trained_model
 
-from robots.body import ToolPose
-from robots.grasp import grasp_of
-from robots.grip.reading import GripReading, GripState
-from robots.grip.watch import GripWatch, Hand
-from robots.vision.seen_box import SeenBox
+from mend.robots.body import ToolPose
+from mend.robots.grasp import grasp_of
+from mend.robots.grip.reading import GripReading, GripState
+from mend.robots.grip.watch import GripWatch, Hand
+from mend.robots.vision.seen_box import SeenBox
 
 MODEL = trained_model()
 BIG_PLATE = np.array([[x, y, z] for x in (-0.2, -0.1) for y in (-0.2, 0.2) for z in (-0.2, 0.2)])

@@ -9,7 +9,7 @@ from drawn_scene import Resting
 from robot_bench import RobotBench
 from scripted_body import HAND_OVER, NEUTRAL, PLACES, STARTS
 
-from robots.link.messages import (
+from mend.robots.link.messages import (
     Finished,
     FinishedResult,
     Holding,

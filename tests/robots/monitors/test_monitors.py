@@ -8,18 +8,18 @@ from drawn_scene import TABLE_Z, DrawnScene
 from monitor_view import BLOB, SEEN, VIEW
 from pydantic import ValidationError
 
-from robots.behaviors.contact import Contact
-from robots.behaviors.phase import Phase
-from robots.grip import GripReading, GripState
-from robots.monitors.blocked import Blocked
-from robots.monitors.dropped import Dropped
-from robots.monitors.missed import Missed
-from robots.monitors.missing import Missing
-from robots.monitors.monitor import Meanwhile, Monitor
-from robots.monitors.positioning import Positioning
-from robots.monitors.unreachable import Unreachable
-from robots.vision.obstruction import Obstruction
-from tasks.plugins import load_plugins
+from mend.robots.behaviors.contact import Contact
+from mend.robots.behaviors.phase import Phase
+from mend.robots.grip import GripReading, GripState
+from mend.robots.monitors.blocked import Blocked
+from mend.robots.monitors.dropped import Dropped
+from mend.robots.monitors.missed import Missed
+from mend.robots.monitors.missing import Missing
+from mend.robots.monitors.monitor import Meanwhile, Monitor
+from mend.robots.monitors.positioning import Positioning
+from mend.robots.monitors.unreachable import Unreachable
+from mend.robots.vision.obstruction import Obstruction
+from mend.tasks.plugins import load_plugins
 
 
 def grip(state: GripState) -> GripReading:

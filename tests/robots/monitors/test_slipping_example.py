@@ -10,10 +10,10 @@ from scripted_body import catalogue
 from slipping.dialogue import script
 from slipping.monitor import Slipping
 
-from dialogue.registry import make_script
-from robots.link.messages import Finished, IssueDetected
-from robots.robot import Robot
-from tasks.plugins import load_plugins
+from mend.dialogue.registry import make_script
+from mend.robots.link.messages import Finished, IssueDetected
+from mend.robots.robot import Robot
+from mend.tasks.plugins import load_plugins
 
 PROJECT = Path(__file__).parents[3] / "examples" / "slipping" / "pyproject.toml"
 

@@ -7,13 +7,13 @@ import pytest
 from drawn_scene import TABLE_Z
 from monitor_view import BLOB, SEEN, VIEW
 
-from robots.behaviors.phase import Phase
-from robots.link.messages import Location
-from robots.monitors.missing import Missing
-from robots.monitors.monitor import Meanwhile, Monitor
-from robots.monitors.undone import Undone
-from robots.vision.presence import Presence
-from tasks.plugins import load_plugins
+from mend.robots.behaviors.phase import Phase
+from mend.robots.link.messages import Location
+from mend.robots.monitors.missing import Missing
+from mend.robots.monitors.monitor import Meanwhile, Monitor
+from mend.robots.monitors.undone import Undone
+from mend.robots.vision.presence import Presence
+from mend.tasks.plugins import load_plugins
 
 BEFORE = replace(VIEW, was_done="gone")
 AFTER = replace(

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robots.motion.momentum_observer import MomentumObserver, force_at_tool
+from mend.robots.motion.momentum_observer import MomentumObserver, force_at_tool
 
 PERIOD_S = 1 / 240
 LENGTH_M, MASS_KG, GRAVITY = 0.5, 2.0, 9.81

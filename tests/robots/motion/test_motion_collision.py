@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 from scipy.spatial import ConvexHull
 
-from robots.behaviors.legs import table_box
-from robots.body import HeldBox, NoWay, ToolPose
-from robots.motion.collision import CollisionModel, Hand, Margins
-from robots.motion.kinematics import Joints, KinematicChain
-from robots.motion.obstacles import PathObstacles, samples
-from robots.motion.planner import JointPath, PathPlanner
-from robots.vision.seen_box import SeenBox
-from sim.workcell.gripper import finger_angle_rad
-from sim.workcell.robot_model import (
+from mend.robots.behaviors.legs import table_box
+from mend.robots.body import HeldBox, NoWay, ToolPose
+from mend.robots.motion.collision import CollisionModel, Hand, Margins
+from mend.robots.motion.kinematics import Joints, KinematicChain
+from mend.robots.motion.obstacles import PathObstacles, samples
+from mend.robots.motion.planner import JointPath, PathPlanner
+from mend.robots.vision.seen_box import SeenBox
+from mend.sim.workcell.gripper import finger_angle_rad
+from mend.sim.workcell.robot_model import (
     ARM_JOINTS,
     FINGER_JOINTS,
     NEUTRAL_RAD,
@@ -22,7 +22,7 @@ from sim.workcell.robot_model import (
     TOOL_FRAME,
     robot_urdf,
 )
-from tasks.scene import Table
+from mend.tasks.scene import Table
 
 START = np.array(NEUTRAL_RAD)
 PICK, PLACE = ToolPose(0.5, -0.45, 0.75, 0.0), ToolPose(0.55, 0.0, 0.75, 0.0)

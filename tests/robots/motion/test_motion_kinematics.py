@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from small_arm import JOINTS, small_arm
 
-from robots.motion.kinematics import KinematicChain, UrdfError, rotation_from_rpy
+from mend.robots.motion.kinematics import KinematicChain, UrdfError, rotation_from_rpy
 
 angles = st.lists(st.floats(-1.5, 1.5), min_size=6, max_size=6).map(np.array)
 

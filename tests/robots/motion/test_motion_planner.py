@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from small_arm import small_arm
 
-from robots.body import NoWay, ToolPose
-from robots.motion.kinematics import KinematicChain
-from robots.motion.planner import JointPath, PathPlanner, pose_matrix
+from mend.robots.body import NoWay, ToolPose
+from mend.robots.motion.kinematics import KinematicChain
+from mend.robots.motion.planner import JointPath, PathPlanner, pose_matrix
 
 START = np.array([0.0, 0.4, 1.2, 0.0, 0.9, 0.0])
 ABOVE = ToolPose(0.55, 0.1, 0.45, 0.2)

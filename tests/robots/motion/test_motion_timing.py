@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robots.motion.curve import JointCurve
-from robots.motion.limits import MotionLimits
-from robots.motion.timing import TimedMotion
+from mend.robots.motion.curve import JointCurve
+from mend.robots.motion.limits import MotionLimits
+from mend.robots.motion.timing import TimedMotion
 
 PERIOD_S = 1 / 240
 LIMITS = MotionLimits(

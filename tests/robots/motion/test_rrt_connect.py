@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robots.motion.rrt_connect import connect
+from mend.robots.motion.rrt_connect import connect
 
 LOW, HIGH = np.array([-3.0, -3.0]), np.array([3.0, 3.0])
 START, GOAL = np.array([-1.0, 0.0]), np.array([1.0, 0.0])

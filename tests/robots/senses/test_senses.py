@@ -4,10 +4,10 @@ import pytest
 from drawn_scene import PARTS, TABLE_Z, DrawnScene
 from scripted_body import STARTS, ScriptedBody, catalogue, trained_model
 
-import robots.senses.understanding
-from robots.body import CameraImage
-from robots.senses import Senses
-from robots.vision.table_view import TableView, view_table
+import mend.robots.senses.understanding
+from mend.robots.body import CameraImage
+from mend.robots.senses import Senses
+from mend.robots.vision.table_view import TableView, view_table
 
 
 @pytest.fixture
@@ -19,7 +19,7 @@ def understood(monkeypatch: pytest.MonkeyPatch) -> list[CameraImage]:
         pictures.append(image)
         return view_table(image, *rest)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(robots.senses.understanding, "view_table", view)
+    monkeypatch.setattr(mend.robots.senses.understanding, "view_table", view)
     return pictures
 
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from drawn_scene import DrawnScene, Resting
 
-from robots.body import CameraImage
-from robots.vision.blindness import why_blind, why_frozen, why_outdated
-from tasks.scene import Table
+from mend.robots.body import CameraImage
+from mend.robots.vision.blindness import why_blind, why_frozen, why_outdated
+from mend.tasks.scene import Table
 
 TABLE = Table()
 FULL = DrawnScene({"green_leg": Resting(0.55, -0.2), "purple_top": Resting(0.66, 0.1)}, noise=3.0)

@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robots.vision.blob import find_blob
+from mend.robots.vision.blob import find_blob
 
 
 def mask_with(*boxes: tuple[int, int, int, int]) -> np.ndarray:

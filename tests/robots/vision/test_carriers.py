@@ -1,7 +1,7 @@
 """What is known to be there though only what stands on it is seen."""
 
-from robots.vision.carriers import below, unseen_carriers
-from robots.vision.seen_box import SeenBox
+from mend.robots.vision.carriers import below, unseen_carriers
+from mend.robots.vision.seen_box import SeenBox
 
 TABLE_Z = 0.7
 

@@ -7,8 +7,8 @@ import pytest
 from drawn_scene import PARTS, DrawnScene, Resting
 from scripted_body import trained_model
 
-from robots.vision.blob import find_blob
-from robots.vision.color_model import ColorModel, ColorModelError, ColorSettings, Sample
+from mend.robots.vision.blob import find_blob
+from mend.robots.vision.color_model import ColorModel, ColorModelError, ColorSettings, Sample
 
 
 def patch(bgr: tuple[float, float, float], size: int = 40) -> np.ndarray:

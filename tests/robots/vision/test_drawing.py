@@ -5,8 +5,8 @@ import base64
 import cv2
 import numpy as np
 
-from robots.link.messages import Detection
-from robots.vision.drawing import draw_detection, encode_jpeg
+from mend.robots.link.messages import Detection
+from mend.robots.vision.drawing import draw_detection, encode_jpeg
 
 GREY = np.full((120, 160, 3), 128, np.uint8)
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from drawn_scene import DrawnScene, Resting
 
-from robots.vision.height_map import ground_rays
-from robots.vision.projection import project
+from mend.robots.vision.height_map import ground_rays
+from mend.robots.vision.projection import project
 
 SCENE = DrawnScene({"green_leg": Resting(0.5, -0.2)})
 

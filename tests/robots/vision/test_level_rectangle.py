@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from robots.vision.level_rectangle import Rectangle
+from mend.robots.vision.level_rectangle import Rectangle
 
 TURNED = Rectangle(1.0, 2.0, math.pi / 2, (0.4, 0.2))
 

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robots.vision.line_of_sight import sight_of
-from robots.vision.seen_box import SeenBox
+from mend.robots.vision.line_of_sight import sight_of
+from mend.robots.vision.seen_box import SeenBox
 
 EYE = np.array([0.0, 0.0, 1.7])
 

@@ -2,12 +2,12 @@
 
 import pytest
 
-from robots.vision.color_model import ColorModel
-from robots.vision.lookalikes import find_lookalikes
-from sim.color_lessons import Studio, teach_colors
-from sim.raster import Light
-from tasks.definition import BehaviorNode
-from tasks.scene import Place, Pose, Scene, SceneObject
+from mend.robots.vision.color_model import ColorModel
+from mend.robots.vision.lookalikes import find_lookalikes
+from mend.sim.color_lessons import Studio, teach_colors
+from mend.sim.raster import Light
+from mend.tasks.definition import BehaviorNode
+from mend.tasks.scene import Place, Pose, Scene, SceneObject
 
 RED = (0.8, 0.1, 0.1)
 SIZE = (0.03, 0.05, 0.04)

@@ -7,11 +7,11 @@ import pytest
 from drawn_scene import PARTS, TABLE_Z, DrawnScene, Resting
 from scripted_body import view_of
 
-from robots.catalogue import Part
-from robots.link.messages import Location
-from robots.vision.obstruction import Obstruction
-from robots.vision.occupancy import Fit, Room, find_occupant, room_above, room_at_place
-from robots.vision.seen_box import SeenBox
+from mend.robots.catalogue import Part
+from mend.robots.link.messages import Location
+from mend.robots.vision.obstruction import Obstruction
+from mend.robots.vision.occupancy import Fit, Room, find_occupant, room_above, room_at_place
+from mend.robots.vision.seen_box import SeenBox
 
 BAR_ROOM = room_at_place(PARTS["pink_bar"], Location(x=0.535, y=-0.12), TABLE_Z)
 TOP_ROOM = room_at_place(PARTS["purple_top"], Location(x=0.535, y=-0.05), TABLE_Z + 0.08)

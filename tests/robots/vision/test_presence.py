@@ -8,12 +8,12 @@ from drawn_scene import PARTS, TABLE_Z, DrawnScene, Resting
 from monitor_view import SEEN
 from scripted_body import view_of
 
-from robots.catalogue import Part
-from robots.grasp import half_turn
-from robots.link.messages import Location
-from robots.vision.presence import Presence, is_at, judge_presence
-from robots.vision.seen_box import SeenBox
-from tasks.part_boxes import Size
+from mend.robots.catalogue import Part
+from mend.robots.grasp import half_turn
+from mend.robots.link.messages import Location
+from mend.robots.vision.presence import Presence, is_at, judge_presence
+from mend.robots.vision.seen_box import SeenBox
+from mend.tasks.part_boxes import Size
 
 STOOD = Location(x=0.55, y=-0.2, z=TABLE_Z, yaw=0.0)
 BEFORE_IT = ((0.40, -0.11, TABLE_Z), (0.05, 0.12, 0.25))

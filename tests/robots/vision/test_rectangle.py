@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from drawn_scene import PARTS, TABLE_Z, DrawnScene, Resting
 
-from robots.vision.evidence import gather
-from robots.vision.height_map import measure_heights
-from robots.vision.level_rectangle import Rectangle
-from robots.vision.level_surfaces import find_surfaces
-from robots.vision.rectangle import Fitted, fit_any
-from tasks.scene import Table
+from mend.robots.vision.evidence import gather
+from mend.robots.vision.height_map import measure_heights
+from mend.robots.vision.level_rectangle import Rectangle
+from mend.robots.vision.level_surfaces import find_surfaces
+from mend.robots.vision.rectangle import Fitted, fit_any
+from mend.tasks.scene import Table
 
 YAWS = (0.0, 0.4, math.pi / 2, -1.2)
 

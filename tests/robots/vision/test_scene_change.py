@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from robots.body import CameraImage
-from robots.vision.scene_change import shows_change, still_measures
+from mend.robots.body import CameraImage
+from mend.robots.vision.scene_change import shows_change, still_measures
 
 NOISE = 3.0
 DEPTH_NOISE_M = 0.002

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scripted_body import view_of
 
-from robots.vision.head import HeadSighting
+from mend.robots.vision.head import HeadSighting
 
 
 def see(name: str, scene: DrawnScene) -> HeadSighting | None:

@@ -7,10 +7,10 @@ import pytest
 from drawn_scene import PARTS, TABLE_Z, DrawnScene, Resting
 from scripted_body import trained_model
 
-from robots.vision.head import HeadSighting
-from robots.vision.table_view import view_table
-from robots.vision.tracking import LastSeen
-from tasks.scene import Table
+from mend.robots.vision.head import HeadSighting
+from mend.robots.vision.table_view import view_table
+from mend.robots.vision.tracking import LastSeen
+from mend.tasks.scene import Table
 
 LEG = Resting(0.50, -0.20, TABLE_Z)
 

@@ -4,8 +4,8 @@ import cv2
 import numpy as np
 import pytest
 
-from robots.vision.color_model import ColorModel, ColorModelError
-from robots.vision.training import load_samples
+from mend.robots.vision.color_model import ColorModel, ColorModelError
+from mend.robots.vision.training import load_samples
 
 
 def write_picture(path, channels: int = 3) -> None:

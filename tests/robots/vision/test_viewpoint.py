@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robots.vision.viewpoint import Viewpoint
+from mend.robots.vision.viewpoint import Viewpoint
 
 AHEAD = Viewpoint(np.eye(4), (640, 480), 500.0, (319.5, 239.5))
 

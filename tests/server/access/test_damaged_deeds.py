@@ -13,14 +13,14 @@ from people import People
 from service_under_test import build
 from typer.testing import CliRunner, Result
 
-from server.access.roles import Role
-from server.cli import app
-from server.journal import events as ev
-from server.journal.chain import Chain, _linked, chain_anew, digest_of, rows_of
-from server.journal.journal import Entry
-from server.journal.offline_pruning import prune_file
-from server.journal.pruning import Keep
-from server.journal.sqlite import SqliteJournal
+from mend.server.access.roles import Role
+from mend.server.cli import app
+from mend.server.journal import events as ev
+from mend.server.journal.chain import Chain, _linked, chain_anew, digest_of, rows_of
+from mend.server.journal.journal import Entry
+from mend.server.journal.offline_pruning import prune_file
+from mend.server.journal.pruning import Keep
+from mend.server.journal.sqlite import SqliteJournal
 
 NOW = datetime(2026, 5, 4, 12, tzinfo=UTC)
 NAMES = ("one", "two", "three", "four")
@@ -213,7 +213,7 @@ async def test_damage_is_told_over_rest_too_and_only_the_batches_of_the_page_are
         looked_at.append((first, last))
         return rows_of(connection, first, last)
 
-    monkeypatch.setattr("server.journal.chain.rows_of", rows)
+    monkeypatch.setattr("mend.server.journal.chain.rows_of", rows)
     async with service.client(headers=people.headers(Role.ADMIN)) as client:
         page = (await client.get("/api/access/deeds?after=1&limit=2")).json()
     service.journal.close()
@@ -234,7 +234,7 @@ async def test_what_is_pruned_while_the_batches_are_looked_at_does_not_seem_to_b
         alter(path, "DELETE FROM events WHERE seq = 2")
         return rows_of(connection, first, last)
 
-    monkeypatch.setattr("server.journal.chain.rows_of", rows)
+    monkeypatch.setattr("mend.server.journal.chain.rows_of", rows)
     seals = await journal.seals([2])
     journal.close()
     assert seals[2].wrong is None

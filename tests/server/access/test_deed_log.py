@@ -9,15 +9,15 @@ from uuid import uuid4
 
 import pytest
 
-from server.access.changes import PrincipalsEditor
-from server.access.deed_log import DeedLog
-from server.access.principal import Caller, Principal
-from server.access.principals_file import KEPT_CHANGES, Change, read_principals
-from server.access.roles import Role
-from server.access.sessions import Sessions
-from server.journal import events as ev
-from server.journal.journal import Entry, Journal, UnreadableEvent
-from server.journal.sqlite import SqliteJournal
+from mend.server.access.changes import PrincipalsEditor
+from mend.server.access.deed_log import DeedLog
+from mend.server.access.principal import Caller, Principal
+from mend.server.access.principals_file import KEPT_CHANGES, Change, read_principals
+from mend.server.access.roles import Role
+from mend.server.access.sessions import Sessions
+from mend.server.journal import events as ev
+from mend.server.journal.journal import Entry, Journal, UnreadableEvent
+from mend.server.journal.sqlite import SqliteJournal
 
 ANNA = Principal("anna", Role.HELPER, "key")
 
@@ -164,7 +164,7 @@ async def test_a_row_on_a_damaged_page_is_passed_over(
     content = path.read_bytes()
     page = content.index(f"{count // 2:0>60}".encode()) // 4096
     path.write_bytes(content[: page * 4096] + b"\xff" * 4096 + content[(page + 1) * 4096 :])
-    monkeypatch.setattr("server.journal.opening.quick_check", lambda *_: [])
+    monkeypatch.setattr("mend.server.journal.opening.quick_check", lambda *_: [])
     damaged = SqliteJournal(path)
     found = await damaged.read_readable(0, 2 * count, ev.NO_RUN)
     damaged.close()
@@ -193,7 +193,7 @@ async def test_a_service_that_stops_waits_only_so_long_for_a_journal_that_takes_
         async def append(self, *_: object, **__: object) -> None:
             await asyncio.Event().wait()
 
-    monkeypatch.setattr("server.access.deed_log.LAST_WORDS_S", 0.01)
+    monkeypatch.setattr("mend.server.access.deed_log.LAST_WORDS_S", 0.01)
     deeds = DeedLog(cast(Journal, Stuck()), Clock())
     deeds.failed("10.0.0.1")
     async with asyncio.timeout(60):

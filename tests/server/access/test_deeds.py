@@ -3,9 +3,9 @@
 from datetime import UTC, datetime
 from uuid import uuid4
 
-from server.access.deeds import DEEDS, deed_of
-from server.access.roles import Role
-from server.journal import events as ev
+from mend.server.access.deeds import DEEDS, deed_of
+from mend.server.access.roles import Role
+from mend.server.journal import events as ev
 
 NOW = datetime(2026, 5, 4, 12, tzinfo=UTC)
 OLGA = ev.Author(principal="olga", role=Role.OPERATOR, address="10.0.0.7")

@@ -13,13 +13,13 @@ from full_disk import FailingConnection, Never, failing
 from people import People
 from service_under_test import ServiceUnderTest, build
 
-from server.access.deed_log import DeedLog
-from server.access.known_principals import KnownPrincipals
-from server.access.roles import Role
-from server.access.sessions import Sessions
-from server.journal import events as ev
-from server.journal.sqlite import SqliteJournal
-from server.journal.trouble import Trouble
+from mend.server.access.deed_log import DeedLog
+from mend.server.access.known_principals import KnownPrincipals
+from mend.server.access.roles import Role
+from mend.server.access.sessions import Sessions
+from mend.server.journal import events as ev
+from mend.server.journal.sqlite import SqliteJournal
+from mend.server.journal.trouble import Trouble
 
 FULL = "database or disk is full"
 NINA = {"name": "nina", "role": "helper"}

@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from server.access.changes import PrincipalsEditor
-from server.access.known_principals import KnownPrincipals
-from server.access.principals_file import Principals, PrincipalsFileError, read_principals
-from server.access.roles import PEOPLE, Role
+from mend.server.access.changes import PrincipalsEditor
+from mend.server.access.known_principals import KnownPrincipals
+from mend.server.access.principals_file import Principals, PrincipalsFileError, read_principals
+from mend.server.access.roles import PEOPLE, Role
 
 NOW = datetime(2026, 5, 4, 12, tzinfo=UTC)
 
@@ -108,7 +108,7 @@ async def test_the_file_is_read_beside_the_loop_and_once_for_all_who_look(
         read_in.append(threading.get_ident())
         return read_principals(path)
 
-    monkeypatch.setattr("server.access.known_principals.read_principals", read)
+    monkeypatch.setattr("mend.server.access.known_principals.read_principals", read)
     looks = [asyncio.create_task(principals.look()) for _ in range(3)]
     await asyncio.sleep(0)
     # From the moment that there is a file nobody comes in without a token.

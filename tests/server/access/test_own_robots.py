@@ -2,11 +2,11 @@
 
 from starlette.requests import HTTPConnection
 
-from server.access.access import Access
-from server.limits import Limits
-from server.refusals import Refusals
-from server.robots.passes import OwnRobots
-from server.visitors import STATE_KEY, Beyond, Visitor, Visitors
+from mend.server.access.access import Access
+from mend.server.limits import Limits
+from mend.server.refusals import Refusals
+from mend.server.robots.passes import OwnRobots
+from mend.server.visitors import STATE_KEY, Beyond, Visitor, Visitors
 
 
 def test_a_robot_of_the_service_is_admitted_however_many_strangers_come() -> None:

@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from server.access.changes import EnrolmentRefusedError, PrincipalsEditor
-from server.access.principals_file import PrincipalsFileError, principals_of, read_principals
-from server.access.roles import Role
-from server.errors import ConflictError, InvalidError, NotFoundError
+from mend.server.access.changes import EnrolmentRefusedError, PrincipalsEditor
+from mend.server.access.principals_file import PrincipalsFileError, principals_of, read_principals
+from mend.server.access.roles import Role
+from mend.server.errors import ConflictError, InvalidError, NotFoundError
 
 NOW = datetime(2026, 5, 4, 12, tzinfo=UTC)
 

@@ -2,9 +2,9 @@
 
 import pytest
 
-from server.access.principal import Principal
-from server.access.roles import Role
-from server.access.sessions import (
+from mend.server.access.principal import Principal
+from mend.server.access.roles import Role
+from mend.server.access.sessions import (
     SESSION_LIFETIME_S,
     SESSIONS_AN_HOUR,
     Sessions,

@@ -7,9 +7,9 @@ import pytest
 from people import People
 from service_under_test import build
 
-from server.access.roles import Role
-from server.journal import events as ev
-from server.journal.journal import Entry
+from mend.server.access.roles import Role
+from mend.server.journal import events as ev
+from mend.server.journal.journal import Entry
 
 EVENTS = 35
 NOW = datetime(2026, 5, 4, 12, tzinfo=UTC)
@@ -21,8 +21,8 @@ DELETED = ev.DocumentDeleted(wall_time=NOW, kind="tree", name="one", author=OLGA
 async def test_one_answer_looks_at_so_many_events_and_says_where_to_go_on(
     who: str, found: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("server.api.principals.MOST_SCANNED", 10)
-    monkeypatch.setattr("server.api.principals.SCANNED_AT_ONCE", 5)
+    monkeypatch.setattr("mend.server.api.principals.MOST_SCANNED", 10)
+    monkeypatch.setattr("mend.server.api.principals.SCANNED_AT_ONCE", 5)
     people = People(tmp_path)
     service = build(principals=people.file)
     await service.journal.append(Entry(events=[DELETED] * EVENTS))

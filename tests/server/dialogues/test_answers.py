@@ -4,7 +4,7 @@ from typing import Literal
 
 import pytest
 
-from server.dialogues.answers import (
+from mend.server.dialogues.answers import (
     SILENCE,
     AnswerSource,
     ListedAnswers,
@@ -13,8 +13,8 @@ from server.dialogues.answers import (
     ScriptedAnswer,
     answer_source,
 )
-from server.runtime.requests import RunRequest
-from tasks.scenario import Scenario
+from mend.server.runtime.requests import RunRequest
+from mend.tasks.scenario import Scenario
 
 
 def test_listed_answers_come_in_turn_and_silence_follows() -> None:

@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import ValidationError
 
-from server.dialogues.escalation import (
+from mend.server.dialogues.escalation import (
     EscalationPolicy,
     Exhausted,
     Mail,

@@ -10,7 +10,7 @@ from certificates import Certificate, make_certificate
 from pydantic import ValidationError
 from smtp_inbox import Inbox, Watched, WatchedSMTP, listening, smtp_server
 
-from server.dialogues.mail import Mailer, MailError, MailRequest, MailSettings, RefusedAddress
+from mend.server.dialogues.mail import Mailer, MailError, MailRequest, MailSettings, RefusedAddress
 
 WRITTEN = datetime(2026, 1, 1, 12, 0, tzinfo=UTC)
 OPERATORS = ("ops@example.org", "night@example.org")

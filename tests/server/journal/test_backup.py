@@ -14,17 +14,17 @@ from sample_events import paused
 from service_process import service_process
 from typer.testing import CliRunner
 
-from server.cli import app
-from server.client import MendClient
-from server.client_stream import EventStream
-from server.journal.backup import BackupError, back_up, restore
-from server.journal.events import Event
-from server.journal.file_lock import JournalLockedError
-from server.journal.journal import Entry
-from server.journal.migrations import JournalSchemaError
-from server.journal.sqlite import SqliteJournal
-from server.runtime.requests import RunRequest
-from server.runtime.views import Snapshot
+from mend.server.cli import app
+from mend.server.client import MendClient
+from mend.server.client_stream import EventStream
+from mend.server.journal.backup import BackupError, back_up, restore
+from mend.server.journal.events import Event
+from mend.server.journal.file_lock import JournalLockedError
+from mend.server.journal.journal import Entry
+from mend.server.journal.migrations import JournalSchemaError
+from mend.server.journal.sqlite import SqliteJournal
+from mend.server.runtime.requests import RunRequest
+from mend.server.runtime.views import Snapshot
 
 
 def contents(path: Path) -> list[str]:
@@ -141,7 +141,7 @@ def test_a_backup_does_not_replace_the_journal_of_another_service(tmp_path: Path
 async def test_a_journal_whose_log_cannot_be_emptied_is_not_replaced(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, put: Callable[..., None]
 ) -> None:
-    monkeypatch.setattr("server.journal.backup.BUSY_TIMEOUT_S", 0.0)
+    monkeypatch.setattr("mend.server.journal.backup.BUSY_TIMEOUT_S", 0.0)
     path, source = tmp_path / "journal.db", tmp_path / "source.db"
     write_history(source, 1)
     write_history(path, 1)

@@ -8,7 +8,7 @@ import pytest
 from checked_journal import checked
 from made_up_history import run_id, write_history
 
-from server.journal.chain import chain_anew
+from mend.server.journal.chain import chain_anew
 
 RUNS = 3
 

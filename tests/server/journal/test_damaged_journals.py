@@ -17,15 +17,20 @@ from pretend_service import pretend_service
 from task_documents import definition_of
 from typer.testing import CliRunner
 
-from server.cli import app
-from server.errors import NotFoundError, UnreadableError
-from server.journal import events as ev
-from server.journal.file_lock import JournalLockedError
-from server.journal.journal import Entry, JournalDamagedError, JournalOpenError, JournalReadError
-from server.journal.migrations import JournalSchemaError
-from server.journal.reader import JournalReader
-from server.journal.run_index import RunPage
-from server.journal.sqlite import SqliteJournal
+from mend.server.cli import app
+from mend.server.errors import NotFoundError, UnreadableError
+from mend.server.journal import events as ev
+from mend.server.journal.file_lock import JournalLockedError
+from mend.server.journal.journal import (
+    Entry,
+    JournalDamagedError,
+    JournalOpenError,
+    JournalReadError,
+)
+from mend.server.journal.migrations import JournalSchemaError
+from mend.server.journal.reader import JournalReader
+from mend.server.journal.run_index import RunPage
+from mend.server.journal.sqlite import SqliteJournal
 
 RUNS = 6
 EVENTS = len(made_up_run())

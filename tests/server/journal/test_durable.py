@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 from made_up_history import write_history
 
-from server.journal.backup import back_up, restore
-from server.journal.opening import open_journal
+from mend.server.journal.backup import back_up, restore
+from mend.server.journal.opening import open_journal
 
 FULL = 2
 
@@ -24,7 +24,7 @@ def test_commits_wait_for_the_disk_however_sqlite_was_built(
         connection.execute("PRAGMA synchronous=NORMAL")
         return connection
 
-    monkeypatch.setattr("server.journal.opening.sqlite3.connect", as_some_are_built)
+    monkeypatch.setattr("mend.server.journal.opening.sqlite3.connect", as_some_are_built)
     opened = open_journal(tmp_path / "journal.db", 5.0, 1.0)
     assert opened.write.execute("PRAGMA synchronous").fetchone() == (FULL,)
     assert opened.write.execute("PRAGMA journal_mode").fetchone() == ("wal",)
@@ -53,7 +53,7 @@ def test_a_copy_is_on_the_disk_before_it_takes_its_place_and_its_place_after_tha
         done.append("replace")
         return replace(draft, to)
 
-    monkeypatch.setattr("server.journal.backup.os.fsync", synced)
+    monkeypatch.setattr("mend.server.journal.backup.os.fsync", synced)
     monkeypatch.setattr(Path, "replace", replaced)
     copied(source, target)
     assert done == ["fsync journal.db.draft", "replace", "fsync to"]

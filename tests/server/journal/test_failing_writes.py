@@ -8,15 +8,15 @@ import pytest
 from full_disk import Never, Passing, failing
 from sample_events import paused
 
-from server.journal.events import Event
-from server.journal.journal import (
+from mend.server.journal.events import Event
+from mend.server.journal.journal import (
     DuplicateReceiptError,
     Entry,
     JournalWriteError,
     Receipt,
 )
-from server.journal.keyed_request import FirstAnswer, KeyedRequest
-from server.journal.sqlite import PROVEN_S, SqliteJournal
+from mend.server.journal.keyed_request import FirstAnswer, KeyedRequest
+from mend.server.journal.sqlite import PROVEN_S, SqliteJournal
 
 IN_TIME_S = 60.0
 

@@ -11,13 +11,13 @@ import pytest
 from full_disk import Never
 from sample_events import paused
 
-from server.journal.file_lock import JournalLockedError
-from server.journal.journal import Entry, JournalOpenError, JournalWriteError
-from server.journal.sqlite import SqliteJournal
+from mend.server.journal.file_lock import JournalLockedError
+from mend.server.journal.journal import Entry, JournalOpenError, JournalWriteError
+from mend.server.journal.sqlite import SqliteJournal
 
 OPENS = """
 import sys
-from server.journal.sqlite import SqliteJournal
+from mend.server.journal.sqlite import SqliteJournal
 SqliteJournal(sys.argv[1])
 """
 

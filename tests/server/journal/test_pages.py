@@ -7,10 +7,10 @@ import pytest
 from sample_events import RUN, paused
 from service_under_test import build
 
-import server.journal.pages
-from server.journal import events as ev
-from server.journal.journal import Entry
-from server.journal.sqlite import SqliteJournal
+import mend.server.journal.pages
+from mend.server.journal import events as ev
+from mend.server.journal.journal import Entry
+from mend.server.journal.sqlite import SqliteJournal
 
 LONG = 1000
 PAGE = 2500
@@ -20,7 +20,7 @@ EVENTS = 10
 @pytest.fixture
 async def journal(monkeypatch: pytest.MonkeyPatch) -> AsyncIterator[SqliteJournal]:
     """A journal of long events; two of them are a page."""
-    monkeypatch.setattr(server.journal.pages, "PAGE_CHARS", PAGE)
+    monkeypatch.setattr(mend.server.journal.pages, "PAGE_CHARS", PAGE)
     journal = SqliteJournal(":memory:")
     await journal.append(Entry(events=[long() for _ in range(EVENTS)]))
     yield journal
@@ -66,7 +66,7 @@ async def test_a_subscriber_who_missed_long_events_gets_them_all(journal: Sqlite
 async def test_deeds_that_are_long_come_all_in_one_page_of_the_audit(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(server.journal.pages, "PAGE_CHARS", PAGE)
+    monkeypatch.setattr(mend.server.journal.pages, "PAGE_CHARS", PAGE)
     service = build()
     await service.journal.append(Entry(events=[long() for _ in range(EVENTS)]))
     async with service.client() as client:

@@ -22,14 +22,14 @@ from made_up_history import (
 )  # fmt: skip
 from sample_events import paused, started
 
-from server.journal import events as ev
-from server.journal.file_lock import JournalLockedError
-from server.journal.journal import Entry, Receipt
-from server.journal.offline_pruning import prune_file
-from server.journal.pruning import EVENTS_AT_ONCE, Keep
-from server.journal.run_index import RunPage
-from server.journal.sqlite import SqliteJournal
-from server.journal.subscriptions import PrunedEventsError
+from mend.server.journal import events as ev
+from mend.server.journal.file_lock import JournalLockedError
+from mend.server.journal.journal import Entry, Receipt
+from mend.server.journal.offline_pruning import prune_file
+from mend.server.journal.pruning import EVENTS_AT_ONCE, Keep
+from mend.server.journal.run_index import RunPage
+from mend.server.journal.sqlite import SqliteJournal
+from mend.server.journal.subscriptions import PrunedEventsError
 
 RUNS = 8
 EVENTS = len(made_up_run())

@@ -9,8 +9,8 @@ from uuid import uuid4
 import pytest
 from sample_events import RUN, paused, started
 
-from server.journal.journal import Entry, JournalClosedError, Receipt
-from server.journal.sqlite import SqliteJournal
+from mend.server.journal.journal import Entry, JournalClosedError, Receipt
+from mend.server.journal.sqlite import SqliteJournal
 
 IN_TIME_S = 60.0
 

@@ -8,8 +8,8 @@ import pytest
 from full_disk import Never, Passing
 from sample_events import paused
 
-from server.journal.journal import Entry, JournalWriteError
-from server.journal.sqlite import SqliteJournal
+from mend.server.journal.journal import Entry, JournalWriteError
+from mend.server.journal.sqlite import SqliteJournal
 
 
 def delete(path: Path) -> None:

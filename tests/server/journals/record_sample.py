@@ -12,14 +12,14 @@ from pathlib import Path
 from typing import Any
 from uuid import UUID
 
-from dialogue.script import CloseReason, Help
-from robots.link.messages import Detection
-from server.journal import events as ev
-from server.journal.journal import Document, Entry, Receipt
-from server.journal.migrations import MIGRATIONS
-from server.journal.sqlite import SqliteJournal
-from tasks.intervention import Act, Intervention
-from tasks.resolution import Resolution
+from mend.dialogue.script import CloseReason, Help
+from mend.robots.link.messages import Detection
+from mend.server.journal import events as ev
+from mend.server.journal.journal import Document, Entry, Receipt
+from mend.server.journal.migrations import MIGRATIONS
+from mend.server.journal.sqlite import SqliteJournal
+from mend.tasks.intervention import Act, Intervention
+from mend.tasks.resolution import Resolution
 
 RUN = UUID("0b9f8a4e-5a52-4d5b-9a8e-3f1f7f0f5c11")
 EXECUTION = UUID("5d0f2c1e-0a44-4a0c-8a3e-9f6f3f2b1a01")

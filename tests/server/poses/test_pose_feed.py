@@ -7,11 +7,11 @@ import pytest
 from sample_events import RUN
 from shown_run import SHOWS, hello, poses, run_state
 
-from robots.link.messages import PoseLayout
-from server.poses.feed import PoseFeed, RunPoses, Watcher
-from server.poses.frame import time_of
-from server.poses.layout import Layout
-from server.poses.record import PoseRecords
+from mend.robots.link.messages import PoseLayout
+from mend.server.poses.feed import PoseFeed, RunPoses, Watcher
+from mend.server.poses.frame import time_of
+from mend.server.poses.layout import Layout
+from mend.server.poses.record import PoseRecords
 
 
 class Asked(list[tuple[str, float]]):

@@ -5,8 +5,8 @@ import struct
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robots.link.messages import Poses, ShownPose
-from server.poses.frame import encode, framed, time_of, unframed
+from mend.robots.link.messages import Poses, ShownPose
+from mend.server.poses.frame import encode, framed, time_of, unframed
 
 number = st.floats(-1e6, 1e6, width=32)
 pose = st.tuples(*[number] * 7)

@@ -9,9 +9,9 @@ import pytest
 from sample_events import RUN
 from shown_run import hello, poses, run_state
 
-from server.poses.frame import Frame, encode, time_of
-from server.poses.layout import lay_out
-from server.poses.record import MOST_WAITING, PoseRecords
+from mend.server.poses.frame import Frame, encode, time_of
+from mend.server.poses.layout import lay_out
+from mend.server.poses.record import MOST_WAITING, PoseRecords
 
 ALL = (0.0, 1e9, 100_000)
 
@@ -101,7 +101,7 @@ async def test_a_frame_torn_by_a_kill_is_cut_off_and_the_record_goes_on(tmp_path
 async def test_what_waits_is_written_without_anybody_asking(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("server.poses.record.FLUSH_S", 0.0)
+    monkeypatch.setattr("mend.server.poses.record.FLUSH_S", 0.0)
     records = PoseRecords(tmp_path)
     records.open(RUN).add(frame(1.0))
     async with asyncio.timeout(60):
@@ -148,7 +148,7 @@ async def test_of_what_a_slow_disk_does_not_take_only_so_much_waits_and_the_rest
 async def test_frames_that_a_disk_did_not_take_wait_no_longer(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("server.poses.record.MOST_WAITING", 2)
+    monkeypatch.setattr("mend.server.poses.record.MOST_WAITING", 2)
     (tmp_path / "poses").write_text("a file where the folder is to be")
     records = PoseRecords(tmp_path / "poses")
     record = records.open(RUN)

@@ -10,12 +10,12 @@ from typing import Any
 import pytest
 from recording_sink import RecordingSink
 
-from robots.link.channel import ChannelClosedError, memory_channel
-from server.journal.sqlite import SqliteJournal
-from server.limits import Limits
-from server.refusals import Refusals
-from server.robots.registry import RobotRegistry
-from server.robots.times import LinkTimes
+from mend.robots.link.channel import ChannelClosedError, memory_channel
+from mend.server.journal.sqlite import SqliteJournal
+from mend.server.limits import Limits
+from mend.server.refusals import Refusals
+from mend.server.robots.registry import RobotRegistry
+from mend.server.robots.times import LinkTimes
 
 TIMES = LinkTimes(heartbeat_s=0.001, silence_s=10.0, absence_s=0.001)
 

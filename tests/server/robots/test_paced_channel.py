@@ -11,8 +11,8 @@ from recording_sink import RecordingSink
 from websockets.asyncio.client import connect
 from websockets.exceptions import ConnectionClosed
 
-from robots.link.channel import Channel, ChannelClosedError, memory_channel
-from robots.link.messages import (
+from mend.robots.link.channel import Channel, ChannelClosedError, memory_channel
+from mend.robots.link.messages import (
     Ack,
     Detection,
     Held,
@@ -25,15 +25,15 @@ from robots.link.messages import (
     Welcome,
     service_message,
 )
-from server.journal.sqlite import SqliteJournal
-from server.limits import Limits
-from server.pace import CHARS_OF_ONE, Pace
-from server.refusals import Refusals
-from server.robots.known_robot import MOST_UNASKED_REPORTS
-from server.robots.paced_channel import PacedChannel
-from server.robots.passes import Anyone
-from server.robots.registry import RobotRegistry
-from server.robots.times import LinkTimes
+from mend.server.journal.sqlite import SqliteJournal
+from mend.server.limits import Limits
+from mend.server.pace import CHARS_OF_ONE, Pace
+from mend.server.refusals import Refusals
+from mend.server.robots.known_robot import MOST_UNASKED_REPORTS
+from mend.server.robots.paced_channel import PacedChannel
+from mend.server.robots.passes import Anyone
+from mend.server.robots.registry import RobotRegistry
+from mend.server.robots.times import LinkTimes
 
 TIMES = LinkTimes(heartbeat_s=1.0, silence_s=60.0, absence_s=0.001)
 HEADERS = {"Authorization": "Bearer secret"}
@@ -133,7 +133,7 @@ async def test_a_flood_over_the_wire_is_held_back_and_others_are_served(
 async def test_who_reports_without_end_is_ended_and_let_in_no_more_until_started_again(
     journal: SqliteJournal, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("server.robots.known_robot.MOST_UNASKED_REPORTS", 5)
+    monkeypatch.setattr("mend.server.robots.known_robot.MOST_UNASKED_REPORTS", 5)
     refusals = Refusals()
     registry = RobotRegistry(journal, lambda: 0.0, TIMES, refusals=refusals)
     sink = RecordingSink(journal)
@@ -168,7 +168,7 @@ async def test_who_reports_without_end_is_ended_and_let_in_no_more_until_started
 async def test_a_robot_that_says_it_is_simulated_is_let_in_no_more_either(
     journal: SqliteJournal, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("server.robots.known_robot.MOST_UNASKED_REPORTS", 5)
+    monkeypatch.setattr("mend.server.robots.known_robot.MOST_UNASKED_REPORTS", 5)
     registry = RobotRegistry(journal, lambda: 0.0, TIMES)
     for said in ("has sent 5 reports since", "start the robot's program again"):
         ours, theirs = memory_channel()
@@ -187,7 +187,7 @@ async def test_a_robot_that_says_it_is_simulated_is_let_in_no_more_either(
 async def test_pictures_count_by_their_size(
     journal: SqliteJournal, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("server.robots.known_robot.MOST_UNASKED_REPORTS", 10)
+    monkeypatch.setattr("mend.server.robots.known_robot.MOST_UNASKED_REPORTS", 10)
     registry = RobotRegistry(journal, lambda: 0.0, TIMES)
     ours, theirs = memory_channel()
     serving = asyncio.create_task(registry.serve(theirs))

@@ -12,8 +12,8 @@ from full_disk import FailingConnection
 from recording_sink import RecordingSink
 from ticking_clock import TickingClock
 
-from robots.link.channel import Channel, ChannelClosedError, memory_channel
-from robots.link.messages import (
+from mend.robots.link.channel import Channel, ChannelClosedError, memory_channel
+from mend.robots.link.messages import (
     Ack,
     AnyRobotMessage,
     AnyServiceMessage,
@@ -34,15 +34,15 @@ from robots.link.messages import (
     Welcome,
     service_message,
 )
-from server.errors import ConflictError, NotFoundError
-from server.journal.journal import JournalReadError, Receipt
-from server.journal.sqlite import SqliteJournal
-from server.limits import Limits
-from server.refusals import Refusals
-from server.robots.passes import Anyone
-from server.robots.registry import RobotRegistry
-from server.robots.session import ACK_AT_LEAST_EVERY, WAITING_REPORTS
-from server.robots.times import LinkTimes
+from mend.server.errors import ConflictError, NotFoundError
+from mend.server.journal.journal import JournalReadError, Receipt
+from mend.server.journal.sqlite import SqliteJournal
+from mend.server.limits import Limits
+from mend.server.refusals import Refusals
+from mend.server.robots.passes import Anyone
+from mend.server.robots.registry import RobotRegistry
+from mend.server.robots.session import ACK_AT_LEAST_EVERY, WAITING_REPORTS
+from mend.server.robots.times import LinkTimes
 
 A_PICTURE = b"\xff\xd8\xff a picture \xff\xd9"
 PICTURE_OF_NOTHING = '{"type": "picture", "command": "c", "camera": "head", "jpeg": "PGh0bWw+"}'
@@ -637,7 +637,7 @@ async def test_a_robot_that_makes_up_boots_is_ended(
     refusals: Refusals,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("server.robots.known_robot.MOST_NEW_BOOTS", 3)
+    monkeypatch.setattr("mend.server.robots.known_robot.MOST_NEW_BOOTS", 3)
     robot = PlayedRobot(registry)
     await robot.greet(hello(boot="b0"))
     for number in range(5):

@@ -2,7 +2,7 @@
 
 from ticking_clock import TickingClock
 
-from server.robots.silence import Silence
+from mend.server.robots.silence import Silence
 
 
 def test_silence_adds_up_from_look_to_look_and_ends_with_what_comes() -> None:

@@ -5,7 +5,7 @@ from uuid import UUID
 
 import pytest
 
-from server.runtime.history import History
+from mend.server.runtime.history import History
 
 
 @pytest.fixture

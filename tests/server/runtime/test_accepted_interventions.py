@@ -9,14 +9,14 @@ from pretend_robots import PretendRobots
 from pretend_service import PretendService, pretend_service
 from task_documents import definition_of
 
-from robots.link.messages import Intervene
-from server.errors import ConflictError
-from server.journal import events as ev
-from server.runtime.interventions import MOST_WAITING
-from server.runtime.requests import RunRequest
-from server.runtime.views import RunStatus, RunView
-from sim.tabletop.layout import lay_out
-from tasks.intervention import Act, Intervention
+from mend.robots.link.messages import Intervene
+from mend.server.errors import ConflictError
+from mend.server.journal import events as ev
+from mend.server.runtime.interventions import MOST_WAITING
+from mend.server.runtime.requests import RunRequest
+from mend.server.runtime.views import RunStatus, RunView
+from mend.sim.tabletop.layout import lay_out
+from mend.tasks.intervention import Act, Intervention
 
 ONE_PART = definition_of({"behavior": "pick_and_place", "object": "part_1", "place": "spot_1"})
 SCENE = lay_out([("part_1", "spot_1")], seed=1)

@@ -6,10 +6,10 @@ from uuid import UUID
 
 import pytest
 
-from dialogue.evidence import Change, PutRight
-from dialogue.script import Expectation, Help
-from robots.link.messages import Sighting
-from server.runtime.dialogue_looks import DialogueLooks
+from mend.dialogue.evidence import Change, PutRight
+from mend.dialogue.script import Expectation, Help
+from mend.robots.link.messages import Sighting
+from mend.server.runtime.dialogue_looks import DialogueLooks
 
 HERE, THERE = (0.5, 0.1), (0.5, 0.3)
 

@@ -8,11 +8,11 @@ from pretend_service import pretend_service
 from task_documents import definition_of
 from untruths import find_untruths
 
-from server.journal import events as ev
-from server.runtime.context import RunSettings
-from server.runtime.views import RunStatus, RunView
-from sim.tabletop.layout import lay_out
-from tasks.resolution import Resolution
+from mend.server.journal import events as ev
+from mend.server.runtime.context import RunSettings
+from mend.server.runtime.views import RunStatus, RunView
+from mend.sim.tabletop.layout import lay_out
+from mend.tasks.resolution import Resolution
 
 NAMES = [("part_1", "spot_1"), ("part_2", "spot_2")]
 SCENE = lay_out(NAMES, seed=1)

@@ -10,12 +10,12 @@ from answer_races import ONE_PART, race
 from pretend_robots import FIRST_JPEG, SECOND_JPEG
 from pretend_service import PretendService, pretend_service
 
-from robots.link.messages import ClipPicture, ClipTaken
-from server.dialogues.escalation import EscalationPolicy
-from server.errors import ConflictError, NotFoundError
-from server.journal import events as ev
-from server.runtime.requests import RunRequest
-from server.runtime.views import DialogueView, PromptView
+from mend.robots.link.messages import ClipPicture, ClipTaken
+from mend.server.dialogues.escalation import EscalationPolicy
+from mend.server.errors import ConflictError, NotFoundError
+from mend.server.journal import events as ev
+from mend.server.runtime.requests import RunRequest
+from mend.server.runtime.views import DialogueView, PromptView
 
 FAULT = {"part_1": [("missed", 4)]}
 
@@ -81,7 +81,7 @@ async def test_a_claim_is_taken_over_from_another_helper(service: PretendService
 async def test_nobody_fills_the_journal_with_claims(
     service: PretendService, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("server.runtime.claims.MOST_CLAIMS", 5)
+    monkeypatch.setattr("mend.server.runtime.claims.MOST_CLAIMS", 5)
     question = await open_question(service)
     for _ in range(2):
         for helper in ("ann", "bob"):

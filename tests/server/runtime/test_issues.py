@@ -5,10 +5,10 @@ from uuid import UUID
 
 import pytest
 
-from robots.link.messages import Detection
-from server.journal import events as ev
-from server.runtime.dialogue_state import issue_of
-from tasks.issue import Sensed
+from mend.robots.link.messages import Detection
+from mend.server.journal import events as ev
+from mend.server.runtime.dialogue_state import issue_of
+from mend.tasks.issue import Sensed
 
 
 @pytest.mark.parametrize(

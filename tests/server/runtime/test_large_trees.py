@@ -11,17 +11,17 @@ import pytest
 from pretend_service import pretend_service
 from service_under_test import build
 
-import server.turns
-from server.api.first_answers import answer_of
-from server.journal import events as ev
-from server.journal.journal import Entry
-from server.journal.sqlite import SqliteJournal
-from server.journal.stored_event import UnreadableEventError
-from server.journal.subscriptions import Record
-from server.runtime.journaled_tree import read_nodes, read_started, read_without_tree
-from server.runtime.requests import RunRequest
-from server.runtime.run_views import NODES, RunViewing
-from tasks.definition import BehaviorNode, GoalNode, TaskTreeDefinition
+import mend.server.turns
+from mend.server.api.first_answers import answer_of
+from mend.server.journal import events as ev
+from mend.server.journal.journal import Entry
+from mend.server.journal.sqlite import SqliteJournal
+from mend.server.journal.stored_event import UnreadableEventError
+from mend.server.journal.subscriptions import Record
+from mend.server.runtime.journaled_tree import read_nodes, read_started, read_without_tree
+from mend.server.runtime.requests import RunRequest
+from mend.server.runtime.run_views import NODES, RunViewing
+from mend.tasks.definition import BehaviorNode, GoalNode, TaskTreeDefinition
 
 MANY = 3000
 
@@ -63,7 +63,7 @@ def started(tree: TaskTreeDefinition | None) -> ev.RunStarted:
 @pytest.fixture
 def _short_turns(monkeypatch: pytest.MonkeyPatch) -> None:
     """Whatever is done in pieces passes its turn on after each."""
-    monkeypatch.setattr(server.turns, "LONGEST_S", 0.0)
+    monkeypatch.setattr(mend.server.turns, "LONGEST_S", 0.0)
 
 
 async def turns_of_others(work: Callable[[], Awaitable[T]]) -> tuple[T, int]:

@@ -8,14 +8,14 @@ from pretend_service import pretend_service
 from task_documents import definition_of
 from told_robot import PARTS, Body, Obey, ToldRobot, at_work, end_of, works
 
-from server.dialogues.escalation import EscalationPolicy
-from server.journal import events as ev
-from server.journal.sqlite import SqliteJournal
-from server.robots.times import LinkTimes
-from server.runtime.context import RunSettings
-from server.runtime.livelock import MOST_FRUITLESS_COMMANDS
-from server.runtime.views import RunStatus
-from sim.tabletop.layout import lay_out
+from mend.server.dialogues.escalation import EscalationPolicy
+from mend.server.journal import events as ev
+from mend.server.journal.sqlite import SqliteJournal
+from mend.server.robots.times import LinkTimes
+from mend.server.runtime.context import RunSettings
+from mend.server.runtime.livelock import MOST_FRUITLESS_COMMANDS
+from mend.server.runtime.views import RunStatus
+from mend.sim.tabletop.layout import lay_out
 
 
 async def rejects_looks(robot: ToldRobot, command: str, body: Body) -> None:
@@ -151,7 +151,7 @@ async def test_a_robot_reports_no_more_for_being_told_the_same_again(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     most = 100
-    monkeypatch.setattr("server.robots.known_robot.MOST_UNASKED_REPORTS", most)
+    monkeypatch.setattr("mend.server.robots.known_robot.MOST_UNASKED_REPORTS", most)
     journal = SqliteJournal(":memory:")
     async with at_work(floods, journal) as (_, robot, run):
         await robot.ended()
@@ -172,7 +172,7 @@ async def test_a_robot_whose_program_is_killed_again_and_again_goes_on_while_it_
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     most = 30
-    monkeypatch.setattr("server.runtime.livelock.MOST_FRUITLESS_COMMANDS", most)
+    monkeypatch.setattr("mend.server.runtime.livelock.MOST_FRUITLESS_COMMANDS", most)
     kills = 12
 
     async def killed(robot: ToldRobot, command: str, body: Body) -> None:
@@ -196,7 +196,7 @@ async def test_a_run_that_people_pause_and_resume_goes_on(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     most = 10
-    monkeypatch.setattr("server.runtime.livelock.MOST_FRUITLESS_COMMANDS", most)
+    monkeypatch.setattr("mend.server.runtime.livelock.MOST_FRUITLESS_COMMANDS", most)
     resumed = 0
 
     async def pauses(robot: ToldRobot, command: str, body: Body) -> None:

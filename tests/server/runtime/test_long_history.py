@@ -13,13 +13,13 @@ from made_up_history import run_id, write_history
 from pretend_service import PretendService, pretend_service
 from task_documents import definition_of
 
-from server.errors import ConflictError, NotFoundError, UnreadableError
-from server.journal import events as ev
-from server.journal.pruning import Keep
-from server.journal.run_index import RunPage
-from server.runtime.history import MOST_KEPT
-from server.runtime.requests import RunRequest
-from server.runtime.views import RunStatus
+from mend.server.errors import ConflictError, NotFoundError, UnreadableError
+from mend.server.journal import events as ev
+from mend.server.journal.pruning import Keep
+from mend.server.journal.run_index import RunPage
+from mend.server.runtime.history import MOST_KEPT
+from mend.server.runtime.requests import RunRequest
+from mend.server.runtime.views import RunStatus
 
 RUNS = 30
 TWO_PARTS = definition_of(

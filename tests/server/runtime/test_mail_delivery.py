@@ -11,9 +11,9 @@ from uuid import UUID
 import pytest
 from sample_events import RUN, WALL_TIME, detected
 
-from server.dialogues.mail import Mailer, MailError, MailNotice, MailRequest, RefusedAddress
-from server.journal.events import AnswerOption, Escalated, Prompt, SuspectedFalseAlarm
-from server.runtime.operator_mail import WAITS_S, OperatorMail
+from mend.server.dialogues.mail import Mailer, MailError, MailNotice, MailRequest, RefusedAddress
+from mend.server.journal.events import AnswerOption, Escalated, Prompt, SuspectedFalseAlarm
+from mend.server.runtime.operator_mail import WAITS_S, OperatorMail
 
 DIALOGUE = UUID(int=2)
 OPS, NIGHT = "ops@example.org", "night@example.org"
@@ -226,7 +226,7 @@ async def test_stopping_waits_for_no_later_try(caplog: pytest.LogCaptureFixture)
 async def test_stopping_does_not_wait_for_a_server_that_hangs(
     caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("server.runtime.operator_mail.LAST_MOMENT_S", 0.01)
+    monkeypatch.setattr("mend.server.runtime.operator_mail.LAST_MOMENT_S", 0.01)
     post = Post()
     post.mailer.hangs = True
     post.write()

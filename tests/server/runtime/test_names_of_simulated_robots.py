@@ -6,9 +6,9 @@ from uuid import uuid4
 
 import pytest
 
-from server.journal.sqlite import SqliteJournal
-from server.robots.passes import OwnRobots
-from server.runtime.worlds import SimulatedHardware
+from mend.server.journal.sqlite import SqliteJournal
+from mend.server.robots.passes import OwnRobots
+from mend.server.runtime.worlds import SimulatedHardware
 
 
 class Handle:

@@ -4,11 +4,11 @@ from typing import Any
 
 import pytest
 
-from server.errors import InvalidError
-from server.journal.sqlite import SqliteJournal
-from server.robots.passes import OwnRobots
-from server.runtime.worlds import SimulatedWorlds
-from tasks.plugins import load_plugins
+from mend.server.errors import InvalidError
+from mend.server.journal.sqlite import SqliteJournal
+from mend.server.robots.passes import OwnRobots
+from mend.server.runtime.worlds import SimulatedWorlds
+from mend.tasks.plugins import load_plugins
 
 
 async def _launch(*_: Any) -> Any:

@@ -7,9 +7,9 @@ from full_evaluation import Node, define, trees
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from server.runtime.outlooks import _Parting
-from tasks.definition import NodeKind
-from tasks.task_tree import TaskTree
+from mend.server.runtime.outlooks import _Parting
+from mend.tasks.definition import NodeKind
+from mend.tasks.task_tree import TaskTree
 
 
 def _lowest_over(tree: TaskTree, one: int, other: int) -> int:

@@ -9,13 +9,13 @@ from made_up_history import run_id, write_history
 from pretend_service import PretendService, pretend_service
 from task_documents import definition_of
 
-from server.errors import ConflictError, LostRaceError, NotFoundError
-from server.journal import events as ev
-from server.runtime.dialogue_state import DialogueState
-from server.runtime.history import MOST_KEPT
-from server.runtime.requests import RunRequest
-from server.runtime.run_views import dialogue_view
-from server.runtime.views import DialogueView
+from mend.server.errors import ConflictError, LostRaceError, NotFoundError
+from mend.server.journal import events as ev
+from mend.server.runtime.dialogue_state import DialogueState
+from mend.server.runtime.history import MOST_KEPT
+from mend.server.runtime.requests import RunRequest
+from mend.server.runtime.run_views import dialogue_view
+from mend.server.runtime.views import DialogueView
 
 RUNS = MOST_KEPT + 4
 TREE = definition_of(
@@ -125,7 +125,7 @@ async def test_only_the_open_dialogues_of_a_page_are_viewed_and_none_to_be_count
         viewed.append(dialogue.id)
         return dialogue_view(dialogue)
 
-    monkeypatch.setattr("server.runtime.runtime.dialogue_view", view)
+    monkeypatch.setattr("mend.server.runtime.runtime.dialogue_view", view)
     slow = {"tree": "tree", "world": "tabletop", "speed": 1.0, "answers": "none"}
     async with pretend_service(TREE, FAULTS) as service:
         for _ in range(3):

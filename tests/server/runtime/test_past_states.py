@@ -8,11 +8,11 @@ import pytest
 from pretend_service import pretend_service
 from task_documents import definition_of
 
-from server.errors import UnreadableError
-from server.runtime.history import History
-from server.runtime.past_states import KEPT_S, PastStates
-from server.runtime.requests import RunRequest
-from server.runtime.run_state import RunState
+from mend.server.errors import UnreadableError
+from mend.server.runtime.history import History
+from mend.server.runtime.past_states import KEPT_S, PastStates
+from mend.server.runtime.requests import RunRequest
+from mend.server.runtime.run_state import RunState
 
 TREE = definition_of(
     {"then": [{"behavior": "pick_and_place", "object": name} for name in ("red", "blue")]}

@@ -8,11 +8,11 @@ from pretend_robots import PretendRobot, Sink
 from pretend_service import PretendService, pretend_service
 from task_documents import definition_of
 
-from server.errors import BusyError, ConflictError, InvalidError
-from server.journal.run_index import RunPage
-from server.runtime.ports import RealRobots
-from server.runtime.requests import RunRequest
-from server.runtime.views import RunStatus, RunSummary
+from mend.server.errors import BusyError, ConflictError, InvalidError
+from mend.server.journal.run_index import RunPage
+from mend.server.runtime.ports import RealRobots
+from mend.server.runtime.requests import RunRequest
+from mend.server.runtime.views import RunStatus, RunSummary
 
 ONE_PART = definition_of({"behavior": "pick_and_place", "object": "part_1", "place": "spot_1"})
 

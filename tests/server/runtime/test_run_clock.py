@@ -8,9 +8,9 @@ from hypothesis import strategies as st
 from pretend_service import pretend_service
 from task_documents import definition_of
 
-from server.runtime.clock import SimulatedClock, has_come
-from server.runtime.views import RunStatus
-from sim.tabletop.layout import lay_out
+from mend.server.runtime.clock import SimulatedClock, has_come
+from mend.server.runtime.views import RunStatus
+from mend.sim.tabletop.layout import lay_out
 
 NAMES = [("part_1", "spot_1")]
 LEAVES = [{"behavior": "pick_and_place", "object": part, "place": spot} for part, spot in NAMES]

@@ -7,11 +7,11 @@ import pytest
 from pretend_service import pretend_service
 from task_documents import definition_of
 
-from server.errors import ConflictError, InvalidError
-from server.journal.run_index import RunPage
-from server.limits import Limits
-from server.runtime.context import RunSettings
-from server.runtime.requests import RunRequest
+from mend.server.errors import ConflictError, InvalidError
+from mend.server.journal.run_index import RunPage
+from mend.server.limits import Limits
+from mend.server.runtime.context import RunSettings
+from mend.server.runtime.requests import RunRequest
 
 ONE_PART = definition_of({"behavior": "pick_and_place", "object": "part_1", "place": "spot_1"})
 LIMITS = Limits(answers=2, world_options=2, option_chars=5)

@@ -12,25 +12,25 @@ from hypothesis import strategies as st
 from pretend_service import NoHardware, PretendService, PretendWorlds, pretend_service
 from task_documents import definition_of
 
-from server.dialogues.escalation import EscalationPolicy
-from server.errors import (
+from mend.server.dialogues.escalation import EscalationPolicy
+from mend.server.errors import (
     ConflictError,
     InvalidError,
     LostRaceError,
     NotFoundError,
     UnreadableError,
 )
-from server.journal import events as ev
-from server.journal.journal import Entry
-from server.journal.run_index import RunPage
-from server.runtime.presence import MAX_RESTARTS
-from server.runtime.requests import RunRequest
-from server.runtime.run_state import RunState
-from server.runtime.views import DialogueView, RunStatus, RunView
-from sim.tabletop.layout import lay_out
-from tasks.random_task import random_task
-from tasks.resolution import Resolution
-from tasks.scenario import Person
+from mend.server.journal import events as ev
+from mend.server.journal.journal import Entry
+from mend.server.journal.run_index import RunPage
+from mend.server.runtime.presence import MAX_RESTARTS
+from mend.server.runtime.requests import RunRequest
+from mend.server.runtime.run_state import RunState
+from mend.server.runtime.views import DialogueView, RunStatus, RunView
+from mend.sim.tabletop.layout import lay_out
+from mend.tasks.random_task import random_task
+from mend.tasks.resolution import Resolution
+from mend.tasks.scenario import Person
 
 TWO_PARTS = definition_of(
     {
@@ -198,7 +198,7 @@ HELD = {"part_1": [("missed", 4)]}
 @pytest.fixture
 def deaf_watch(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let no simulated time pass while a question is open: live helpers take their time."""
-    from server.runtime.dialogue_looks import DialogueLooks
+    from mend.server.runtime.dialogue_looks import DialogueLooks
 
     monkeypatch.setattr(DialogueLooks, "let_time_pass", lambda *_: None)
 
@@ -317,7 +317,7 @@ async def test_a_fault_of_ours_fails_the_run_instead_of_hanging_it(
     def broken(*_: object) -> None:
         raise RuntimeError("no such thing")
 
-    monkeypatch.setattr("server.runtime.run.choose", broken)
+    monkeypatch.setattr("mend.server.runtime.run.choose", broken)
     async with pretend_service(TWO_PARTS) as service:
         view, events = await asyncio.wait_for(service.run_to_end(), timeout=60)
     assert view.status is RunStatus.FAILED

@@ -5,9 +5,9 @@ import asyncio
 import pytest
 from told_robot import Body, Obey, ToldRobot, at_work, end_of, works
 
-from server.journal.sqlite import SqliteJournal
-from server.runtime.context import RunSettings
-from server.runtime.views import RunStatus
+from mend.server.journal.sqlite import SqliteJournal
+from mend.server.runtime.context import RunSettings
+from mend.server.runtime.views import RunStatus
 
 SOON = RunSettings(robot_silent_timeout_s=0.2)
 

@@ -7,12 +7,12 @@ from broken_constraints import broken_constraints
 from pretend_service import pretend_service
 from task_documents import definition_of
 
-from server.dialogues import answers as answering
-from server.dialogues.escalation import EscalationPolicy
-from server.journal import events as ev
-from server.runtime.views import RunStatus, RunView
-from sim.tabletop.layout import lay_out
-from tasks.resolution import Resolution
+from mend.server.dialogues import answers as answering
+from mend.server.dialogues.escalation import EscalationPolicy
+from mend.server.journal import events as ev
+from mend.server.runtime.views import RunStatus, RunView
+from mend.sim.tabletop.layout import lay_out
+from mend.tasks.resolution import Resolution
 
 NAMES = [("part_1", "spot_1"), ("part_2", "spot_2")]
 SCENE = lay_out(NAMES, seed=1)

@@ -12,15 +12,15 @@ from pretend_robots import PretendRobot
 from pretend_service import pretend_service
 from task_documents import definition_of
 
-from dialogue.registry import load_scripts
-from server.journal import events as ev
-from server.runtime.context import RunSettings
-from server.runtime.run_state import RunState
-from server.runtime.views import RunStatus, RunView
-from sim.tabletop.layout import lay_out
-from tasks.definition import TaskTreeDefinition
-from tasks.random_task import random_task
-from tasks.task_tree import TaskTree
+from mend.dialogue.registry import load_scripts
+from mend.server.journal import events as ev
+from mend.server.runtime.context import RunSettings
+from mend.server.runtime.run_state import RunState
+from mend.server.runtime.views import RunStatus, RunView
+from mend.sim.tabletop.layout import lay_out
+from mend.tasks.definition import TaskTreeDefinition
+from mend.tasks.random_task import random_task
+from mend.tasks.task_tree import TaskTree
 
 NAMES = [(f"part_{i}", f"spot_{i}") for i in range(1, 6)]
 SCENE = lay_out(NAMES, seed=1)

@@ -11,12 +11,12 @@ from full_disk import FailingConnection, Passing, SmallDisk, small_disk
 from pretend_service import PretendService, pretend_service
 from task_documents import definition_of
 
-from robots.link.messages import Interrupt, Start
-from server.journal import events as ev
-from server.journal.journal import JournalWriteError
-from server.journal.run_index import RunPage
-from server.runtime.requests import RunRequest
-from server.runtime.views import RunStatus, RunView
+from mend.robots.link.messages import Interrupt, Start
+from mend.server.journal import events as ev
+from mend.server.journal.journal import JournalWriteError
+from mend.server.journal.run_index import RunPage
+from mend.server.runtime.requests import RunRequest
+from mend.server.runtime.views import RunStatus, RunView
 
 THREE_PARTS = definition_of(
     {
@@ -171,7 +171,7 @@ async def test_a_fault_of_ours_meanwhile_fails_the_run_once_it_can_be_written(
         def broken(*_: object) -> None:
             raise RuntimeError("no such thing")
 
-        monkeypatch.setattr("server.runtime.run.Run._reported", broken)
+        monkeypatch.setattr("mend.server.runtime.run.Run._reported", broken)
         connection.error = None
         await check_end(service, run, RunStatus.FAILED)
 

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from server.speech.endpointing import FRAME_S, FRAME_SAMPLES, SAMPLE_RATE_HZ, Edge, Endpointer
+from mend.server.speech.endpointing import FRAME_S, FRAME_SAMPLES, SAMPLE_RATE_HZ, Edge, Endpointer
 
 QUIET, LOUD = 30.0, 3000.0
 

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from server.speech.commands import AMBIGUOUS, PHRASES, Command, phrase_commands
-from server.speech.language_model import Weights, command_in, write_language_model
+from mend.server.speech.commands import AMBIGUOUS, PHRASES, Command, phrase_commands
+from mend.server.speech.language_model import Weights, command_in, write_language_model
 
 WORDS = sorted({word for each in (*phrase_commands(), *AMBIGUOUS) for word in each.split()})
 

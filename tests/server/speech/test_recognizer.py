@@ -5,10 +5,10 @@ import pytest
 
 pytest.importorskip("pocketsphinx", reason="pocketsphinx is not installed")
 
-from server.speech.commands import Command, phrase_commands
-from server.speech.decoding import Hypothesis
-from server.speech.endpointing import SAMPLE_RATE_HZ
-from server.speech.recognizer import (
+from mend.server.speech.commands import Command, phrase_commands
+from mend.server.speech.decoding import Hypothesis
+from mend.server.speech.endpointing import SAMPLE_RATE_HZ
+from mend.server.speech.recognizer import (
     FRAME_BYTES,
     LEAD_S,
     Heard,

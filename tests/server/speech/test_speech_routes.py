@@ -9,11 +9,11 @@ import pytest
 from scripted_ears import ScriptedEars, ToneVoice
 from service_under_test import ServiceUnderTest, build
 
-from server.runtime.requests import RunRequest
-from server.runtime.views import DialogueView
-from server.speech.abilities import SpeechAbilities
-from server.speech.phrases import FIXED
-from server.speech.rendering import SpokenTexts, render_prompts
+from mend.server.runtime.requests import RunRequest
+from mend.server.runtime.views import DialogueView
+from mend.server.speech.abilities import SpeechAbilities
+from mend.server.speech.phrases import FIXED
+from mend.server.speech.rendering import SpokenTexts, render_prompts
 
 
 @pytest.fixture

@@ -4,8 +4,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from server.speech.commands import Command
-from server.speech.conversation import (
+from mend.server.speech.commands import Command
+from mend.server.speech.conversation import (
     MAX_APOLOGIES,
     PAUSE_S,
     Act,
@@ -21,7 +21,7 @@ from server.speech.conversation import (
     State,
     Understood,
 )
-from server.speech.phrases import SORRY
+from mend.server.speech.phrases import SORRY
 
 QUESTION = "Shall I try again?"
 HELP = "If you say yes: I try again. If you say no: I do not."

@@ -4,9 +4,9 @@ import pytest
 
 pytest.importorskip("pocketsphinx", reason="pocketsphinx is not installed")
 
-from server.speech.commands import Command
-from server.speech.decoding import Hypothesis
-from server.speech.sureness import (
+from mend.server.speech.commands import Command
+from mend.server.speech.decoding import Hypothesis
+from mend.server.speech.sureness import (
     MORE_MARGIN,
     NOISY_BELOW_DB,
     NOISY_MARGIN,

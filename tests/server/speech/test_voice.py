@@ -13,8 +13,8 @@ from pathlib import Path
 import pytest
 from scripted_ears import ToneVoice
 
-from server.speech.rendering import SpokenTexts
-from server.speech.voice import CommandVoice, NoVoice, VoiceChoice, VoiceError, choose_voice
+from mend.server.speech.rendering import SpokenTexts
+from mend.server.speech.voice import CommandVoice, NoVoice, VoiceChoice, VoiceError, choose_voice
 
 
 def choose(choice: VoiceChoice = "auto", piper_model: Path | None = None) -> object:

@@ -3,8 +3,8 @@
 import pytest
 from tabletop_hands import Hands
 
-from sim.tabletop.world import TabletopWorld
-from tasks.scene import Place, Pose, Scene, SceneObject
+from mend.sim.tabletop.world import TabletopWorld
+from mend.tasks.scene import Place, Pose, Scene, SceneObject
 
 
 @pytest.fixture

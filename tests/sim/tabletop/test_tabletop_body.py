@@ -8,9 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from tabletop_hands import TABLE_M, Hands
 
-from robots.body import ToolPose
-from sim.tabletop.world import TabletopWorld
-from tasks.scene import Scene
+from mend.robots.body import ToolPose
+from mend.sim.tabletop.world import TabletopWorld
+from mend.tasks.scene import Scene
 
 
 def test_a_segment_is_straight_and_takes_longer_when_slower(hands: Hands) -> None:

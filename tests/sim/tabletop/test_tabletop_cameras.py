@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from tabletop_hands import Hands
 
-from robots.body import CameraImage
-from sim.tabletop.world import TabletopOptions, TabletopWorld
-from tasks.scene import Scene
+from mend.robots.body import CameraImage
+from mend.sim.tabletop.world import TabletopOptions, TabletopWorld
+from mend.tasks.scene import Scene
 
 
 def project(image: CameraImage, point: tuple[float, float, float]) -> tuple[float, float]:

@@ -5,13 +5,13 @@ import math
 import pytest
 from agent_driver import Driver
 
-from robots.link.messages import Finished, Holding, Interrupt, Intervene, Look, Looked, Resume
-from sim.tabletop.adapter import TabletopAdapter
-from sim.tabletop.layout import lay_out
-from sim.world import WorldSetup
-from tasks.intervention import Act, Intervention
-from tasks.scenario import ScriptedIntervention, Trigger
-from tasks.scene import Pose, Scene
+from mend.robots.link.messages import Finished, Holding, Interrupt, Intervene, Look, Looked, Resume
+from mend.sim.tabletop.adapter import TabletopAdapter
+from mend.sim.tabletop.layout import lay_out
+from mend.sim.world import WorldSetup
+from mend.tasks.intervention import Act, Intervention
+from mend.tasks.scenario import ScriptedIntervention, Trigger
+from mend.tasks.scene import Pose, Scene
 
 LAID_OUT = lay_out([(f"o{i}", f"p{i}") for i in range(6)], seed=2)
 

@@ -6,11 +6,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robots.body import ToolPose
-from sim.tabletop.adapter import adapter
-from sim.tabletop.layout import MOST_OBJECTS, LayoutError, distinct_colors, lay_out
-from sim.tabletop.world import TabletopWorld
-from tasks.definition import BehaviorNode
+from mend.robots.body import ToolPose
+from mend.sim.tabletop.adapter import adapter
+from mend.sim.tabletop.layout import MOST_OBJECTS, LayoutError, distinct_colors, lay_out
+from mend.sim.tabletop.world import TabletopWorld
+from mend.tasks.definition import BehaviorNode
 
 
 @given(

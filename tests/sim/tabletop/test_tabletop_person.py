@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from tabletop_hands import TABLE_M, Hands
 
-from robots.body import ToolPose
-from sim.acts import HAND_OVER_S
-from sim.tabletop.world import TabletopWorld
-from tasks.intervention import Act, Intervention
-from tasks.scene import Pose
+from mend.robots.body import ToolPose
+from mend.sim.acts import HAND_OVER_S
+from mend.sim.tabletop.world import TabletopWorld
+from mend.tasks.intervention import Act, Intervention
+from mend.tasks.scene import Pose
 
 
 def do(world: TabletopWorld, act: Act, name: str | None = None, **more: object) -> str:

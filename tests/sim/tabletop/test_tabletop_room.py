@@ -3,11 +3,11 @@
 import pytest
 from agent_driver import Driver
 
-from robots.link.messages import Finished, Intervene, Look, Looked, Resume, Resumed
-from sim.tabletop.adapter import TabletopAdapter
-from sim.world import WorldSetup
-from tasks.intervention import Act, Intervention
-from tasks.scene import Place, Pose, Scene, SceneObject
+from mend.robots.link.messages import Finished, Intervene, Look, Looked, Resume, Resumed
+from mend.sim.tabletop.adapter import TabletopAdapter
+from mend.sim.world import WorldSetup
+from mend.tasks.intervention import Act, Intervention
+from mend.tasks.scene import Place, Pose, Scene, SceneObject
 
 AT = Pose(x=0.5, y=0.0)
 BESIDE = {"west": Pose(x=0.459, y=0.0), "north": Pose(x=0.5, y=0.046)}

@@ -2,8 +2,8 @@
 
 import pytest
 
-from sim.random_scene import random_scene
-from sim.tabletop.adapter import TabletopAdapter
+from mend.sim.random_scene import random_scene
+from mend.sim.tabletop.adapter import TabletopAdapter
 
 
 @pytest.mark.parametrize(("seed", "count"), [(1300004, 25), (1300000, 25), (1, 12)])

@@ -2,9 +2,9 @@
 
 from tabletop_hands import Hands
 
-from robots.link.messages import ShownPose
-from sim.tabletop.world import TabletopWorld
-from tasks.intervention import Act, Intervention
+from mend.robots.link.messages import ShownPose
+from mend.sim.tabletop.world import TabletopWorld
+from mend.tasks.intervention import Act, Intervention
 
 
 def shown(world: TabletopWorld, name: str) -> ShownPose:

@@ -9,15 +9,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robots.catalogue import Catalogue
-from robots.link.messages import Location
-from robots.senses import Senses
-from robots.vision.presence import Presence
-from sim.tabletop.colors import learn_colors
-from sim.tabletop.world import TabletopOptions, TabletopWorld
-from tasks.intervention import Act, Intervention
-from tasks.scene import Pose, Scene, SceneObject
-from tasks.scene_file import built_in_scene
+from mend.robots.catalogue import Catalogue
+from mend.robots.link.messages import Location
+from mend.robots.senses import Senses
+from mend.robots.vision.presence import Presence
+from mend.sim.tabletop.colors import learn_colors
+from mend.sim.tabletop.world import TabletopOptions, TabletopWorld
+from mend.tasks.intervention import Act, Intervention
+from mend.tasks.scene import Pose, Scene, SceneObject
+from mend.tasks.scene_file import built_in_scene
 
 NOISY = TabletopOptions(camera_noise=4.0, light=1.0, depth_noise=1.0)
 BOLT = SceneObject(color=(0.2, 0.5, 0.8), size=(0.024, 0.04, 0.03), pose=Pose(x=0.5, y=0.0))

@@ -7,10 +7,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from tabletop_hands import Hands
 
-from sim.tabletop.layout import lay_out
-from sim.tabletop.world import TabletopWorld
-from tasks.intervention import Act, Intervention
-from tasks.scene import Pose, Scene
+from mend.sim.tabletop.layout import lay_out
+from mend.sim.tabletop.world import TabletopWorld
+from mend.tasks.intervention import Act, Intervention
+from mend.tasks.scene import Pose, Scene
 
 SCENE = lay_out([(f"part{i}", f"place{i}") for i in range(5)], seed=3)
 

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from sim.tabletop.layout import lay_out
-from sim.tabletop.world import TabletopOptions, TabletopWorld
-from tasks.intervention import Act, Intervention
+from mend.sim.tabletop.layout import lay_out
+from mend.sim.tabletop.world import TabletopOptions, TabletopWorld
+from mend.tasks.intervention import Act, Intervention
 
 SCENE = lay_out([("part_1", "spot_1"), ("part_2", "spot_2")], seed=3)
 

@@ -8,8 +8,8 @@ pytest.importorskip("pybullet", reason="PyBullet has wheels for Python 3.10 and 
 
 from workcell_hands import Hands
 
-from sim.workcell.world import WorkcellWorld
-from tasks.scene import Place, Pose, Scatter, Scene, SceneObject
+from mend.sim.workcell.world import WorkcellWorld
+from mend.tasks.scene import Place, Pose, Scatter, Scene, SceneObject
 
 
 @pytest.fixture(scope="session")

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from workcell_hands import TABLE_M, distance_m
 
-from robots.link.messages import (
+from mend.robots.link.messages import (
     Finished,
     Intervene,
     IssueDetected,
@@ -18,16 +18,16 @@ from robots.link.messages import (
     Resume,
     Start,
 )
-from sim.simulated_agent import SimulatedAgent
-from sim.workcell.adapter import adapter
-from sim.workcell.body import PERIOD_S
-from sim.workcell.parts import PartPose
-from sim.workcell.world import WorkcellWorld
-from sim.world import SceneChecker, WorldSetup
-from tasks.intervention import Act, Intervention
-from tasks.plugins import load_plugins
-from tasks.scenario import ScriptedIntervention, Trigger
-from tasks.scene import Place, Pose, Scene, SceneObject
+from mend.sim.simulated_agent import SimulatedAgent
+from mend.sim.workcell.adapter import adapter
+from mend.sim.workcell.body import PERIOD_S
+from mend.sim.workcell.parts import PartPose
+from mend.sim.workcell.world import WorkcellWorld
+from mend.sim.world import SceneChecker, WorldSetup
+from mend.tasks.intervention import Act, Intervention
+from mend.tasks.plugins import load_plugins
+from mend.tasks.scenario import ScriptedIntervention, Trigger
+from mend.tasks.scene import Place, Pose, Scene, SceneObject
 
 pytestmark = pytest.mark.slow
 

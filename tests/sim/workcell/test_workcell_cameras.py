@@ -7,15 +7,15 @@ import pytest
 from numpy.typing import NDArray
 from workcell_hands import Hands
 
-from robots.body import CameraImage
-from robots.vision.projection import project, unproject
-from sim.workcell.options import WorkcellOptions
-from sim.workcell.parts import Part
-from sim.workcell.physics import to_matrix
-from sim.workcell.rendering import Rendering
-from sim.workcell.world import WorkcellWorld
-from tasks.intervention import Act, Intervention
-from tasks.scene import Scene
+from mend.robots.body import CameraImage
+from mend.robots.vision.projection import project, unproject
+from mend.sim.workcell.options import WorkcellOptions
+from mend.sim.workcell.parts import Part
+from mend.sim.workcell.physics import to_matrix
+from mend.sim.workcell.rendering import Rendering
+from mend.sim.workcell.world import WorkcellWorld
+from mend.tasks.intervention import Act, Intervention
+from mend.tasks.scene import Scene
 
 pytestmark = pytest.mark.slow
 

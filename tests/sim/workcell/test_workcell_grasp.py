@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from workcell_hands import TABLE_M, Hands, distance_m
 
-from robots.body import Matrix4, ToolPose
-from sim.workcell.parts import PartPose
-from sim.workcell.physics import to_matrix
-from sim.workcell.world import WorkcellWorld
-from tasks.scene import Pose, Scene, SceneObject
+from mend.robots.body import Matrix4, ToolPose
+from mend.sim.workcell.parts import PartPose
+from mend.sim.workcell.physics import to_matrix
+from mend.sim.workcell.world import WorkcellWorld
+from mend.tasks.scene import Pose, Scene, SceneObject
 
 pytestmark = pytest.mark.slow
 

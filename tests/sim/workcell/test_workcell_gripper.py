@@ -5,14 +5,14 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from robots.gripper import ToolBox
-from sim.workcell.gripper import (
+from mend.robots.gripper import ToolBox
+from mend.sim.workcell.gripper import (
     FINGERS_OPEN_RAD,
     PR2_GRIPPER,
     finger_angle_rad,
     inner_side_m,
 )
-from sim.workcell.robot_model import FINGER_JOINTS, TOOL_FRAME, robot_urdf
+from mend.sim.workcell.robot_model import FINGER_JOINTS, TOOL_FRAME, robot_urdf
 
 ANGLES = (0.02, 0.1, 0.2, 0.3, 0.4, FINGERS_OPEN_RAD)
 CLOSE_M = 0.0006

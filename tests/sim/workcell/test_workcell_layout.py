@@ -2,8 +2,8 @@
 
 from workcell_hands import TABLE_M
 
-from sim.workcell.world import WorkcellWorld
-from tasks.scene import Pose, Scatter, Scene
+from mend.sim.workcell.world import WorkcellWorld
+from mend.tasks.scene import Pose, Scatter, Scene
 
 
 def test_parts_start_on_the_table_within_the_scatter(world: WorkcellWorld, scene: Scene) -> None:

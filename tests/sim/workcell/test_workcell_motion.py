@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from workcell_hands import TABLE_M, Hands
 
-from robots.body import ToolPose
-from sim.workcell.world import WorkcellWorld
+from mend.robots.body import ToolPose
+from mend.sim.workcell.world import WorkcellWorld
 
 HIGH = ToolPose(0.50, -0.35, TABLE_M + 0.25, 0.3)
 LOW = ToolPose(0.50, -0.35, TABLE_M + 0.15, 0.3)

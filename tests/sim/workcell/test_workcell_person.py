@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from workcell_hands import TABLE_M, Hands, distance_m, do
 
-from robots.body import ToolPose
-from sim.acts import HAND_OVER_S
-from sim.workcell.parts import PartPose
-from sim.workcell.world import WorkcellWorld
-from tasks.intervention import Act
-from tasks.scene import Pose
+from mend.robots.body import ToolPose
+from mend.sim.acts import HAND_OVER_S
+from mend.sim.workcell.parts import PartPose
+from mend.sim.workcell.world import WorkcellWorld
+from mend.tasks.intervention import Act
+from mend.tasks.scene import Pose
 
 
 def seen(world: WorkcellWorld, name: str) -> bool:

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from workcell_hands import TABLE_M
 
-from sim.workcell.bench import Bench
-from sim.workcell.hand import HOLD_FORCE_N, PULL_FORCE_N, Hand
-from sim.workcell.parts import Part, PartPose
-from sim.workcell.physics import CONTROL_HZ, Client, connect
-from tasks.scene import Pose, Scene, SceneObject
+from mend.sim.workcell.bench import Bench
+from mend.sim.workcell.hand import HOLD_FORCE_N, PULL_FORCE_N, Hand
+from mend.sim.workcell.parts import Part, PartPose
+from mend.sim.workcell.physics import CONTROL_HZ, Client, connect
+from mend.tasks.scene import Pose, Scene, SceneObject
 
 LONG_ASLEEP_S = 4.0
 LOW_M = 0.03

@@ -9,19 +9,19 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robots.motion.kinematics import KinematicChain, UrdfError
-from sim.workcell import robot_model
-from sim.workcell.mesh_repair import read_stl, repair_stl
-from sim.workcell.physics import Client, connect, to_matrix
-from sim.workcell.quiet import silenced
-from sim.workcell.robot_model import (
+from mend.robots.motion.kinematics import KinematicChain, UrdfError
+from mend.sim.workcell import robot_model
+from mend.sim.workcell.mesh_repair import read_stl, repair_stl
+from mend.sim.workcell.physics import Client, connect, to_matrix
+from mend.sim.workcell.quiet import silenced
+from mend.sim.workcell.robot_model import (
     ARM_JOINTS,
     FOREARM_CAMERA_FRAME,
     TOOL_FRAME,
     check_installed,
     robot_urdf,
 )
-from sim.world import WorldUnavailableError
+from mend.sim.world import WorldUnavailableError
 
 
 @pytest.fixture(scope="module")

@@ -5,20 +5,20 @@ import json
 import numpy as np
 import pytest
 
-from robots.behaviors.behavior import Situation, Step
-from robots.behaviors.errand import Errand
-from robots.behaviors.pick_and_place import PickAndPlace, PickAndPlaceParameters
-from robots.behaviors.planning import Plan, at_once, plan_amid
-from robots.feasibility.standing import Standing, at_place, starts
-from robots.link.messages import Location
-from server.behaviors import behavior_parameters
-from sim.random_scene import random_scene
-from sim.tabletop.adapter import adapter as tabletop
-from sim.workcell.adapter import adapter as workcell
-from sim.workcell.world import WorkcellWorld
-from tasks.definition import BehaviorNode, TaskTreeDefinition
-from tasks.scene import Place, Pose, Scene, SceneObject
-from tasks.task_file import check_task_text
+from mend.robots.behaviors.behavior import Situation, Step
+from mend.robots.behaviors.errand import Errand
+from mend.robots.behaviors.pick_and_place import PickAndPlace, PickAndPlaceParameters
+from mend.robots.behaviors.planning import Plan, at_once, plan_amid
+from mend.robots.feasibility.standing import Standing, at_place, starts
+from mend.robots.link.messages import Location
+from mend.server.behaviors import behavior_parameters
+from mend.sim.random_scene import random_scene
+from mend.sim.tabletop.adapter import adapter as tabletop
+from mend.sim.workcell.adapter import adapter as workcell
+from mend.sim.workcell.world import WorkcellWorld
+from mend.tasks.definition import BehaviorNode, TaskTreeDefinition
+from mend.tasks.scene import Place, Pose, Scene, SceneObject
+from mend.tasks.task_file import check_task_text
 
 SEEN_M = 0.001
 """What the head camera is off by, at most times."""

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from workcell_hands import Hands, do
 
-from robots.link.messages import ShownPose
-from robots.showing import JointedBody
-from server.models import RobotModels
-from sim.workcell.adapter import adapter
-from sim.workcell.world import WorkcellWorld
-from tasks.intervention import Act
+from mend.robots.link.messages import ShownPose
+from mend.robots.showing import JointedBody
+from mend.server.models import RobotModels
+from mend.sim.workcell.adapter import adapter
+from mend.sim.workcell.world import WorkcellWorld
+from mend.tasks.intervention import Act
 
 
 def shown(world: WorkcellWorld, name: str) -> ShownPose:

@@ -5,13 +5,13 @@ import math
 import numpy as np
 import pytest
 
-from robots.catalogue import Catalogue
-from robots.vision.table_view import TableView, view_table
-from robots.vision.tracking import LastSeen
-from sim.workcell.colors import learn_colors
-from sim.workcell.options import WorkcellOptions
-from sim.workcell.world import WorkcellWorld
-from tasks.scene import Pose, Scene, SceneObject
+from mend.robots.catalogue import Catalogue
+from mend.robots.vision.table_view import TableView, view_table
+from mend.robots.vision.tracking import LastSeen
+from mend.sim.workcell.colors import learn_colors
+from mend.sim.workcell.options import WorkcellOptions
+from mend.sim.workcell.world import WorkcellWorld
+from mend.tasks.scene import Pose, Scene, SceneObject
 
 COLORS = [(0.9, 0.2, 0.1), (0.1, 0.6, 0.2), (0.1, 0.3, 0.9), (0.8, 0.7, 0.1), (0.6, 0.1, 0.6)]
 

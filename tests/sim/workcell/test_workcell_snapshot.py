@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from workcell_hands import Hands, distance_m, do
 
-from sim.workcell.robot_model import NEUTRAL_RAD
-from sim.workcell.world import WorkcellWorld
-from tasks.intervention import Act
-from tasks.scene import Pose, Scene
+from mend.sim.workcell.robot_model import NEUTRAL_RAD
+from mend.sim.workcell.world import WorkcellWorld
+from mend.tasks.intervention import Act
+from mend.tasks.scene import Pose, Scene
 
 pytestmark = pytest.mark.slow
 

@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, invariant, precondition, rule
 from small_building import fleet_in_building
 
-from fleet.scheduling.problem import Item, Visit, Window
-from fleet.scheduling.replanning.events import (
+from mend.fleet.scheduling.problem import Item, Visit, Window
+from mend.fleet.scheduling.replanning.events import (
     Cancelled,
     DoorClosed,
     Event,
@@ -20,7 +20,7 @@ from fleet.scheduling.replanning.events import (
     WayBlocked,
     WayOpen,
 )
-from fleet.scheduling.replanning.item_state import ItemState
+from mend.fleet.scheduling.replanning.item_state import ItemState
 
 gaps = st.sampled_from((0.0, 1.0, 7.5, 20.0, 60.0))
 numbers = st.integers(0, 10_000)

@@ -6,9 +6,9 @@ from math import inf
 import pytest
 from delivery_problems import corridor, parcel
 
-from fleet.scheduling.building_travel import travel_in
-from fleet.scheduling.problem import Item, Robot, Transfers, Visit, Window
-from fleet.scheduling.replanning.events import (
+from mend.fleet.scheduling.building_travel import travel_in
+from mend.fleet.scheduling.problem import Item, Robot, Transfers, Visit, Window
+from mend.fleet.scheduling.replanning.events import (
     Cancelled,
     DoorClosed,
     Event,
@@ -21,11 +21,11 @@ from fleet.scheduling.replanning.events import (
     WayBlocked,
     WayOpen,
 )
-from fleet.scheduling.replanning.item_state import ItemState, ItemStateError, TrackedItem
-from fleet.scheduling.replanning.open_ways import OpenWays
-from fleet.scheduling.replanning.running_fleet import RunningFleet
-from fleet.scheduling.schedule import Action
-from maps.navigation import NavigationGraph, Place, Way, WayKind
+from mend.fleet.scheduling.replanning.item_state import ItemState, ItemStateError, TrackedItem
+from mend.fleet.scheduling.replanning.open_ways import OpenWays
+from mend.fleet.scheduling.replanning.running_fleet import RunningFleet
+from mend.fleet.scheduling.schedule import Action
+from mend.maps.navigation import NavigationGraph, Place, Way, WayKind
 
 FREE = (Robot("left", 0, None, 2.0), Robot("right", 4, None, 2.0))
 

@@ -1,0 +1,40 @@
+"""Reads a log of any known format, told by what its lines begin with."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+from mend.localization.logs.carmen import read_carmen
+from mend.localization.logs.csv_log import read_csv
+from mend.localization.logs.log import Log, LogError
+from mend.localization.logs.text_lines import numbered_lines
+from mend.localization.logs.wean import read_wean
+
+FORMATS: dict[str, Callable[[Path], Log]] = {
+    "carmen": read_carmen,
+    "wean": read_wean,
+    "csv": read_csv,
+}
+_LINES_LOOKED_AT = 1000
+_CARMEN = ("FLASER", "RLASER", "ROBOTLASER1", "ODOM", "PARAM", "NEFF", "SYNC", "TRUEPOS")
+
+
+def read_log(path: Path) -> Log:
+    """The log of a file. Raises `LogError`, or `OSError`."""
+    return FORMATS[_format_of(path)](path)
+
+
+def _format_of(path: Path) -> str:
+    for number, line in numbered_lines(path):
+        first = line.split(maxsplit=1)[0] if line else ""
+        if first in _CARMEN:
+            return "carmen"
+        if first in ("L", "O") and len(line.split()) > 4:
+            return "wean"
+        if line.lstrip("\ufeff").startswith(("time_s,", '"time_s"')):
+            return "csv"
+        if number >= _LINES_LOOKED_AT:
+            break
+    raise LogError(
+        f"{path}: neither a CARMEN log (FLASER, ODOM lines), nor a Wean Hall log (L, O lines), "
+        "nor CSV whose first column is time_s"
+    )

@@ -1,0 +1,1 @@
+"""Mend: runs robots through task trees, and asks a person for help when they fail."""

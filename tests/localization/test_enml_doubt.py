@@ -1,0 +1,94 @@
+"""What speaks for and against a robot's place: what it sees through, and what the map explains."""
+
+import numpy as np
+import pytest
+
+from mend.localization.enml.change import changed, seen_through
+from mend.localization.enml.familiarity import seen_before
+from mend.localization.enml.lost import Evidence
+from mend.localization.enml.motion_model import Travel
+from mend.localization.enml.parameters import EnmlParameters
+from mend.localization.enml.pose_node import PoseNode
+from mend.localization.points import scan_points
+from mend.localization.pose import Poses
+from mend.localization.scan import Scan
+from mend.maps.ray_cast import cast
+
+ROOM = np.array([[-3, -2, 3, -2], [3, -2, 3, 2], [3, 2, -3, 2], [-3, 2, -3, -2]], dtype=np.float64)
+HALL = 2.0 * ROOM
+PERSON = np.array([[0.6, -0.5, 0.6, 0.5]])
+HERE = np.zeros(3)
+
+
+def seen(world: np.ndarray, pose: Poses) -> PoseNode:
+    angles = np.linspace(-2.0, 2.0, 121)
+    ranges, _ = cast(world, float(pose[0]), float(pose[1]), pose[2] + angles, 20.0)
+    scan = Scan(ranges, -2.0, float(angles[1] - angles[0]), 20.0)
+    return PoseNode.of(0, scan, scan_points(scan), Travel(), 0.15)
+
+
+def test_driving_on_changes_nothing() -> None:
+    on = np.array([0.5, 0.1, 0.3])
+    assert changed(seen(ROOM, HERE), HERE, seen(ROOM, on), on) == 0.0
+
+
+def test_what_comes_into_view_from_behind_an_edge_has_not_changed() -> None:
+    edge = np.vstack([HALL, [[1.0, 0.3, 1.0, 4.0]]])
+    on = np.array([1.5, 0.0, 0.4])
+    assert changed(seen(edge, HERE), HERE, seen(edge, on), on) < 0.02
+
+
+def test_who_steps_before_the_robot_appears_and_hides_what_did_not_vanish() -> None:
+    alone, met = seen(ROOM, HERE), seen(np.vstack([ROOM, PERSON]), HERE)
+    assert seen_through(met, HERE, alone, HERE) == 0.0
+    assert 0.2 < changed(alone, HERE, met, HERE) < 0.4
+
+
+def test_a_smaller_room_is_seen_through_from_a_larger() -> None:
+    assert seen_through(seen(HALL, HERE), HERE, seen(ROOM, HERE), HERE) > 0.9
+    assert changed(seen(ROOM, HERE), HERE, seen(HALL, HERE), HERE) > 0.9
+
+
+def test_only_what_both_looked_at_is_compared() -> None:
+    behind = np.array([0.0, 0.0, np.pi])
+    assert changed(seen(ROOM, HERE), HERE, seen(ROOM, behind), behind) < 0.02
+    assert changed(seen(ROOM, HERE), HERE, seen(HALL, behind), behind) > 0.9
+
+
+def test_what_was_seen_before_is_recognized_after_driving_on() -> None:
+    on = np.array([0.3, 0.1, 0.2])
+    recognized = seen_before(seen(ROOM, HERE), seen(ROOM, on), on, EnmlParameters())
+    assert recognized.mean() > 0.8
+    elsewhere = seen_before(seen(ROOM, HERE), seen(HALL, on), on, EnmlParameters())
+    assert elsewhere.mean() < 0.05
+
+
+def test_what_faces_another_way_is_not_recognized() -> None:
+    straight, slanted = ([[2.0, -1.0, 2.0 + lean, 1.0]] for lean in (0.0, 2.0))
+    before, now = (seen(np.array(wall), HERE) for wall in (straight, slanted))
+    away_m, _ = before.tree.query(now.scan_points.points)
+    near = away_m < EnmlParameters().stf_gate_m
+    assert near.any()
+    assert not seen_before(before, now, HERE, EnmlParameters())[near].any()
+
+
+def test_nothing_seen_is_nothing_changed() -> None:
+    nowhere = np.array([50.0, 50.0, 0.0])
+    assert changed(seen(ROOM, nowhere), HERE, seen(ROOM, HERE), HERE) == 0.0
+    assert changed(seen(ROOM, HERE), HERE, seen(ROOM, nowhere), HERE) == 0.0
+
+
+@pytest.mark.parametrize("before", [0.0, 50.0, 500.0])
+def test_what_the_map_does_not_show_contradicts_no_place(before: float) -> None:
+    assert Evidence(on_map=50.0, before=before).contradiction == 0.0
+
+
+def test_returns_from_behind_walls_contradict_a_place() -> None:
+    few, many = (Evidence(on_map=50.0, behind=behind, before=50.0) for behind in (2.0, 30.0))
+    assert few.contradiction < 0.1
+    assert many.contradiction > 0.75
+
+
+def test_no_return_neither_speaks_for_nor_against() -> None:
+    assert Evidence().contradiction == 0.0
+    assert Evidence().lost == 1.0

@@ -1,0 +1,222 @@
+"""Finding a lost robot: candidates, polishing, weighing, and not choosing where nothing tells."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from mend.localization.distance_field import DistanceField, distance_field
+from mend.localization.enml.classification import cast_bearings
+from mend.localization.enml.episode import Episode
+from mend.localization.enml.global_search import GlobalSearch, Region, distinct, score_places
+from mend.localization.enml.looks import glance, looks_of, weigh
+from mend.localization.enml.parameters import EnmlParameters
+from mend.localization.enml.polishing import polish
+from mend.localization.enml.prior import whitening_of
+from mend.localization.enml.recovery import Recovery
+from mend.localization.enml.visible import Visible
+from mend.localization.points import scan_points
+from mend.localization.pose import Poses, relative, transform, wrap_angle
+from mend.localization.scan import Scan
+from mend.maps.ray_cast import cast
+from mend.maps.vector_map import VectorMap
+
+REACH_M = 12.0
+
+
+def box(x0: float, y0: float, x1: float, y1: float) -> list[list[float]]:
+    return [[x0, y0, x1, y0], [x1, y0, x1, y1], [x1, y1, x0, y1], [x0, y1, x0, y0]]
+
+
+HERE = [*box(0, 0, 9, 6), [3, 0, 3, 2.5], [6.5, 6, 6.5, 4], *box(1, 4.5, 2, 5)]
+ELSEWHERE = [*box(30, 0, 39, 6), [33, 6, 33, 3.5], [37, 0, 37, 2]]
+FLOOR = VectorMap.of([*HERE, *ELSEWHERE])
+TWINS = VectorMap.of([*HERE, *[[x0 + 30, y0, x1 + 30, y1] for x0, y0, x1, y1 in HERE]])
+WAY = np.array([[2.0 + 0.4 * step, 3.2, 0.1 * step] for step in range(6)])
+
+
+def field_of(vector_map: VectorMap) -> DistanceField:
+    return distance_field(vector_map, 0.1, 1.0)
+
+
+def recovery_on(vector_map: VectorMap) -> Recovery:
+    x_min, y_min, x_max, y_max = vector_map.bounds
+    return Recovery(
+        vector_map.segments,
+        Region(x_min, y_min, x_max, y_max),
+        field_of(vector_map),
+        REACH_M,
+        EnmlParameters(),
+    )
+
+
+def seen_along(way: Poses, vector_map: VectorMap, believed: Poses) -> Episode:
+    """An episode of a robot on its way that believes to have begun elsewhere."""
+    episode = Episode(EnmlParameters(), believed, whitening_of(np.eye(3)))
+    angles = np.linspace(-2.2, 2.2, 151)
+    for index, pose in enumerate(way):
+        ranges, hit = cast(
+            vector_map.segments, float(pose[0]), float(pose[1]), pose[2] + angles, REACH_M
+        )
+        scan = Scan(
+            np.where(hit >= 0, ranges, np.inf), -2.2, float(angles[1] - angles[0]), REACH_M, index
+        )
+        motion = relative(way[index - 1], pose) if index else np.zeros(3)
+        episode.extend(motion, scan, scan_points(scan))
+    return episode
+
+
+def off_m(found: Poses, pose: Poses) -> float:
+    assert abs(wrap_angle(found[2] - pose[2])) < np.radians(3.0)
+    return float(np.hypot(*(found - pose)[:2]))
+
+
+@given(
+    x=st.floats(0.2, 8.8), y=st.floats(0.2, 5.8), heading=st.floats(-7.0, 7.0), off=st.floats(-3, 3)
+)
+@settings(max_examples=25, deadline=None)
+def test_bearings_in_order_are_cast_like_any_angles(
+    x: float, y: float, heading: float, off: float
+) -> None:
+    bearings = off + np.linspace(0.0, 6.0, 40)
+    sensor = np.array([x, y, heading])
+    expected, _ = cast(FLOOR.segments, x, y, heading + bearings, REACH_M)
+    on_all, _ = cast_bearings(FLOOR.segments, sensor, bearings, REACH_M)
+    np.testing.assert_allclose(on_all, expected, atol=1e-9)
+    near = Visible(FLOOR.segments, REACH_M).cast(sensor, bearings, REACH_M)
+    np.testing.assert_allclose(near, expected, atol=1e-9)
+
+
+def test_the_lattice_sums_how_well_all_points_fit() -> None:
+    generator = np.random.default_rng(3)
+    step, height, width, cell_m = 2, 9, 11, 0.1
+    fit = generator.integers(0, 256, (height * step, width * step)).astype(np.uint8)
+    phases = np.ascontiguousarray(fit.reshape(height, step, width, step).transpose(1, 3, 0, 2))
+    points = generator.uniform(-1.0, 1.0, (20, 2))
+    first = np.array([2, 1])
+    scores = np.zeros((3, 4, 5), dtype=np.uint16)
+    headings = np.array([0.0, 1.0, 4.0])
+    score_places(phases, first, cell_m, points, headings, scores)
+    for heading, angle in enumerate(headings):
+        turned = transform(np.array([0.0, 0.0, angle]), points)
+        cells = first + np.floor(turned / cell_m + 0.5).astype(int)
+        for row in range(4):
+            for column in range(5):
+                at = cells + step * np.array([column, row])
+                inside = ((at >= 0) & (at < [width * step, height * step])).all(axis=1)
+                expected = int(fit[at[inside, 1], at[inside, 0]].astype(int).sum())
+                assert scores[heading, row, column] == expected
+
+
+def test_the_right_place_is_among_the_candidates() -> None:
+    episode = seen_along(WAY, FLOOR, WAY[0])
+    points = episode.nodes[-1].scan_points.points
+    x_min, y_min, x_max, y_max = FLOOR.bounds
+    found = GlobalSearch(field_of(FLOOR)).candidates(
+        points, Region(x_min, y_min, x_max, y_max), 200
+    )
+    away = [
+        np.hypot(*(each - WAY[-1])[:2])
+        for each in found
+        if abs(wrap_angle(each[2] - WAY[-1][2])) < 0.1
+    ]
+    assert min(away) < 0.5
+
+
+def test_nothing_seen_gives_no_candidates() -> None:
+    region = Region(0.0, 0.0, 9.0, 6.0)
+    assert GlobalSearch(field_of(FLOOR)).candidates(np.zeros((0, 2)), region, 10) == []
+
+
+@pytest.mark.parametrize("off", [(0.4, -0.3, 0.08), (-0.3, 0.35, -0.1), (0.0, 0.0, 0.0)])
+def test_polishing_brings_a_place_to_where_it_belongs(off: tuple[float, float, float]) -> None:
+    episode = seen_along(WAY, FLOOR, WAY[0])
+    visible = Visible(FLOOR.segments, REACH_M)
+    found = polish(visible, looks_of(episode, 3), WAY[-1] + np.array(off), EnmlParameters())
+    assert off_m(found, WAY[-1]) < 0.02
+
+
+def test_the_right_place_weighs_more_than_one_that_is_off() -> None:
+    looks = looks_of(seen_along(WAY, FLOOR, WAY[0]), 3)
+    visible, field = Visible(FLOOR.segments, REACH_M), field_of(FLOOR)
+    right = weigh(visible, field, looks, WAY[-1])
+    aside = weigh(visible, field, looks, WAY[-1] + np.array([0.3, 0.2, 0.0]))
+    assert right.evidence.behind == 0.0
+    assert right.sharp > 0.95 * right.evidence.returns
+    assert aside.sharp < 0.8 * right.sharp
+    assert glance(visible, looks[0], WAY[-1]) > 0.9
+    assert glance(visible, looks[0], WAY[-1] + np.array([28.0, 0.0, 1.0])) < 0.6
+
+
+def test_a_robot_is_found_wherever_it_believes_to_be() -> None:
+    episode = seen_along(WAY, FLOOR, np.array([35.0, 3.0, 2.0]))
+    found = recovery_on(FLOOR).search(episode, None, 2.0)
+    assert found is not None
+    assert off_m(found.pose, WAY[-1]) < 0.02
+    assert found.score > 0.9
+
+
+def test_between_places_that_are_all_the_same_none_is_chosen() -> None:
+    episode = seen_along(WAY, TWINS, np.array([20.0, 3.0, 0.0]))
+    for path_m in (0.0, 2.0, 100.0):
+        assert recovery_on(TWINS).search(episode, None, path_m) is None
+
+
+def test_where_it_is_expected_a_robot_is_found_although_another_place_is_the_same() -> None:
+    episode = seen_along(WAY, TWINS, WAY[0])
+    found = recovery_on(TWINS).search(episode, episode.poses[-1], 0.0)
+    assert found is not None
+    assert off_m(found.pose, WAY[-1]) < 0.02
+
+
+def test_a_place_left_open_is_taken_once_it_is_clearly_better() -> None:
+    recovery = recovery_on(FLOOR)
+    wrong = WAY[-1] + np.array([30.0, 0.0, 0.0])
+    assert recovery.reconsider(seen_along(WAY[:-1], FLOOR, WAY[0]), wrong) is None
+    recovery.search(seen_along(WAY[:-1], FLOOR, WAY[0]), None, 0.0)
+    recovery.move(relative(WAY[-2], WAY[-1]))
+    found = recovery.reconsider(seen_along(WAY, FLOOR, WAY[0]), wrong)
+    assert found is not None
+    assert off_m(found.pose, WAY[-1]) < 0.02
+    assert recovery.reconsider(seen_along(WAY, FLOOR, WAY[0]), found.pose) is None
+    recovery.forget()
+    assert recovery.reconsider(seen_along(WAY, FLOOR, WAY[0]), wrong) is None
+
+
+def test_where_it_was_before_a_robot_is_believed_sooner_than_elsewhere() -> None:
+    """The other room has its cupboard 0.3 m farther on, too little to be sure at first."""
+    cupboard = box(31.3, 4.5, 32.3, 5)
+    other = [[x0 + 30, y0, x1 + 30, y1] for x0, y0, x1, y1 in HERE[:-4]]
+    alike = VectorMap.of([*HERE, *other, *cupboard])
+    episode = seen_along(WAY, alike, np.array([20.0, 3.0, 0.0]))
+    recovery = recovery_on(alike)
+    assert recovery.search(episode, None, 0.0) is None
+    recovery.forget(last=WAY[-1] + np.array([30.0, 0.0, 0.0]))
+    assert recovery.search(episode, None, 0.0) is None
+    recovery.forget(last=WAY[-1])
+    found = recovery.search(episode, None, 0.0)
+    assert found is not None
+    assert off_m(found.pose, WAY[-1]) < 0.02
+
+
+def test_in_a_corridor_there_are_candidates_from_one_end_to_the_other() -> None:
+    narrowing = VectorMap.of(
+        [[0, -1.6, 30, -1.0], [0, 1.6, 30, 1.0], [0, -1.6, 0, 1.6], [30, -1.0, 30, 1.0]]
+    )
+    way = np.array([[9.0 + 0.4 * step, 0.0, 0.0] for step in range(4)])
+    points = seen_along(way, narrowing, way[0]).nodes[-1].scan_points.points
+    found = GlobalSearch(field_of(narrowing)).candidates(points, Region(0, -1.6, 30, 1.6), 200)
+    ahead = [each[0] for each in found if abs(wrap_angle(each[2])) < 0.2 and abs(each[1]) < 0.7]
+    for along_m in np.arange(2.0, 26.0, 0.5):
+        assert min(np.abs(np.array(ahead) - along_m)) <= 0.8
+
+
+def test_on_an_empty_map_nobody_is_found() -> None:
+    nothing = VectorMap.of([])
+    assert recovery_on(nothing).search(seen_along(WAY, FLOOR, WAY[0]), None, 5.0) is None
+
+
+def test_of_places_that_are_the_same_only_the_first_is_kept() -> None:
+    places = np.array([[0.0, 0.0, 3.1], [0.3, 0.0, -3.1], [0.0, 0.0, 1.0], [2.0, 0.0, 3.1]])
+    assert distinct(places) == [0, 2, 3]
+    assert distinct(np.zeros((0, 3))) == []
