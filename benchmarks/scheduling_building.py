@@ -17,14 +17,15 @@ from pathlib import Path
 from random import Random
 from statistics import mean
 
-from mend.fleet.scheduling.drawing.bars import BarGroup, bars
-from mend.fleet.scheduling.exact.solve import solve_exactly
-from mend.fleet.scheduling.instances.building import (
+from office_building import (
     BINDING,
     LOOSE,
     BuildingPlan,
     building_deliveries,
 )
+
+from mend.fleet.scheduling.drawing.bars import BarGroup, bars
+from mend.fleet.scheduling.exact.solve import solve_exactly
 from mend.fleet.scheduling.problem import Problem
 from mend.fleet.scheduling.problem_file import problem_of
 from mend.fleet.scheduling.routing.solve import solve_alns
@@ -85,7 +86,7 @@ def measure_exactly(problem: Problem, seconds: float, seed: int) -> Draw:
 def measure_large(problem: Problem, seconds: float, seed: int) -> Draw | None:
     """PyVRP without transfers and the search with them; None where there is no PyVRP."""
     try:
-        from mend.fleet.scheduling.peers.pyvrp_search import solve_by_pyvrp
+        from peers.pyvrp_search import solve_by_pyvrp
     except ImportError:
         print("PyVRP is not installed here; pip install 'mend-robots[peers]'")
         return None

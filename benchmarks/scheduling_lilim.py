@@ -31,9 +31,9 @@ OUT = Path("out/scheduling_lilim.svg")
 SAME = 1e-4
 """Two distances are equal when they differ by less than this share."""
 PEERS = {
-    "ortools": ("mend.fleet.scheduling.peers.ortools_routing", "solve_by_ortools_routing"),
-    "pyvrp": ("mend.fleet.scheduling.peers.pyvrp_search", "solve_by_pyvrp"),
-    "vroom": ("mend.fleet.scheduling.peers.vroom_search", "solve_by_vroom"),
+    "ortools": ("peers.ortools_routing", "solve_by_ortools_routing"),
+    "pyvrp": ("peers.pyvrp_search", "solve_by_pyvrp"),
+    "vroom": ("peers.vroom_search", "solve_by_vroom"),
 }
 
 Solve = Callable[..., Solution]

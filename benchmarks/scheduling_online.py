@@ -17,8 +17,9 @@ from math import ceil
 from random import Random
 from statistics import mean, median
 
-from mend.fleet.scheduling.instances.building import BuildingPlan, building_deliveries
-from mend.fleet.scheduling.instances.happenings import Happenings
+from fleet_happenings import Happenings
+from office_building import BuildingPlan, building_deliveries
+
 from mend.fleet.scheduling.problem import Item, Problem, Visit, Window
 from mend.fleet.scheduling.problem_file import navigation_graph, problem_of
 from mend.fleet.scheduling.replanning.events import Event, NewItem, RobotDelayed, RobotFailed

@@ -12,9 +12,7 @@ from math import isfinite
 from mend.fleet.scheduling.item_way import BrokenWayError, Leg, item_way, item_ways
 from mend.fleet.scheduling.problem import Item, Problem, Window
 from mend.fleet.scheduling.schedule import Action, Schedule, Stop
-
-TOLERANCE_S = 1e-6
-TOLERANCE_LOAD = 1e-9
+from mend.fleet.scheduling.tolerance import CHECK_S, LOAD
 
 
 class ScheduleError(Exception):
@@ -72,7 +70,7 @@ def _drive(problem: Problem, schedule: Schedule, robot: int) -> Iterator[str]:
     described, planned = problem.robots[robot], schedule.robots[robot]
     who = described.name
     place, free_s = described.start, planned.leaves_s
-    if planned.leaves_s < described.shift.earliest_s - TOLERANCE_S:
+    if planned.leaves_s < described.shift.earliest_s - CHECK_S:
         yield f"{who} leaves at {planned.leaves_s:g} s, before its shift begins"
     for stop in planned.stops:
         if not 0 <= stop.task.item < len(problem.items):
@@ -81,17 +79,17 @@ def _drive(problem: Problem, schedule: Schedule, robot: int) -> Iterator[str]:
         what = f"{stop.task.action} {problem.items[stop.task.item].name}"
         if not _can_be_there(problem, robot, (place, stop.task.place), free_s, stop.arrival_s):
             yield f"{who} cannot be there to {what} at {stop.arrival_s:g} s"
-        if not stop.begin_s >= stop.arrival_s - TOLERANCE_S:
+        if not stop.begin_s >= stop.arrival_s - CHECK_S:
             yield f"{who} begins to {what} before it arrives"
-        if not stop.departure_s >= stop.begin_s + _service_s(problem, stop) - TOLERANCE_S:
+        if not stop.departure_s >= stop.begin_s + _service_s(problem, stop) - CHECK_S:
             yield f"{who} departs before it is done with {what}"
         place, free_s = stop.task.place, stop.departure_s
     end = place if described.end is None else described.end
     if not _can_be_there(problem, robot, (place, end), free_s, planned.ends_s):
         yield f"{who} cannot be at its end at {planned.ends_s:g} s"
-    if not planned.ends_s <= described.shift.latest_s + TOLERANCE_S:
+    if not planned.ends_s <= described.shift.latest_s + CHECK_S:
         yield f"{who} is at its end at {planned.ends_s:g} s, after its shift"
-    if not planned.ends_s - planned.leaves_s <= described.max_duration_s + TOLERANCE_S:
+    if not planned.ends_s - planned.leaves_s <= described.max_duration_s + CHECK_S:
         yield f"{who} is away for longer than {described.max_duration_s:g} s"
 
 
@@ -103,11 +101,11 @@ def _can_be_there(
         return False
     travel = problem.travel
     if trip[0] == trip[1] or not travel.epochs:
-        return arrival_s >= leaves_s + problem.travel_time_s(robot, *trip) - TOLERANCE_S
+        return arrival_s >= leaves_s + problem.travel_time_s(robot, *trip) - CHECK_S
     speed = problem.robots[robot].speed
     return any(
         max(leaves_s, epoch.from_s) + epoch.time_s[trip] / speed
-        <= min(arrival_s, epoch.until_s) + TOLERANCE_S
+        <= min(arrival_s, epoch.until_s) + CHECK_S
         for epoch in travel.epochs
     )
 
@@ -124,12 +122,12 @@ def _service_s(problem: Problem, stop: Stop) -> float:
 def _loads(problem: Problem, schedule: Schedule, robot: int) -> Iterator[str]:
     capacity = problem.robots[robot].capacity
     load = sum(item.load for item in problem.items if item.aboard == robot)
-    if load > capacity + TOLERANCE_LOAD:
+    if load > capacity + LOAD:
         yield f"{problem.robots[robot].name} carries {load:g} at the beginning, more than it can"
     for stop in schedule.robots[robot].stops:
         item = problem.items[stop.task.item]
         load += item.load if stop.task.action.loads else -item.load
-        if load > capacity + TOLERANCE_LOAD:
+        if load > capacity + LOAD:
             name = problem.robots[robot].name
             yield f"{name} carries {load:g} after it has item '{item.name}', more than {capacity:g}"
 
@@ -152,7 +150,7 @@ def _item(problem: Problem, schedule: Schedule, item: Item, legs: tuple[Leg, ...
     if drop.task.place != item.delivery.place:
         yield f"item '{item.name}' is delivered to the wrong place"
     yield from _window(f"the delivery of item '{item.name}'", drop, item.delivery.window)
-    if not drop.begin_s - loaded_s <= item.max_on_board_s + TOLERANCE_S:
+    if not drop.begin_s - loaded_s <= item.max_on_board_s + CHECK_S:
         yield f"item '{item.name}' is on board for {drop.begin_s - loaded_s:g} s, too long"
     for giving, taking in pairwise(legs):
         assert taking.load is not None, "only the first leg may begin without a load"
@@ -161,9 +159,9 @@ def _item(problem: Problem, schedule: Schedule, item: Item, legs: tuple[Leg, ...
 
 
 def _window(what: str, stop: Stop, window: Window) -> Iterator[str]:
-    if not stop.begin_s >= window.earliest_s - TOLERANCE_S:
+    if not stop.begin_s >= window.earliest_s - CHECK_S:
         yield f"{what} begins at {stop.begin_s:g} s, before {window.earliest_s:g} s"
-    if not stop.begin_s <= window.latest_s + TOLERANCE_S:
+    if not stop.begin_s <= window.latest_s + CHECK_S:
         yield f"{what} begins at {stop.begin_s:g} s, after {window.latest_s:g} s"
 
 
@@ -172,9 +170,9 @@ def _transfer(problem: Problem, item: Item, give: Stop, take: Stop) -> Iterator[
         place = problem.places[give.task.place]
         yield f"item '{item.name}' changes robots at {place}, which is no transfer place"
     if problem.transfers.together:
-        if abs(take.begin_s - give.begin_s) > TOLERANCE_S:
+        if abs(take.begin_s - give.begin_s) > CHECK_S:
             yield f"item '{item.name}' changes robots, but they are not there together"
-    elif not take.begin_s >= give.departure_s - TOLERANCE_S:
+    elif not take.begin_s >= give.departure_s - CHECK_S:
         yield f"item '{item.name}' is taken at {take.begin_s:g} s, before it was given"
 
 

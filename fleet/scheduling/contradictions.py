@@ -15,7 +15,8 @@ from mend.fleet.scheduling.problem import Problem, Robot, Transfers
 from mend.fleet.scheduling.schedule import Action, Task
 from mend.fleet.scheduling.temporal_network import ORIGIN, Conflict, TemporalNetwork
 from mend.fleet.scheduling.timing import TimedRoutes
-from mend.fleet.scheduling.travel import TOLERANCE_S, Matrix, Travel
+from mend.fleet.scheduling.tolerance import DOOR_S
+from mend.fleet.scheduling.travel import Matrix, Travel
 
 
 @dataclass(frozen=True, slots=True)
@@ -250,6 +251,6 @@ def _arrivals_s(travel: Travel, origin: int, leaves_s: float, speed: float) -> M
         left[place] = False
         for epoch in travel.epochs:
             there_s = max(arrivals_s[place], epoch.from_s) + epoch.time_s[place] / speed
-            there_s[there_s > epoch.until_s + TOLERANCE_S] = inf
+            there_s[there_s > epoch.until_s + DOOR_S] = inf
             np.minimum(arrivals_s, there_s, out=arrivals_s)
     return arrivals_s

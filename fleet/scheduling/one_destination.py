@@ -20,11 +20,11 @@ from mend.fleet.scheduling.problem import Problem, Robot, Window
 from mend.fleet.scheduling.schedule import Action, Route, Schedule, Task
 from mend.fleet.scheduling.solution import Progress, Solution, Status, UnsupportedError
 from mend.fleet.scheduling.timing import Untimeable, earliest_schedule
+from mend.fleet.scheduling.tolerance import LENGTH_M, proves
 from mend.fleet.scheduling.travel import Matrix
 
 EXACT_PLACES = 10
 """Up to this many different pickups the shortest walk is found."""
-TOLERANCE_M = 1e-6
 
 
 def solve_to_one_destination(
@@ -54,7 +54,7 @@ def solve_to_one_destination(
         problem, seconds=seconds - (clock() - began_s), seed=seed, start=start, clock=clock
     )
     assert shared.cost is not None, "it began with a schedule"
-    proved = bound is not None and shared.cost.total <= bound + TOLERANCE_M
+    proved = bound is not None and proves(bound, shared.cost.total)
     status = Status.OPTIMAL if proved else Status.FEASIBLE
     return Solution(status, shared.schedule, shared.cost, bound, clock() - began_s)
 
@@ -100,7 +100,7 @@ def _why_no_metric(problem: Problem) -> Iterator[str]:
     else:
         for via in range(len(apart_m)):
             over_m = apart_m[:, via, None] + apart_m[None, via]
-            if (apart_m > over_m + TOLERANCE_M).any():
+            if (apart_m > over_m + LENGTH_M).any():
                 place = problem.places[via]
                 yield f"some way is longer than the detour over '{place}'"
                 return

@@ -2,10 +2,10 @@
 
 from typing import NamedTuple
 
-from mend.fleet.scheduling.checker import TOLERANCE_LOAD, TOLERANCE_S
 from mend.fleet.scheduling.problem import Problem, Visit
 from mend.fleet.scheduling.schedule import Action, Route
 from mend.fleet.scheduling.timing import service_s
+from mend.fleet.scheduling.tolerance import CHECK_S, LOAD
 
 
 class RouteEstimate(NamedTuple):
@@ -32,16 +32,16 @@ def estimate(problem: Problem, robot: int, route: Route) -> RouteEstimate | None
         if visit is not None:
             time_s = max(time_s, visit.window.earliest_s)
             lateness_s += max(0.0, time_s - visit.due_s)
-            if time_s > visit.window.latest_s + TOLERANCE_S:
+            if time_s > visit.window.latest_s + CHECK_S:
                 return None
         time_s += service_s(problem, task)
         completion_s += time_s if task.action is Action.DROP else 0.0
-        if load > described.capacity + TOLERANCE_LOAD:
+        if load > described.capacity + LOAD:
             return None
     if described.end is not None:
         time_s, homeward_m = trip(place, described.end, time_s, described.speed)
         distance_m += homeward_m
-    if not time_s <= described.shift.latest_s + TOLERANCE_S:
+    if not time_s <= described.shift.latest_s + CHECK_S:
         return None
     return RouteEstimate(distance_m, time_s, completion_s, lateness_s)
 

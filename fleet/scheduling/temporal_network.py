@@ -11,14 +11,13 @@ from dataclasses import dataclass
 from math import inf
 from typing import Generic, TypeVar
 
+from mend.fleet.scheduling.tolerance import TIMING_S
+
 Reason = TypeVar("Reason", bound=Hashable)
 """What a constraint is called in explanations."""
 
 ORIGIN = 0
 """The event at time 0 from which all times count."""
-
-TOLERANCE_S = 1e-7
-"""Rounding may not turn a chain that just fits into a conflict."""
 
 
 @dataclass(frozen=True)
@@ -146,14 +145,14 @@ class TemporalNetwork(Generic[Reason]):
         Returns that way, its last constraint first and `edge` at its end.
         """
         earliest = self._earliest
-        if earliest[edge.earlier] + edge.gap_s <= earliest[edge.later] + TOLERANCE_S:
+        if earliest[edge.earlier] + edge.gap_s <= earliest[edge.later] + TIMING_S:
             return None
         cause: dict[int, _Edge[Reason]] = {}
         waiting = deque((edge,))
         while waiting:
             pushing = waiting.popleft()
             time_s = earliest[pushing.earlier] + pushing.gap_s
-            if time_s <= earliest[pushing.later] + TOLERANCE_S:
+            if time_s <= earliest[pushing.later] + TIMING_S:
                 continue
             if pushing.later in (edge.earlier, ORIGIN):
                 way = [pushing]
@@ -171,7 +170,7 @@ class TemporalNetwork(Generic[Reason]):
         while waiting:
             pulling = waiting.popleft()
             time_s = latest[pulling.later] - pulling.gap_s
-            if time_s >= latest[pulling.earlier] - TOLERANCE_S or pulling.earlier == ORIGIN:
+            if time_s >= latest[pulling.earlier] - TIMING_S or pulling.earlier == ORIGIN:
                 continue
             self._set(latest, pulling.earlier, time_s)
             waiting.extend(self._in[pulling.earlier])
@@ -201,7 +200,7 @@ class TemporalNetwork(Generic[Reason]):
             here = waiting.popleft()
             for edge in self._in[here]:
                 gap_s = self._earliest[here] - self._earliest[edge.earlier]
-                if edge.earlier not in next_edge and abs(gap_s - edge.gap_s) <= 10 * TOLERANCE_S:
+                if edge.earlier not in next_edge and abs(gap_s - edge.gap_s) <= 10 * TIMING_S:
                     next_edge[edge.earlier] = edge
                     waiting.append(edge.earlier)
         if ORIGIN in next_edge:

@@ -9,7 +9,8 @@ from mend.fleet.scheduling.constraint import Constraint, ConstraintKind, sentenc
 from mend.fleet.scheduling.item_way import Leg, item_ways
 from mend.fleet.scheduling.problem import Problem, Window
 from mend.fleet.scheduling.schedule import Action, RobotSchedule, Route, Schedule, Stop, Task
-from mend.fleet.scheduling.temporal_network import ORIGIN, TOLERANCE_S, Conflict, TemporalNetwork
+from mend.fleet.scheduling.temporal_network import ORIGIN, Conflict, TemporalNetwork
+from mend.fleet.scheduling.tolerance import TIMING_S
 
 MAX_ROUNDS = 1000
 """How often the times of routes may be moved because of doors."""
@@ -164,7 +165,7 @@ class TimedRoutes:
                 return
             leaves_s = earliest_s(before) + busy_s
             arrival_s = travel.trip(place, destination, leaves_s, described.speed).arrival_s
-            if arrival_s > earliest_s(event) + TOLERANCE_S:
+            if arrival_s > earliest_s(event) + TIMING_S:
                 lasts_s = travel.shortest_lasting_s(place, destination, leaves_s, described.speed)
                 reason = Constraint(ConstraintKind.OPENING, robot, task)
                 yield _LateTrip(before, event, busy_s + lasts_s, arrival_s, reason)

@@ -13,8 +13,7 @@ from typing import NamedTuple, Self
 import numpy as np
 from numpy.typing import NDArray
 
-TOLERANCE_S = 5e-7
-"""Rounding may not make a robot miss a door that it just reaches."""
+from mend.fleet.scheduling.tolerance import DOOR_S
 
 Matrix = NDArray[np.float64]
 
@@ -102,7 +101,7 @@ class Travel:
         for epoch in self.epochs:
             lasts_s = float(epoch.time_s[origin, destination]) / speed
             arrival_s = max(leaves_s, epoch.from_s) + lasts_s
-            if arrival_s < inf and arrival_s <= epoch.until_s + TOLERANCE_S:
+            if arrival_s < inf and arrival_s <= epoch.until_s + DOOR_S:
                 best = min(best, Trip(arrival_s, float(epoch.distance_m[origin, destination])))
         return best
 
@@ -115,7 +114,7 @@ class Travel:
         shortest_s = inf
         for epoch in self.epochs:
             lasts_s = float(epoch.time_s[origin, destination]) / speed
-            if leaves_s + lasts_s <= epoch.until_s + TOLERANCE_S:
+            if leaves_s + lasts_s <= epoch.until_s + DOOR_S:
                 shortest_s = min(shortest_s, lasts_s)
         return shortest_s
 

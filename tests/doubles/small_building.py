@@ -2,7 +2,8 @@
 
 from random import Random
 
-from mend.fleet.scheduling.instances.building import BuildingPlan, building_deliveries
+from office_building import BuildingPlan, building_deliveries
+
 from mend.fleet.scheduling.problem import Problem
 from mend.fleet.scheduling.problem_file import navigation_graph, problem_of
 from mend.fleet.scheduling.replanning.open_ways import OpenWays

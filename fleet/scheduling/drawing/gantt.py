@@ -7,6 +7,7 @@ from math import floor, log10
 from mend.fleet.scheduling.drawing.svg import Svg, color, text_width_px
 from mend.fleet.scheduling.problem import Problem
 from mend.fleet.scheduling.schedule import Action, RobotSchedule, Schedule
+from mend.fleet.scheduling.tolerance import CHECK_S
 
 STRIP_PX = 9.0
 LANE_PX = 20.0
@@ -148,7 +149,7 @@ def _draw_transfers(
                 r for r in rides[robot] if r.item == item and r.until_s == stop.departure_s
             )
             taken = next(
-                r for r in rides[partner] if r.item == item and r.from_s >= stop.begin_s - 1e-6
+                r for r in rides[partner] if r.item == item and r.from_s >= stop.begin_s - CHECK_S
             )
             ends = (
                 (axis.x(given.until_s), _bar_y(given, tops[robot]) + 2.5),

@@ -14,10 +14,8 @@ import numpy as np
 from mend.fleet.scheduling.exact.linear_program import LinearProgram
 from mend.fleet.scheduling.exact.nodes import Node, NodeKind, arcs, nodes_of, travel
 from mend.fleet.scheduling.problem import Problem, Visit
+from mend.fleet.scheduling.tolerance import safe_bound
 from mend.fleet.scheduling.travel import shortest_ways
-
-TOLERANCE = 1e-6
-"""The share by which HiGHS may be wrong."""
 
 WIDE = 0.98
 """The share of all ways between visits that wide windows leave."""
@@ -47,7 +45,7 @@ def flow_bound(problem: Problem, seconds: float) -> float | None:
     proved = _FlowProgram(problem).program.bound(seconds)
     if proved is None or not isfinite(proved):
         return proved
-    return max(0.0, proved - TOLERANCE * (1.0 + abs(proved)))
+    return max(0.0, safe_bound(proved))
 
 
 class _FlowProgram:

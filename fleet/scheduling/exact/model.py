@@ -14,6 +14,7 @@ from ortools.sat.python import cp_model
 from mend.fleet.scheduling.exact.nodes import Node, NodeKind, arcs, nodes_of, travel
 from mend.fleet.scheduling.problem import Problem
 from mend.fleet.scheduling.schedule import Action
+from mend.fleet.scheduling.tolerance import WHOLE
 
 SCALE = 1000
 
@@ -70,21 +71,21 @@ class ExactModel:
     def _lasting(self, seconds: float) -> int:
         """A duration that something takes."""
         if self.rounding is Rounding.UP:
-            return ceil(seconds * SCALE - 1e-6)
-        return floor(seconds * SCALE + 1e-6)
+            return ceil(seconds * SCALE - WHOLE)
+        return floor(seconds * SCALE + WHOLE)
 
     def _until(self, seconds: float) -> int:
         """A latest time or longest duration."""
         if not isfinite(seconds):
             return self._horizon
-        return min(self._horizon, floor(seconds * SCALE + 1e-6))
+        return min(self._horizon, floor(seconds * SCALE + WHOLE))
 
     def _find_horizon(self) -> int:
         """A time by which everything is over, in thousandths of seconds."""
         problem = self.problem
         shifts = [robot.shift.latest_s for robot in problem.robots]
         if all(isfinite(latest_s) for latest_s in shifts):
-            return floor(max(shifts) * SCALE + 1e-6)
+            return floor(max(shifts) * SCALE + WHOLE)
         finite = problem.travel.time_s[problem.travel.time_s < inf]
         slowest = min(robot.speed for robot in problem.robots)
         visits = [visit for item in problem.items for visit in (item.pickup, item.delivery)]
@@ -217,7 +218,7 @@ class ExactModel:
         loads = [round(item.load * SCALE) for item in self.problem.items]
         if not isfinite(capacity) or sum(loads) <= capacity * SCALE:
             return
-        limit = floor(capacity * SCALE + 1e-6)
+        limit = floor(capacity * SCALE + WHOLE)
         for number in range(len(variables.nodes)):
             for state in (variables.arrives_with, variables.leaves_with):
                 self.model.add(sum(loads[i] * state[number, i] for i in items) <= limit)
@@ -341,7 +342,7 @@ class ExactModel:
         if isfinite(capacity):
             loads = [round(item.load * SCALE) for item in self.problem.items]
             full = sum(loads[i] * (robot.arrives_with[at, i] + robot.takes[at, i]) for i in items)
-            limit = floor(capacity * SCALE + 1e-6)
+            limit = floor(capacity * SCALE + WHOLE)
             model.add(full <= limit).only_enforce_if(~gives_first)
 
     # --- objective ----------------------------------------------------------------------------

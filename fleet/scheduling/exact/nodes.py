@@ -5,6 +5,7 @@ from enum import Enum, auto
 from math import inf
 
 from mend.fleet.scheduling.problem import Problem, Window
+from mend.fleet.scheduling.tolerance import CHECK_S
 
 
 class NodeKind(Enum):
@@ -85,4 +86,4 @@ def _follows(problem: Problem, robot: int, origin: Node, destination: Node) -> b
         return False
     shift = problem.robots[robot].shift
     earliest_s = max(origin.window.earliest_s, shift.earliest_s) + origin.service_s + time_s
-    return earliest_s <= min(destination.window.latest_s, shift.latest_s) + 1e-9
+    return earliest_s <= min(destination.window.latest_s, shift.latest_s) + CHECK_S

@@ -20,6 +20,7 @@ from mend.fleet.scheduling.exact.state_expansion import (
     with_robot,
 )
 from mend.fleet.scheduling.problem import Problem
+from mend.fleet.scheduling.tolerance import LENGTH_M
 from mend.fleet.scheduling.travel import shortest_ways
 
 MOST_STATES = 200_000
@@ -195,6 +196,6 @@ def _detours_may_pay(problem: Problem) -> bool:
     for matrix in (problem.travel.distance_m, problem.travel.time_s):
         for place in problem.transfers.places:
             over = matrix[:, place, None] + matrix[None, place, :]
-            if bool((over < matrix - 1e-9).any()):
+            if bool((over < matrix - LENGTH_M).any()):
                 return True
     return False

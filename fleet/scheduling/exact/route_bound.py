@@ -19,10 +19,9 @@ from mend.fleet.scheduling.exact.robot_states import RobotStates, states_of
 from mend.fleet.scheduling.exact.route_costs import Staircases, routes_below, staircases
 from mend.fleet.scheduling.exact.state_expansion import Floats, Integers
 from mend.fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit
+from mend.fleet.scheduling.tolerance import CHECK_S, error, safe_bound
 from mend.fleet.scheduling.travel import Travel
 
-TOLERANCE = 1e-6
-"""The share by which HiGHS may be wrong."""
 SMOOTHING = 0.5
 """How much of the best prices so far is in the prices that routes are looked for with."""
 MOST_PRICED, MOST_ADDED = 400, 60
@@ -60,7 +59,7 @@ class RouteBound:
     @property
     def bound(self) -> float:
         """What no schedule costs less than, as far as it is proved; infinite if there is none."""
-        safe = self._proved - TOLERANCE * (1.0 + abs(self._proved))
+        safe = safe_bound(self._proved)
         return safe if safe <= self.dearest else inf
 
     def prove(self, seconds: float, clock: Callable[[], float]) -> None:
@@ -76,13 +75,13 @@ class RouteBound:
             if proved > self._proved:
                 self._proved, self._prices = proved, tried
             smooth = added > 0
-            done = value - self._proved <= TOLERANCE * (1.0 + abs(value))
+            done = value - self._proved <= error(value)
             if done or not isfinite(proved) or clock() > until_s:
                 break
 
     def routes(self, cost: float, most: int) -> list[list[RobotRoute]] | None:
         """Every robot's routes in schedules up to a cost; None where they are more than `most`."""
-        spare = cost - self._proved + TOLERANCE * (1.0 + abs(cost))
+        spare = cost - self._proved + error(cost)
         found: list[list[RobotRoute]] = []
         left = most
         for robot in self._robots:
@@ -135,7 +134,7 @@ class RouteBound:
             own = len(self._sides) - len(self._robots) + number
             least = robot.cheapest(stairs)
             bound += least - float(prices[own])
-            below = float(prices[own]) - TOLERANCE
+            below = float(prices[own]) - error(0.0)
             rows, costs = robot.routes_below(stairs, move_cost, below, MOST_PRICED)
             for index in np.argsort(costs, kind="stable")[:MOST_ADDED]:
                 added += self._add(number, own, rows[index])
@@ -196,7 +195,7 @@ class _Robot:
     def cheapest(self, stairs: Staircases) -> float:
         """What the cheapest route costs."""
         steps = slice(stairs.first[0], stairs.first[0] + stairs.steps[0])
-        costs = stairs.cost[steps][stairs.leave_by_s[steps] >= self._states.starts_s - TOLERANCE]
+        costs = stairs.cost[steps][stairs.leave_by_s[steps] >= self._states.starts_s - CHECK_S]
         return float(costs.min(initial=inf))
 
     def routes_below(

@@ -8,7 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from mend.fleet.scheduling.exact.robot_states import RobotStates
-from mend.fleet.scheduling.exact.state_expansion import TOLERANCE, Floats, Integers
+from mend.fleet.scheduling.exact.state_expansion import Floats, Integers
+from mend.fleet.scheduling.tolerance import CHECK_S
 from mend.maps.compiled import compiled
 
 MOST_STEPS = 4096
@@ -56,7 +57,7 @@ def staircases(robot: RobotStates, move_cost: Floats, end_cost: Floats, most: in
         for move in range(robot.first_move[state], robot.first_move[state + 1]):
             after = moves.target[move]
             for step in range(first[after], first[after] + steps[after]):
-                if moves.over_from_s[move] > leave_by_s[step] + TOLERANCE:
+                if moves.over_from_s[move] > leave_by_s[step] + CHECK_S:
                     continue
                 arrive_s = min(moves.arrives_by_s[move], leave_by_s[step] - moves.lasts_s[move])
                 whole = move_cost[move] + cost[step]
@@ -77,7 +78,7 @@ def staircases(robot: RobotStates, move_cost: Floats, end_cost: Floats, most: in
 def rest_of(stairs: Staircases, state: int, leaves_s: float) -> float:
     """The least cost to end from a state that is left at a time; infinite if impossible."""
     for step in range(stairs.first[state], stairs.first[state] + stairs.steps[state]):
-        if stairs.leave_by_s[step] >= leaves_s - TOLERANCE:
+        if stairs.leave_by_s[step] >= leaves_s - CHECK_S:
             return float(stairs.cost[step])
     return np.inf
 
@@ -108,7 +109,7 @@ def routes_below(
             next_move[depth] = robot.first_move[here]
             whole = spent[depth] + end_cost[here]
             home_s = leaves_s[depth] + robot.end_s[here]
-            if whole <= ceiling and home_s <= robot.ends_by_s + TOLERANCE:
+            if whole <= ceiling and home_s <= robot.ends_by_s + CHECK_S:
                 if found == most:
                     break
                 routes[found, :depth], costs[found] = route[:depth], whole
@@ -120,7 +121,7 @@ def routes_below(
             continue
         next_move[depth] += 1
         arrives_s = leaves_s[depth] + robot.travel_s[move]
-        if arrives_s > moves.arrives_by_s[move] + TOLERANCE:
+        if arrives_s > moves.arrives_by_s[move] + CHECK_S:
             continue
         over_s = max(arrives_s + moves.lasts_s[move], moves.over_from_s[move])
         after = moves.target[move]

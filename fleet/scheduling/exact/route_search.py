@@ -7,7 +7,7 @@ from dataclasses import replace
 from math import inf, isfinite
 
 from mend.fleet.scheduling.exact.constraint_search import Effort, search
-from mend.fleet.scheduling.exact.model import Rounding
+from mend.fleet.scheduling.exact.model import SCALE, Rounding
 from mend.fleet.scheduling.exact.route_bound import RobotRoute, RouteBound, route_bound
 from mend.fleet.scheduling.objective import cost
 from mend.fleet.scheduling.problem import Problem
@@ -95,6 +95,6 @@ def _proved(found: Solution, routes: RouteBound, ceiling: float) -> Solution:
     bound = max(routes.bound, min(found.bound or -inf, ceiling))
     if found.cost is None:
         return replace(found, bound=bound)
-    best = found.status is Status.OPTIMAL and found.cost.total <= ceiling * (1.0 + 1e-9) + 1e-3
+    best = found.status is Status.OPTIMAL and found.cost.total <= ceiling + 1.0 / SCALE
     status = Status.OPTIMAL if best else Status.FEASIBLE
     return replace(found, status=status, bound=found.cost.total if best else bound)

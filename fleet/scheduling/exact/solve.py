@@ -12,11 +12,10 @@ from mend.fleet.scheduling.objective import cost
 from mend.fleet.scheduling.problem import Problem
 from mend.fleet.scheduling.schedule import Schedule
 from mend.fleet.scheduling.solution import Progress, Solution, Status, UnsupportedError
+from mend.fleet.scheduling.tolerance import error, proves
 
 CONSTRAINTS_SHARE = 0.65
 """The share of the time for constraint programming where flows may give a better bound."""
-SAME = 1e-6
-"""A cost and a bound that differ by less than this share are the same."""
 SETTLED = (Status.OPTIMAL, Status.INFEASIBLE)
 
 
@@ -75,7 +74,7 @@ def _with_bound(solution: Solution, bound: float | None) -> Solution:
     """The solution with a bound that was proved before, if that is better."""
     if bound is None or solution.status in SETTLED or bound <= (solution.bound or -inf):
         return solution
-    if solution.cost is not None and bound >= solution.cost.total * (1 - SAME):
+    if solution.cost is not None and proves(bound, solution.cost.total):
         return replace(solution, status=Status.OPTIMAL, bound=solution.cost.total)
     return replace(solution, bound=bound)
 
@@ -85,7 +84,7 @@ def _not_worse(problem: Problem, solution: Solution, start: Schedule | None) -> 
         return solution
     begun = cost(problem, start)
     # What is as good is left as it is: another schedule may change robots more often for nothing.
-    if solution.cost is not None and solution.cost.total < begun.total * (1 - SAME):
+    if solution.cost is not None and solution.cost.total < begun.total - error(begun.total):
         return solution
     status = Status.OPTIMAL if solution.status is Status.OPTIMAL else Status.FEASIBLE
     bound = None if solution.bound is None else min(solution.bound, begun.total)

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from mend.fleet.scheduling.tolerance import CHECK_S, LOAD
 from mend.maps.compiled import compiled
 
 Floats = NDArray[np.float64]
@@ -17,8 +18,6 @@ Flags = NDArray[np.bool_]
 
 UNTOUCHED, ABOARD, GIVEN, DELIVERED = 0, 1, 2, 3
 """How far an item is with a robot."""
-TOLERANCE = 1e-6
-"""Of times and loads: what is left out here is impossible for certain."""
 NONE = -1
 
 
@@ -179,7 +178,7 @@ def givable(aboard: int, place: int, arrives_s: float, limits: Limits) -> int:
     """What of that aboard could still be delivered in time after changing robots at a place."""
     possible = 0
     for item in range(limits.items):
-        if (aboard >> item) & 1 and arrives_s <= limits.give_by_s[item, place] + TOLERANCE:
+        if (aboard >> item) & 1 and arrives_s <= limits.give_by_s[item, place] + CHECK_S:
             possible |= 1 << item
     return possible
 
@@ -190,7 +189,7 @@ def may_visit(key: int, node: int, aboard: int, load: float, limits: Limits) -> 
     items = limits.items
     if node < items:
         untouched = progress_of(key, node, limits.places) == UNTOUCHED
-        fits = load + limits.loads[node] <= limits.capacity + TOLERANCE
+        fits = load + limits.loads[node] <= limits.capacity + LOAD
         return bool(limits.to_pick[node] and untouched and fits)
     if node < 2 * items:
         return (aboard >> (node - items)) & 1 == 1
@@ -235,11 +234,11 @@ def visit_times(node: int, given: int, taken: int, limits: Limits) -> tuple[floa
 @compiled
 def in_time(key: int, node: int, over_s: float, limits: Limits) -> bool:
     """Whether the robot can be home in time, and what is aboard where it belongs, with whomever."""
-    if not over_s < min(np.inf, limits.latest_s[node] + limits.lasts_s[node] + TOLERANCE):
+    if not over_s < min(np.inf, limits.latest_s[node] + limits.lasts_s[node] + CHECK_S):
         return False
     for item in range(limits.items):
         aboard = progress_of(key, item, limits.places) == ABOARD
-        if aboard and over_s + limits.to_drop_s[node, item] > limits.drop_by_s[item] + TOLERANCE:
+        if aboard and over_s + limits.to_drop_s[node, item] > limits.drop_by_s[item] + CHECK_S:
             return False
     return True
 
@@ -253,7 +252,7 @@ def add_visits(
     here = key >> (limits.places + 2 * limits.items)
     arrives_s = states.reached_s[state] + limits.travel_s[here, node]
     aboard, elsewhere, load = with_robot(key, limits)
-    if node == here or not arrives_s < min(np.inf, limits.latest_s[node] + TOLERANCE):
+    if node == here or not arrives_s < min(np.inf, limits.latest_s[node] + CHECK_S):
         return True
     if not may_visit(key, node, aboard, load, limits):
         return True
@@ -268,8 +267,8 @@ def add_visits(
         over_s = max(arrives_s + lasts_s, over_from_s)
         _, _, load = with_robot(after, limits)
         useful = exchanged != 0 or not transfer or limits.detours
-        possible = arrives_s <= by_s + TOLERANCE and in_time(after, node, over_s, limits)
-        if useful and possible and load <= limits.capacity + TOLERANCE:
+        possible = arrives_s <= by_s + CHECK_S and in_time(after, node, over_s, limits)
+        if useful and possible and load <= limits.capacity + LOAD:
             number = counts[1]
             if number == moves.node.shape[0]:
                 return False

@@ -12,8 +12,7 @@ from mend.fleet.scheduling.replanning.rest import Rest, is_given
 from mend.fleet.scheduling.replanning.robot_state import TrackedRobot, Trip
 from mend.fleet.scheduling.schedule import Action, Schedule, Task
 from mend.fleet.scheduling.timing import TimedRoutes, service_s
-
-TOLERANCE_S = 1e-6
+from mend.fleet.scheduling.tolerance import CHECK_S
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,7 +96,7 @@ class LivePlan:
         if not route:
             return False
         begin_s = self._timed.network.earliest_s(self._timed.begins[number][self._made[robot]])
-        if begin_s > self._state.now_s + TOLERANCE_S:
+        if begin_s > self._state.now_s + CHECK_S:
             return False
         return route[0].action is not Action.TAKE or is_given(self._state.routes, robot, route[0])
 
@@ -172,7 +171,7 @@ class LivePlan:
             self._rest.items[moved.item]
             for at in network.moved_since(mark)
             if (moved := self._task_of.get(at)) is not None
-            and network.earliest_s(at) > _due_s(self._rest.problem, moved) + TOLERANCE_S
+            and network.earliest_s(at) > _due_s(self._rest.problem, moved) + CHECK_S
         }
 
 

@@ -27,13 +27,14 @@ from mend.fleet.scheduling.replanning.events import (
 )
 from mend.fleet.scheduling.replanning.fleet_state import Done, FleetState
 from mend.fleet.scheduling.replanning.item_state import ItemState, TrackedItem
-from mend.fleet.scheduling.replanning.live_plan import TOLERANCE_S, LivePlan, NextStop
+from mend.fleet.scheduling.replanning.live_plan import LivePlan, NextStop
 from mend.fleet.scheduling.replanning.on_the_way import stand_still, turn_before
 from mend.fleet.scheduling.replanning.open_ways import OpenWays
 from mend.fleet.scheduling.replanning.rest import Rest
 from mend.fleet.scheduling.replanning.robot_state import TrackedRobot
 from mend.fleet.scheduling.replanning.settling import Settling
 from mend.fleet.scheduling.schedule import Route, Schedule
+from mend.fleet.scheduling.tolerance import CHECK_S
 
 RECONSIDERED = 6
 """How many items are offered again where a way opens, a robot comes back or something is late."""
@@ -115,7 +116,7 @@ class RunningFleet:
     def advance(self, now_s: float) -> None:
         """Let robots do what is planned until `now_s`. Raises `EventError` for a time before."""
         state = self._state
-        if not state.now_s - TOLERANCE_S <= now_s < inf:
+        if not state.now_s - CHECK_S <= now_s < inf:
             raise EventError(f"it is {state.now_s:g} s already, so nothing happens at {now_s:g} s")
         state.now_s = max(state.now_s, now_s)
         if self._plan is not None:

@@ -9,7 +9,6 @@ from dataclasses import replace
 from math import inf
 
 from mend.fleet.scheduling.auction import Sale, sell
-from mend.fleet.scheduling.checker import TOLERANCE_LOAD
 from mend.fleet.scheduling.constraint import Constraint, ConstraintKind
 from mend.fleet.scheduling.contradictions import contradictions
 from mend.fleet.scheduling.no_place import conflict_words, no_place_words
@@ -20,10 +19,9 @@ from mend.fleet.scheduling.replanning.item_state import without_deadline
 from mend.fleet.scheduling.schedule import Action, Route
 from mend.fleet.scheduling.temporal_network import Conflict
 from mend.fleet.scheduling.timing import TimedRoutes
+from mend.fleet.scheduling.tolerance import LOAD, error
 
 DEADLINES = (ConstraintKind.WINDOW_END, ConstraintKind.ON_BOARD)
-BETTER = 1e-6
-"""By how much cheaper a plan must be to be taken instead."""
 ROBOT_LIMITS = (ConstraintKind.SHIFT_END, ConstraintKind.DURATION)
 JUDGED_ALONE = 2
 """Up to how many items at once are also judged as if there were no other: it takes a while."""
@@ -92,8 +90,8 @@ class Settling:
                 continue
             others = without_items(self.routes, {item})
             sale = sell(self.problem, others, (item,), held=self.held)
-            now = Sale(tuple(self.routes))
-            if not sale.unsold and self._cost(sale) < self._cost(now) - BETTER:
+            now = self._cost(Sale(tuple(self.routes)))
+            if not sale.unsold and self._cost(sale) < now - error(now):
                 self.routes = list(sale.routes)
 
     def _place(self, items: Sequence[int]) -> None:
@@ -117,7 +115,7 @@ class Settling:
             load = sum(item.load for item in self.problem.items if item.aboard == robot)
             for task in route:
                 load += self.problem.items[task.item].load * (1 if task.action.loads else -1)
-                if task.action.loads and load > capacity + TOLERANCE_LOAD:
+                if task.action.loads and load > capacity + LOAD:
                     self._let_go(task.item)
                     return [task.item]
         return []

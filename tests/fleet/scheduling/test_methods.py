@@ -9,10 +9,10 @@ from benchmark_instances import DATA
 from delivery_problems import CORRIDOR, HANDED_OVER, corridor, corridor_items, parcel
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from office_building import BuildingPlan, building_deliveries
 from ticking_clock import TickingClock
 
 from mend.fleet.scheduling.checker import check
-from mend.fleet.scheduling.instances.building import BuildingPlan, building_deliveries
 from mend.fleet.scheduling.instances.li_lim import read_li_lim
 from mend.fleet.scheduling.instances.transfer_benchmark import read_transfer_benchmark
 from mend.fleet.scheduling.methods import METHODS, best_heuristic, solve, suited_method

@@ -26,10 +26,10 @@ Peer = Callable[..., Solution]
 def peer(request: pytest.FixtureRequest) -> Any:
     name = request.param
     if name == "ortools_routing":
-        module = importlib.import_module("mend.fleet.scheduling.peers.ortools_routing")
+        module = importlib.import_module("peers.ortools_routing")
     else:
         pytest.importorskip(name, reason="the extra 'peers' is not installed")
-        module = importlib.import_module(f"fleet.scheduling.peers.{name}_search")
+        module = importlib.import_module(f"peers.{name}_search")
     return getattr(module, f"solve_by_{name}")
 
 

@@ -12,15 +12,15 @@ import pytest
 import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from ticking_clock import TickingClock
-
-from mend.fleet.scheduling.checker import check
-from mend.fleet.scheduling.instances.building import (
+from office_building import (
     BINDING,
     LOOSE,
     BuildingPlan,
     building_deliveries,
 )
+from ticking_clock import TickingClock
+
+from mend.fleet.scheduling.checker import check
 from mend.fleet.scheduling.methods import solve
 from mend.fleet.scheduling.problem import Window
 from mend.fleet.scheduling.problem_file import (

@@ -6,9 +6,9 @@ from math import ceil, isfinite
 
 import numpy as np
 import vroom
+from peers.scheduling_answer import answer
+from peers.whole_numbers import SCALE, WholeNumbers
 
-from mend.fleet.scheduling.peers.answer import answer
-from mend.fleet.scheduling.peers.whole_numbers import SCALE, WholeNumbers
 from mend.fleet.scheduling.problem import Problem, Visit
 from mend.fleet.scheduling.schedule import Action, Schedule
 from mend.fleet.scheduling.solution import Progress, Solution, UnsupportedError

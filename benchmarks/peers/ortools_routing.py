@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 from ortools.constraint_solver import pywrapcp, routing_enums_pb2
+from peers.scheduling_answer import answer
+from peers.whole_numbers import SCALE, WholeNumbers
 
-from mend.fleet.scheduling.peers.answer import answer
-from mend.fleet.scheduling.peers.whole_numbers import SCALE, WholeNumbers
 from mend.fleet.scheduling.problem import Problem
 from mend.fleet.scheduling.schedule import Action, Schedule
 from mend.fleet.scheduling.solution import Progress, Solution

@@ -5,9 +5,9 @@ from collections.abc import Callable
 from math import ceil, isfinite
 
 import pyvrp
+from peers.scheduling_answer import answer
+from peers.whole_numbers import SCALE, WholeNumbers
 
-from mend.fleet.scheduling.peers.answer import answer
-from mend.fleet.scheduling.peers.whole_numbers import SCALE, WholeNumbers
 from mend.fleet.scheduling.problem import Problem
 from mend.fleet.scheduling.schedule import Action, Schedule
 from mend.fleet.scheduling.solution import Progress, Solution, UnsupportedError
