@@ -1,0 +1,1 @@
+"""Adaptive large neighbourhood search: items are removed from a plan and inserted again."""
