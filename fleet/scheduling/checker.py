@@ -9,7 +9,12 @@ from collections.abc import Iterator
 from itertools import pairwise
 from math import isfinite
 
-from mend.fleet.scheduling.item_way import BrokenWayError, Leg, item_way, item_ways
+from mend.fleet.scheduling.itinerary import (
+    BrokenItineraryError,
+    ItineraryLeg,
+    itineraries,
+    itinerary_of,
+)
 from mend.fleet.scheduling.problem import Item, Problem, Window
 from mend.fleet.scheduling.schedule import Action, Schedule, Stop
 from mend.fleet.scheduling.tolerance import CHECK_S, LOAD
@@ -48,19 +53,21 @@ def check(problem: Problem, schedule: Schedule) -> list[str]:
     return violations
 
 
-def _ways(problem: Problem, schedule: Schedule) -> tuple[dict[int, tuple[Leg, ...]], list[str]]:
+def _ways(
+    problem: Problem, schedule: Schedule
+) -> tuple[dict[int, tuple[ItineraryLeg, ...]], list[str]]:
     """The ways of the items that have one, and a sentence for each of the others."""
     routes = schedule.routes
     try:
-        return item_ways(problem, routes), []
-    except BrokenWayError:
+        return itineraries(problem, routes), []
+    except BrokenItineraryError:
         # One by one, which takes longer, to name all that are broken.
-        ways: dict[int, tuple[Leg, ...]] = {}
+        ways: dict[int, tuple[ItineraryLeg, ...]] = {}
         broken = []
         for number in range(len(problem.items)):
             try:
-                ways[number] = item_way(problem, routes, number)
-            except BrokenWayError as error:
+                ways[number] = itinerary_of(problem, routes, number)
+            except BrokenItineraryError as error:
                 broken.append(str(error))
         return ways, broken
 
@@ -132,7 +139,9 @@ def _loads(problem: Problem, schedule: Schedule, robot: int) -> Iterator[str]:
             yield f"{name} carries {load:g} after it has item '{item.name}', more than {capacity:g}"
 
 
-def _item(problem: Problem, schedule: Schedule, item: Item, legs: tuple[Leg, ...]) -> Iterator[str]:
+def _item(
+    problem: Problem, schedule: Schedule, item: Item, legs: tuple[ItineraryLeg, ...]
+) -> Iterator[str]:
     """Places, windows, transfers and the time on board of one item."""
 
     def stop(robot: int, index: int) -> Stop:
@@ -177,7 +186,7 @@ def _transfer(problem: Problem, item: Item, give: Stop, take: Stop) -> Iterator[
 
 
 def _waiting_in_a_circle(
-    problem: Problem, schedule: Schedule, ways: dict[int, tuple[Leg, ...]]
+    problem: Problem, schedule: Schedule, ways: dict[int, tuple[ItineraryLeg, ...]]
 ) -> Iterator[str]:
     """Robots that each wait for another one never go on, however the times look."""
     after: dict[tuple[int, int], list[tuple[int, int]]] = defaultdict(list)

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mend.fleet.scheduling.constraint import Constraint, ConstraintKind
-from mend.fleet.scheduling.item_way import Leg as CarriedLeg
+from mend.fleet.scheduling.itinerary import ItineraryLeg as CarriedLeg
 from mend.fleet.scheduling.leg_search import ANYWHERE, RouteTimes
 from mend.fleet.scheduling.leg_tables import LegTables
 from mend.fleet.scheduling.objective import cost
@@ -37,7 +37,7 @@ class GrowingRoutes(TimedRoutes):
     `held`: by robot, how many of its first tasks nothing may be put before. `begun`: items whose
     pickup is the first task of this robot already, and nothing more of their way. `nearest`: after
     a bid that found no place, the conflict that asks for the least more time than there is. Raises
-    `BrokenWayError` where an item of the routes is not delivered.
+    `BrokenItineraryError` where an item of the routes is not delivered.
     """
 
     def __init__(

@@ -6,7 +6,7 @@ from itertools import pairwise
 from math import inf
 
 from mend.fleet.scheduling.constraint import Constraint, ConstraintKind, sentence
-from mend.fleet.scheduling.item_way import Leg, item_ways
+from mend.fleet.scheduling.itinerary import ItineraryLeg, itineraries
 from mend.fleet.scheduling.problem import Problem, Window
 from mend.fleet.scheduling.schedule import Action, RobotSchedule, Route, Schedule, Stop, Task
 from mend.fleet.scheduling.temporal_network import ORIGIN, Conflict, TemporalNetwork
@@ -29,7 +29,7 @@ class Untimeable:
 
 
 def earliest_schedule(problem: Problem, routes: Sequence[Route]) -> Schedule | Untimeable:
-    """The earliest times for the routes. Raises `BrokenWayError` where an item's way breaks."""
+    """The earliest times for the routes. Raises `BrokenItineraryError`."""
     timed = TimedRoutes(problem, routes)
     if timed.conflict is not None:
         return Untimeable(timed.conflict.reasons)
@@ -40,7 +40,7 @@ class TimedRoutes:
     """The temporal network of some routes, and which of its events is which.
 
     `leaves` and `ends` by robot, `begins` by robot and number of the task. `items`: those that the
-    routes deliver; all if None. Raises `BrokenWayError`.
+    routes deliver; all if None. Raises `BrokenItineraryError`.
     """
 
     def __init__(
@@ -53,7 +53,7 @@ class TimedRoutes:
         self.ends: list[int] = []
         self.begins: list[list[int]] = []
         self.conflict: Conflict[Constraint] | None = None
-        ways = item_ways(problem, routes, items)
+        ways = itineraries(problem, routes, items)
         for robot in range(len(problem.robots)):
             self._add_robot(robot)
         for item, legs in ways.items():
@@ -110,7 +110,7 @@ class TimedRoutes:
             self._demand(begin, ORIGIN, window.earliest_s, opens)
             self._demand(ORIGIN, begin, -window.latest_s, closes)
 
-    def _join(self, item: int, legs: Sequence[Leg]) -> None:
+    def _join(self, item: int, legs: Sequence[ItineraryLeg]) -> None:
         """Bind an item's tasks on different robots: give before take, and its time on board."""
         transfers = self.problem.transfers
         for giving, taking in pairwise(legs):

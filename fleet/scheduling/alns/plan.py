@@ -115,10 +115,6 @@ def copy_plan(origin: Plan, copy: Plan) -> None:
             copy.load[row, at] = origin.load[row, at]
             copy.place[node], copy.at[node] = origin.place[node], at
             copy.row[node] = row
-    # A node may have been elsewhere in the copy, in a row that is copied already.
-    for row in range(origin.length.size - 1):
-        for at in range(origin.length[row]):
-            copy.row[origin.node[row, at]] = row
     for item in range(origin.transfers.size):
         copy.transfers[item] = origin.transfers[item]
     copy.handed[0] = origin.handed[0]
@@ -135,7 +131,7 @@ def plan_value(problem: ProblemArrays, plan: Plan) -> float:
     for item in range(plan.transfers.size):
         if plan.transfers[item] == BANKED:
             value += problem.penalty
-    return value + problem.weight_makespan * last_s  # type: ignore[no-any-return]
+    return value + problem.weight_makespan * last_s
 
 
 @compiled

@@ -73,6 +73,8 @@ class ProblemArrays(NamedTuple):
     together: bool
     chain: int
     """The most transfers of one item."""
+    direct: int
+    """How many places in a route are remembered for an item that changes no robots."""
     spans: int
     """How many constraints bind something to be not much earlier than something later."""
     timeless: bool
@@ -164,8 +166,13 @@ def problem_arrays(problem: Problem, chain: int, kept: Kept | None = None) -> Pr
             )
         ),
         load=np.concatenate(
-            (size, -size, np.repeat(size, 2 * chain) * np.tile((-1.0, 1.0), count * chain), loaded,
-             idle)
+            (
+                size,
+                -size,
+                np.repeat(size, 2 * chain) * np.tile((-1.0, 1.0), count * chain),
+                loaded,
+                idle,
+            )
         ),
         size=size,
         max_on_board_s=on_board_s,
@@ -182,6 +189,7 @@ def problem_arrays(problem: Problem, chain: int, kept: Kept | None = None) -> Pr
         transfer_s=float(handling.service_s),
         together=handling.together,
         chain=chain,
+        direct=5,
         spans=int(np.isfinite(on_board_s).sum() + np.isfinite(duration_s).sum()),
         timeless=not (weights.makespan or weights.completion or late or travel.epochs),
         weight_distance=float(weights.distance),

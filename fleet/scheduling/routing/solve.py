@@ -29,7 +29,7 @@ def solve_alns(
 
     The time to compile is not counted. The status is unknown where not every item could be
     delivered. Raises `UnsupportedError` for what `arrays.unsupported` names, and `ScheduleError` or
-    `BrokenWayError` for a `start` that is not valid.
+    `BrokenItineraryError` for a `start` that is not valid.
     """
     arrays = routing_arrays(problem)
     prepare()

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from itertools import pairwise
 
-from mend.fleet.scheduling.item_way import item_ways
+from mend.fleet.scheduling.itinerary import itineraries
 from mend.fleet.scheduling.problem import Problem
 from mend.fleet.scheduling.schedule import Action, Route, Task
 from mend.fleet.scheduling.vlns.arrays import (
@@ -37,11 +37,11 @@ def _task(problem: ProblemArrays, plan: Plan, node: int) -> Task:
 
 
 def plan_of(problem: ProblemArrays, described: Problem, routes: Sequence[Route]) -> Plan:
-    """The plan of complete routes, without its value. Raises `BrokenWayError`."""
+    """The plan of complete routes, without its value. Raises `BrokenItineraryError`."""
     plan = empty_plan(problem)
     nodes: dict[tuple[int, int], int] = {}
     items = len(described.items)
-    for item, legs in item_ways(described, routes).items():
+    for item, legs in itineraries(described, routes).items():
         first, last = legs[0], legs[-1]
         if first.load is not None:
             nodes[first.robot, first.load] = item

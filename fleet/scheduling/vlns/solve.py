@@ -8,7 +8,7 @@ import numpy as np
 
 from mend.fleet.scheduling.checker import require_valid
 from mend.fleet.scheduling.dice import Dice, dice_from
-from mend.fleet.scheduling.item_way import item_ways
+from mend.fleet.scheduling.itinerary import itineraries
 from mend.fleet.scheduling.objective import cost
 from mend.fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit
 from mend.fleet.scheduling.routing.arrays import unsupported
@@ -57,7 +57,7 @@ def solve_vlns(
 
     It first plans without transfers and goes on from there, so that it is never worse than that.
     The time to compile is not counted. The status is unknown where not every item could be
-    delivered. Raises `ScheduleError` or `BrokenWayError` for a `start` that is not valid, and
+    delivered. Raises `ScheduleError` or `BrokenItineraryError` for a `start` that is not valid, and
     `UnsupportedError` where doors open and close: its travel times are fixed.
     """
     if problem.travel.epochs:
@@ -200,7 +200,7 @@ class _Planner:
 
 
 def _longest_chain(problem: Problem, schedule: Schedule) -> int:
-    ways = item_ways(problem, schedule.routes)
+    ways = itineraries(problem, schedule.routes)
     return max((len(legs) - 1 for legs in ways.values()), default=0)
 
 

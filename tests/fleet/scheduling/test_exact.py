@@ -14,7 +14,7 @@ from hypothesis import HealthCheck, given, settings
 from mend.fleet.scheduling.checker import check
 from mend.fleet.scheduling.exact.solve import solve_exactly
 from mend.fleet.scheduling.instances.transfer_benchmark import read_transfer_benchmark
-from mend.fleet.scheduling.item_way import BrokenWayError
+from mend.fleet.scheduling.itinerary import BrokenItineraryError
 from mend.fleet.scheduling.objective import cost
 from mend.fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit, Weights, Window
 from mend.fleet.scheduling.schedule import Action, Route, Schedule, Task
@@ -56,7 +56,7 @@ def _ways(problem: Problem, item: int) -> list[tuple[tuple[Task, ...], tuple[Tas
 def _cost(problem: Problem, routes: tuple[Route, ...]) -> float | None:
     try:
         schedule = earliest_schedule(problem, routes)
-    except BrokenWayError:
+    except BrokenItineraryError:
         return None
     if not isinstance(schedule, Schedule) or check(problem, schedule):
         return None

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from mend.fleet.scheduling.checker import check
 from mend.fleet.scheduling.constraint import ConstraintKind
-from mend.fleet.scheduling.item_way import BrokenWayError
+from mend.fleet.scheduling.itinerary import BrokenItineraryError
 from mend.fleet.scheduling.problem import Item, Robot, Transfers, Visit, Window
 from mend.fleet.scheduling.schedule import Action, Schedule, Task
 from mend.fleet.scheduling.timing import Untimeable, earliest_schedule
@@ -58,7 +58,7 @@ def test_item_that_is_too_long_on_board_is_explained() -> None:
 
 def test_way_that_breaks_is_told() -> None:
     problem = corridor(items=(parcel(),))
-    with pytest.raises(BrokenWayError, match="right does not take it from left"):
+    with pytest.raises(BrokenItineraryError, match="right does not take it from left"):
         earliest_schedule(problem, (HANDED_OVER[0], ()))
 
 

@@ -1,4 +1,4 @@
-"""The way of one item through the routes: which robot carries it from where to where."""
+"""The itinerary of an item through the routes: which robot carries it from where to where."""
 
 from collections import defaultdict
 from collections.abc import Sequence
@@ -8,12 +8,12 @@ from mend.fleet.scheduling.problem import Problem
 from mend.fleet.scheduling.schedule import Action, Route, Task
 
 
-class BrokenWayError(Exception):
+class BrokenItineraryError(Exception):
     """The routes do not bring the item from its pickup to its delivery; says where it breaks."""
 
 
 @dataclass(frozen=True, slots=True)
-class Leg:
+class ItineraryLeg:
     """A robot carries the item from its task number `load` to its task number `unload`.
 
     `load` is None where the robot had the item from the beginning.
@@ -24,24 +24,24 @@ class Leg:
     unload: int
 
 
-def item_way(problem: Problem, routes: Sequence[Route], item: int) -> tuple[Leg, ...]:
-    """The legs of an item that is delivered, in order. Raises `BrokenWayError`."""
-    return item_ways(problem, routes, (item,))[item]
+def itinerary_of(problem: Problem, routes: Sequence[Route], item: int) -> tuple[ItineraryLeg, ...]:
+    """The legs of an item that is delivered, in order. Raises `BrokenItineraryError`."""
+    return itineraries(problem, routes, (item,))[item]
 
 
-def item_ways(
+def itineraries(
     problem: Problem, routes: Sequence[Route], items: Sequence[int] | None = None
-) -> dict[int, tuple[Leg, ...]]:
-    """The ways of all items, or of some. Raises `BrokenWayError` for the first that breaks."""
+) -> dict[int, tuple[ItineraryLeg, ...]]:
+    """The itineraries of all items, or of some. Raises `BrokenItineraryError`."""
     wanted = range(len(problem.items)) if items is None else items
     tasks: dict[int, list[tuple[int, int, Task]]] = defaultdict(list)
     for robot, route in enumerate(routes):
         for index, task in enumerate(route):
             tasks[task.item].append((robot, index, task))
-    return {item: _Way(problem, item, tasks[item]).legs() for item in wanted}
+    return {item: _Walk(problem, item, tasks[item]).legs() for item in wanted}
 
 
-class _Way:
+class _Walk:
     """Walks along one item's tasks; each may be used once."""
 
     def __init__(self, problem: Problem, item: int, tasks: list[tuple[int, int, Task]]) -> None:
@@ -51,12 +51,12 @@ class _Way:
         for robot, index, task in tasks:
             self._left[robot].append((index, task))
 
-    def legs(self) -> tuple[Leg, ...]:
+    def legs(self) -> tuple[ItineraryLeg, ...]:
         robot, load = self._beginning()
-        legs: list[Leg] = []
+        legs: list[ItineraryLeg] = []
         while True:
             unload, task = self._next(robot, after=-1 if load is None else load)
-            legs.append(Leg(robot, load, unload))
+            legs.append(ItineraryLeg(robot, load, unload))
             if task.action is Action.DROP:
                 break
             robot, load = self._taker(robot, task)
@@ -112,5 +112,5 @@ class _Way:
     def _name(self, robot: int) -> str:
         return self._problem.robots[robot].name
 
-    def _broken(self, why: str) -> BrokenWayError:
-        return BrokenWayError(f"item '{self._problem.items[self._item].name}': {why}")
+    def _broken(self, why: str) -> BrokenItineraryError:
+        return BrokenItineraryError(f"item '{self._problem.items[self._item].name}': {why}")

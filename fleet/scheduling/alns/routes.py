@@ -1,0 +1,74 @@
+"""From a plan of the search to routes of the problem, and back."""
+
+from collections import defaultdict
+from collections.abc import Sequence
+from itertools import chain, pairwise
+
+from mend.fleet.scheduling.alns.plan import Plan, empty_plan
+from mend.fleet.scheduling.alns.problem_arrays import (
+    DROP,
+    GIVE,
+    NOBODY,
+    PICK,
+    ProblemArrays,
+    give_node,
+)
+from mend.fleet.scheduling.itinerary import itineraries
+from mend.fleet.scheduling.problem import Problem
+from mend.fleet.scheduling.schedule import Action, Route, Task
+
+
+def routes_in(problem: ProblemArrays, plan: Plan) -> tuple[Route, ...]:
+    """What every robot does in a plan; items in the bank are in no route, but if they are begun."""
+    return tuple(
+        tuple(_task(problem, plan, int(node)) for node in plan.node[row, 1 : plan.length[row] - 1])
+        for row in range(problem.capacity.size)
+    )
+
+
+def _task(problem: ProblemArrays, plan: Plan, node: int) -> Task:
+    place, item = int(plan.place[node]), int(problem.item[node])
+    kind = problem.kind[node]
+    if kind == PICK:
+        return Task(place, Action.PICK, item)
+    if kind == DROP:
+        return Task(place, Action.DROP, item)
+    action = Action.GIVE if kind == GIVE else Action.TAKE
+    return Task(place, action, item, int(plan.row[node ^ 1]))
+
+
+def plan_of(problem: ProblemArrays, described: Problem, routes: Sequence[Route]) -> Plan:
+    """The plan of routes, whose times are not known. Items that the routes only begin with are in
+    the bank. Raises `BrokenItineraryError`."""
+    plan = empty_plan(problem)
+    nodes: dict[tuple[int, int], int] = {}
+    count = len(described.items)
+    actions: dict[int, list[Action]] = defaultdict(list)
+    for task in chain.from_iterable(routes):
+        actions[task.item].append(task.action)
+    whole = [
+        item
+        for item, done in actions.items()
+        if problem.carrier[item] == NOBODY or done != [Action.PICK]
+    ]
+    for item, legs in itineraries(described, routes, whole).items():
+        first, last = legs[0], legs[-1]
+        if first.load is not None:
+            nodes[first.robot, first.load] = item
+        nodes[last.robot, last.unload] = count + item
+        for number, (giving, taking) in enumerate(pairwise(legs)):
+            assert taking.load is not None, "only the first leg may begin without a load"
+            give = give_node(problem, item, number)
+            nodes[giving.robot, giving.unload] = give
+            nodes[taking.robot, taking.load] = give + 1
+        plan.transfers[item] = len(legs) - 1
+        plan.handed[0] += len(legs) - 1
+    for robot, route in enumerate(routes):
+        plan.node[robot, len(route) + 1] = plan.node[robot, 1]
+        plan.length[robot] = len(route) + 2
+        for at, task in enumerate(route):
+            node = nodes.get((robot, at), task.item)
+            plan.node[robot, at + 1] = node
+            plan.place[node] = task.place
+            plan.row[node] = robot
+    return plan
