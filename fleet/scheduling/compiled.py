@@ -21,3 +21,11 @@ def compiled(function: Kernel) -> Kernel:
     """
     private = function.__name__.startswith("_")
     return mend.maps.compiled.compiled(function, **PLAIN, no_cpython_wrapper=private)
+
+
+def inlined(function: Kernel) -> Kernel:
+    """Compile into every caller: for what is called so often that passing the arrays of a problem
+    would take longer than the rest."""
+    return mend.maps.compiled.compiled(
+        function, **PLAIN, no_cpython_wrapper=True, forceinline=True
+    )

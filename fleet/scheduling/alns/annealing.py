@@ -10,8 +10,9 @@ import numpy as np
 
 from mend.fleet.scheduling.alns.itineraries import Allowed, lift_tabu
 from mend.fleet.scheduling.alns.plan import BANKED, copy_plan, plan_value, take_out
-from mend.fleet.scheduling.alns.problem_arrays import Floats, ProblemArrays
+from mend.fleet.scheduling.alns.problem_arrays import ProblemArrays
 from mend.fleet.scheduling.alns.propagation import update
+from mend.fleet.scheduling.alns.records import Floats
 from mend.fleet.scheduling.alns.removal import Removal, choose_items
 from mend.fleet.scheduling.alns.repair import Repair, repair
 from mend.fleet.scheduling.alns.state import BEST, CURRENT, State
@@ -99,7 +100,7 @@ def take_step(
 
 @compiled
 def _largest(problem: ProblemArrays) -> int:
-    items = problem.size.size
+    items = problem.items.size
     return items if items <= FEW else min(items, max(MANY, min(MOST, int(SHARE * items))))
 
 

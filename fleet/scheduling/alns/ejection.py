@@ -12,8 +12,9 @@ import numpy as np
 from mend.fleet.scheduling.alns.itineraries import direct_slot, look_up
 from mend.fleet.scheduling.alns.legs import Wanted, find_legs, open_home
 from mend.fleet.scheduling.alns.plan import BANKED, Plan, copy_route, put, take_out
-from mend.fleet.scheduling.alns.problem_arrays import NOBODY, Flags, Integers, ProblemArrays
+from mend.fleet.scheduling.alns.problem_arrays import NOBODY, ProblemArrays
 from mend.fleet.scheduling.alns.propagation import update, update_row
+from mend.fleet.scheduling.alns.records import Flags, Integers
 from mend.fleet.scheduling.alns.state import State
 from mend.fleet.scheduling.compiled import compiled
 from mend.fleet.scheduling.rng import Rng, below, shuffle
@@ -41,7 +42,7 @@ class Ejection(NamedTuple):
 
 def ejection_for(problem: ProblemArrays) -> Ejection:
     """Nothing is without a place, and every robot may take items."""
-    items, robots = problem.size.size, problem.capacity.size
+    items, robots = problem.items.size, problem.robots.size
     return Ejection(
         pool=np.zeros(items + 1, np.int64),
         known=np.zeros(1, np.int64),
@@ -55,18 +56,18 @@ def ejection_for(problem: ProblemArrays) -> Ejection:
 @compiled
 def empty_route(problem: ProblemArrays, state: State, ejection: Ejection, robot: int) -> None:
     """Take everything from a robot, which may take nothing again; only used robots may."""
-    plan, items = state.current, problem.size.size
+    plan, items = state.current, problem.items.size
     ejection.known[0] = 0
     for item in range(items):
         ejection.hardness[item] = 1
-        if plan.transfers[item] != BANKED and plan.row[items + item] == robot:
+        if plan.transfers[item] != BANKED and plan.tasks[items + item].row == robot:
             ejection.pool[ejection.known[0]] = item
             ejection.known[0] += 1
     for number in range(ejection.known[0]):
         take_out(problem, plan, ejection.pool[number])
     update(problem, plan, state.sweep)
-    for row in range(problem.capacity.size):
-        ejection.allowed[row] = plan.length[row] > 2
+    for row in range(problem.robots.size):
+        ejection.allowed[row] = plan.rows[row].length > 2
 
 
 @compiled
@@ -94,7 +95,7 @@ def place_all(
 @compiled
 def _place(problem: ProblemArrays, state: State, rng: Rng, ejection: Ejection, item: int) -> bool:
     """Put an item into some route where it has a place."""
-    robots = problem.capacity.size
+    robots = problem.robots.size
     first = below(rng, robots)
     for number in range(robots):
         row = (first + number) % robots
@@ -108,7 +109,7 @@ def _place(problem: ProblemArrays, state: State, rng: Rng, ejection: Ejection, i
 def _has_place(problem: ProblemArrays, state: State, item: int, row: int) -> bool:
     open_home(problem, state.found.ends, item)
     look_up(problem, state.current, state.found, item, row)
-    return state.found.legs.known[direct_slot(state.current, item, row)] > 0  # type: ignore[no-any-return]
+    return state.found.legs.slots[direct_slot(state.current, item, row)].known > 0  # type: ignore[no-any-return]
 
 
 @compiled
@@ -116,9 +117,9 @@ def _put(problem: ProblemArrays, state: State, rng: Rng, item: int, row: int) ->
     """Put an item at one of its places in a route."""
     plan, legs = state.current, state.found.legs
     slot = direct_slot(plan, item, row)
-    rank, drop = below(rng, legs.known[slot]), problem.size.size + item
-    put(plan, row, legs.unload_at[slot, rank], drop, problem.place[drop])
-    put(plan, row, legs.load_at[slot, rank], item, problem.place[item])
+    rank, drop = below(rng, legs.slots[slot].known), problem.items.size + item
+    put(plan, row, legs.ranked[slot, rank].unload_at, drop, problem.nodes[drop].place)
+    put(plan, row, legs.ranked[slot, rank].load_at, item, problem.nodes[item].place)
     plan.transfers[item] = 0
     update(problem, plan, state.sweep)
 
@@ -127,8 +128,8 @@ def _put(problem: ProblemArrays, state: State, rng: Rng, item: int, row: int) ->
 def _move_one(problem: ProblemArrays, state: State, rng: Rng, ejection: Ejection) -> None:
     """Move some item into some other route, if it has a place there."""
     plan = state.current
-    item, target = below(rng, problem.size.size), below(rng, problem.capacity.size)
-    if plan.transfers[item] == BANKED or plan.row[problem.size.size + item] == target:
+    item, target = below(rng, problem.items.size), below(rng, problem.robots.size)
+    if plan.transfers[item] == BANKED or plan.tasks[problem.items.size + item].row == target:
         return
     if ejection.allowed[target] and _has_place(problem, state, item, target):
         take_out(problem, plan, item)
@@ -140,12 +141,12 @@ def _eject_for(
     problem: ProblemArrays, state: State, rng: Rng, ejection: Ejection, item: int
 ) -> bool:
     """Eject the least hard items so that one has a place, and put it there."""
-    robots = problem.capacity.size
+    robots = problem.robots.size
     target, least = NOBODY, HARDEST
     first = below(rng, robots)
     for number in range(robots):
         row = (first + number) % robots
-        if ejection.allowed[row] and state.current.length[row] > 2:
+        if ejection.allowed[row] and state.current.rows[row].length > 2:
             found = _easiest(problem, state, rng, ejection, (item, row, least))
             if found < least:
                 target, least = row, found
@@ -173,10 +174,10 @@ def _easiest(
     Those items are in `ejection.ejected` then.
     """
     (item, row, least), hardness = case, ejection.hardness
-    count, items, plan = 0, problem.size.size, state.current
-    for at in range(1, plan.length[row] - 1):
-        if plan.node[row, at] < items:
-            ejection.on_board[count] = plan.node[row, at]
+    count, items, plan = 0, problem.items.size, state.current
+    for at in range(1, plan.rows[row].length - 1):
+        if plan.stops[row, at].node < items:
+            ejection.on_board[count] = plan.stops[row, at].node
             count += 1
     shuffle(rng, ejection.on_board, count)
     for a in range(count):
@@ -218,22 +219,22 @@ def _fits_without(
     problem: ProblemArrays, state: State, item: int, row: int, out: tuple[int, int, int]
 ) -> bool:
     """Whether an item has a place in a route without some others."""
-    plan, found, spare = state.current, state.found, problem.capacity.size
+    plan, found, spare = state.current, state.found, problem.robots.size
     copy_route(plan, row, spare)
     _leave_out(problem, plan, spare, out)
     update_row(problem, plan, state.sweep, spare)
     open_home(problem, found.ends, item)
     slot = direct_slot(plan, item, spare)
     find_legs(problem, plan, found.ends, found.legs, Wanted(slot, spare, item, 0, 0, inf, 1, True))
-    return found.legs.known[slot] > 0  # type: ignore[no-any-return]
+    return found.legs.slots[slot].known > 0  # type: ignore[no-any-return]
 
 
 @compiled
 def _leave_out(problem: ProblemArrays, plan: Plan, row: int, out: tuple[int, int, int]) -> None:
     kept = 0
-    for at in range(plan.length[row]):
-        node = plan.node[row, at]
-        if problem.item[node] == NOBODY or problem.item[node] not in out:
-            plan.node[row, kept] = node
+    for at in range(plan.rows[row].length):
+        node = plan.stops[row, at].node
+        if problem.nodes[node].item_of == NOBODY or problem.nodes[node].item_of not in out:
+            plan.stops[row, kept].node = node
             kept += 1
-    plan.length[row] = kept
+    plan.rows[row].length = kept

@@ -11,7 +11,6 @@ import numpy as np
 
 from mend.fleet.scheduling.alns.legs import (
     KEPT,
-    Ends,
     Legs,
     Wanted,
     ends_for,
@@ -24,14 +23,12 @@ from mend.fleet.scheduling.alns.plan import Plan, put
 from mend.fleet.scheduling.alns.problem_arrays import (
     NOBODY,
     UNREACHABLE,
-    Flags,
-    Floats,
-    Integers,
     ProblemArrays,
     give_node,
     origin_of,
 )
-from mend.fleet.scheduling.compiled import compiled
+from mend.fleet.scheduling.alns.records import Flags, Floats, Integers, Records
+from mend.fleet.scheduling.compiled import compiled, inlined
 from mend.fleet.scheduling.rng import Rng, below, uniform
 from mend.fleet.scheduling.tolerance import SEARCH_S
 
@@ -71,7 +68,7 @@ class Itineraries(NamedTuple):
 
     tabu: Integers
     shut: Flags
-    ends: Ends
+    ends: Records
     legs: Legs
     places: Integers
     """How many transfer places are looked at."""
@@ -87,12 +84,12 @@ class Itineraries(NamedTuple):
 
 def itineraries_for(problem: ProblemArrays) -> Itineraries:
     """Room for the itineraries of one item."""
-    robots, places = problem.capacity.size, min(problem.transfer_place.size, MOST_PLACES)
+    robots, places = problem.robots.size, min(problem.transfer_place.size, MOST_PLACES)
     return Itineraries(
-        tabu=np.full(problem.place.size, NOBODY, np.int64),
+        tabu=np.full(problem.nodes.size, NOBODY, np.int64),
         shut=np.zeros(robots, np.bool_),
         ends=ends_for(places),
-        legs=legs_for((robots + 1) * problem.size.size + robots * (places + 1) ** 2),
+        legs=legs_for((robots + 1) * problem.items.size + robots * (places + 1) ** 2),
         places=np.zeros(1, np.int64),
         label=np.zeros((LABELS, 6), np.int64),
         label_real=np.zeros((LABELS, 2)),
@@ -132,17 +129,17 @@ def find_itineraries(
     _join_parts(problem, found, rng, allowed, limit)
 
 
-@compiled
+@inlined
 def direct_slot(plan: Plan, item: int, row: int) -> int:
     """Where the legs of a row are that bring an item all the way."""
-    return item * plan.length.size + row
+    return item * plan.rows.size + row
 
 
-@compiled
+@inlined
 def part_slot(found: Itineraries, plan: Plan, row: int, ends: tuple[int, int]) -> int:
     """Where the legs of a row between two ends are."""
     count = found.places[0] + 1
-    first = plan.transfers.size * plan.length.size
+    first = plan.transfers.size * plan.rows.size
     return first + (row * count + ends[0]) * count + ends[1]  # type: ignore[no-any-return]
 
 
@@ -150,37 +147,37 @@ def part_slot(found: Itineraries, plan: Plan, row: int, ends: tuple[int, int]) -
 def _find_direct(
     problem: ProblemArrays, plan: Plan, found: Itineraries, rng: Rng, item: int, allowed: Allowed
 ) -> None:
-    drop, legs = problem.size.size + item, found.legs
-    for row in range(problem.capacity.size):
+    drop, legs = problem.items.size + item, found.legs
+    for row in range(problem.robots.size):
         if found.shut[row] or found.tabu[item] == row or found.tabu[drop] == row:
             continue
         if _useless(problem, plan, row, item):
             continue
         slot = direct_slot(plan, item, row)
         look_up(problem, plan, found, item, row)
-        for rank in range(legs.known[slot]):
+        for rank in range(legs.slots[slot].known):
             if allowed.blink == 0.0 or uniform(rng) >= allowed.blink:
-                _remember(found, legs.extra[slot, rank], ONE_END, row, (slot, rank))
+                _remember(found, legs.ranked[slot, rank].extra, ONE_END, row, (slot, rank))
 
 
-@compiled
+@inlined
 def look_up(problem: ProblemArrays, plan: Plan, found: Itineraries, item: int, row: int) -> None:
     """Find the legs that bring an item all the way, unless they are known for the row as it is."""
     slot = direct_slot(plan, item, row)
-    if found.legs.version[slot] != plan.version[row]:
+    if found.legs.slots[slot].version != plan.rows[row].version:
         limit = problem.metre * UNREACHABLE / 2
         wanted = Wanted(slot, row, item, 0, 0, limit, problem.direct, False)
         find_legs(problem, plan, found.ends, found.legs, wanted)
-        found.legs.version[slot] = plan.version[row]
+        found.legs.slots[slot].version = plan.rows[row].version
 
 
-@compiled
+@inlined
 def _useless(problem: ProblemArrays, plan: Plan, row: int, item: int) -> bool:
     """Whether a robot need not begin: another one has the item, or its twin is as free as it is."""
-    if problem.carrier[item] != NOBODY:
-        return problem.carrier[item] != row  # type: ignore[no-any-return]
-    twin = problem.twin[row]
-    return twin != NOBODY and plan.length[row] == 2 and plan.length[twin] == 2  # type: ignore[no-any-return]
+    if problem.items[item].carrier != NOBODY:
+        return problem.items[item].carrier != row  # type: ignore[no-any-return]
+    twin = problem.robots[row].twin
+    return twin != NOBODY and plan.rows[row].length == 2 and plan.rows[twin].length == 2  # type: ignore[no-any-return]
 
 
 @compiled
@@ -189,14 +186,14 @@ def _choose_places(
 ) -> None:
     """All transfer places where they are few; otherwise those on the way, in use, and by chance."""
     known = problem.transfer_place.size
-    wanted = min(known, found.ends.load_place.size - 1) if allowed.transfers > 0 else 0
+    wanted = min(known, found.ends.size - 1) if allowed.transfers > 0 else 0
     found.places[0] = wanted
     if wanted == known:
         for number in range(known):
             place = problem.transfer_place[number]
             open_transfer(problem, found.ends, item, number + 1, place)
         return
-    origin, target = origin_of(problem, item), problem.place[problem.size.size + item]
+    origin, target = origin_of(problem, item), problem.nodes[problem.items.size + item].place
     for number in range(wanted):
         best, chosen = inf, NOBODY
         for _ in range(2 + known // 4):
@@ -205,8 +202,8 @@ def _choose_places(
             if detour < best and (number % 3 < 2 or chosen == NOBODY):
                 best, chosen = detour, place
         if number % 3 == 1:
-            row = below(rng, problem.capacity.size)
-            place = plan.place[plan.node[row, below(rng, plan.length[row])]]
+            row = below(rng, problem.robots.size)
+            place = plan.tasks[plan.stops[row, below(rng, plan.rows[row].length)].node].place
             for other in range(known):
                 if problem.transfer_place[other] == place:
                     chosen = place
@@ -219,15 +216,15 @@ def _find_parts(
     limit: float,
 ) -> None:  # fmt: skip
     """The cheapest legs from and to transfer places, and between them for two transfers or more."""
-    for row in range(problem.capacity.size):
+    for row in range(problem.robots.size):
         first = not _useless(problem, plan, row, item) and found.tabu[item] != row
-        last = found.tabu[problem.size.size + item] != row
+        last = found.tabu[problem.items.size + item] != row
         for origin in range(found.places[0] + 1):
             for target in range(found.places[0] + 1):
                 if origin == target or (origin > 0 and target > 0 and allowed.transfers < 2):
                     continue
                 slot = part_slot(found, plan, row, (origin, target))
-                found.legs.known[slot] = 0
+                found.legs.slots[slot].known = 0
                 if found.shut[row] or (origin == 0 and not first) or (target == 0 and not last):
                     continue
                 wanted = Wanted(slot, row, item, origin, target, limit, KEPT, False)
@@ -240,8 +237,8 @@ def _join_parts(
 ) -> None:
     """Extend labels transfer by transfer; whatever can be brought to the delivery is one."""
     legs, count = found.legs, found.places[0] + 1
-    rows = problem.capacity.size
-    first = problem.size.size * (rows + 1)
+    rows = problem.robots.size
+    first = problem.items.size * (rows + 1)
     apart_s = 0.0 if problem.together else problem.transfer_s
     at = -1
     while at < found.labels[0]:
@@ -257,18 +254,18 @@ def _join_parts(
                 if target == origin or (target > 0 and transfers >= allowed.transfers):
                     continue
                 slot = first + (row * count + origin) * count + target
-                for rank in range(legs.known[slot]):
-                    extra = spent + legs.extra[slot, rank]
+                for rank in range(legs.slots[slot].known):
+                    extra = spent + legs.ranked[slot, rank].extra
                     if extra >= limit:
                         break
-                    if given_s > legs.wanted_s[slot, rank] + SEARCH_S:
+                    if given_s > legs.ranked[slot, rank].wanted_s + SEARCH_S:
                         continue
                     if allowed.blink > 0.0 and uniform(rng) < allowed.blink:
                         continue
                     if target == 0:
                         _remember(found, extra, at, row, (slot, rank))
                     else:
-                        ready_s = max(legs.ready_s[slot, rank], given_s)
+                        ready_s = max(legs.ranked[slot, rank].ready_s, given_s)
                         step = (row, target, slot, rank, at, transfers + 1)
                         _add_label(found, extra, ready_s, step)
         at += 1
@@ -287,7 +284,7 @@ def _add_label(
     found.labels[0] += 1
 
 
-@compiled
+@inlined
 def _remember(found: Itineraries, extra: float, label: int, row: int, leg: tuple[int, int]) -> None:
     """Keep an itinerary where it is among the cheapest, in order of cost."""
     at = found.known[0]
@@ -315,7 +312,10 @@ def unroll(found: Itineraries, number: int) -> int:
     leg, legs, target = found.leg, found.legs, 0
     for at in range(transfers, -1, -1):
         leg[at, ROW], leg[at, TO] = row, target
-        leg[at, LOAD_AT], leg[at, UNLOAD_AT] = legs.load_at[slot, rank], legs.unload_at[slot, rank]
+        leg[at, LOAD_AT], leg[at, UNLOAD_AT] = (
+            legs.ranked[slot, rank].load_at,
+            legs.ranked[slot, rank].unload_at,
+        )
         if at > 0:
             row, target = found.label[label, ROW], found.label[label, PLACE]
             slot, rank = found.label[label, SLOT], found.label[label, RANK]
@@ -335,14 +335,14 @@ def follow(
             same = found.leg[earlier, ROW] == found.leg[later, ROW]
             if same and found.leg[later, LOAD_AT] < found.leg[earlier, UNLOAD_AT]:
                 return False
-    items, leg = problem.size.size, found.leg
+    items, leg = problem.items.size, found.leg
     for at in range(transfers, -1, -1):
         row = leg[at, ROW]
         last = items + item if at == transfers else give_node(problem, item, at)
         first = item if at == 0 else give_node(problem, item, at - 1) + 1
-        put(plan, row, leg[at, UNLOAD_AT], last, found.ends.unload_place[leg[at, TO]])
-        if at > 0 or problem.carrier[item] == NOBODY:
-            put(plan, row, leg[at, LOAD_AT], first, found.ends.load_place[leg[at, FROM]])
+        put(plan, row, leg[at, UNLOAD_AT], last, found.ends[leg[at, TO]].unload_place)
+        if at > 0 or problem.items[item].carrier == NOBODY:
+            put(plan, row, leg[at, LOAD_AT], first, found.ends[leg[at, FROM]].load_place)
     plan.transfers[item] = transfers
     plan.handed[0] += transfers
     return True

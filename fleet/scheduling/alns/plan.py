@@ -8,7 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mend.fleet.scheduling.alns.problem_arrays import NOBODY, Floats, Integers, ProblemArrays
+from mend.fleet.scheduling.alns.problem_arrays import NOBODY, ProblemArrays
+from mend.fleet.scheduling.alns.records import Integers, Records, records
 from mend.fleet.scheduling.compiled import compiled
 
 BANKED = -1
@@ -17,84 +18,68 @@ STALE = 0
 
 
 class Plan(NamedTuple):
-    """Routes, possibly without some items; those are in the bank. Arrays by row and position, by
-    row, by node, or by item."""
+    """Routes, possibly without some items.
 
-    node: Integers
-    begin_s: Floats
-    """The earliest begin."""
-    latest_s: Floats
-    """The latest begin at which all that comes after it is in time."""
-    load: Floats
-    """On board afterwards."""
-    length: Integers
-    owner: Integers
-    """The robot of a row."""
-    cost: Floats
-    """What a row costs, apart from the makespan."""
-    version: Integers
-    place: Integers
-    row: Integers
-    at: Integers
-    """In which row a node is and at which position, if it is in any."""
+    `stops` by row and position: the node, the earliest begin (`begin_s`), the latest at which all
+    that comes after it is in time (`latest_s`), and the load afterwards. `rows`: how long a row is,
+    whose, what it costs (apart from the makespan), its version. `tasks` by node: its place, and in
+    which row it is at which position, if it is in any. `transfers` by item: how often it changes
+    robots, or `BANKED`; `handed`: how many transfers there are in all.
+    """
+
+    stops: Records
+    rows: Records
+    tasks: Records
     transfers: Integers
-    """How often an item changes robots, or `BANKED`."""
     handed: Integers
-    """How many transfers there are in all."""
 
 
 def empty_plan(problem: ProblemArrays) -> Plan:
     """A plan in which every item is in the bank; its times are not known."""
-    robots, items, nodes = problem.capacity.size, problem.size.size, problem.place.size
-    shape = (robots + 1, nodes - 2 * robots + 2)
+    robots, nodes = problem.robots.size, problem.nodes.size
     plan = Plan(
-        node=np.zeros(shape, np.int64),
-        begin_s=np.zeros(shape),
-        latest_s=np.zeros(shape),
-        load=np.zeros(shape),
-        length=np.full(robots + 1, 2, np.int64),
-        owner=np.arange(robots + 1) % robots,
-        cost=np.zeros(robots + 1),
-        version=np.full(robots + 1, STALE, np.int64),
-        place=problem.place.copy(),
-        row=np.full(nodes, NOBODY, np.int64),
-        at=np.zeros(nodes, np.int64),
-        transfers=np.full(items, BANKED, np.int64),
+        stops=records((robots + 1, nodes - 2 * robots + 2), "node", "begin_s latest_s load"),
+        rows=records(robots + 1, "length owner version", "cost"),
+        tasks=records(nodes, "place row at"),
+        transfers=np.full(problem.items.size, BANKED, np.int64),
         handed=np.zeros(1, np.int64),
     )
-    for row, robot in enumerate(plan.owner):
-        plan.node[row, :2] = nodes - 2 * robots + robot, nodes - robots + robot
+    plan.rows.length, plan.rows.version = 2, STALE
+    plan.rows.owner = np.arange(robots + 1) % robots
+    plan.tasks.place, plan.tasks.row = problem.nodes.place, NOBODY
+    plan.stops.node[:, 0] = nodes - 2 * robots + plan.rows.owner
+    plan.stops.node[:, 1] = nodes - robots + plan.rows.owner
     return plan
 
 
 @compiled
 def put(plan: Plan, row: int, at: int, node: int, place: int) -> None:
     """Insert a node into a row after position `at`."""
-    for later in range(plan.length[row] - 1, at, -1):
-        plan.node[row, later + 1] = plan.node[row, later]
-    plan.node[row, at + 1] = node
-    plan.length[row] += 1
-    plan.place[node] = place
-    plan.row[node] = row
-    plan.version[row] = STALE
+    for later in range(plan.rows[row].length - 1, at, -1):
+        plan.stops[row, later + 1].node = plan.stops[row, later].node
+    plan.stops[row, at + 1].node = node
+    plan.rows[row].length += 1
+    plan.tasks[node].place = place
+    plan.tasks[node].row = row
+    plan.rows[row].version = STALE
 
 
 @compiled
 def take_out(problem: ProblemArrays, plan: Plan, item: int) -> None:
     """Remove an item's nodes from all rows and put it into the bank."""
     whole = plan.transfers[item] == 0
-    for row in range(plan.length.size - 1):
-        if whole and row != plan.row[problem.size.size + item]:
+    for row in range(plan.rows.size - 1):
+        if whole and row != plan.tasks[problem.items.size + item].row:
             continue
         kept = 0
-        for at in range(plan.length[row]):
-            node = plan.node[row, at]
-            if problem.item[node] != item:
-                plan.node[row, kept] = node
+        for at in range(plan.rows[row].length):
+            node = plan.stops[row, at].node
+            if problem.nodes[node].item_of != item:
+                plan.stops[row, kept].node = node
                 kept += 1
-        if kept < plan.length[row]:
-            plan.length[row] = kept
-            plan.version[row] = STALE
+        if kept < plan.rows[row].length:
+            plan.rows[row].length = kept
+            plan.rows[row].version = STALE
     plan.handed[0] -= plan.transfers[item]
     plan.transfers[item] = BANKED
 
@@ -102,19 +87,20 @@ def take_out(problem: ProblemArrays, plan: Plan, item: int) -> None:
 @compiled
 def copy_plan(origin: Plan, copy: Plan) -> None:
     """Make `copy` the same plan as `origin`, whose times are known."""
-    for row in range(origin.length.size - 1):
-        if copy.version[row] == origin.version[row]:
+    for row in range(origin.rows.size - 1):
+        if copy.rows[row].version == origin.rows[row].version:
             continue
-        copy.version[row], copy.length[row] = origin.version[row], origin.length[row]
-        copy.cost[row] = origin.cost[row]
-        for at in range(origin.length[row]):
-            node = origin.node[row, at]
-            copy.node[row, at] = node
-            copy.begin_s[row, at] = origin.begin_s[row, at]
-            copy.latest_s[row, at] = origin.latest_s[row, at]
-            copy.load[row, at] = origin.load[row, at]
-            copy.place[node], copy.at[node] = origin.place[node], at
-            copy.row[node] = row
+        copy.rows[row].version = origin.rows[row].version
+        copy.rows[row].length = origin.rows[row].length
+        copy.rows[row].cost = origin.rows[row].cost
+        for at in range(origin.rows[row].length):
+            node = origin.stops[row, at].node
+            copy.stops[row, at].node = node
+            copy.stops[row, at].begin_s = origin.stops[row, at].begin_s
+            copy.stops[row, at].latest_s = origin.stops[row, at].latest_s
+            copy.stops[row, at].load = origin.stops[row, at].load
+            copy.tasks[node].place, copy.tasks[node].at = origin.tasks[node].place, at
+            copy.tasks[node].row = row
     for item in range(origin.transfers.size):
         copy.transfers[item] = origin.transfers[item]
     copy.handed[0] = origin.handed[0]
@@ -124,10 +110,10 @@ def copy_plan(origin: Plan, copy: Plan) -> None:
 def plan_value(problem: ProblemArrays, plan: Plan) -> float:
     """What the plan costs, with what the items cost that are in the bank."""
     value, last_s = 0.0, 0.0
-    for row in range(plan.length.size - 1):
-        value += plan.cost[row]
-        if plan.length[row] > 2:
-            last_s = max(last_s, plan.begin_s[row, plan.length[row] - 1])
+    for row in range(plan.rows.size - 1):
+        value += plan.rows[row].cost
+        if plan.rows[row].length > 2:
+            last_s = max(last_s, plan.stops[row, plan.rows[row].length - 1].begin_s)
     for item in range(plan.transfers.size):
         if plan.transfers[item] == BANKED:
             value += problem.penalty
@@ -137,7 +123,7 @@ def plan_value(problem: ProblemArrays, plan: Plan) -> float:
 @compiled
 def copy_route(plan: Plan, row: int, other: int) -> None:
     """Make another row the route of this one, for the same robot; its times are not known."""
-    plan.owner[other] = plan.owner[row]
-    plan.length[other] = plan.length[row]
-    for at in range(plan.length[row]):
-        plan.node[other, at] = plan.node[row, at]
+    plan.rows[other].owner = plan.rows[row].owner
+    plan.rows[other].length = plan.rows[row].length
+    for at in range(plan.rows[row].length):
+        plan.stops[other, at].node = plan.stops[row, at].node

@@ -11,14 +11,10 @@ from math import inf, isfinite
 from typing import NamedTuple, cast
 
 import numpy as np
-from numpy.typing import NDArray
 
+from mend.fleet.scheduling.alns.records import Floats, Integers, Records, records
 from mend.fleet.scheduling.compiled import compiled
 from mend.fleet.scheduling.problem import Problem, Visit
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 PICK, DROP, GIVE, TAKE, START, END = range(6)
 NOBODY = cast(int, np.int64(-1))
@@ -37,33 +33,20 @@ class ProblemArrays(NamedTuple):
     distance_m: Floats
     time_s: Floats
     """By place and place, at speed 1; with doors what is best in any epoch."""
-    epoch_from_s: Floats
-    epoch_until_s: Floats
+    epochs: Records
     epoch_distance_m: Floats
     epoch_time_s: Floats
-    """By epoch; none where no door opens or closes."""
-    capacity: Floats
-    pace: Floats
-    """By robot: what its travel times are multiplied by."""
-    max_duration_s: Floats
-    held: Integers
-    """By robot: before how many of its first tasks nothing may be put."""
-    twin: Integers
-    """By robot: the one before it that can do exactly the same, or `NOBODY`."""
-    place: Integers
-    kind: Integers
-    item: Integers
-    earliest_s: Floats
-    latest_s: Floats
-    due_s: Floats
-    service_s: Floats
-    load: Floats
-    """By node: what the load of the robot changes by."""
-    size: Floats
-    """By item: its load."""
-    max_on_board_s: Floats
-    carrier: Integers
-    """By item: the robot that has it already, or is about to pick it up, or `NOBODY`."""
+    """By epoch, and by place and place; none where no door opens or closes."""
+    robots: Records
+    """`capacity`; `pace`: what travel times are multiplied by; `max_duration_s`; `held`: before how
+    many of its first tasks nothing may be put; `twin`: the robot before it that can do exactly the
+    same, or `NOBODY`."""
+    nodes: Records
+    """`place`, `kind`, `item_of`, `earliest_s`, `latest_s`, `due_s`, `service_s`; `load`: what the load
+    of the robot changes by."""
+    items: Records
+    """`load`; `max_on_board_s`; `carrier`: the robot that has it already, or is about to
+    pick it up, or `NOBODY`."""
     near: Integers
     """By item: all others, the most related first."""
     transfer_place: Integers
@@ -100,97 +83,32 @@ class Kept(NamedTuple):
 
 def problem_arrays(problem: Problem, chain: int, kept: Kept | None = None) -> ProblemArrays:
     """The problem, with at most `chain` transfers of one item."""
-    items, robots, weights = problem.items, problem.robots, problem.weights
-    handling, travel = problem.transfers, problem.travel
-    held, begun = ([0] * len(robots), {}) if kept is None else kept
-    count, exchanges = len(items), 2 * len(items) * chain
-    visits = [item.pickup for item in items] + [item.delivery for item in items]
-    shifts = [robot.shift for robot in robots]
-    numbers = np.arange(count)
-    size = np.array([item.load for item in items], np.float64)
-    loaded = [sum(item.load for item in items if item.aboard == k) for k in range(len(robots))]
-    idle, free = np.zeros(len(robots)), np.full(exchanges, inf)
-    latest_s = np.array([visit.window.latest_s for visit in visits])
-    on_board_s = np.array([item.max_on_board_s for item in items], np.float64)
-    # What is on board from the beginning was loaded at the origin of time.
-    aboard = np.array([item.aboard is not None for item in items], np.bool_)
-    latest_s[count:][aboard] = np.minimum(latest_s[count:], on_board_s)[aboard]
-    on_board_s[aboard] = inf
-    duration_s = np.array([robot.max_duration_s for robot in robots], np.float64)
+    items, weights, travel = problem.items, problem.weights, problem.travel
+    handling = problem.transfers
+    spans = [item.max_on_board_s for item in items if item.aboard is None]
+    spans += [robot.max_duration_s for robot in problem.robots]
+    visits = [visit for item in items for visit in (item.pickup, item.delivery)]
     late = any(isfinite(visit.due_s) for visit in visits) and weights.lateness
-    whole = len(robots) * [NOBODY]
+    epochs = records(len(travel.epochs), real="from_s until_s")
+    epochs.from_s = [epoch.from_s for epoch in travel.epochs]
+    epochs.until_s = [epoch.until_s for epoch in travel.epochs]
     return ProblemArrays(
         distance_m=_with_anywhere(travel.distance_m),
         time_s=_with_anywhere(travel.time_s),
-        epoch_from_s=np.array([epoch.from_s for epoch in travel.epochs], np.float64),
-        epoch_until_s=np.array([epoch.until_s for epoch in travel.epochs], np.float64),
+        epochs=epochs,
         epoch_distance_m=_by_epoch([epoch.distance_m for epoch in travel.epochs]),
         epoch_time_s=_by_epoch([epoch.time_s for epoch in travel.epochs]),
-        capacity=np.array([robot.capacity for robot in robots], np.float64),
-        pace=np.array([1.0 / robot.speed for robot in robots]),
-        max_duration_s=duration_s,
-        held=np.array(held, np.int64),
-        twin=_twins(problem),
-        place=np.array(
-            [visit.place for visit in visits]
-            + [0] * exchanges
-            + [robot.start for robot in robots]
-            + [travel.count if robot.end is None else robot.end for robot in robots],
-            np.int64,
-        ),
-        kind=np.repeat(
-            np.array([PICK, DROP, *count * chain * [GIVE, TAKE], START, END], np.int64),
-            [count, count, *exchanges * [1], len(robots), len(robots)],
-        ),
-        item=np.array(
-            [*numbers, *numbers, *np.repeat(numbers, 2 * chain), *whole, *whole], np.int64
-        ),
-        earliest_s=np.concatenate(
-            (
-                [visit.window.earliest_s for visit in visits],
-                -free,
-                [shift.earliest_s for shift in shifts],
-                [shift.earliest_s for shift in shifts],
-            )
-        ),
-        latest_s=np.concatenate(
-            (latest_s, free, [inf for _ in shifts], [shift.latest_s for shift in shifts])
-        ),
-        due_s=np.concatenate(([visit.due_s for visit in visits], free, idle + inf, idle + inf)),
-        service_s=np.concatenate(
-            (
-                [visit.service_s for visit in visits],
-                np.full(exchanges, float(handling.service_s)),
-                idle,
-                idle,
-            )
-        ),
-        load=np.concatenate(
-            (
-                size,
-                -size,
-                np.repeat(size, 2 * chain) * np.tile((-1.0, 1.0), count * chain),
-                loaded,
-                idle,
-            )
-        ),
-        size=size,
-        max_on_board_s=on_board_s,
-        carrier=np.array(
-            [
-                begun.get(number, NOBODY if item.aboard is None else item.aboard)
-                for number, item in enumerate(items)
-            ],
-            np.int64,
-        ),
+        robots=_robots(problem, kept),
+        nodes=_nodes(problem, chain),
+        items=_items(problem, kept),
         near=_related(problem),
         transfer_place=np.array(handling.places, np.int64),
-        fastest=float(max(robot.speed for robot in robots)),
+        fastest=float(max(robot.speed for robot in problem.robots)),
         transfer_s=float(handling.service_s),
         together=handling.together,
         chain=chain,
         direct=5,
-        spans=int(np.isfinite(on_board_s).sum() + np.isfinite(duration_s).sum()),
+        spans=sum(isfinite(span_s) for span_s in spans),
         timeless=not (weights.makespan or weights.completion or late or travel.epochs),
         weight_distance=float(weights.distance),
         weight_makespan=float(weights.makespan),
@@ -200,6 +118,65 @@ def problem_arrays(problem: Problem, chain: int, kept: Kept | None = None) -> Pr
         metre=float(weights.distance + weights.makespan) or LEAST_PRICE,
         penalty=_penalty(problem),
     )
+
+
+def _robots(problem: Problem, kept: Kept | None) -> Records:
+    robots = records(len(problem.robots), "held twin", "capacity pace max_duration_s")
+    robots.held = 0 if kept is None else kept.held
+    robots.twin = _twins(problem)
+    robots.capacity = [robot.capacity for robot in problem.robots]
+    robots.pace = [1.0 / robot.speed for robot in problem.robots]
+    robots.max_duration_s = [robot.max_duration_s for robot in problem.robots]
+    return robots
+
+
+def _items(problem: Problem, kept: Kept | None) -> Records:
+    begun = {} if kept is None else kept.begun
+    items = records(len(problem.items), "carrier", "load max_on_board_s")
+    for number, item in enumerate(problem.items):
+        aboard = NOBODY if item.aboard is None else item.aboard
+        # What is on board from the beginning has its delivery's time in place of this.
+        longest_s = item.max_on_board_s if item.aboard is None else inf
+        items[number] = begun.get(number, aboard), item.load, longest_s
+    return items
+
+
+def _nodes(problem: Problem, chain: int) -> Records:
+    items, robots = problem.items, problem.robots
+    count, exchanges = len(items), 2 * len(items) * chain
+    nodes = records(
+        2 * count + exchanges + 2 * len(robots),
+        "place kind item_of", "earliest_s latest_s due_s service_s load",
+    )  # fmt: skip
+    nodes.earliest_s, nodes.latest_s, nodes.due_s, nodes.item_of = -inf, inf, inf, NOBODY
+    for number, item in enumerate(items):
+        for node, kind, visit in (
+            (number, PICK, item.pickup),
+            (count + number, DROP, item.delivery),
+        ):
+            latest_s = visit.window.latest_s
+            if kind == DROP and item.aboard is not None:
+                # What is on board from the beginning was loaded at the origin of time.
+                latest_s = min(latest_s, item.max_on_board_s)
+            load = item.load if kind == PICK else -item.load
+            nodes[node] = (
+                visit.place, kind, number, visit.window.earliest_s, latest_s, visit.due_s,
+                visit.service_s, load,
+            )  # fmt: skip
+        first = 2 * count + 2 * number * chain
+        for node in range(first, first + 2 * chain):
+            nodes[node].kind, nodes[node].item_of = GIVE + (node - first) % 2, number
+            nodes[node].load = item.load if (node - first) % 2 else -item.load
+    nodes.service_s[2 * count : 2 * count + exchanges] = problem.transfers.service_s
+    for number, robot in enumerate(robots):
+        start, end = nodes.size - 2 * len(robots) + number, nodes.size - len(robots) + number
+        nodes[start].kind, nodes[end].kind = START, END
+        nodes[start].place = robot.start
+        nodes[end].place = problem.travel.count if robot.end is None else robot.end
+        nodes[start].earliest_s = nodes[end].earliest_s = robot.shift.earliest_s
+        nodes[end].latest_s = robot.shift.latest_s
+        nodes[start].load = sum(item.load for item in items if item.aboard == number)
+    return nodes
 
 
 def _with_anywhere(matrix: Floats) -> Floats:
@@ -257,13 +234,13 @@ def _penalty(problem: Problem) -> float:
 @compiled
 def give_node(problem: ProblemArrays, item: int, number: int) -> int:
     """The node of what is given in the item's transfer of that number; what is taken follows it."""
-    return 2 * problem.size.size + 2 * (item * problem.chain + number)
+    return 2 * problem.items.size + 2 * (item * problem.chain + number)
 
 
 @compiled
 def origin_of(problem: ProblemArrays, item: int) -> int:
     """Where the item's way begins: its pickup, or the start of the robot that has it."""
-    if problem.carrier[item] == NOBODY:
-        return int(problem.place[item])
-    starts = problem.place.size - 2 * problem.capacity.size
-    return int(problem.place[starts + problem.carrier[item]])
+    if problem.items[item].carrier == NOBODY:
+        return int(problem.nodes[item].place)
+    starts = problem.nodes.size - 2 * problem.robots.size
+    return int(problem.nodes[starts + problem.items[item].carrier].place)

@@ -12,12 +12,10 @@ from mend.fleet.scheduling.alns.problem_arrays import (
     GIVE,
     PICK,
     TAKE,
-    Flags,
-    Floats,
-    Integers,
     ProblemArrays,
 )
-from mend.fleet.scheduling.compiled import compiled
+from mend.fleet.scheduling.alns.records import Flags, Floats, Integers
+from mend.fleet.scheduling.compiled import compiled, inlined
 from mend.fleet.scheduling.tolerance import LOAD, SEARCH_S
 
 UNSET = -1e18
@@ -41,9 +39,9 @@ class Sweep(NamedTuple):
 
 def sweep_for(problem: ProblemArrays) -> Sweep:
     """Room for the times of any plan of the problem."""
-    nodes, rows = problem.place.size, problem.capacity.size + 1
+    nodes, rows = problem.nodes.size, problem.robots.size + 1
     return Sweep(
-        release_s=problem.earliest_s.copy(),
+        release_s=problem.nodes.earliest_s.copy(),
         met_s=np.zeros(nodes),
         order=np.zeros(nodes, np.int64),
         reached=np.zeros(rows, np.int64),
@@ -58,11 +56,11 @@ def update(problem: ProblemArrays, plan: Plan, sweep: Sweep) -> bool:
     if plan.handed[0] > 0 or problem.spans > 0:
         return _update_all(problem, plan, sweep)
     fits = True
-    for row in range(plan.length.size - 1):
-        if plan.version[row] == STALE:
+    for row in range(plan.rows.size - 1):
+        if plan.rows[row].version == STALE:
             fits = update_row(problem, plan, sweep, row) and fits
-            for at in range(plan.length[row]):
-                plan.at[plan.node[row, at]] = at
+            for at in range(plan.rows[row].length):
+                plan.tasks[plan.stops[row, at].node].at = at
     return fits
 
 
@@ -74,7 +72,7 @@ def update_row(problem: ProblemArrays, plan: Plan, sweep: Sweep, row: int) -> bo
     for at in range(sweep.reached[row] - 1, -1, -1):
         _pull(problem, plan, row, at)
     sweep.newest[0] += 1
-    plan.version[row] = sweep.newest[0]
+    plan.rows[row].version = sweep.newest[0]
     return fits
 
 
@@ -82,52 +80,52 @@ def update_row(problem: ProblemArrays, plan: Plan, sweep: Sweep, row: int) -> bo
 def _update_all(problem: ProblemArrays, plan: Plan, sweep: Sweep) -> bool:
     """Every sweep keeps what goes forward in time. A longest time on board or away may then call
     for a later pickup or start, and another sweep; more sweeps than such spans contradict."""
-    rows = plan.length.size - 1
+    rows = plan.rows.size - 1
     for row in range(rows):
-        sweep.changed[row] = plan.version[row] == STALE
+        sweep.changed[row] = plan.rows[row].version == STALE
         if problem.spans > 0:
-            for at in range(plan.length[row]):
-                node = plan.node[row, at]
-                sweep.release_s[node] = problem.earliest_s[node]
+            for at in range(plan.rows[row].length):
+                node = plan.stops[row, at].node
+                sweep.release_s[node] = problem.nodes[node].earliest_s
     count, sweeps = _sweep(problem, plan, sweep), 0
     while count > 0 and problem.spans > 0 and _keep_spans(problem, plan, sweep):
         sweeps += 1
         count = _sweep(problem, plan, sweep) if sweeps <= problem.spans else 0
     for number in range(count - 1, -1, -1):
         node = sweep.order[number]
-        row = plan.row[node]
-        before_s = plan.latest_s[row, plan.at[node]]
-        _pull(problem, plan, row, plan.at[node])
-        if plan.latest_s[row, plan.at[node]] != before_s:
+        row = plan.tasks[node].row
+        before_s = plan.stops[row, plan.tasks[node].at].latest_s
+        _pull(problem, plan, row, plan.tasks[node].at)
+        if plan.stops[row, plan.tasks[node].at].latest_s != before_s:
             sweep.changed[row] = True
     for row in range(rows):
-        if sweep.changed[row] or 0 < sweep.reached[row] < plan.length[row]:
+        if sweep.changed[row] or 0 < sweep.reached[row] < plan.rows[row].length:
             sweep.newest[0] += 1
-            plan.version[row] = sweep.newest[0]
+            plan.rows[row].version = sweep.newest[0]
     return count > 0
 
 
 @compiled
 def _sweep(problem: ProblemArrays, plan: Plan, sweep: Sweep) -> int:
     """Drive all routes; how many nodes they have, or 0 where that cannot be carried out."""
-    rows, count, left = plan.length.size - 1, 0, 0
+    rows, count, left = plan.rows.size - 1, 0, 0
     for row in range(rows):
         sweep.reached[row] = 0
-        left += plan.length[row]
-        for at in range(plan.length[row]):
-            sweep.met_s[plan.node[row, at]] = UNSET
+        left += plan.rows[row].length
+        for at in range(plan.rows[row].length):
+            sweep.met_s[plan.stops[row, at].node] = UNSET
     while count < left:
         before = count
         for row in range(rows):
             first = sweep.reached[row]
-            if first == plan.length[row]:
+            if first == plan.rows[row].length:
                 continue
             if not _drive_on(problem, plan, sweep, row):
                 return 0
             for at in range(first, sweep.reached[row]):
-                node = plan.node[row, at]
+                node = plan.stops[row, at].node
                 sweep.order[count] = node
-                plan.at[node], plan.row[node] = at, row
+                plan.tasks[node].at, plan.tasks[node].row = at, row
                 count += 1
         if count == before:
             return 0
@@ -138,32 +136,37 @@ def _sweep(problem: ProblemArrays, plan: Plan, sweep: Sweep) -> int:
 def _drive_on(problem: ProblemArrays, plan: Plan, sweep: Sweep, row: int) -> bool:
     """Go on in a route until its end, or until the robot has to wait for another; False where that
     is too late or too heavy."""
-    robot = plan.owner[row]
-    for at in range(sweep.reached[row], plan.length[row]):
-        node = plan.node[row, at]
-        begin_s, load, metres = sweep.release_s[node], problem.load[node], 0.0
+    robot = plan.rows[row].owner
+    for at in range(sweep.reached[row], plan.rows[row].length):
+        node = plan.stops[row, at].node
+        begin_s, load, metres = sweep.release_s[node], problem.nodes[node].load, 0.0
         if at > 0:
-            before = plan.node[row, at - 1]
-            free_s = plan.begin_s[row, at - 1] + problem.service_s[before]
-            there_s, metres = trip(problem, robot, plan.place[before], plan.place[node], free_s)
+            before = plan.stops[row, at - 1].node
+            free_s = plan.stops[row, at - 1].begin_s + problem.nodes[before].service_s
+            there_s, metres = trip(
+                problem, robot, plan.tasks[before].place, plan.tasks[node].place, free_s
+            )
             begin_s = max(begin_s, there_s)
-            load += plan.load[row, at - 1]
-        kind = problem.kind[node]
+            load += plan.stops[row, at - 1].load
+        kind = problem.nodes[node].kind
         if kind in (GIVE, TAKE):
             begin_s = _wait_for_partner(problem, sweep, node, begin_s)
             if begin_s == UNSET:
                 return True
-        if begin_s != plan.begin_s[row, at]:
+        if begin_s != plan.stops[row, at].begin_s:
             sweep.changed[row] = True
-        plan.begin_s[row, at], plan.load[row, at] = begin_s, load
-        spent = 0.0 if at == 0 else plan.cost[row]
-        if at == 1 and plan.length[row] > 2:
+        plan.stops[row, at].begin_s, plan.stops[row, at].load = begin_s, load
+        spent = 0.0 if at == 0 else plan.rows[row].cost
+        if at == 1 and plan.rows[row].length > 2:
             spent += problem.weight_robots
-        plan.cost[row] = spent + problem.weight_distance * metres
+        plan.rows[row].cost = spent + problem.weight_distance * metres
         if kind in (PICK, DROP):
-            plan.cost[row] += _timely_cost(problem, node, begin_s)
+            plan.rows[row].cost += _timely_cost(problem, node, begin_s)
         sweep.reached[row] = at + 1
-        if begin_s > problem.latest_s[node] + SEARCH_S or load > problem.capacity[robot] + LOAD:
+        if (
+            begin_s > problem.nodes[node].latest_s + SEARCH_S
+            or load > problem.robots[robot].capacity + LOAD
+        ):
             return False
     return True
 
@@ -175,7 +178,7 @@ def _wait_for_partner(problem: ProblemArrays, sweep: Sweep, node: int, ready_s: 
     if problem.together:
         sweep.met_s[node] = ready_s
         return UNSET if sweep.met_s[other] == UNSET else max(ready_s, sweep.met_s[other])
-    if problem.kind[node] == GIVE:
+    if problem.nodes[node].kind == GIVE:
         sweep.met_s[node] = ready_s
         return ready_s
     if sweep.met_s[other] == UNSET:
@@ -183,51 +186,53 @@ def _wait_for_partner(problem: ProblemArrays, sweep: Sweep, node: int, ready_s: 
     return max(ready_s, sweep.met_s[other] + problem.transfer_s)  # type: ignore[no-any-return]
 
 
-@compiled
+@inlined
 def _timely_cost(problem: ProblemArrays, node: int, begin_s: float) -> float:
     """What it costs that a pickup or delivery begins then."""
-    price = problem.weight_lateness * max(0.0, begin_s - problem.due_s[node])
-    if problem.kind[node] == DROP:
-        price += problem.weight_completion * (begin_s + problem.service_s[node])
+    price = problem.weight_lateness * max(0.0, begin_s - problem.nodes[node].due_s)
+    if problem.nodes[node].kind == DROP:
+        price += problem.weight_completion * (begin_s + problem.nodes[node].service_s)
     return price  # type: ignore[no-any-return]
 
 
-@compiled
+@inlined
 def _pull(problem: ProblemArrays, plan: Plan, row: int, at: int) -> None:
     """By when a node must begin so that all after it can keep its time, which is known.
 
     Never too early: spans and, where robots meet, a partner are left out.
     """
-    node = plan.node[row, at]
-    latest_s = problem.latest_s[node]
-    if at + 1 < plan.length[row]:
-        place, following = plan.place[node], plan.place[plan.node[row, at + 1]]
+    node = plan.stops[row, at].node
+    latest_s = problem.nodes[node].latest_s
+    if at + 1 < plan.rows[row].length:
+        place, following = plan.tasks[node].place, plan.tasks[plan.stops[row, at + 1].node].place
         leave_s = latest_leave(
-            problem, plan.owner[row], place, following, plan.latest_s[row, at + 1]
+            problem, plan.rows[row].owner, place, following, plan.stops[row, at + 1].latest_s
         )
-        latest_s = min(latest_s, leave_s - problem.service_s[node])
-    if problem.kind[node] == GIVE and not problem.together:
-        taken_s = plan.latest_s[plan.row[node + 1], plan.at[node + 1]]
+        latest_s = min(latest_s, leave_s - problem.nodes[node].service_s)
+    if problem.nodes[node].kind == GIVE and not problem.together:
+        taken_s = plan.stops[plan.tasks[node + 1].row, plan.tasks[node + 1].at].latest_s
         latest_s = min(latest_s, taken_s - problem.transfer_s)
-    plan.latest_s[row, at] = latest_s
+    plan.stops[row, at].latest_s = latest_s
 
 
 @compiled
 def _keep_spans(problem: ProblemArrays, plan: Plan, sweep: Sweep) -> bool:
     """Release later what would lie too long before something else; whether anything was."""
-    moved, items = False, problem.size.size
+    moved, items = False, problem.items.size
     for item in range(items):
-        if plan.transfers[item] == BANKED or problem.max_on_board_s[item] == inf:
+        if plan.transfers[item] == BANKED or problem.items[item].max_on_board_s == inf:
             continue
         drop = items + item
-        span_s = problem.max_on_board_s[item] + problem.service_s[item]
-        needed_s = plan.begin_s[plan.row[drop], plan.at[drop]] - span_s
-        if plan.begin_s[plan.row[item], plan.at[item]] < needed_s - SEARCH_S:
+        span_s = problem.items[item].max_on_board_s + problem.nodes[item].service_s
+        needed_s = plan.stops[plan.tasks[drop].row, plan.tasks[drop].at].begin_s - span_s
+        if plan.stops[plan.tasks[item].row, plan.tasks[item].at].begin_s < needed_s - SEARCH_S:
             sweep.release_s[item] = needed_s
             moved = True
-    for row in range(plan.length.size - 1):
-        needed_s = plan.begin_s[row, plan.length[row] - 1] - problem.max_duration_s[row]
-        if plan.begin_s[row, 0] < needed_s - SEARCH_S:
-            sweep.release_s[plan.node[row, 0]] = needed_s
+    for row in range(plan.rows.size - 1):
+        needed_s = (
+            plan.stops[row, plan.rows[row].length - 1].begin_s - problem.robots[row].max_duration_s
+        )
+        if plan.stops[row, 0].begin_s < needed_s - SEARCH_S:
+            sweep.release_s[plan.stops[row, 0].node] = needed_s
             moved = True
     return moved

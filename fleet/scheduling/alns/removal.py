@@ -6,7 +6,7 @@ from math import inf
 from mend.fleet.scheduling.alns.plan import BANKED, Plan
 from mend.fleet.scheduling.alns.problem_arrays import DROP, NOBODY, ProblemArrays
 from mend.fleet.scheduling.alns.state import State
-from mend.fleet.scheduling.compiled import compiled
+from mend.fleet.scheduling.compiled import compiled, inlined
 from mend.fleet.scheduling.rng import Rng, below, uniform
 
 STRING = 10
@@ -45,7 +45,7 @@ def choose_items(problem: ProblemArrays, state: State, rng: Rng, operator: int, 
     return _random(state, rng, 0, wanted)
 
 
-@compiled
+@inlined
 def _pick(state: State, item: int, count: int) -> int:
     """Add an item unless it is in the bank or chosen already; how many are chosen then."""
     if item == NOBODY or state.picked[item] or state.trial.transfers[item] == BANKED:
@@ -94,7 +94,7 @@ def _strings(problem: ProblemArrays, state: State, rng: Rng, wanted: int) -> int
         known = False
         for number in range(count):
             drop = items + state.chosen[number]
-            known = known or plan.row[drop] == plan.row[items + item]
+            known = known or plan.tasks[drop].row == plan.tasks[items + item].row
         if not known:
             count = _string(problem, state, rng, (item, longest), count)
     return count
@@ -109,13 +109,13 @@ def _string(
     if plan.transfers[item] == BANKED:
         return count
     node = items + item
-    if problem.carrier[item] == NOBODY and uniform(rng) < 0.5:
+    if problem.items[item].carrier == NOBODY and uniform(rng) < 0.5:
         node = item
-    row, at = plan.row[node], plan.at[node]
+    row, at = plan.tasks[node].row, plan.tasks[node].at
     length = 1 + below(rng, longest)
     first = max(1, at - below(rng, length))
-    for position in range(first, min(plan.length[row] - 1, first + length)):
-        count = _pick(state, problem.item[plan.node[row, position]], count)
+    for position in range(first, min(plan.rows[row].length - 1, first + length)):
+        count = _pick(state, problem.nodes[plan.stops[row, position].node].item_of, count)
     return count
 
 
@@ -140,16 +140,16 @@ def _worst(problem: ProblemArrays, state: State, rng: Rng, wanted: int) -> int:
 def _saved_m(problem: ProblemArrays, plan: Plan, item: int) -> float:
     """How much shorter the routes would be without an item (metres)."""
     saved_m = 0.0
-    for row in range(plan.length.size - 1):
-        if plan.transfers[item] == 0 and row != plan.row[plan.transfers.size + item]:
+    for row in range(plan.rows.size - 1):
+        if plan.transfers[item] == 0 and row != plan.tasks[plan.transfers.size + item].row:
             continue
-        here = kept = plan.place[plan.node[row, 0]]
-        for at in range(1, plan.length[row]):
-            node = plan.node[row, at]
-            place = plan.place[node]
+        here = kept = plan.tasks[plan.stops[row, 0].node].place
+        for at in range(1, plan.rows[row].length):
+            node = plan.stops[row, at].node
+            place = plan.tasks[node].place
             saved_m += problem.distance_m[here, place]
             here = place
-            if problem.item[node] != item:
+            if problem.nodes[node].item_of != item:
                 saved_m -= problem.distance_m[kept, place]
                 kept = place
     return saved_m
@@ -162,10 +162,10 @@ def _route(problem: ProblemArrays, state: State, rng: Rng, wanted: int) -> int:
     seed, count = below(rng, items), 0
     if plan.transfers[seed] == BANKED:
         return _random(state, rng, 0, wanted)
-    row = plan.row[items + seed]
-    for at in range(1, plan.length[row] - 1):
+    row = plan.tasks[items + seed].row
+    for at in range(1, plan.rows[row].length - 1):
         if count < wanted:
-            count = _pick(state, problem.item[plan.node[row, at]], count)
+            count = _pick(state, problem.nodes[plan.stops[row, at].node].item_of, count)
     for rank in range(min(items - 1, max(0, wanted - count))):
         if uniform(rng) < 0.7:
             count = _pick(state, problem.near[seed, rank], count)
@@ -181,10 +181,10 @@ def _same_transfer(problem: ProblemArrays, state: State, rng: Rng, wanted: int) 
         for number in range(max(0, plan.transfers[item])):
             given += 1
             if below(rng, given) == 0:
-                place = plan.place[2 * items + 2 * (item * chain + number)]
+                place = plan.tasks[2 * items + 2 * (item * chain + number)].place
     for item in range(items):
         for number in range(max(0, plan.transfers[item])):
-            if plan.place[2 * items + 2 * (item * chain + number)] == place:
+            if plan.tasks[2 * items + 2 * (item * chain + number)].place == place:
                 count = _pick(state, item, count)
     return _random(state, rng, count, wanted)
 
@@ -195,26 +195,28 @@ def _detour(problem: ProblemArrays, state: State, rng: Rng, wanted: int) -> int:
 
     Its way is spared only when all of it is done by others, so that no single item shows the gain.
     """
-    plan, row = state.trial, below(rng, problem.capacity.size)
-    if plan.length[row] == 2:
+    plan, row = state.trial, below(rng, problem.robots.size)
+    if plan.rows[row].length == 2:
         return _random(state, rng, 0, wanted)
     first = _far_leg(problem, plan, rng, row)
     far_m, last, count = _leg_m(problem, plan, row, first), first + 1, 0
-    while last < plan.length[row] - 1 and _leg_m(problem, plan, row, last) < far_m:
+    while last < plan.rows[row].length - 1 and _leg_m(problem, plan, row, last) < far_m:
         last += 1
     for at in range(first, last):
-        node = plan.node[row, at]
-        if problem.kind[node] <= DROP:
+        node = plan.stops[row, at].node
+        if problem.nodes[node].kind <= DROP:
             state.found.tabu[node] = row
-        count = _pick(state, problem.item[node], count)
-    return _near(problem, state, rng, (count, wanted), plan.place[plan.node[row, first]])
+        count = _pick(state, problem.nodes[node].item_of, count)
+    return _near(
+        problem, state, rng, (count, wanted), plan.tasks[plan.stops[row, first].node].place
+    )
 
 
 @compiled
 def _far_leg(problem: ProblemArrays, plan: Plan, rng: Rng, row: int) -> int:
     """The position before which the robot goes far: each as probable as it is long."""
     whole_m, found = 0.0, 1
-    for at in range(1, plan.length[row] - 1):
+    for at in range(1, plan.rows[row].length - 1):
         leg_m = _leg_m(problem, plan, row, at)
         whole_m += leg_m
         if uniform(rng) * whole_m < leg_m:
@@ -225,7 +227,10 @@ def _far_leg(problem: ProblemArrays, plan: Plan, rng: Rng, row: int) -> int:
 @compiled
 def _leg_m(problem: ProblemArrays, plan: Plan, row: int, at: int) -> float:
     """How far the robot goes to get to a position of its route (metres)."""
-    before, here = plan.place[plan.node[row, at - 1]], plan.place[plan.node[row, at]]
+    before, here = (
+        plan.tasks[plan.stops[row, at - 1].node].place,
+        plan.tasks[plan.stops[row, at].node].place,
+    )
     return problem.distance_m[before, here]  # type: ignore[no-any-return]
 
 
@@ -242,8 +247,8 @@ def _near(
             if state.trial.transfers[item] == BANKED or state.picked[item]:
                 continue
             away = min(
-                problem.distance_m[place, problem.place[item]],
-                problem.distance_m[place, problem.place[items + item]],
+                problem.distance_m[place, problem.nodes[item].place],
+                problem.distance_m[place, problem.nodes[items + item].place],
             )
             if away < nearest:
                 nearest, found = away, item

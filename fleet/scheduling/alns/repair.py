@@ -82,14 +82,14 @@ def repair(
 @compiled
 def _by_deadline(problem: ProblemArrays, state: State, count: int) -> None:
     """Order by what is least free: the item with the shortest time first."""
-    chosen, items = state.chosen, problem.size.size
+    chosen, items = state.chosen, problem.items.size
     for at in range(1, count):
         item = chosen[at]
-        spare_s = problem.latest_s[items + item] - problem.earliest_s[item]
+        spare_s = problem.nodes[items + item].latest_s - problem.nodes[item].earliest_s
         before = at - 1
         while before >= 0:
             other = chosen[before]
-            if problem.latest_s[items + other] - problem.earliest_s[other] <= spare_s:
+            if problem.nodes[items + other].latest_s - problem.nodes[other].earliest_s <= spare_s:
                 break
             chosen[before + 1] = other
             before -= 1
@@ -122,17 +122,17 @@ def _best_robots(problem: ProblemArrays, state: State, item: int) -> tuple[float
     plan, found = state.trial, state.found
     best = second = third = inf
     open_home(problem, found.ends, item)
-    for row in range(problem.capacity.size):
-        if found.shut[row] or problem.carrier[item] not in (NOBODY, row):
+    for row in range(problem.robots.size):
+        if found.shut[row] or problem.items[item].carrier not in (NOBODY, row):
             continue
-        twin = problem.twin[row]
-        if twin != NOBODY and plan.length[row] == 2 and plan.length[twin] == 2:
+        twin = problem.robots[row].twin
+        if twin != NOBODY and plan.rows[row].length == 2 and plan.rows[twin].length == 2:
             continue
         look_up(problem, plan, found, item, row)
         slot = direct_slot(plan, item, row)
-        if found.legs.known[slot] == 0:
+        if found.legs.slots[slot].known == 0:
             continue
-        extra = found.legs.extra[slot, 0]
+        extra = found.legs.ranked[slot, 0].extra
         if extra < best:
             best, second, third = extra, best, second
         elif extra < second:

@@ -21,20 +21,23 @@ from mend.fleet.scheduling.schedule import Action, Route, Task
 def routes_in(problem: ProblemArrays, plan: Plan) -> tuple[Route, ...]:
     """What every robot does in a plan; items in the bank are in no route, but if they are begun."""
     return tuple(
-        tuple(_task(problem, plan, int(node)) for node in plan.node[row, 1 : plan.length[row] - 1])
-        for row in range(problem.capacity.size)
+        tuple(
+            _task(problem, plan, int(node))
+            for node in plan.stops.node[row, 1 : plan.rows[row].length - 1]
+        )
+        for row in range(problem.robots.size)
     )
 
 
 def _task(problem: ProblemArrays, plan: Plan, node: int) -> Task:
-    place, item = int(plan.place[node]), int(problem.item[node])
-    kind = problem.kind[node]
+    place, item = int(plan.tasks[node].place), int(problem.nodes[node].item_of)
+    kind = problem.nodes[node].kind
     if kind == PICK:
         return Task(place, Action.PICK, item)
     if kind == DROP:
         return Task(place, Action.DROP, item)
     action = Action.GIVE if kind == GIVE else Action.TAKE
-    return Task(place, action, item, int(plan.row[node ^ 1]))
+    return Task(place, action, item, int(plan.tasks[node ^ 1].row))
 
 
 def plan_of(problem: ProblemArrays, described: Problem, routes: Sequence[Route]) -> Plan:
@@ -49,7 +52,7 @@ def plan_of(problem: ProblemArrays, described: Problem, routes: Sequence[Route])
     whole = [
         item
         for item, done in actions.items()
-        if problem.carrier[item] == NOBODY or done != [Action.PICK]
+        if problem.items[item].carrier == NOBODY or done != [Action.PICK]
     ]
     for item, legs in itineraries(described, routes, whole).items():
         first, last = legs[0], legs[-1]
@@ -64,11 +67,11 @@ def plan_of(problem: ProblemArrays, described: Problem, routes: Sequence[Route])
         plan.transfers[item] = len(legs) - 1
         plan.handed[0] += len(legs) - 1
     for robot, route in enumerate(routes):
-        plan.node[robot, len(route) + 1] = plan.node[robot, 1]
-        plan.length[robot] = len(route) + 2
+        plan.stops[robot, len(route) + 1].node = plan.stops[robot, 1].node
+        plan.rows[robot].length = len(route) + 2
         for at, task in enumerate(route):
             node = nodes.get((robot, at), task.item)
-            plan.node[robot, at + 1] = node
-            plan.place[node] = task.place
-            plan.row[node] = robot
+            plan.stops[robot, at + 1].node = node
+            plan.tasks[node].place = task.place
+            plan.tasks[node].row = robot
     return plan

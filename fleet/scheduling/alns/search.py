@@ -60,7 +60,7 @@ class Search:
         self._told = inf
         self._ejections_a_s = 100.0
         # Ejection moves items by their own routes alone, without a look at what that costs.
-        self._ejects = problem.timeless and not problem.spans and (problem.carrier < 0).all()
+        self._ejects = problem.timeless and not problem.spans and (problem.items.carrier < 0).all()
 
     @property
     def best(self) -> Plan | None:
@@ -74,7 +74,7 @@ class Search:
         ends_s = self._clock() + seconds
         if self.state.value[BEST] == inf:
             self.place(ends_s)
-        if not self.problem.size.size:
+        if not self.problem.items.size:
             return
         if not transfers and self.best is not None:
             self.free_robots(min(ends_s, self._clock() + FREEING * seconds))
@@ -83,7 +83,7 @@ class Search:
         self.take_steps(steps, transfers, cooling, (0.0, 0.0))
         pace = steps / max(self._clock() - begun_s, 1e-6)
         left_s = ends_s - self._clock()
-        rounds = max(1, round(pace * left_s / (cooling.steps * self.problem.size.size)))
+        rounds = max(1, round(pace * left_s / (cooling.steps * self.problem.items.size)))
         for number in range(rounds):
             until_s = ends_s - left_s * (rounds - number - 1) / rounds
             if number % cooling.restart == 0:
@@ -99,7 +99,7 @@ class Search:
 
     def place(self, ends_s: float) -> None:
         """Give every item a place, as far as that comes about in time."""
-        state, problem, items = self.state, self.problem, self.problem.size.size
+        state, problem, items = self.state, self.problem, self.problem.items.size
         state.chosen[:items] = np.arange(items)
         direct = Allowed(0, False, 0.0)
         repair(problem, state, self._rng, int(Repair.REGRET_2), direct, (items, inf))
@@ -115,15 +115,15 @@ class Search:
 
     def free_robots(self, ends_s: float) -> None:
         """Bring what one robot does to the others, and another one's, as long as there is time."""
-        plan, robots = self.state.current, self.problem.capacity.size
+        plan, robots = self.state.current, self.problem.robots.size
         while self._ejects and self.problem.weight_robots > 0 and self._clock() < ends_s:
-            used = np.flatnonzero(plan.length[:robots] > 2)
+            used = np.flatnonzero(plan.rows.length[:robots] > 2)
             if used.size < 2 or plan.handed[0] or (plan.transfers == BANKED).any():
                 return
-            likely = 1.0 / (plan.length[used] - 1.0)
+            likely = 1.0 / (plan.rows.length[used] - 1.0)
             robot = self._generator.choice(used, p=likely / likely.sum())
             empty_route(self.problem, self.state, self._ejection, robot)
-            if self._eject_until(ends_s, TRIES * self.problem.size.size):
+            if self._eject_until(ends_s, TRIES * self.problem.items.size):
                 self._keep(plan)
             else:
                 self._go_back()
@@ -186,7 +186,7 @@ class Search:
         """What one item costs on average, undelivered ones and robots aside."""
         problem, plan = self.problem, self.state.best
         banked = int((plan.transfers == BANKED).sum())
-        robots = problem.weight_robots * float((plan.length[:-1] > 2).sum())
+        robots = problem.weight_robots * float((plan.rows.length[:-1] > 2).sum())
         spent = float(self.state.value[BEST]) - banked * problem.penalty - robots
         return max(spent / max(1, plan.transfers.size - banked), 1e-6)
 

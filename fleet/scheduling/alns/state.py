@@ -7,8 +7,9 @@ import numpy as np
 
 from mend.fleet.scheduling.alns.itineraries import Itineraries, itineraries_for
 from mend.fleet.scheduling.alns.plan import Plan, copy_plan, empty_plan
-from mend.fleet.scheduling.alns.problem_arrays import Flags, Floats, Integers, ProblemArrays
+from mend.fleet.scheduling.alns.problem_arrays import ProblemArrays
 from mend.fleet.scheduling.alns.propagation import Sweep, sweep_for, update
+from mend.fleet.scheduling.alns.records import Flags, Floats, Integers
 
 CURRENT, BEST = 0, 1
 """Where `value` has what the plans cost, with the penalty for what is not delivered."""
@@ -36,7 +37,7 @@ def state_for(problem: ProblemArrays) -> State:
     state = State(
         current, plans[0], plans[1], plans[2], np.full(2, inf), sweep_for(problem),
         itineraries_for(problem),
-        np.zeros(problem.size.size + 1, np.int64), np.zeros(problem.size.size, np.bool_),
+        np.zeros(problem.items.size + 1, np.int64), np.zeros(problem.items.size, np.bool_),
     )  # fmt: skip
     update(problem, current, state.sweep)
     for plan in plans:
