@@ -26,6 +26,4 @@ def compiled(function: Kernel) -> Kernel:
 def inlined(function: Kernel) -> Kernel:
     """Compile into every caller: for what is called so often that passing the arrays of a problem
     would take longer than the rest."""
-    return mend.maps.compiled.compiled(
-        function, **PLAIN, no_cpython_wrapper=True, forceinline=True
-    )
+    return mend.maps.compiled.compiled(function, **PLAIN, no_cpython_wrapper=True, forceinline=True)

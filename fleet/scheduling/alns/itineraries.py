@@ -166,7 +166,7 @@ def look_up(problem: ProblemArrays, plan: Plan, found: Itineraries, item: int, r
     slot = direct_slot(plan, item, row)
     if found.legs.slots[slot].version != plan.rows[row].version:
         limit = problem.metre * UNREACHABLE / 2
-        wanted = Wanted(slot, row, item, 0, 0, limit, problem.direct, False)
+        wanted = Wanted(slot, row, item, 0, 0, limit, KEPT, False)
         find_legs(problem, plan, found.ends, found.legs, wanted)
         found.legs.slots[slot].version = plan.rows[row].version
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from mend.fleet.scheduling.alns.problem_arrays import NOBODY, ProblemArrays
 from mend.fleet.scheduling.alns.records import Integers, Records, records
-from mend.fleet.scheduling.compiled import compiled
+from mend.fleet.scheduling.compiled import compiled, inlined
 
 BANKED = -1
 STALE = 0
@@ -52,7 +52,7 @@ def empty_plan(problem: ProblemArrays) -> Plan:
     return plan
 
 
-@compiled
+@inlined
 def put(plan: Plan, row: int, at: int, node: int, place: int) -> None:
     """Insert a node into a row after position `at`."""
     for later in range(plan.rows[row].length - 1, at, -1):

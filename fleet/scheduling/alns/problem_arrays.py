@@ -56,8 +56,6 @@ class ProblemArrays(NamedTuple):
     together: bool
     chain: int
     """The most transfers of one item."""
-    direct: int
-    """How many places in a route are remembered for an item that changes no robots."""
     spans: int
     """How many constraints bind something to be not much earlier than something later."""
     timeless: bool
@@ -107,7 +105,6 @@ def problem_arrays(problem: Problem, chain: int, kept: Kept | None = None) -> Pr
         transfer_s=float(handling.service_s),
         together=handling.together,
         chain=chain,
-        direct=5,
         spans=sum(isfinite(span_s) for span_s in spans),
         timeless=not (weights.makespan or weights.completion or late or travel.epochs),
         weight_distance=float(weights.distance),

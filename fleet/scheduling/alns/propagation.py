@@ -171,7 +171,7 @@ def _drive_on(problem: ProblemArrays, plan: Plan, sweep: Sweep, row: int) -> boo
     return True
 
 
-@compiled
+@inlined
 def _wait_for_partner(problem: ProblemArrays, sweep: Sweep, node: int, ready_s: float) -> float:
     """When a robot that is ready can give or take; `UNSET` while its partner is not that far."""
     other = node ^ 1

@@ -16,7 +16,7 @@ from mend.fleet.scheduling.alns.plan import copy_plan, plan_value
 from mend.fleet.scheduling.alns.problem_arrays import NOBODY, ProblemArrays
 from mend.fleet.scheduling.alns.propagation import update
 from mend.fleet.scheduling.alns.state import State
-from mend.fleet.scheduling.compiled import compiled
+from mend.fleet.scheduling.compiled import compiled, inlined
 from mend.fleet.scheduling.rng import Rng, shuffle, uniform
 
 
@@ -116,7 +116,7 @@ def _most_regretted(
     chosen[turn], chosen[first] = chosen[first], chosen[turn]
 
 
-@compiled
+@inlined
 def _best_robots(problem: ProblemArrays, state: State, item: int) -> tuple[float, float, float]:
     """What the item costs with the three robots that would bring it cheapest alone."""
     plan, found = state.trial, state.found
