@@ -58,7 +58,7 @@ REFUSALS = (ServiceError, DuplicateReceiptError, JournalWriteError)
 
 
 class Run:
-    """One running run; implements `server.robots.registry.RobotSink`."""
+    """One running run; implements `mend.server.robots.registry.RobotSink`."""
 
     def __init__(
         self,
