@@ -24,13 +24,12 @@ from office_building import (
     building_deliveries,
 )
 
+from mend.fleet.scheduling.alns.solve import prepare, solve_alns
 from mend.fleet.scheduling.drawing.bars import BarGroup, bars
 from mend.fleet.scheduling.exact.solve import solve_exactly
 from mend.fleet.scheduling.problem import Problem
 from mend.fleet.scheduling.problem_file import problem_of
-from mend.fleet.scheduling.routing.solve import solve_alns
 from mend.fleet.scheduling.solution import Solution, Status, UnsupportedError
-from mend.fleet.scheduling.vlns.solve import prepare, solve_vlns
 
 OUT = Path("out/scheduling_building.svg")
 LARGE = replace(BINDING, floors=4, robots=4, items=40, capacity=10.0, shift_s=1100.0, wing_m=100.0)
@@ -74,7 +73,7 @@ def measure_exactly(problem: Problem, seconds: float, seed: int) -> Draw:
     alone = solve_exactly(
         apart, seconds=seconds, seed=seed, start=begin.schedule, clock=time.perf_counter
     )
-    warm = solve_vlns(
+    warm = solve_alns(
         problem, seconds=WARM_S, seed=seed, start=alone.schedule, clock=time.perf_counter
     )
     shared = solve_exactly(
@@ -97,7 +96,7 @@ def measure_large(problem: Problem, seconds: float, seed: int) -> Draw | None:
     except UnsupportedError as error:
         print(error)
         return None
-    shared = solve_vlns(problem, seconds=seconds, seed=seed, clock=time.perf_counter)
+    shared = solve_alns(problem, seconds=seconds, seed=seed, clock=time.perf_counter)
     return Draw(problem.name, alone, shared)
 
 

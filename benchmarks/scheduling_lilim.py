@@ -20,10 +20,10 @@ from math import inf, isfinite
 from pathlib import Path
 from statistics import mean
 
+from mend.fleet.scheduling.alns.solve import prepare, solve_alns
 from mend.fleet.scheduling.drawing.bars import BarGroup, bars
 from mend.fleet.scheduling.instances.li_lim import read_li_lim
 from mend.fleet.scheduling.problem import Problem
-from mend.fleet.scheduling.routing.solve import prepare, solve_alns
 from mend.fleet.scheduling.solution import Solution
 
 DATA = Path(os.environ.get("MEND_DATA", Path(__file__).parents[2] / "shared/data")) / "scheduling"

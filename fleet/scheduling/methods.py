@@ -7,6 +7,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Protocol
 
+from mend.fleet.scheduling.alns.solve import prepare as prepare_alns
+from mend.fleet.scheduling.alns.solve import solve_alns
 from mend.fleet.scheduling.auction import solve_by_auction
 from mend.fleet.scheduling.cheapest_insertion import solve_by_insertion
 from mend.fleet.scheduling.exact.route_bound import prepare as prepare_routes
@@ -15,14 +17,8 @@ from mend.fleet.scheduling.nearest_next import solve_by_nearest_next
 from mend.fleet.scheduling.one_destination import solve_to_one_destination
 from mend.fleet.scheduling.one_task_bidder import solve_one_task_each
 from mend.fleet.scheduling.problem import Problem
-from mend.fleet.scheduling.reinsertion import solve_by_reinsertion
-from mend.fleet.scheduling.routing.arrays import unsupported
-from mend.fleet.scheduling.routing.solve import prepare as prepare_alns
-from mend.fleet.scheduling.routing.solve import solve_alns
 from mend.fleet.scheduling.schedule import Schedule
 from mend.fleet.scheduling.solution import Progress, Solution, Status, UnsupportedError
-from mend.fleet.scheduling.vlns.solve import prepare as prepare_vlns
-from mend.fleet.scheduling.vlns.solve import solve_vlns
 
 Clock = Callable[[], float]
 """Tells seconds from whatever origin."""
@@ -104,7 +100,7 @@ def _exact_after_heuristics(
         clock=clock,
     )
     if solution.status in (Status.FEASIBLE, Status.UNKNOWN):
-        last = _vlns(
+        last = solve_alns(
             problem,
             seconds=max(0.0, seconds - (clock() - began_s)),
             seed=seed,
@@ -128,24 +124,8 @@ def _exact_size(problem: Problem) -> int:
     return len(problem.robots) * visits**2 * max(1, len(problem.items))
 
 
-def _vlns(
-    problem: Problem,
-    *,
-    seconds: float,
-    seed: int,
-    start: Schedule | None,
-    on_progress: Callable[[Progress], None] | None,
-    clock: Clock,
-) -> Solution:
-    """The search with transfers; around doors that open and close the one that knows them."""
-    search = solve_by_reinsertion if problem.travel.epochs else solve_vlns
-    return search(
-        problem, seconds=seconds, seed=seed, start=start, on_progress=on_progress, clock=clock
-    )
-
-
 def _prepare_exact() -> None:
-    prepare_vlns()
+    prepare_alns()
     prepare_routes()
 
 
@@ -153,10 +133,7 @@ METHODS: Mapping[str, Method] = {
     "exact": Method(
         _exact_after_heuristics, False, True, "optimal, or with a proved bound", _prepare_exact
     ),
-    "vlns": Method(_vlns, True, False, "very large neighbourhoods with transfers", prepare_vlns),
-    "alns": Method(
-        solve_alns, False, False, "adaptive large neighbourhoods, no transfers", prepare_alns
-    ),
+    "alns": Method(solve_alns, True, False, "adaptive large neighbourhoods", prepare_alns),
     "auction": Method(solve_by_auction, True, False, "robots bid for each item"),
     "insertion": Method(solve_by_insertion, True, False, "each item where it costs least"),
     "greedy": Method(solve_by_nearest_next, True, False, "each robot what it reaches first"),
@@ -166,7 +143,7 @@ METHODS: Mapping[str, Method] = {
     ),
 }
 
-HEURISTICS = ("greedy", "insertion", "auction", "vlns")
+HEURISTICS = ("greedy", "insertion", "auction", "alns")
 """What the exact method begins with, quickest first; the last one takes what time is left."""
 
 
@@ -197,13 +174,8 @@ def best_heuristic(
 
 def suited_method(problem: Problem) -> str:
     """The name of the method for a problem of this size and with these features."""
-    small = len(problem.items) <= EXACT_ITEMS
-    if problem.travel.epochs:
-        return "vlns"
-    if small:
-        return "exact"
-    alone = not problem.transfers.places and unsupported(problem) is None
-    return "alns" if alone else "vlns"
+    small = len(problem.items) <= EXACT_ITEMS and not problem.travel.epochs
+    return "exact" if small else "alns"
 
 
 def solve(
@@ -228,8 +200,7 @@ def solve(
         raise UnsupportedError(
             f"the method '{method}' cannot plan with doors that open and close; {able} can"
         )
-    # Nothing that plans around doors is compiled for long.
-    if chosen.prepare is not None and not problem.travel.epochs:
+    if chosen.prepare is not None:
         if on_prepare is not None:
             on_prepare()
         chosen.prepare()

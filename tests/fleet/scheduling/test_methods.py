@@ -23,7 +23,6 @@ from mend.fleet.scheduling.schedule import Schedule
 from mend.fleet.scheduling.solution import Progress, Status, UnsupportedError
 from mend.fleet.scheduling.timing import earliest_schedule
 from mend.fleet.scheduling.travel import Epoch, Travel
-from mend.fleet.scheduling.vlns.solve import solve_vlns
 
 HEURISTICS = ("auction", "greedy", "insertion", "one_task")
 
@@ -97,7 +96,7 @@ def test_one_task_bidder_brings_one_item_at_a_time() -> None:
         assert [task.action.loads for task in route] == [True, False] * (len(route) // 2)
 
 
-@pytest.mark.parametrize("method", sorted(set(METHODS) - {"alns", "one_destination"}))
+@pytest.mark.parametrize("method", sorted(set(METHODS) - {"one_destination"}))
 def test_result_is_never_worse_than_the_start(method: str) -> None:
     problem = corridor(items=(parcel(),), robots=two_robots(max_duration_s=45.0))
     start = earliest_schedule(problem, HANDED_OVER)
@@ -149,7 +148,7 @@ def test_exact_begins_with_the_best_of_the_heuristics() -> None:
         problem, seconds=20.0, seed=1, start=None, on_progress=None, clock=TickingClock(0.5)
     )
     assert best.cost is not None
-    for name in ("greedy", "insertion", "auction", "vlns"):
+    for name in ("greedy", "insertion", "auction", "alns"):
         alone = solve(problem, name, seconds=2.0, seed=1, clock=TickingClock(0.5))
         assert alone.cost is None or best.cost.total <= alone.cost.total
 
@@ -165,7 +164,7 @@ def test_exact_is_not_offered_where_doors_close() -> None:
     problem = with_a_door(corridor(items=(parcel(),)))
     with pytest.raises(UnsupportedError, match="greedy"):
         solve(problem, "exact", seconds=1.0, clock=TickingClock(0.5))
-    assert suited_method(problem) == "vlns"
+    assert suited_method(problem) == "alns"
 
 
 @given(items=corridor_items(), seed=st.integers(0, 99))
@@ -175,7 +174,7 @@ def test_search_around_doors_is_valid_and_no_worse_than_insertion(
 ) -> None:
     problem = with_a_door(corridor(items=items, robots=two_robots()))
     first = solve(problem, "insertion", seconds=30.0, seed=seed, clock=TickingClock(0.1))
-    found = solve(problem, "vlns", seconds=30.0, seed=seed, clock=TickingClock(0.1))
+    found = solve(problem, "alns", seconds=30.0, seed=seed, clock=TickingClock(0.1))
     assert (found.schedule is None) == (first.schedule is None)
     if found.schedule is not None and first.cost is not None:
         assert check(problem, found.schedule) == []
@@ -189,7 +188,7 @@ def test_search_around_doors_mends_what_insertion_missed() -> None:
     told: list[Progress] = []
     plain = solve(problem, "insertion", seconds=1000.0, seed=1, clock=TickingClock(1.0))
     found = solve(
-        problem, "vlns", seconds=300.0, seed=1, on_progress=told.append, clock=TickingClock(1.0)
+        problem, "alns", seconds=300.0, seed=1, on_progress=told.append, clock=TickingClock(1.0)
     )
     assert found.cost is not None
     assert plain.cost is not None
@@ -197,12 +196,6 @@ def test_search_around_doors_mends_what_insertion_missed() -> None:
     costs = [each.incumbent for each in told]
     assert costs == sorted(costs, reverse=True)
     assert costs[-1] == pytest.approx(found.cost.total)
-
-
-def test_compiled_search_refuses_doors() -> None:
-    problem = with_a_door(corridor(items=(parcel(),)))
-    with pytest.raises(UnsupportedError, match="doors"):
-        solve_vlns(problem, seconds=1.0, clock=TickingClock(0.5))
 
 
 @pytest.mark.parametrize("method", HEURISTICS)
@@ -227,7 +220,7 @@ def test_what_is_compiled_first_is_announced(method: str) -> None:
 def test_size_decides_what_is_suited() -> None:
     few = corridor(items=(parcel(),))
     many = corridor(items=tuple(parcel(f"p{n}") for n in range(40)))
-    assert (suited_method(few), suited_method(many)) == ("exact", "vlns")
+    assert (suited_method(few), suited_method(many)) == ("exact", "alns")
 
 
 def test_window_that_nobody_meets_leaves_no_schedule() -> None:

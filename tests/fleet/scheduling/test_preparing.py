@@ -45,7 +45,7 @@ DOUBLES = str(Path(__file__).parents[2] / "doubles")
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("method", "folder"), [("exact", "exact"), ("alns", "routing")])
+@pytest.mark.parametrize(("method", "folder"), [("exact", "exact"), ("alns", "alns")])
 def test_nothing_is_left_to_compile_for_a_method_that_is_prepared(method: str, folder: str) -> None:
     left = subprocess.run(
         [sys.executable, "-c", SOLVED_AFTER_PREPARING, method, folder, DOUBLES],

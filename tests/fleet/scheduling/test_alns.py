@@ -10,6 +10,7 @@ from benchmark_instances import DATA
 from delivery_problems import HANDED_OVER, corridor, parcel
 from even_clock import EvenClock
 
+from mend.fleet.scheduling.alns.solve import solve_alns
 from mend.fleet.scheduling.checker import check
 from mend.fleet.scheduling.exact.solve import solve_exactly
 from mend.fleet.scheduling.instances.transfer_benchmark import read_transfer_benchmark
@@ -18,12 +19,11 @@ from mend.fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit
 from mend.fleet.scheduling.schedule import Schedule
 from mend.fleet.scheduling.solution import Progress, Solution, Status
 from mend.fleet.scheduling.timing import earliest_schedule
-from mend.fleet.scheduling.vlns.solve import solve_vlns
 
 
 def solved(problem: Problem, **options: object) -> Solution:
     """A search that does the same work in every run."""
-    return solve_vlns(problem, seconds=40.0, clock=EvenClock(), **options)  # type: ignore[arg-type]
+    return solve_alns(problem, seconds=40.0, clock=EvenClock(), **options)  # type: ignore[arg-type]
 
 
 def handed_over(problem: Problem) -> Schedule:
@@ -156,7 +156,7 @@ def test_start_is_never_made_worse() -> None:
     problem = corridor(items=(parcel(),))
     start = handed_over(problem)
     begun = cost(problem, start).total
-    at_once = solve_vlns(problem, seconds=0.0, start=start, clock=EvenClock())
+    at_once = solve_alns(problem, seconds=0.0, start=start, clock=EvenClock())
     assert at_once.cost is not None
     assert at_once.cost.total <= begun
     found = solved(problem, start=start)
@@ -179,8 +179,8 @@ def test_start_with_transfers_is_kept_where_no_new_ones_are_allowed() -> None:
 def test_transfers_never_cost_more_than_doing_without(seed: int) -> None:
     items = (parcel("a", 0, 4), parcel("b", 4, 0), parcel("c", 1, 3))
     problem = corridor(items=items)
-    alone = solve_vlns(problem, seconds=8.0, seed=seed, transfers=False, clock=EvenClock())
-    found = solve_vlns(problem, seconds=40.0, seed=seed, clock=EvenClock())
+    alone = solve_alns(problem, seconds=8.0, seed=seed, transfers=False, clock=EvenClock())
+    found = solve_alns(problem, seconds=40.0, seed=seed, clock=EvenClock())
     assert alone.cost is not None
     assert found.cost is not None
     assert found.cost.total <= alone.cost.total
@@ -216,7 +216,7 @@ def test_published_optimum_is_found(name: str) -> None:
     with (path.parent / "published_mip.csv").open() as file:
         rows = [row for row in csv.DictReader(file) if row["instance"] == path.name]
     best = min(float(row["objective"]) for row in rows if row["status"] == "OPTIMAL")
-    found = solve_vlns(problem, seconds=2.0, seed=1, clock=time.process_time)
+    found = solve_alns(problem, seconds=2.0, seed=1, clock=time.process_time)
     assert found.schedule is not None
     assert check(problem, found.schedule) == []
     assert found.cost is not None

@@ -3,7 +3,7 @@
 The naive way runs beside it for as long: cheapest insertion without transfers in random order,
 again and again. Seconds are of this process's own processor time unless `--clock wall`.
 
-    python benchmarks/scheduling_vlns.py [--set pdptwt|pdpt] [--only proved|open]
+    python benchmarks/scheduling_transfers.py [--set pdptwt|pdpt] [--only proved|open]
         [--seconds 10] [--instances 20] [--seed 1] [--quick] [--data FOLDER]
 """
 
@@ -22,14 +22,15 @@ from statistics import mean
 
 import numpy as np
 
-from mend.fleet.scheduling.dice import dice_from
+from mend.fleet.scheduling.alns.itineraries import Allowed
+from mend.fleet.scheduling.alns.plan import BANKED, plan_value
+from mend.fleet.scheduling.alns.problem_arrays import problem_arrays
+from mend.fleet.scheduling.alns.repair import Repair, repair
+from mend.fleet.scheduling.alns.solve import prepare, solve_alns
+from mend.fleet.scheduling.alns.state import state_for
 from mend.fleet.scheduling.instances.transfer_benchmark import read_transfer_benchmark
 from mend.fleet.scheduling.problem import Problem
-from mend.fleet.scheduling.vlns.arrays import TOTAL, empty_plan, problem_arrays
-from mend.fleet.scheduling.vlns.insertion import Manner, insert_all, refresh
-from mend.fleet.scheduling.vlns.solve import prepare, solve_vlns
-from mend.fleet.scheduling.vlns.times import times_for
-from mend.fleet.scheduling.vlns.ways import ways_for
+from mend.fleet.scheduling.rng import rng_from
 
 DATA = Path(os.environ.get("MEND_DATA", Path(__file__).parents[2] / "shared/data")) / "scheduling"
 SAME = 1e-4
@@ -83,16 +84,14 @@ def published_results(folder: Path) -> dict[str, Published]:
 def naive(problem: Problem, seconds: float, seed: int, clock: Callable[[], float]) -> float:
     """Cheapest insertion without transfers, in random order, until the time is over."""
     arrays = problem_arrays(problem, 1)
-    dice, times, ways = dice_from(np.random.default_rng(seed)), times_for(arrays), ways_for(arrays)
-    items = np.arange(len(problem.items))
+    rng, items = rng_from(np.random.default_rng(seed)), len(problem.items)
     best, begun_s = inf, clock()
     while clock() - begun_s < seconds:
-        plan = empty_plan(arrays)
-        if not refresh(arrays, plan, times):
-            break
-        manner = Manner(0, False, False, 0.0)
-        if not insert_all(arrays, plan, times, ways, dice, items, items.size, manner, inf):
-            best = min(best, float(plan.value[TOTAL]))
+        state = state_for(arrays)
+        state.chosen[:items] = np.arange(items)
+        repair(arrays, state, rng, int(Repair.GREEDY), Allowed(0, False, 0.0), (items, inf))
+        if not (state.trial.transfers == BANKED).any():
+            best = min(best, float(plan_value(arrays, state.trial)))
     return best
 
 
@@ -104,7 +103,7 @@ def measure(
     plain = naive(problem, seconds, seed, clock)
     found_after_s = 0.0
     told = []
-    solution = solve_vlns(problem, seconds=seconds, seed=seed, clock=clock, on_progress=told.append)
+    solution = solve_alns(problem, seconds=seconds, seed=seed, clock=clock, on_progress=told.append)
     if told:
         found_after_s = told[-1].seconds
     found = inf if solution.cost is None else solution.cost.total

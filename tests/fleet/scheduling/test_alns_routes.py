@@ -15,23 +15,23 @@ from even_clock import EvenClock
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from mend.fleet.scheduling.alns.itineraries import Allowed, find_itineraries, follow, unroll
+from mend.fleet.scheduling.alns.problem_arrays import problem_arrays
+from mend.fleet.scheduling.alns.propagation import update
+from mend.fleet.scheduling.alns.routes import routes_in
+from mend.fleet.scheduling.alns.solve import solve_alns
+from mend.fleet.scheduling.alns.state import state_for
 from mend.fleet.scheduling.checker import check
-from mend.fleet.scheduling.dice import dice_from
 from mend.fleet.scheduling.exact.solve import solve_exactly
 from mend.fleet.scheduling.instances.li_lim import read_li_lim
 from mend.fleet.scheduling.methods import solve, suited_method
 from mend.fleet.scheduling.objective import cost
 from mend.fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit, Weights, Window
-from mend.fleet.scheduling.routing.annealing import take_step
-from mend.fleet.scheduling.routing.arrays import NOBODY, routing_arrays
-from mend.fleet.scheduling.routing.places import CHEAPEST, find_place
-from mend.fleet.scheduling.routing.plan import empty_plan, plan_cost, put, refresh
-from mend.fleet.scheduling.routing.rounds import Rounds
-from mend.fleet.scheduling.routing.solve import routes_in, solve_alns
-from mend.fleet.scheduling.schedule import Schedule
-from mend.fleet.scheduling.solution import Progress, Solution, Status, UnsupportedError
+from mend.fleet.scheduling.rng import rng_from
+from mend.fleet.scheduling.schedule import Action, Route, Schedule, Task
+from mend.fleet.scheduling.solution import Progress, Solution, Status
 from mend.fleet.scheduling.timing import earliest_schedule
-from mend.fleet.scheduling.travel import Epoch, Travel
+from mend.fleet.scheduling.travel import Travel
 
 
 def drawn_problem(seed: int, items: int = 4, spare_s: float = 0.0) -> Problem:
@@ -98,83 +98,46 @@ def test_schedule_found_passes_the_checker(
 @pytest.mark.parametrize("seed", range(6))
 def test_place_found_is_the_cheapest_that_the_checker_allows(seed: int) -> None:
     problem = drawn_problem(seed, items=5)
-    arrays, dice = routing_arrays(problem), dice_from(np.random.default_rng(seed))
-    rounds = Rounds(arrays, seed, EvenClock())
-    plan, places = rounds.search.current, rounds.search.places
+    arrays, rng = problem_arrays(problem, 1), rng_from(np.random.default_rng(seed))
+    state = state_for(arrays)
+    plan, found = state.trial, state.found
     for item in range(5):
-        for robot in range(3):
-            expected = cheapest_by_trying(problem, plan, item, robot)
-            found = find_place(arrays, plan, places, dice, item, robot, robot, CHEAPEST)
-            assert found == pytest.approx(expected, abs=1e-6)
-        best = min(range(3), key=lambda robot: float(places.extra[item, robot]))
-        if places.extra[item, best] < inf:
-            pick, drop = int(places.pick[item, best]), int(places.drop[item, best])
-            put(arrays, plan, item, best, best, pick, drop)
+        expected = cheapest_by_trying(problem, routes_in(arrays, plan), item)
+        find_itineraries(arrays, plan, found, rng, item, Allowed(0, False, 0.0))
+        cheapest = float(found.extra[0]) if found.known[0] else inf
+        assert cheapest == pytest.approx(expected, abs=1e-6)
+        if cheapest < inf:
+            assert follow(arrays, plan, found, item, unroll(found, 0))
+            assert update(arrays, plan, state.sweep)
 
 
-def cheapest_by_trying(problem: Problem, plan: object, item: int, robot: int) -> float:
+def cheapest_by_trying(problem: Problem, routes: tuple[Route, ...], item: int) -> float:
     """What the item costs more at the best of all pairs of positions, each timed and checked."""
-    routes = routes_in(problem, plan)  # type: ignore[arg-type]
     kept = sorted({task.item for route in routes for task in route})
     before = judged(problem, routes, kept)
-    pickup, delivery = routes_in_order(problem, item)
-    best = inf
-    route = routes[robot]
-    for at, later in product(range(len(route) + 1), repeat=2):
-        if at <= later:
-            tried = (*route[:at], pickup, *route[at:later], delivery, *route[later:])
-            changed = (*routes[:robot], tried, *routes[robot + 1 :])
-            best = min(best, judged(problem, changed, [*kept, item]))
+    described, best = problem.items[item], inf
+    pickup = Task(described.pickup.place, Action.PICK, item)
+    delivery = Task(described.delivery.place, Action.DROP, item)
+    for robot, route in enumerate(routes):
+        for at, later in product(range(len(route) + 1), repeat=2):
+            if at <= later:
+                tried = (*route[:at], pickup, *route[at:later], delivery, *route[later:])
+                changed = (*routes[:robot], tried, *routes[robot + 1 :])
+                best = min(best, judged(problem, changed, [*kept, item]))
     return best - before
 
 
-def routes_in_order(problem: Problem, item: int) -> tuple[object, object]:
-    alone = empty_plan(routing_arrays(problem))
-    put(routing_arrays(problem), alone, item, 0, 0, 0, 0)
-    pickup, delivery = routes_in(problem, alone)[0]
-    return pickup, delivery
-
-
-def judged(problem: Problem, routes: object, kept: list[int]) -> float:
+def judged(problem: Problem, routes: tuple[Route, ...], kept: list[int]) -> float:
     """The cost of routes with some of the items; infinite where they cannot be carried out."""
     number = {item: position for position, item in enumerate(kept)}
     part = replace(problem, items=tuple(problem.items[item] for item in kept))
     renumbered = [
-        tuple(replace(task, item=number[task.item]) for task in route)
-        for route in routes  # type: ignore[attr-defined]
+        tuple(replace(task, item=number[task.item]) for task in route) for route in routes
     ]
     schedule = earliest_schedule(part, renumbered)
     if not isinstance(schedule, Schedule) or check(part, schedule):
         return inf
     return cost(part, schedule).total
-
-
-@given(
-    st.integers(0, 2**32 - 1), st.integers(0, 4), st.integers(0, 3), st.sampled_from((0.0, 50.0))
-)
-@settings(deadline=None, max_examples=60)
-def test_every_step_keeps_routes_times_and_costs_right(
-    seed: int, removal: int, insertion: int, heat: float
-) -> None:
-    problem = drawn_problem(seed % 50, items=6, spare_s=300.0)
-    arrays = routing_arrays(problem)
-    rounds = Rounds(arrays, seed, EvenClock())
-    assert rounds.place(100.0)
-    dice = dice_from(np.random.default_rng(seed))
-    search = rounds.search
-    for _ in range(10):
-        take_step(arrays, search, dice, removal, insertion, heat)
-        plan = search.current
-        assert (plan.robot != NOBODY).all()
-        schedule = earliest_schedule(problem, routes_in(problem, plan))
-        assert isinstance(schedule, Schedule)
-        assert check(problem, schedule) == []
-        assert plan_cost(plan) == pytest.approx(cost(problem, schedule).total)
-        begins = plan.begin_s.copy()
-        for robot in range(3):
-            refresh(arrays, plan, robot, robot)
-        assert np.array_equal(begins, plan.begin_s)
-    assert search.value[1] <= search.value[0] + 1e-6
 
 
 def test_robots_come_before_distance_where_they_cost_more() -> None:
@@ -244,28 +207,9 @@ def test_item_that_nobody_can_deliver_leaves_no_schedule() -> None:
     assert (found.status, found.schedule) == (Status.UNKNOWN, None)
 
 
-@pytest.mark.parametrize(
-    ("changed", "said"),
-    [
-        ({"items": (parcel(aboard=0),)}, "aboard"),
-        ({"items": (parcel(max_on_board_s=50.0),)}, "on board"),
-        ({"items": (replace(parcel(), delivery=Visit(4, due_s=50.0)),)}, "due"),
-        ({"robots": (Robot("a", 0, 0, 1.0, max_duration_s=99.0),)}, "away"),
-        ({"weights": Weights(makespan=1.0)}, "time"),
-        ({"travel": Travel.through((Epoch(0.0, inf, *2 * (np.zeros((5, 5)),)),))}, "doors"),
-    ],
-)
-def test_what_it_does_not_know_is_said_in_a_sentence(changed: dict[str, object], said: str) -> None:
-    problem = replace(corridor(items=(parcel(),)), **changed)  # type: ignore[arg-type]
-    with pytest.raises(UnsupportedError, match=said):
-        solved(problem)
-
-
 def test_it_is_chosen_where_there_are_many_items_and_no_transfers() -> None:
     many = corridor(items=tuple(parcel(f"p{n}") for n in range(40)), transfers=Transfers())
     assert suited_method(many) == "alns"
-    away = tuple(replace(robot, max_duration_s=500.0) for robot in many.robots)
-    assert suited_method(replace(many, robots=away)) == "vlns"
     found = solve(many, "auto", seconds=2.0, clock=EvenClock())
     assert found.schedule is not None
 

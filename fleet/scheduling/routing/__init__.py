@@ -1,1 +1,0 @@
-"""Routes without transfers: ejection chains for few robots, adaptive large neighbourhood search."""

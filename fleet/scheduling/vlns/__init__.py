@@ -1,1 +1,0 @@
-"""Simulated annealing over very large neighbourhoods, with transfers."""
