@@ -38,6 +38,8 @@ class Ejection(NamedTuple):
     allowed: Flags
     ejected: Integers
     on_board: Integers
+    tried: Integers
+    """How many sets of items were tried to be ejected."""
 
 
 def ejection_for(problem: ProblemArrays) -> Ejection:
@@ -50,6 +52,7 @@ def ejection_for(problem: ProblemArrays) -> Ejection:
         allowed=np.ones(robots, np.bool_),
         ejected=np.full(EJECTED, NOBODY, np.int64),
         on_board=np.zeros(items + 1, np.int64),
+        tried=np.zeros(1, np.int64),
     )
 
 
@@ -72,12 +75,13 @@ def empty_route(problem: ProblemArrays, state: State, ejection: Ejection, robot:
 
 @compiled
 def place_all(
-    problem: ProblemArrays, state: State, rng: Rng, ejection: Ejection, steps: int
+    problem: ProblemArrays, state: State, rng: Rng, ejection: Ejection, most: int
 ) -> bool:
-    """Take steps until every item has a place; whether that has come about."""
-    for _ in range(steps):
-        if ejection.known[0] == 0:
-            return True
+    """Go on until every item has a place, or about so many sets of items were tried to be ejected;
+    whether every item has a place."""
+    ejection.tried[0] = 0
+    while ejection.known[0] > 0 and ejection.tried[0] < most:
+        ejection.tried[0] += 1
         ejection.known[0] -= 1
         item = ejection.pool[ejection.known[0]]
         if _place(problem, state, rng, ejection, item):
@@ -184,6 +188,7 @@ def _easiest(
         one = ejection.on_board[a]
         if hardness[one] >= least:
             continue
+        ejection.tried[0] += 1
         if _fits_without(problem, state, item, row, (one, NOBODY, NOBODY)):
             least = hardness[one]
             _note(ejection, one, NOBODY, NOBODY)
@@ -193,6 +198,7 @@ def _easiest(
             pair = hardness[one] + hardness[two]
             if pair >= least:
                 continue
+            ejection.tried[0] += 1
             if _fits_without(problem, state, item, row, (one, two, NOBODY)):
                 least = pair
                 _note(ejection, one, two, NOBODY)
@@ -201,9 +207,10 @@ def _easiest(
                 continue
             for c in range(b + 1, count):
                 three = ejection.on_board[c]
-                if pair + hardness[three] < least and _fits_without(
-                    problem, state, item, row, (one, two, three)
-                ):
+                if pair + hardness[three] >= least:
+                    continue
+                ejection.tried[0] += 1
+                if _fits_without(problem, state, item, row, (one, two, three)):
                     least = pair + hardness[three]
                     _note(ejection, one, two, three)
     return int(least)

@@ -20,8 +20,8 @@ SLICE_S = 0.1
 """How long the kernels run before the clock is looked at (seconds)."""
 FREEING = 0.15
 """The share of all the time, and of each round, in which robots are to be freed."""
-TRIES = 50
-"""How many ejections per item one attempt to free a robot may take."""
+TRIES = 2000
+"""How many sets of items, per item, one attempt to free a robot may try to eject."""
 
 
 class Cooling(NamedTuple):
@@ -58,7 +58,7 @@ class Search:
         self._clock = clock
         self._tell = tell
         self._told = inf
-        self._ejections_a_s = 100.0
+        self._tries_a_s = 1e5
         # Ejection moves items by their own routes alone, without a look at what that costs.
         self._ejects = problem.timeless and not problem.spans and (problem.items.carrier < 0).all()
 
@@ -154,16 +154,17 @@ class Search:
         return pace
 
     def _eject_until(self, ends_s: float, most: int | None) -> bool:
-        """Place what has no place, with `most` ejections; whether that came about."""
+        """Place what has no place, with about `most` tries; whether that came about."""
         taken = 0
         while True:
             now_s = self._clock()
-            steps = max(1, int(self._ejections_a_s * min(SLICE_S, ends_s - now_s)))
-            if place_all(self.problem, self.state, self._rng, self._ejection, steps):
+            tries = max(1, int(self._tries_a_s * min(SLICE_S, ends_s - now_s)))
+            if place_all(self.problem, self.state, self._rng, self._ejection, tries):
                 return True
-            taken += steps
+            tries = int(self._ejection.tried[0])
+            taken += tries
             after_s = self._clock()
-            self._ejections_a_s = _pace(self._ejections_a_s, steps, after_s - now_s)
+            self._tries_a_s = _pace(self._tries_a_s, tries, after_s - now_s)
             if after_s >= ends_s or (most is not None and taken >= most):
                 return False
 

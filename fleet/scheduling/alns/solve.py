@@ -67,7 +67,7 @@ def prepare() -> None:
     """Compile the kernels, or load them from the disk; once in a process."""
     travel = Travel.euclidean(((0.0, 0.0), (1.0, 0.0)))
     robots = (Robot("a", 0, 0, 1.0), Robot("b", 1, 1, 1.0))
-    items = tuple(Item(name, 1.0, Visit(0), Visit(1)) for name in ("one", "two"))
+    items = tuple(Item(f"at {place}", 1.0, Visit(place), Visit(place)) for place in (0, 1))
     # Two robots cost less than the way that they save, so that there is one to be freed.
     small = Problem(
         "warm-up", ("a", "b"), travel, robots, items, Transfers((0, 1)), Weights(robots=0.5)
