@@ -21,7 +21,6 @@ from mend.server.access.roles import Role, with_article
 from mend.server.access.tokens import fingerprint, fits, new_code, new_token, plain_code
 from mend.server.errors import ConflictError, InvalidError, NotFoundError, ServiceError
 
-LONGEST_DAYS = 3650
 LONGEST_NAME = 64
 LONGEST_ROBOT_NAME = 128
 

@@ -9,10 +9,11 @@ from fastapi import APIRouter, Path, Query
 from pydantic import AwareDatetime, BaseModel, ConfigDict, Field
 from starlette.concurrency import run_in_threadpool
 
-from mend.server.access.changes import LONGEST_DAYS, PrincipalsEditor
+from mend.server.access.changes import PrincipalsEditor
 from mend.server.access.deeds import DEEDS, Deed, deed_of
 from mend.server.access.principals_file import PrincipalName, RobotName
 from mend.server.access.roles import Role
+from mend.server.access.tokens import LONGEST_DAYS
 from mend.server.api.parts import After, Limit, Parts, WithCaller, WithParts
 from mend.server.api.problems import ProblemError, documented
 from mend.server.api.repeatable import SecretRoute

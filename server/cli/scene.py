@@ -7,17 +7,15 @@ import yaml
 
 from mend.server.cli.failures import CommandLineError, told_plainly
 
-scene_app = typer.Typer(
-    name="scene", help="Make up scenes.", no_args_is_help=True, rich_markup_mode=None
-)
+app = typer.Typer(name="scene", help="Make up scenes.", no_args_is_help=True, rich_markup_mode=None)
 
 
-@scene_app.callback()
+@app.callback()
 def scene() -> None:
     """Make up scenes."""
 
 
-@scene_app.command("random", short_help="Print a random scene, or a task tree for it.")
+@app.command("random", short_help="Print a random scene, or a task tree for it.")
 def random(
     seed: Annotated[int, typer.Option(min=0, help="Another scene for each; always the same.")],
     parts: Annotated[
