@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 
 from mend.robots.catalogue import Part
+from mend.sim.random_nesting import random_ordered_nesting
 from mend.sim.random_parts import DrawnSizes, PartLook, draw_look
 from mend.sim.standing_room import Standing, standing
 from mend.tasks.definition import BehaviorNode, GoalNode
-from mend.tasks.random_task import random_ordered_nesting
 from mend.tasks.scene import Place, Pose, Scene, Table
 from mend.tasks.scene_problem import SceneProblem
 

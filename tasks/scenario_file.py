@@ -43,11 +43,6 @@ class ReadScenario:
         return Problem(find_line(self.document, misfit.where), None, misfit.message)
 
 
-def check_scenario_file(path: Path) -> Scenario:
-    """Read and check a scenario file (YAML or JSON). Raises `ScenarioFileError`."""
-    return read_scenario_file(path).scenario
-
-
 def check_scenario_text(text: str, *, source: str = "scenario") -> Scenario:
     """Check the text of a scenario file; `source` names it in errors.
 

@@ -83,9 +83,6 @@ class TaskTree:
     def name_of(self, node: int) -> str:
         return self.nodes.names[node]
 
-    def children_of(self, node: int) -> Sequence[int]:
-        return self._shape.children[node]
-
     def parent_of(self, node: int) -> int | None:
         parent = self._shape.parents[node]
         return None if parent == NO_NODE else parent

@@ -1,6 +1,5 @@
 """The states of all runs: of those that go on in memory, of others as the journal has them."""
 
-import logging
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from typing import Literal
@@ -15,8 +14,6 @@ from mend.server.runtime.history import History
 from mend.server.runtime.past_dialogues import PastDialogues
 from mend.server.runtime.past_states import PastStates
 from mend.server.runtime.run_state import RunState
-
-log = logging.getLogger(__name__)
 
 
 class RunStates:

@@ -3,11 +3,12 @@
 from dataclasses import replace
 
 import numpy as np
+import plain_normal_equations
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mend.localization.enml import normal_equations, plain_normal_equations
+from mend.localization.enml import normal_equations
 from mend.localization.enml.prior import prior_on_last, whitening_of
 from mend.localization.enml.problem import Floats, LtfConstraints, Problem, StfConstraints
 from mend.localization.enml.solver import solve

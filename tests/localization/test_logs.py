@@ -6,9 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from localization_data import DATA
+from written_csv import write_csv
 
 from mend.localization.logs.carmen import read_carmen
-from mend.localization.logs.csv_log import read_csv, write_csv
+from mend.localization.logs.csv_log import read_csv
 from mend.localization.logs.log import Log, LogError, LogStep
 from mend.localization.logs.reading import read_log
 from mend.localization.logs.wean import read_wean

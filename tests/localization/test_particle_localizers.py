@@ -6,6 +6,8 @@ from functools import cache
 import numpy as np
 import pytest
 from made_up_floor import FLOOR
+from synthetic.settings import SceneSettings
+from synthetic.world import Scene, scene
 
 from mend.localization.cgr.localizer import CgrLocalizer
 from mend.localization.distance_field import distance_field
@@ -13,8 +15,6 @@ from mend.localization.evaluation import Trace, follow, summarize
 from mend.localization.localizer import Localizer, PointClass
 from mend.localization.mcl.localizer import MclLocalizer
 from mend.localization.scan import InvalidScanError, Scan
-from mend.localization.synthetic.settings import SceneSettings
-from mend.localization.synthetic.world import Scene, scene
 from mend.maps.vector_map import VectorMap, VectorMapError
 
 Make = Callable[[VectorMap, int], Localizer]

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 from made_up_floor import FLOOR
+from synthetic.settings import OdometrySettings, SceneSettings
+from synthetic.world import scene
 
 from mend.localization.pose import compose
-from mend.localization.synthetic.settings import OdometrySettings, SceneSettings
-from mend.localization.synthetic.world import scene
 from mend.maps.ray_cast import cast
 from mend.maps.vector_map import VectorMap, VectorMapError
 

@@ -5,9 +5,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from random_task import random_task
 from trees import BEHAVIORS
 
-from mend.tasks.random_task import random_ordered_nesting, random_task
+from mend.sim.random_nesting import random_ordered_nesting
 from mend.tasks.scene import Place, Pose, Scene, SceneObject
 from mend.tasks.task_file import TaskFileError, check_task_text
 

@@ -10,6 +10,7 @@ from broken_constraints import broken_constraints
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from pretend_service import NoHardware, PretendService, PretendWorlds, pretend_service
+from random_task import random_task
 from task_documents import definition_of
 
 from mend.server.dialogues.escalation import EscalationPolicy
@@ -28,7 +29,6 @@ from mend.server.runtime.requests import RunRequest
 from mend.server.runtime.run_state import RunState
 from mend.server.runtime.views import DialogueView, RunStatus, RunView
 from mend.sim.tabletop.layout import lay_out
-from mend.tasks.random_task import random_task
 from mend.tasks.resolution import Resolution
 from mend.tasks.scenario import Person
 
