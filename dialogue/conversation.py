@@ -25,6 +25,7 @@ from mend.dialogue.script import (
 from mend.dialogue.wording import sentence, word
 from mend.tasks.issue import Issue
 from mend.tasks.resolution import Resolution
+from mend.tasks.transitions import Transitions
 
 
 class Phase(StrEnum):
@@ -36,12 +37,27 @@ class Phase(StrEnum):
     CLOSED = "closed"
 
 
-_LEGAL_CALLS = {
-    Phase.NEW: ("open", "abort"),
-    Phase.ASKING: ("answer", "put_right", "silence", "abort"),
-    Phase.AWAITING_HELP: ("help_seen", "help_not_seen", "abort"),
-    Phase.CLOSED: (),
-}
+class Call(StrEnum):
+    """What comes to a conversation."""
+
+    OPEN = "open"
+    ANSWER = "answer"
+    PUT_RIGHT = "put_right"
+    SILENCE = "silence"
+    HELP_SEEN = "help_seen"
+    HELP_NOT_SEEN = "help_not_seen"
+    ABORT = "abort"
+
+
+_CALLS = Transitions(
+    "the conversation",
+    {
+        Phase.NEW: (Call.OPEN, Call.ABORT),
+        Phase.ASKING: (Call.ANSWER, Call.PUT_RIGHT, Call.SILENCE, Call.ABORT),
+        Phase.AWAITING_HELP: (Call.HELP_SEEN, Call.HELP_NOT_SEEN, Call.ABORT),
+        Phase.CLOSED: (),
+    },
+)
 
 _ROBOT_GOES_ON = (Resolution.ROBOT_FINISH, Resolution.COLLAB_FINISH)
 """Once it sees the help, or to take it, the robot moves."""
@@ -53,17 +69,6 @@ _SEEN_NOW = {
     Expectation.VIEW_CLEAR: "I see the table now.",
     Expectation.IN_GRIPPER: "I have the {object} between my fingers.",
 }
-
-
-class IllegalTransitionError(Exception):
-    """A call came that the conversation's phase does not allow; nothing was changed."""
-
-    def __init__(self, phase: Phase, came: str, expected: tuple[str, ...]) -> None:
-        wanted = " or ".join(expected) if expected else "nothing more"
-        super().__init__(f"the conversation is {phase}: expected {wanted}, but {came} came")
-        self.phase = phase
-        self.came = came
-        self.expected = expected
 
 
 class Conversation:
@@ -110,7 +115,7 @@ class Conversation:
 
     def open(self) -> list[Turn]:
         """Begin."""
-        self._require("open")
+        _CALLS.require(self._phase, Call.OPEN)
         on_the_way = self._script.on_the_way
         if on_the_way is not None and not self._issue.interrupts:
             return self._enter(on_the_way, heard=False)
@@ -119,7 +124,7 @@ class Conversation:
 
     def answer(self, answer: Literal["yes", "no"]) -> list[Turn]:
         """Take a helper's answer to the open question."""
-        self._require("answer")
+        _CALLS.require(self._phase, Call.ANSWER)
         match self._at, answer:
             case AskState(yes=following), "yes":
                 return self._enter(following, heard=True)
@@ -134,7 +139,7 @@ class Conversation:
 
     def help_seen(self, change: Change) -> list[Turn]:
         """The camera saw what was promised; `change`: what it saw to change since the question."""
-        state = self._require_help_state("help_seen")
+        state = self._require_help_state(Call.HELP_SEEN)
         said = state.thanks if change.by_a_person else state.unchanged
         if change is Change.UNKNOWN:
             said = _SEEN_NOW[EXPECTED[state.help]]
@@ -143,7 +148,7 @@ class Conversation:
 
     def help_not_seen(self) -> list[Turn]:
         """The promised help was not seen in time: ask about it again, or give up."""
-        state = self._require_help_state("help_not_seen")
+        state = self._require_help_state(Call.HELP_NOT_SEEN)
         if self._reasks_left == 0:
             return self._give_up("I still do not see that help.")
         self._reasks_left -= 1
@@ -164,7 +169,7 @@ class Conversation:
 
         Raises `ValueError` when the script does not watch for what was seen.
         """
-        self._require("put_right")
+        _CALLS.require(self._phase, Call.PUT_RIGHT)
         resolution = self._script.put_right.get(seen.seen)
         if resolution is None:
             raise ValueError(f"'{seen.seen}' does not put an issue '{self._issue.kind}' right")
@@ -174,14 +179,14 @@ class Conversation:
 
     def silence(self) -> list[Turn]:
         """Nobody answered and nobody is left to ask: go on without an answer, or give up."""
-        self._require("silence")
+        _CALLS.require(self._phase, Call.SILENCE)
         if isinstance(self._at, AskState) and self._at.unanswered is not None:
             return self._enter(self._at.unanswered, heard=False)
         return self._give_up("I heard no answer.")
 
     def abort(self) -> list[Turn]:
         """The run has ended, or the issue no longer matters."""
-        self._require("abort")
+        _CALLS.require(self._phase, Call.ABORT)
         return [self._close(CloseReason.ABORTED, None)]
 
     # --- Going from state to state ------------------------------------------------------------
@@ -283,13 +288,8 @@ class Conversation:
         self._at, self._phase = None, Phase.CLOSED
         return Close(reason, resolution, helped, failed)
 
-    def _require(self, call: str) -> None:
-        expected = _LEGAL_CALLS[self._phase]
-        if call not in expected:
-            raise IllegalTransitionError(self._phase, call, expected)
-
-    def _require_help_state(self, call: str) -> HelpState:
-        self._require(call)
+    def _require_help_state(self, call: Call) -> HelpState:
+        _CALLS.require(self._phase, call)
         assert isinstance(self._at, HelpState)
         return self._at
 

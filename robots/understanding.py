@@ -4,6 +4,7 @@ from collections.abc import Collection, Iterable, Mapping
 
 from pydantic import ValidationError
 
+from mend.errors import MendError
 from mend.robots.behaviors.assignment import Assignment
 from mend.robots.behaviors.behavior import Behavior
 from mend.robots.catalogue import Catalogue, Part
@@ -11,7 +12,7 @@ from mend.robots.link.messages import FinishedResult, Location, Look, Start
 from mend.robots.result import Result
 
 
-class CommandError(Exception):
+class CommandError(MendError):
     """A command cannot be carried out; the message says why."""
 
 

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from mend.errors import WrongInputError
 from mend.robots.catalogue import Part
 from mend.sim.random_nesting import random_ordered_nesting
 from mend.sim.random_parts import DrawnSizes, PartLook, draw_look
@@ -43,10 +44,6 @@ _SCENES_TRIED = 40
 _REPAIRS = 12
 
 
-class NoRoomError(ValueError):
-    """No scene was found with room for so many parts; raised by `random_scene`."""
-
-
 @dataclass(frozen=True, slots=True)
 class RandomTask:
     """A scene, and the document of a task tree in the nested form that places all its parts."""
@@ -79,7 +76,7 @@ def random_scene(
 ) -> RandomTask:
     """A scene with so many parts, else with 1 to `MOST_PARTS`; the same for the same arguments.
 
-    What `check` finds wrong is drawn anew. Raises `NoRoomError`.
+    What `check` finds wrong is drawn anew. Raises `WrongInputError`.
     """
     if parts is not None and not 1 <= parts <= MOST_PARTS:
         raise ValueError(f"a random scene has 1 to {MOST_PARTS} parts, not {parts}")
@@ -90,7 +87,7 @@ def random_scene(
         drawing = _Drawing(rng, sizes or DrawnSizes(), smallness)
         if drawing.fill(count) and _repair(drawing, seed, count, check):
             return RandomTask(drawing.scene(seed), drawing.tree(seed))
-    raise NoRoomError(f"no scene was found with room for {parts} parts: ask for fewer")
+    raise WrongInputError(f"no scene was found with room for {parts} parts: ask for fewer")
 
 
 def _repair(drawing: "_Drawing", seed: int, count: int, check: SceneCheck | None) -> bool:

@@ -42,7 +42,7 @@ class Scene:
 
 
 def scene(vector_map: VectorMap, settings: SceneSettings, seed: int) -> Scene:
-    """Drive over a map. The same seed gives the same drive. Raises `VectorMapError`."""
+    """Drive over a map. The same seed gives the same drive. Raises `WrongInputError`."""
     generator = np.random.default_rng(seed)
     space = free_space(vector_map, settings.clearance_m)
     way = drive(space, settings.length_m, settings.step_m, generator)

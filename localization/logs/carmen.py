@@ -11,7 +11,8 @@ from pathlib import Path
 
 import numpy as np
 
-from mend.localization.logs.log import Log, LogError, LogStep, with_equal_beams
+from mend.errors import WrongInputError
+from mend.localization.logs.log import Log, LogStep, with_equal_beams
 from mend.localization.logs.no_return import no_return_range
 from mend.localization.logs.text_lines import numbered_lines
 from mend.localization.pose import Poses, relative
@@ -46,7 +47,7 @@ class _Content:
 
 
 def read_carmen(path: Path, *, corrected: bool | None = None) -> Log:
-    """The log of a file, `.gz` or not. Raises `LogError`, or `OSError`.
+    """The log of a file, `.gz` or not. Raises `WrongInputError`, or `OSError`.
 
     `corrected` says whether the poses of the scans are references rather than odometry; None
     decides it by what mapping programs leave behind (NEFF lines, or a laser pose that wanders
@@ -62,7 +63,7 @@ def read_carmen(path: Path, *, corrected: bool | None = None) -> Log:
         except (ValueError, IndexError):
             content.skipped += 1
     if not content.sweeps:
-        raise LogError(f"{path}: there is no scan (FLASER or ROBOTLASER1) in it")
+        raise WrongInputError(f"{path}: there is no scan (FLASER or ROBOTLASER1) in it")
     if corrected is None:
         corrected = content.corrected or _wanders(content.sweeps)
     return _log(path, content, corrected)
@@ -161,7 +162,7 @@ def _log(path: Path, content: _Content, corrected: bool) -> Log:
         steps.append(LogStep(motion, scan, sweep.laser if corrected else None))
         previous = sweep
     if not steps:
-        raise LogError(f"{path}: none of its {len(sweeps)} scans can be used")
+        raise WrongInputError(f"{path}: none of its {len(sweeps)} scans can be used")
     kept = with_equal_beams(steps)
     return Log(path.name.split(".")[0], kept, skipped + len(steps) - len(kept))
 

@@ -14,7 +14,8 @@ from pathlib import Path
 
 import numpy as np
 
-from mend.localization.logs.log import Log, LogError, LogStep
+from mend.errors import WrongInputError
+from mend.localization.logs.log import Log, LogStep
 from mend.localization.logs.text_lines import numbered_lines
 from mend.localization.pose import Poses, relative
 from mend.localization.scan import InvalidScanError, Scan
@@ -35,7 +36,7 @@ class _Content:
 
 
 def read_csv(path: Path) -> Log:
-    """The log of a file, `.gz` or not. Raises `LogError` with line numbers, or `OSError`."""
+    """The log of a file, `.gz` or not. Raises `WrongInputError` with line numbers, or `OSError`."""
     content = _Content()
     for number, line in numbered_lines(path):
         _take(number, line.lstrip("\ufeff"), content, path)
@@ -43,12 +44,14 @@ def read_csv(path: Path) -> Log:
     missing = [name for name in _LASER if name not in content.laser]
     missing += [name for name in ("time_s", *_ODOMETRY) if names is None or name not in names]
     if missing or names is None:
-        raise LogError("\n".join([*content.mistakes, f"{path}: {', '.join(missing)} missing"]))
+        raise WrongInputError(
+            "\n".join([*content.mistakes, f"{path}: {', '.join(missing)} missing"])
+        )
     steps = _steps(content, names, path)
     if content.mistakes:
-        raise LogError("\n".join(content.mistakes[:_MAX_TOLD]))
+        raise WrongInputError("\n".join(content.mistakes[:_MAX_TOLD]))
     if not steps:
-        raise LogError(f"{path}: there is no scan in it")
+        raise WrongInputError(f"{path}: there is no scan in it")
     return Log(path.name.split(".")[0], tuple(steps))
 
 

@@ -7,10 +7,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from mend.errors import UnavailableError
 from mend.localization.localizer import Estimate
 from mend.localization.pictures.canvas import Canvas, Image, Raster, Svg
 from mend.localization.pictures.colors import ELLIPSE, MAP, POINTS, REFERENCE, TRAJECTORY
-from mend.localization.pictures.failure import PictureError
 from mend.localization.pictures.view import View, view_of
 from mend.localization.pose import Poses, transform
 from mend.maps.vector_map import VectorMap
@@ -64,7 +64,7 @@ class Drive:
             self.moments.append(Moment(estimate.pose, estimate.covariance, seen, estimate.classes))
 
     def save_picture(self, path: Path) -> None:
-        """Write a `.png` or `.svg`. Raises `PictureError`, or `OSError`."""
+        """Write a `.png` or `.svg`. Raises `UnavailableError`, or `OSError`."""
         view = self._view(_PICTURE_PX)
         if path.suffix == ".svg":
             svg = Svg(view.width_px, view.height_px)
@@ -76,7 +76,7 @@ class Drive:
         _write_png(raster.image, path)
 
     def save_animation(self, path: Path) -> None:
-        """Write an `.mp4` or `.gif`. Raises `PictureError`."""
+        """Write an `.mp4` or `.gif`. Raises `UnavailableError`."""
         frames = self._frames(_MAX_GIF_FRAMES if path.suffix == ".gif" else _MAX_FRAMES)
         if path.suffix == ".gif":
             animation = cv2.Animation()
@@ -86,7 +86,7 @@ class Drive:
         else:
             written = _write_video(frames, path)
         if not written:
-            raise PictureError(f"'{path}' could not be written as a {path.suffix} animation")
+            raise UnavailableError(f"'{path}' could not be written as a {path.suffix} animation")
 
     def _view(self, longest_px: int) -> View:
         seen = [self.vector_map.segments.reshape(-1, 2), np.array(self.poses)[:, :2]]
@@ -127,7 +127,7 @@ class Drive:
 
 
 def save_map_picture(vector_map: VectorMap, path: Path) -> None:
-    """Draw a vector map as `.png` or `.svg`. Raises `PictureError`, or `OSError`."""
+    """Draw a vector map as `.png` or `.svg`. Raises `UnavailableError`, or `OSError`."""
     view = view_of(vector_map.segments.reshape(-1, 2), _PICTURE_PX)
     rows = view.pixels(_ends(vector_map)).reshape(-1, 4)
     title = f"{vector_map.name}: {len(vector_map)} segments, {vector_map.lengths.sum():.0f} m"
@@ -180,7 +180,7 @@ def _robot(pose: Poses) -> Matrix:
 def _write_png(image: Image, path: Path) -> None:
     encoded, data = cv2.imencode(".png", image)
     if not encoded:
-        raise PictureError(f"'{path}' could not be written as a picture")
+        raise UnavailableError(f"'{path}' could not be written as a picture")
     path.write_bytes(data.tobytes())
 
 

@@ -13,7 +13,7 @@ from mend.robots.grasp import Grasp, corners_in_tool
 from mend.robots.grip.belief import Belief, Between
 from mend.robots.grip.composition import Composition
 from mend.robots.grip.cues import CueModel, HandReading
-from mend.robots.grip.reading import GripReading, GripState, follow
+from mend.robots.grip.reading import GRIP, GripReading, GripState
 from mend.robots.grip.view import (
     REFERENCE_WIDTH_PX,
     composition,
@@ -175,9 +175,9 @@ class GripWatch:
         sure = self.probability >= _SURE or self.probability <= 1.0 - _SURE
         self._unsure = 0 if sure else self._unsure + 1
         if self._state is GripState.UNDECIDED and (sure or self._unsure >= _LONGEST_DOUBT):
-            self._state = follow(self._state, self._first_verdict())
+            self._state = GRIP.require(self._state, self._first_verdict())
         elif self._state is GripState.HELD and self.probability <= 1.0 - _SURE:
-            self._state = follow(self._state, GripState.LOST)
+            self._state = GRIP.require(self._state, GripState.LOST)
 
     def _first_verdict(self) -> GripState:
         as_planned = max(self._belief.of(Between.STRAIGHT), self._belief.of(Between.NOTHING))

@@ -23,6 +23,7 @@ from pydantic import (
 )
 from pydantic_core import ErrorDetails
 
+from mend.errors import MendError
 from mend.robots.link.shown_name import SHOWN
 from mend.server.access.principal import RESERVED
 from mend.server.access.roles import Role
@@ -55,7 +56,7 @@ RobotName = Annotated[
 Sha256 = Annotated[str, StringConstraints(pattern=SHA256)]
 
 
-class PrincipalsFileError(Exception):
+class PrincipalsFileError(MendError):
     """The file of principals cannot be used; one sentence per mistake."""
 
 

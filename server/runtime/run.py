@@ -12,6 +12,7 @@ from functools import partial
 from typing import Any
 from uuid import uuid4
 
+from mend.errors import ConflictError, RefusalError
 from mend.robots.link.messages import (
     Finished,
     Held,
@@ -28,7 +29,7 @@ from mend.robots.link.messages import (
     StepStarted,
     WasDone,
 )
-from mend.server.errors import BusyError, ConflictError, ServiceError
+from mend.server.errors import BusyError
 from mend.server.journal import events as ev
 from mend.server.journal.journal import DuplicateReceiptError, JournalWriteError, Receipt
 from mend.server.runtime.choosing import choose
@@ -53,7 +54,7 @@ from mend.tasks.intervention import Intervention
 
 log = logging.getLogger(__name__)
 
-REFUSALS = (ServiceError, DuplicateReceiptError, JournalWriteError)
+REFUSALS = (RefusalError, DuplicateReceiptError, JournalWriteError)
 """What a request or a report may be answered with; anything else is a fault of ours."""
 
 

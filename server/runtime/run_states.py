@@ -6,7 +6,7 @@ from typing import Literal
 from uuid import UUID
 
 from mend.dialogue.script import Script
-from mend.server.errors import NotFoundError, UnreadableError
+from mend.errors import NotFoundError, UnreadableError
 from mend.server.journal.journal import Journal, JournalClosedError, JournalWriteError
 from mend.server.journal.run_index import UNREADABLE, IndexedRun
 from mend.server.runtime.dialogue_state import DialogueState

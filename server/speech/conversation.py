@@ -9,6 +9,7 @@ from enum import StrEnum
 
 from mend.server.speech.commands import Command
 from mend.server.speech.phrases import SORRY
+from mend.tasks.transitions import Transitions
 
 PAUSE_S = 0.2
 """Between the end of what the robot says and listening: the room has to fall silent."""
@@ -96,25 +97,30 @@ class End:
 
 Act = Say | Listen | Hear | Understood | GiveUp | End
 
-_LEGAL_CALLS = {
-    State.NEW: ("open", "end"),
-    State.SAYING: ("spoken", "end"),
-    State.PAUSING: ("pause_over", "end"),
-    State.LISTENING: ("speech_began", "end"),
-    State.HEARING: ("utterance", "nothing_said", "end"),
-    State.ENDED: (),
-}
+
+class Call(StrEnum):
+    """What comes to a conversation."""
+
+    OPEN = "open"
+    SPOKEN = "spoken"
+    PAUSE_OVER = "pause_over"
+    SPEECH_BEGAN = "speech_began"
+    UTTERANCE = "utterance"
+    NOTHING_SAID = "nothing_said"
+    END = "end"
 
 
-class IllegalTransitionError(Exception):
-    """A call came that the conversation's state does not allow; nothing was changed."""
-
-    def __init__(self, state: State, came: str, expected: tuple[str, ...]) -> None:
-        wanted = " or ".join(expected) if expected else "nothing more"
-        super().__init__(f"the spoken conversation is {state}: expected {wanted}, but {came} came")
-        self.state = state
-        self.came = came
-        self.expected = expected
+_CALLS = Transitions(
+    "the spoken conversation",
+    {
+        State.NEW: (Call.OPEN, Call.END),
+        State.SAYING: (Call.SPOKEN, Call.END),
+        State.PAUSING: (Call.PAUSE_OVER, Call.END),
+        State.LISTENING: (Call.SPEECH_BEGAN, Call.END),
+        State.HEARING: (Call.UTTERANCE, Call.NOTHING_SAID, Call.END),
+        State.ENDED: (),
+    },
+)
 
 
 class Conversation:
@@ -153,32 +159,32 @@ class Conversation:
 
     def open(self) -> list[Act]:
         """Begin: ask the question."""
-        self._require("open")
+        _CALLS.require(self._state, Call.OPEN)
         return self._say(Saying.QUESTION)
 
     def spoken(self) -> list[Act]:
         """What was said has been played to its end."""
-        self._require("spoken")
+        _CALLS.require(self._state, Call.SPOKEN)
         self._state = State.PAUSING
         self._listens_at_s = self._now_s() + PAUSE_S
         return []
 
     def pause_over(self) -> list[Act]:
         """Listen, if the pause is over; nothing before."""
-        self._require("pause_over")
+        _CALLS.require(self._state, Call.PAUSE_OVER)
         if self._now_s() < self._listens_at_s:
             return []
         self._state = State.LISTENING
         return [Listen()]
 
     def speech_began(self) -> list[Act]:
-        self._require("speech_began")
+        _CALLS.require(self._state, Call.SPEECH_BEGAN)
         self._state = State.HEARING
         return [Hear()]
 
     def utterance(self, command: Command | None, phrase: str | None, latency_s: float) -> list[Act]:
         """Somebody has said something; `command` None where it is not a command."""
-        self._require("utterance")
+        _CALLS.require(self._state, Call.UTTERANCE)
         heard = Understood(command, phrase, latency_s)
         match command:
             case Command.YES | Command.NO | Command.STOP:
@@ -195,13 +201,13 @@ class Conversation:
 
     def nothing_said(self) -> list[Act]:
         """What began was no speech after all."""
-        self._require("nothing_said")
+        _CALLS.require(self._state, Call.NOTHING_SAID)
         self._state = State.LISTENING
         return [Listen()]
 
     def end(self, reason: EndReason) -> list[Act]:
         """End it for a reason outside of it."""
-        self._require("end")
+        _CALLS.require(self._state, Call.END)
         return self._end(reason)
 
     def _say(self, what: Saying) -> list[Act]:
@@ -211,8 +217,3 @@ class Conversation:
     def _end(self, reason: EndReason) -> list[Act]:
         self._state = State.ENDED
         return [End(reason)]
-
-    def _require(self, call: str) -> None:
-        expected = _LEGAL_CALLS[self._state]
-        if call not in expected:
-            raise IllegalTransitionError(self._state, call, expected)

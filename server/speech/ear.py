@@ -17,7 +17,7 @@ from typing import Literal, Protocol, Self
 
 from pydantic import BaseModel, ConfigDict
 
-from mend.server.errors import ServiceError
+from mend.errors import MendError, UnavailableError
 from mend.server.speech.commands import Command
 
 log = logging.getLogger(__name__)
@@ -38,11 +38,11 @@ AFRESH = 2**32 - 1
 """Instead of a number of bytes: another conversation begins; it is `ready` then."""
 
 
-class EarLostError(Exception):
+class EarLostError(MendError):
     """The ear has failed; the message is one sentence."""
 
 
-class TooManyConversationsError(ServiceError):
+class TooManyConversationsError(UnavailableError):
     """As many conversations as the service can take are going on."""
 
 

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mend.dialogue.conversation import Conversation, IllegalTransitionError, Phase
+from mend.dialogue.conversation import Conversation, Phase
 from mend.dialogue.evidence import Change, PutRight
 from mend.dialogue.outlook import Next, Outlook, Sequel
 from mend.dialogue.registry import load_scripts
@@ -20,6 +20,7 @@ from mend.dialogue.script import (
     Say,
     Turn,
 )
+from mend.errors import IllegalTransitionError
 from mend.tasks.issue import Issue, Sensed
 from mend.tasks.resolution import Resolution
 

@@ -8,9 +8,9 @@ import pytest
 from mend.tasks.definition import BehaviorNode, TaskTreeDefinition
 from mend.tasks.intervention import Act
 from mend.tasks.library import SCENARIOS, NotInLibraryError
+from mend.tasks.problem import InvalidFileError
 from mend.tasks.scenario import Scenario, Trigger
 from mend.tasks.scenario_file import (
-    ScenarioFileError,
     built_in_scenario,
     check_scenario_text,
     find_misfits,
@@ -40,7 +40,7 @@ TREE = TaskTreeDefinition(name="eket", nodes=[LEAF])
 
 
 def problems_of(text: str) -> list[str]:
-    with pytest.raises(ScenarioFileError) as caught:
+    with pytest.raises(InvalidFileError) as caught:
         check_scenario_text(text, source="mine.yaml")
     return [each.describe("mine.yaml") for each in caught.value.problems]
 
@@ -83,14 +83,14 @@ def test_a_name_never_leads_to_another_file(tmp_path: Path) -> None:
 
 
 def test_a_file_that_is_not_there_is_told(tmp_path: Path) -> None:
-    with pytest.raises(ScenarioFileError, match="cannot be read"):
+    with pytest.raises(InvalidFileError, match="cannot be read"):
         read_scenario_file(tmp_path / "mine.yaml")
 
 
 def test_a_file_that_is_no_text_is_told(tmp_path: Path) -> None:
     path = tmp_path / "mine.yaml"
     path.write_bytes(b"\xff\xfe\x00")
-    with pytest.raises(ScenarioFileError, match=r"mine\.yaml"):
+    with pytest.raises(InvalidFileError, match=r"mine\.yaml"):
         read_scenario_file(path)
 
 

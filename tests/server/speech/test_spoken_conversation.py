@@ -4,6 +4,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from mend.errors import IllegalTransitionError
 from mend.server.speech.commands import Command
 from mend.server.speech.conversation import (
     MAX_APOLOGIES,
@@ -14,7 +15,6 @@ from mend.server.speech.conversation import (
     EndReason,
     GiveUp,
     Hear,
-    IllegalTransitionError,
     Listen,
     Say,
     Saying,
