@@ -167,7 +167,7 @@ def described_app(lifespan: Lifespan | None = None) -> FastAPI:
         version=version("mend-robots"),
         description=DESCRIPTION,
         lifespan=_entered(lifespan),
-        docs_url=None,  # see server.api.reference
+        docs_url=None,  # see mend.server.api.reference
         redoc_url=None,
     )
     for module in ROUTES:

@@ -26,7 +26,7 @@ from mend.server.uploads import Uploads
 
 @dataclass(frozen=True, slots=True)
 class Library:
-    """The documents of a service. Implements `server.runtime.ports.Preparation`."""
+    """The documents of a service. Implements `mend.server.runtime.ports.Preparation`."""
 
     trees: JournaledDocuments
     scenes: JournaledDocuments

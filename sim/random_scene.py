@@ -19,7 +19,7 @@ from mend.tasks.scene_problem import SceneProblem
 MOST_PARTS = 30
 
 SceneCheck = Callable[[Scene, Sequence[GoalNode | BehaviorNode]], list[SceneProblem]]
-"""What a world's robot cannot do in a scene (`sim.world.SceneChecker`)."""
+"""What a world's robot cannot do in a scene (`mend.sim.world.SceneChecker`)."""
 
 _X_M = (0.40, 0.68)
 _Y_M = (-0.62, 0.20)

@@ -1,7 +1,7 @@
 """A software camera: draws shaded triangle meshes into colour, depth and object-id images.
 
-Pictures follow `robots.body.CameraImage`: the pixel at column u and row v is sampled at exactly
-(u, v), so the image spans [-0.5, width - 0.5] and the default optical centre is
+Pictures follow `mend.robots.body.CameraImage`: the pixel at column u and row v is sampled at
+exactly (u, v), so the image spans [-0.5, width - 0.5] and the default optical centre is
 ((width - 1) / 2, (height - 1) / 2).
 """
 

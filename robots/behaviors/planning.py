@@ -28,7 +28,7 @@ _MOST_BARS = 3
 
 
 class Planner(Protocol):
-    """What of a body is asked for a plan (`robots.body.Body`)."""
+    """What of a body is asked for a plan (`mend.robots.body.Body`)."""
 
     @property
     def gripper(self) -> GripperModel: ...

@@ -8,6 +8,7 @@ import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from threading import Lock
 from typing import Any
 
 import coal
@@ -163,9 +164,13 @@ class Surrounded:
         return self.arm.hits(self._pairs, whole, first=first)
 
 
+_FILTERING = Lock()
+"""What one thread has warnings filtered by, another would take back amid its work."""
+
+
 def _forget_guesses(data: Any) -> None:
     """Let every test begin anew: coal, begun where the last one ended, misses some that touch."""
-    with warnings.catch_warnings():
+    with _FILTERING, warnings.catch_warnings():
         # Pinocchio asks for it by what coal has given another name, and only that takes it back.
         warnings.simplefilter("ignore", DeprecationWarning)
         for request in data.collisionRequests:

@@ -81,8 +81,8 @@ class _Committed:
 class SqliteJournal:
     """A journal in one file, or in memory for tests and runs that nobody needs afterwards.
 
-    Implements `server.journal.journal.Journal`. Raises `JournalLockedError` when another process
-    has the file, `JournalSchemaError` when it is no journal that can be read,
+    Implements `mend.server.journal.journal.Journal`. Raises `JournalLockedError` when another
+    process has the file, `JournalSchemaError` when it is no journal that can be read,
     `UnreadableError` when it is one no longer, `UnavailableError` when the file cannot be
     opened or written. Only its owner can read the file. Belongs to one event loop at a time.
     `sleep` is what passes between two tries to write where that is not possible; the look at the

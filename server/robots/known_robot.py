@@ -61,7 +61,7 @@ class ReplacedError(MendError):
 
 
 class KnownRobot:
-    """Implements `server.robots.session.Receiver`."""
+    """Implements `mend.server.robots.session.Receiver`."""
 
     def __init__(self, name: str, journal: Journal, times: LinkTimes, refusals: Refusals) -> None:
         self.name = name

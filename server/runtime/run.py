@@ -59,7 +59,7 @@ REFUSALS = (RefusalError, DuplicateReceiptError, JournalWriteError)
 
 
 class Run:
-    """One running run; implements `server.robots.registry.RobotSink`."""
+    """One running run; implements `mend.server.robots.registry.RobotSink`."""
 
     def __init__(
         self,

@@ -58,7 +58,7 @@ log = logging.getLogger(__name__)
 
 
 class Runtime:
-    """Implements `server.runtime.service.RunService`."""
+    """Implements `mend.server.runtime.service.RunService`."""
 
     def __init__(
         self,

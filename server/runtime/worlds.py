@@ -111,7 +111,7 @@ class SimulatedWorlds:
 
 
 class SimulatedHardware:
-    """The simulated robot of one run; implements `server.runtime.hardware.Hardware`."""
+    """The simulated robot of one run; implements `mend.server.runtime.hardware.Hardware`."""
 
     simulated = True
 

@@ -31,7 +31,7 @@ JPEG = base64.b64encode(b"\xff\xd8\xff picture \xff\xd9").decode()
 
 
 class CountingAgent:
-    """Implements `robots.agent.AgentCore`; notes every command that it is handed."""
+    """Implements `mend.robots.agent.AgentCore`; notes every command that it is handed."""
 
     def __init__(
         self,

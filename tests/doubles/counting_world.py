@@ -24,7 +24,7 @@ class NoOptions(StrictModel):
 
 
 class CountingWorld:
-    """Implements `sim.world.WorldAdapter`."""
+    """Implements `mend.sim.world.WorldAdapter`."""
 
     options = NoOptions
 

@@ -4,7 +4,7 @@ from mend.robots.link.channel import Channel, ChannelClosedError
 
 
 class DroppingChannel:
-    """Implements `robots.link.channel.Channel`."""
+    """Implements `mend.robots.link.channel.Channel`."""
 
     def __init__(self, channel: Channel, *, sends: int, receives: int) -> None:
         self._channel = channel

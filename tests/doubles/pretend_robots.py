@@ -117,7 +117,7 @@ class PretendRobot:
 
 
 class PretendRobots:
-    """Implements `server.runtime.runtime.Robots` for pretend robots."""
+    """Implements `mend.server.runtime.runtime.Robots` for pretend robots."""
 
     def __init__(self) -> None:
         self.robots: dict[str, PretendRobot] = {}

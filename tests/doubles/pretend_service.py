@@ -56,7 +56,7 @@ class PretendWorlds:
 
 @dataclass
 class OneTree:
-    """Implements `server.runtime.ports.Preparation`: every run is of one tree, in one scene."""
+    """Implements `mend.server.runtime.ports.Preparation`: all runs are of one tree in one scene."""
 
     definition: TaskTreeDefinition
     scene: Scene = BARE

@@ -10,7 +10,7 @@ from mend.server.journal.journal import Entry, Journal, Receipt
 
 @dataclass
 class RecordingSink:
-    """Implements `server.robots.sink.RobotSink`."""
+    """Implements `mend.server.robots.sink.RobotSink`."""
 
     journal: Journal
     robots: set[str] = field(default_factory=set)

@@ -132,3 +132,10 @@ def test_pip_installs_nothing_whose_hash_is_not_locked() -> None:
     assert len(installs) == 3
     for command in installs:
         assert "--require-hashes" in command or "--no-deps /tmp/mend_robots-*.whl" in command
+
+
+def test_every_folder_of_the_package_enters_the_build() -> None:
+    allowed = (ROOT / ".dockerignore").read_text().splitlines()
+    folders = {each.name for each in (ROOT / "src/mend").iterdir() if each.is_symlink()}
+    assert {"server", "localization"} <= folders
+    assert {"!src", *(f"!{each}" for each in folders)} <= set(allowed)

@@ -111,3 +111,25 @@ def test_unpacked_wheel_runs_anywhere_and_takes_nothing_from_the_working_folder(
     )
     assert done.returncode == 0, done.stderr
     assert "the run has finished" in done.stdout
+
+
+def test_a_users_own_modules_stand_beside_ours(wheel: Path, tmp_path: Path) -> None:
+    installed = tmp_path / "installed"
+    with zipfile.ZipFile(wheel) as archive:
+        archive.extractall(installed)
+    for module in PACKAGES:
+        (tmp_path / f"{module}.py").write_text("OWN = True\n")
+    names = ", ".join(PACKAGES)
+    program = (
+        f"import {names}; assert all(each.OWN for each in ({names})); "
+        "import mend, mend.tasks.task_tree, mend.server.settings; print(mend.__file__)"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program],
+        cwd=tmp_path,
+        env=os.environ | {"PYTHONPATH": str(installed)},
+        capture_output=True,
+        text=True,
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    assert Path(done.stdout.strip()) == installed / "mend" / "__init__.py"

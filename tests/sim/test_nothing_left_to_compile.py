@@ -17,7 +17,7 @@ def compiled():
     return {
         (name, value.py_func.__qualname__, str(signature))
         for name, module in list(sys.modules.items())
-        if name.startswith(("robots.", "sim.", "maps."))
+        if name.startswith(("mend.robots.", "mend.sim.", "mend.maps."))
         for value in vars(module).values()
         if isinstance(value, Dispatcher)
         for signature in value.signatures

@@ -29,7 +29,7 @@ def peer(request: pytest.FixtureRequest) -> Any:
         module = importlib.import_module("mend.fleet.scheduling.peers.ortools_routing")
     else:
         pytest.importorskip(name, reason="the extra 'peers' is not installed")
-        module = importlib.import_module(f"fleet.scheduling.peers.{name}_search")
+        module = importlib.import_module(f"mend.fleet.scheduling.peers.{name}_search")
     return getattr(module, f"solve_by_{name}")
 
 

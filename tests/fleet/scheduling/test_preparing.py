@@ -20,7 +20,7 @@ def compiled():
     return {
         (name, value.py_func.__qualname__, str(signature))
         for name, module in list(sys.modules.items())
-        if name.startswith(f"fleet.scheduling.{folder}.")
+        if name.startswith(f"mend.fleet.scheduling.{folder}.")
         for value in vars(module).values()
         if isinstance(value, Dispatcher)
         for signature in value.signatures

@@ -125,7 +125,8 @@ def test_a_missing_library_is_told_with_what_to_install(
     monkeypatch.setattr(
         robot_model.importlib.util, "find_spec", lambda name: name != missing or None
     )
-    with pytest.raises(WorldUnavailableError, match=rf"(?i)needs {missing}: .*mend\[workcell\]"):
+    told = rf"(?i)needs {missing}: .*mend-robots\[workcell\]"
+    with pytest.raises(WorldUnavailableError, match=told):
         check_installed()
 
 
@@ -136,5 +137,5 @@ def test_a_missing_description_is_told_with_what_to_install(
         raise metadata.PackageNotFoundError
 
     monkeypatch.setattr(robot_model.metadata, "distribution", missing)
-    with pytest.raises(WorldUnavailableError, match=r"mend\[workcell\]"):
+    with pytest.raises(WorldUnavailableError, match=r"mend-robots\[workcell\]"):
         robot_urdf()
