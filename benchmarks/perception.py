@@ -34,7 +34,7 @@ from mend.robots.vision.tracking import LastSeen
 from mend.sim.random_scene import random_scene
 from mend.sim.workcell.colors import learn_colors
 from mend.sim.workcell.options import WorkcellOptions
-from mend.sim.workcell.parts import Part as WorldPart
+from mend.sim.workcell.parts import RigidPart as WorldPart
 from mend.sim.workcell.world import WorkcellWorld
 from mend.tasks.definition import BehaviorNode
 from mend.tasks.scene import Scene

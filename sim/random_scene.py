@@ -11,7 +11,7 @@ from mend.errors import WrongInputError
 from mend.robots.catalogue import Part
 from mend.sim.random_nesting import random_ordered_nesting
 from mend.sim.random_parts import DrawnSizes, PartLook, draw_look
-from mend.sim.standing_room import Standing, standing
+from mend.sim.standing_room import RestingPart, standing
 from mend.tasks.definition import BehaviorNode, GoalNode
 from mend.tasks.scene import Place, Pose, Scene, Table
 from mend.tasks.scene_problem import SceneProblem
@@ -58,7 +58,7 @@ class _Site:
 
     pose: Pose
     on: str | None
-    room: Standing
+    room: RestingPart
 
 
 @dataclass(frozen=True, slots=True)
@@ -298,7 +298,7 @@ class _Drawing:
         """Half of all parts stand straight, the others as they like."""
         return 0.0 if self._rng.random() < 0.5 else float(self._rng.uniform(-math.pi, math.pi))
 
-    def _room(self, look: PartLook, pose: Pose) -> Standing:
+    def _room(self, look: PartLook, pose: Pose) -> RestingPart:
         bottom = self._table.height if pose.z is None else pose.z
         return standing(Part("part", look.size, look.knob), pose.x, pose.y, bottom, pose.yaw)
 

@@ -39,7 +39,7 @@ class _Sweep:
 
 
 @dataclass(slots=True)
-class _Content:
+class _CarmenContent:
     sweeps: list[_Sweep] = field(default_factory=list)
     odometry: Poses | None = None
     corrected: bool = False
@@ -53,7 +53,7 @@ def read_carmen(path: Path, *, corrected: bool | None = None) -> Log:
     decides it by what mapping programs leave behind (NEFF lines, or a laser pose that wanders
     against the robot's odometry). Lines that are cut off or hold no numbers are skipped.
     """
-    content = _Content()
+    content = _CarmenContent()
     for _, line in numbered_lines(path):
         fields = line.split()
         if not fields:
@@ -69,7 +69,7 @@ def read_carmen(path: Path, *, corrected: bool | None = None) -> Log:
     return _log(path, content, corrected)
 
 
-def _take(fields: list[str], content: _Content) -> None:
+def _take(fields: list[str], content: _CarmenContent) -> None:
     match fields[0]:
         case "ODOM":
             content.odometry = _pose(fields[1:4])
@@ -97,7 +97,7 @@ def _take(fields: list[str], content: _Content) -> None:
 
 
 def _add(
-    content: _Content, ranges: list[str], angle_min: float, increment: float, tail: list[str]
+    content: _CarmenContent, ranges: list[str], angle_min: float, increment: float, tail: list[str]
 ) -> None:
     time_s = float(tail[6])
     if not isfinite(time_s):
@@ -135,7 +135,7 @@ def _wanders(sweeps: list[_Sweep]) -> bool:
     return bool((np.abs(mounts - mounts[0])[:, :2] > 0.01).any())
 
 
-def _log(path: Path, content: _Content, corrected: bool) -> Log:
+def _log(path: Path, content: _CarmenContent, corrected: bool) -> Log:
     sweeps = content.sweeps
     no_return = no_return_range(each.ranges for each in sweeps)
     steps: list[LogStep] = []

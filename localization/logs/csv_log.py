@@ -28,7 +28,7 @@ _MAX_TOLD = 10
 
 
 @dataclass(slots=True)
-class _Content:
+class _CsvContent:
     laser: dict[str, float] = field(default_factory=dict)
     names: list[str] | None = None
     rows: list[tuple[int, list[str]]] = field(default_factory=list)
@@ -37,7 +37,7 @@ class _Content:
 
 def read_csv(path: Path) -> Log:
     """The log of a file, `.gz` or not. Raises `WrongInputError` with line numbers, or `OSError`."""
-    content = _Content()
+    content = _CsvContent()
     for number, line in numbered_lines(path):
         _take(number, line.lstrip("\ufeff"), content, path)
     names = content.names
@@ -55,7 +55,7 @@ def read_csv(path: Path) -> Log:
     return Log(path.name.split(".")[0], tuple(steps))
 
 
-def _take(number: int, line: str, content: _Content, path: Path) -> None:
+def _take(number: int, line: str, content: _CsvContent, path: Path) -> None:
     if not line:
         return
     if line.startswith("#"):
@@ -73,7 +73,7 @@ def _take(number: int, line: str, content: _Content, path: Path) -> None:
         content.rows.append((number, fields))
 
 
-def _steps(content: _Content, names: list[str], path: Path) -> list[LogStep]:
+def _steps(content: _CsvContent, names: list[str], path: Path) -> list[LogStep]:
     known = {"time_s", *_ODOMETRY, *_REFERENCE}
     beams = [(place, name) for place, name in enumerate(names) if name not in known]
     with_reference = all(name in names for name in _REFERENCE)

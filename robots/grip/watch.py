@@ -45,7 +45,7 @@ _LEAST_BLOB_PX = 12
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Hand:
+class HandSnapshot:
     """The hand at one moment: its picture, where it is, and what the fingers feel.
 
     `tool` is the tool point's pose; `fingers` are the convex pieces (n, 3) of the gripper in the
@@ -108,7 +108,7 @@ class GripWatch:
         wavering = self._state is GripState.HELD and 0 < self._unsure < _LONGEST_DOUBT
         return self._state is GripState.UNDECIDED or wavering
 
-    def update(self, hand: Hand) -> GripReading:
+    def update(self, hand: HandSnapshot) -> GripReading:
         """Take a reading into account."""
         reading = self.measure(hand)
         now_s = hand.image.time
@@ -131,7 +131,7 @@ class GripWatch:
             scale = reading.image.bgr.shape[1] / REFERENCE_WIDTH_PX
             self._shift = self._shift + (np.array(blob.center) - reading.expected) / scale
 
-    def measure(self, hand: Hand) -> GripReading:
+    def measure(self, hand: HandSnapshot) -> GripReading:
         """Read the hand without coming to a verdict; `probability` is this reading's alone."""
         image = hand.image
         scale = image.bgr.shape[1] / REFERENCE_WIDTH_PX
@@ -162,7 +162,7 @@ class GripWatch:
         alone.update(self._log_likelihoods(reading))
         return replace(reading, probability=alone.probability)
 
-    def _composition(self, hand: Hand, segmentation: Segmentation) -> Composition | None:
+    def _composition(self, hand: HandSnapshot, segmentation: Segmentation) -> Composition | None:
         hiding = [*hand.fingers, *in_front(hand.image, hand.tool, hand.around)]
         region = visible_region(hand.image, hand.tool, self._near, hiding)
         return composition(region, segmentation, self._model, self.part.name)

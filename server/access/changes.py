@@ -11,9 +11,9 @@ from mend.robots.link.shown_name import can_be_shown
 from mend.server.access.principal import RESERVED
 from mend.server.access.principals_file import (
     KEPT_CHANGES,
-    Change,
     Enrolment,
     KeptPrincipal,
+    PrincipalChange,
     Principals,
     What,
     edited,
@@ -45,7 +45,7 @@ class PrincipalsEditor:
     role: Role = Role.ADMIN
     address: str | None = None
     change_id: UUID | None = None
-    made: list[Change] = field(default_factory=list)
+    made: list[PrincipalChange] = field(default_factory=list)
 
     def add(self, name: str, role: Role, now: datetime, expires_days: float | None = None) -> str:
         """Add a principal and return its token.
@@ -148,7 +148,7 @@ class PrincipalsEditor:
     def _noted(
         self, principals: Principals, now: datetime, what: What, name: str, role: Role
     ) -> Principals:
-        change = Change(
+        change = PrincipalChange(
             id=self.change_id or uuid4(),
             when=now,
             by=self.by,

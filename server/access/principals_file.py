@@ -94,7 +94,7 @@ class Enrolment(FileModel):
 What = Literal["added", "rotated", "revoked", "enrolment_opened", "enrolled"]
 
 
-class Change(FileModel):
+class PrincipalChange(FileModel):
     """What was done to the file, and `by` whom.
 
     That is a user of the operating system, who counts as an admin, or through the API a principal,
@@ -116,7 +116,7 @@ class Principals(FileModel):
 
     principals: list[KeptPrincipal] = []
     enrolments: list[Enrolment] = []
-    changes: Annotated[list[Change], Field(max_length=KEPT_CHANGES)] = []
+    changes: Annotated[list[PrincipalChange], Field(max_length=KEPT_CHANGES)] = []
 
     @model_validator(mode="after")
     def _each_once(self) -> Self:

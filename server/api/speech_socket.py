@@ -25,12 +25,7 @@ from mend.server.api.speech_messages import (
     speech_client_message,
 )
 from mend.server.speech import conversation as talking
-from mend.server.speech.conversation import (
-    Act,
-    Conversation,
-    EndReason,
-    Saying,
-)
+from mend.server.speech.conversation import Act, EndReason, Saying, SpokenConversation
 from mend.server.speech.ear import NoEars
 from mend.server.speech.phrases import help_text
 from mend.server.speech.question import open_question, wait_until_over
@@ -125,7 +120,7 @@ class SpeechSocket(HelperConnection[HelperQuery]):
         )
         aloud = Aloud(message.dialogue, message.prompt, not self._silent)
         self._talk = Talk(
-            Conversation(question.text, help_text(question.answers), time.monotonic),
+            SpokenConversation(question.text, help_text(question.answers), time.monotonic),
             ears,
             lambda act: self._send(aloud.message(act)),
             over,
@@ -158,16 +153,16 @@ class Aloud:
 
     def message(self, act: Act) -> BaseModel:
         match act:
-            case talking.Say(what=what, text=text):
+            case talking.SayAloud(what=what, text=text):
                 return Say(what=what, text=text, audio=self._audio[what] if self._audible else None)
-            case talking.Listen():
+            case talking.StartListening():
                 return Listening()
             case talking.Hear():
                 return Hearing()
             case talking.Understood(command=command, phrase=phrase, latency_s=latency_s):
                 latency_ms = round(latency_s * 1000, 1)
                 return HeardMessage(command=command, phrase=phrase, latency_ms=latency_ms)
-            case talking.GiveUp():
+            case talking.StopTrying():
                 return GaveUp()
             case talking.End(reason=reason):
                 return Ended(reason=reason)

@@ -54,7 +54,7 @@ class Saying(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Say:
+class SayAloud:
     """Say this; `spoken` is to be called at its end."""
 
     what: Saying
@@ -62,7 +62,7 @@ class Say:
 
 
 @dataclass(frozen=True, slots=True)
-class Listen:
+class StartListening:
     """From now on the microphone counts."""
 
 
@@ -84,7 +84,7 @@ class Understood:
 
 
 @dataclass(frozen=True, slots=True)
-class GiveUp:
+class StopTrying:
     """Nothing more is tried by voice."""
 
 
@@ -95,10 +95,10 @@ class End:
     reason: EndReason
 
 
-Act = Say | Listen | Hear | Understood | GiveUp | End
+Act = SayAloud | StartListening | Hear | Understood | StopTrying | End
 
 
-class Call(StrEnum):
+class SpokenCall(StrEnum):
     """What comes to a conversation."""
 
     OPEN = "open"
@@ -113,17 +113,17 @@ class Call(StrEnum):
 _CALLS = Transitions(
     "the spoken conversation",
     {
-        State.NEW: (Call.OPEN, Call.END),
-        State.SAYING: (Call.SPOKEN, Call.END),
-        State.PAUSING: (Call.PAUSE_OVER, Call.END),
-        State.LISTENING: (Call.SPEECH_BEGAN, Call.END),
-        State.HEARING: (Call.UTTERANCE, Call.NOTHING_SAID, Call.END),
+        State.NEW: (SpokenCall.OPEN, SpokenCall.END),
+        State.SAYING: (SpokenCall.SPOKEN, SpokenCall.END),
+        State.PAUSING: (SpokenCall.PAUSE_OVER, SpokenCall.END),
+        State.LISTENING: (SpokenCall.SPEECH_BEGAN, SpokenCall.END),
+        State.HEARING: (SpokenCall.UTTERANCE, SpokenCall.NOTHING_SAID, SpokenCall.END),
         State.ENDED: (),
     },
 )
 
 
-class Conversation:
+class SpokenConversation:
     """Asks one question aloud until it has heard a command, or has apologized often enough.
 
     Every call returns what is to be done, in order; one that the state does not allow raises
@@ -159,32 +159,32 @@ class Conversation:
 
     def open(self) -> list[Act]:
         """Begin: ask the question."""
-        _CALLS.require(self._state, Call.OPEN)
+        _CALLS.require(self._state, SpokenCall.OPEN)
         return self._say(Saying.QUESTION)
 
     def spoken(self) -> list[Act]:
         """What was said has been played to its end."""
-        _CALLS.require(self._state, Call.SPOKEN)
+        _CALLS.require(self._state, SpokenCall.SPOKEN)
         self._state = State.PAUSING
         self._listens_at_s = self._now_s() + PAUSE_S
         return []
 
     def pause_over(self) -> list[Act]:
         """Listen, if the pause is over; nothing before."""
-        _CALLS.require(self._state, Call.PAUSE_OVER)
+        _CALLS.require(self._state, SpokenCall.PAUSE_OVER)
         if self._now_s() < self._listens_at_s:
             return []
         self._state = State.LISTENING
-        return [Listen()]
+        return [StartListening()]
 
     def speech_began(self) -> list[Act]:
-        _CALLS.require(self._state, Call.SPEECH_BEGAN)
+        _CALLS.require(self._state, SpokenCall.SPEECH_BEGAN)
         self._state = State.HEARING
         return [Hear()]
 
     def utterance(self, command: Command | None, phrase: str | None, latency_s: float) -> list[Act]:
         """Somebody has said something; `command` None where it is not a command."""
-        _CALLS.require(self._state, Call.UTTERANCE)
+        _CALLS.require(self._state, SpokenCall.UTTERANCE)
         heard = Understood(command, phrase, latency_s)
         match command:
             case Command.YES | Command.NO | Command.STOP:
@@ -197,22 +197,22 @@ class Conversation:
                 self._apologies_left -= 1
                 return [heard, *self._say(Saying.SORRY)]
             case None:
-                return [heard, GiveUp(), *self._end(EndReason.GAVE_UP)]
+                return [heard, StopTrying(), *self._end(EndReason.GAVE_UP)]
 
     def nothing_said(self) -> list[Act]:
         """What began was no speech after all."""
-        _CALLS.require(self._state, Call.NOTHING_SAID)
+        _CALLS.require(self._state, SpokenCall.NOTHING_SAID)
         self._state = State.LISTENING
-        return [Listen()]
+        return [StartListening()]
 
     def end(self, reason: EndReason) -> list[Act]:
         """End it for a reason outside of it."""
-        _CALLS.require(self._state, Call.END)
+        _CALLS.require(self._state, SpokenCall.END)
         return self._end(reason)
 
     def _say(self, what: Saying) -> list[Act]:
         self._state = State.SAYING
-        return [Say(what, self._texts[what])]
+        return [SayAloud(what, self._texts[what])]
 
     def _end(self, reason: EndReason) -> list[Act]:
         self._state = State.ENDED

@@ -46,7 +46,7 @@ class TooManyConversationsError(UnavailableError):
     """As many conversations as the service can take are going on."""
 
 
-class Report(BaseModel):
+class EarReport(BaseModel):
     """What an ear tells of the sound that it was given.
 
     `words` says whether an utterance had any; `latency_s` counts from its last sound to this.
@@ -74,7 +74,7 @@ class Ear(Protocol):
         """What was heard so far does not belong to what comes next."""
         ...
 
-    async def report(self) -> Report:
+    async def report(self) -> EarReport:
         """Wait for what was heard. Raises `EarLostError`."""
         ...
 
@@ -191,7 +191,7 @@ class ProcessEar:
     def interrupt(self) -> None:
         self._process.send(BREAK)
 
-    async def report(self) -> Report:
+    async def report(self) -> EarReport:
         return await self._process.report()
 
     async def close(self) -> None:
@@ -240,11 +240,11 @@ class RecognizerProcess:
         with suppress(OSError, RuntimeError):
             self._to.write(HEADER.pack(time.monotonic(), size) + pcm)
 
-    async def report(self) -> Report:
+    async def report(self) -> EarReport:
         line = await self._from.readline()
         if not line:
             raise EarLostError("the recognizer has ended")
-        return Report.model_validate_json(line)
+        return EarReport.model_validate_json(line)
 
     async def stop(self) -> None:
         if self._process.returncode is None:
