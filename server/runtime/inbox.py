@@ -58,7 +58,9 @@ class Inbox:
         if not self._items.empty():
             return self._items.get_nowait()
         try:
-            return await asyncio.wait_for(self._items.get(), timeout_s)
+            # Not `wait_for`: in Python 3.11 that swallows a cancellation that comes with an item.
+            async with asyncio.timeout(timeout_s):
+                return await self._items.get()
         except TimeoutError:
             return None
 
