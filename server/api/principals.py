@@ -21,6 +21,7 @@ from mend.server.journal.events import Author
 from mend.server.journal.journal import JournalReadError, JournalWriteError
 from mend.server.journal.subscriptions import Record
 from mend.server.runtime.journaled_tree import read_without_tree
+from mend.server.runtime.views import View
 
 router = APIRouter(prefix="/api/access", tags=["access"], route_class=SecretRoute)
 
@@ -61,10 +62,6 @@ class NewEnrolment(Strict):
 
     robot: RobotName = Field(examples=["arm-1"])
     minutes: Annotated[float, Field(gt=0, le=7 * 24 * 60, allow_inf_nan=False)] = 15
-
-
-class View(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
 
 
 class PrincipalView(View):

@@ -3,6 +3,8 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from mend.errors import IllegalTransitionError, MendError, WrongInputError
+
 NOT_FINISHED = 1
 """Exit code: the task did not finish, or a checked file is wrong."""
 WRONG_INPUT = 2
@@ -24,17 +26,11 @@ def told_plainly() -> Iterator[None]:
     """Turn the errors that explain themselves into a `CommandLineError`."""
     try:
         yield
-    except (CommandLineError, KeyboardInterrupt):
-        raise
+    except IllegalTransitionError:
+        raise  # A defect, whose traceback is wanted.
+    except MendError as error:
+        more = error.sentences if isinstance(error, WrongInputError) else []
+        raise CommandLineError("\n".join([str(error), *more])) from error
     except OSError as error:
         subject = f"'{error.filename}': " if error.filename else ""
         raise CommandLineError(f"{subject}{error.strerror or error}") from error
-    except Exception as error:
-        # Imported only here: they are of all folders, and few commands fail.
-        from mend.server.cli.known_errors import KNOWN_ERRORS
-        from mend.server.errors import InvalidError
-
-        if not isinstance(error, KNOWN_ERRORS):
-            raise
-        problems = error.problems if isinstance(error, InvalidError) else ()
-        raise CommandLineError("\n".join([str(error), *problems])) from error

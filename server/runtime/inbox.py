@@ -5,7 +5,7 @@ import logging
 from collections.abc import Awaitable, Callable
 from dataclasses import dataclass, field
 
-from mend.server.errors import ConflictError
+from mend.errors import ConflictError
 
 log = logging.getLogger(__name__)
 
