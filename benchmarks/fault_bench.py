@@ -9,6 +9,7 @@ from fault_judge import Judge, checker, place_of
 from fault_trial import AFTER_DONE, LAST_STEP, NEVER, NotNowError, Said, Trial
 from plain_watch import PlainWatch, SharedSenses
 
+from mend.errors import WrongInputError
 from mend.robots.catalogue import Catalogue, Part
 from mend.robots.grasp import grasp_of
 from mend.robots.link.messages import (
@@ -23,7 +24,7 @@ from mend.robots.link.messages import (
     WasDone,
 )
 from mend.robots.robot import Robot
-from mend.sim.random_scene import NoRoomError, random_scene
+from mend.sim.random_scene import random_scene
 from mend.sim.workcell.colors import learn_colors
 from mend.sim.workcell.options import WorkcellOptions
 from mend.sim.workcell.world import WorkcellWorld
@@ -239,7 +240,7 @@ def benches(seed: int, noise: float, light: float) -> Iterator[Bench]:
         count = int(np.random.default_rng(number).integers(2, MOST_PARTS + 1))
         try:
             scene = random_scene(number, count, checker().check_scene).scene
-        except NoRoomError:
+        except WrongInputError:
             continue
         bench = Bench(scene, number, noise, light)
         yield bench

@@ -19,14 +19,14 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+from synthetic.settings import SceneSettings
+from synthetic.world import Scene, scene
 
 from mend.localization.evaluation import is_off
 from mend.localization.localizer import Localizer
 from mend.localization.logs.log import LogStep
 from mend.localization.methods import METHODS, warm_up
 from mend.localization.pose import Poses
-from mend.localization.synthetic.settings import SceneSettings
-from mend.localization.synthetic.world import Scene, scene
 from mend.maps.vector_map import VectorMap
 from mend.maps.vector_map_file import read_vector_map
 

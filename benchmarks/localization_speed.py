@@ -18,14 +18,14 @@ from pathlib import Path
 import numpy as np
 import psutil
 from numpy.typing import NDArray
+from synthetic.settings import SceneSettings
+from synthetic.world import Scene, scene
 
 from mend.localization.evaluation import follow
 from mend.localization.localizer import Estimate, Timed
 from mend.localization.logs.log import LogStep
 from mend.localization.methods import METHODS, warm_up
 from mend.localization.pose import relative
-from mend.localization.synthetic.settings import SceneSettings
-from mend.localization.synthetic.world import Scene, scene
 from mend.maps.ray_cast import cast
 from mend.maps.vector_map import VectorMap
 from mend.maps.vector_map_file import read_vector_map

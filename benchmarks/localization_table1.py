@@ -21,13 +21,13 @@ from pathlib import Path
 
 import numpy as np
 from scipy.stats import beta, chi2
+from synthetic.settings import SceneSettings
+from synthetic.world import Scene, scene
 
 from mend.localization.evaluation import follow
 from mend.localization.localizer import Timed
 from mend.localization.methods import METHODS, warm_up
 from mend.localization.pictures.canvas import Svg
-from mend.localization.synthetic.settings import SceneSettings
-from mend.localization.synthetic.world import Scene, scene
 from mend.maps.vector_map import VectorMap
 from mend.maps.vector_map_file import read_vector_map
 

@@ -21,6 +21,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from mend.errors import WrongInputError
 from mend.robots.body import CameraImage
 from mend.robots.catalogue import Catalogue, Part
 from mend.robots.vision.blob import find_blob
@@ -30,10 +31,10 @@ from mend.robots.vision.lookalikes import find_lookalikes
 from mend.robots.vision.projection import pixels_covered, unproject
 from mend.robots.vision.table_view import TableView, view_table
 from mend.robots.vision.tracking import LastSeen
-from mend.sim.random_scene import NoRoomError, random_scene
+from mend.sim.random_scene import random_scene
 from mend.sim.workcell.colors import learn_colors
 from mend.sim.workcell.options import WorkcellOptions
-from mend.sim.workcell.parts import Part as WorldPart
+from mend.sim.workcell.parts import RigidPart as WorldPart
 from mend.sim.workcell.world import WorkcellWorld
 from mend.tasks.definition import BehaviorNode
 from mend.tasks.scene import Scene
@@ -239,7 +240,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     for seed in range(chosen.seed, chosen.seed + chosen.scenes):
         try:
             scene = random_scene(seed, check=_check).scene
-        except NoRoomError:
+        except WrongInputError:
             print(f"seed {seed}: no scene was found")
             continue
         for each in (scene, _worked_off(scene)):

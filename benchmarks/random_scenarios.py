@@ -38,6 +38,7 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "doubles"))
 import numpy as np
 from broken_constraints import broken_constraints
 from dialogue_judge import DialogueJudge
+from random_task import random_nesting, random_task
 from untruths import Rest, find_untruths, kinds_of
 from watched_world import WatchedWorld, where_parts_rest
 
@@ -47,7 +48,6 @@ from mend.server.runtime.requests import RunRequest
 from mend.server.runtime.views import RunStatus, RunView
 from mend.server.settings import Settings
 from mend.tasks.definition import BehaviorNode
-from mend.tasks.random_task import random_nesting, random_task
 from mend.tasks.scenario import Person
 
 if TYPE_CHECKING:

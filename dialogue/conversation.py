@@ -17,7 +17,7 @@ from mend.dialogue.script import (
     Expectation,
     HelpState,
     LeaveState,
-    Say,
+    Remark,
     Script,
     State,
     Turn,
@@ -25,9 +25,10 @@ from mend.dialogue.script import (
 from mend.dialogue.wording import sentence, word
 from mend.tasks.issue import Issue
 from mend.tasks.resolution import Resolution
+from mend.tasks.transitions import Transitions
 
 
-class Phase(StrEnum):
+class ConversationPhase(StrEnum):
     """Where a conversation is, and so which calls it takes."""
 
     NEW = "new"
@@ -36,12 +37,36 @@ class Phase(StrEnum):
     CLOSED = "closed"
 
 
-_LEGAL_CALLS = {
-    Phase.NEW: ("open", "abort"),
-    Phase.ASKING: ("answer", "put_right", "silence", "abort"),
-    Phase.AWAITING_HELP: ("help_seen", "help_not_seen", "abort"),
-    Phase.CLOSED: (),
-}
+class DialogueCall(StrEnum):
+    """What comes to a conversation."""
+
+    OPEN = "open"
+    ANSWER = "answer"
+    PUT_RIGHT = "put_right"
+    SILENCE = "silence"
+    HELP_SEEN = "help_seen"
+    HELP_NOT_SEEN = "help_not_seen"
+    ABORT = "abort"
+
+
+_CALLS = Transitions(
+    "the conversation",
+    {
+        ConversationPhase.NEW: (DialogueCall.OPEN, DialogueCall.ABORT),
+        ConversationPhase.ASKING: (
+            DialogueCall.ANSWER,
+            DialogueCall.PUT_RIGHT,
+            DialogueCall.SILENCE,
+            DialogueCall.ABORT,
+        ),
+        ConversationPhase.AWAITING_HELP: (
+            DialogueCall.HELP_SEEN,
+            DialogueCall.HELP_NOT_SEEN,
+            DialogueCall.ABORT,
+        ),
+        ConversationPhase.CLOSED: (),
+    },
+)
 
 _ROBOT_GOES_ON = (Resolution.ROBOT_FINISH, Resolution.COLLAB_FINISH)
 """Once it sees the help, or to take it, the robot moves."""
@@ -53,17 +78,6 @@ _SEEN_NOW = {
     Expectation.VIEW_CLEAR: "I see the table now.",
     Expectation.IN_GRIPPER: "I have the {object} between my fingers.",
 }
-
-
-class IllegalTransitionError(Exception):
-    """A call came that the conversation's phase does not allow; nothing was changed."""
-
-    def __init__(self, phase: Phase, came: str, expected: tuple[str, ...]) -> None:
-        wanted = " or ".join(expected) if expected else "nothing more"
-        super().__init__(f"the conversation is {phase}: expected {wanted}, but {came} came")
-        self.phase = phase
-        self.came = came
-        self.expected = expected
 
 
 class Conversation:
@@ -87,18 +101,18 @@ class Conversation:
         self._issue = issue
         self._outlook = outlook
         self._said_with = said_with or outlook
-        self._phase = Phase.NEW
+        self._phase = ConversationPhase.NEW
         self._at: AskState | HelpState | None = None
         self._reasks_left = 0
 
     @property
-    def phase(self) -> Phase:
+    def phase(self) -> ConversationPhase:
         return self._phase
 
     @property
     def watched_for(self) -> tuple[Expectation, ...]:
         """What would put the issue right now, the most telling first; empty unless asking."""
-        return tuple(self._script.put_right) if self._phase is Phase.ASKING else ()
+        return tuple(self._script.put_right) if self._phase is ConversationPhase.ASKING else ()
 
     @property
     def denied(self) -> frozenset[Expectation]:
@@ -110,7 +124,7 @@ class Conversation:
 
     def open(self) -> list[Turn]:
         """Begin."""
-        self._require("open")
+        _CALLS.require(self._phase, DialogueCall.OPEN)
         on_the_way = self._script.on_the_way
         if on_the_way is not None and not self._issue.interrupts:
             return self._enter(on_the_way, heard=False)
@@ -119,14 +133,14 @@ class Conversation:
 
     def answer(self, answer: Literal["yes", "no"]) -> list[Turn]:
         """Take a helper's answer to the open question."""
-        self._require("answer")
+        _CALLS.require(self._phase, DialogueCall.ANSWER)
         match self._at, answer:
             case AskState(yes=following), "yes":
                 return self._enter(following, heard=True)
             case AskState(no=following), "no":
                 return self._enter(following, heard=False)
             case HelpState(help=promised), "yes":
-                self._phase = Phase.AWAITING_HELP
+                self._phase = ConversationPhase.AWAITING_HELP
                 return [AwaitHelp(promised)]
             case HelpState(otherwise=following), "no":
                 return self._enter(following, heard=False)
@@ -134,7 +148,7 @@ class Conversation:
 
     def help_seen(self, change: Change) -> list[Turn]:
         """The camera saw what was promised; `change`: what it saw to change since the question."""
-        state = self._require_help_state("help_seen")
+        state = self._require_help_state(DialogueCall.HELP_SEEN)
         said = state.thanks if change.by_a_person else state.unchanged
         if change is Change.UNKNOWN:
             said = _SEEN_NOW[EXPECTED[state.help]]
@@ -143,11 +157,11 @@ class Conversation:
 
     def help_not_seen(self) -> list[Turn]:
         """The promised help was not seen in time: ask about it again, or give up."""
-        state = self._require_help_state("help_not_seen")
+        state = self._require_help_state(DialogueCall.HELP_NOT_SEEN)
         if self._reasks_left == 0:
             return self._give_up("I still do not see that help.")
         self._reasks_left -= 1
-        self._phase = Phase.ASKING
+        self._phase = ConversationPhase.ASKING
         return [
             Ask(
                 text=self._word(state.not_seen),
@@ -164,7 +178,7 @@ class Conversation:
 
         Raises `ValueError` when the script does not watch for what was seen.
         """
-        self._require("put_right")
+        _CALLS.require(self._phase, DialogueCall.PUT_RIGHT)
         resolution = self._script.put_right.get(seen.seen)
         if resolution is None:
             raise ValueError(f"'{seen.seen}' does not put an issue '{self._issue.kind}' right")
@@ -174,14 +188,14 @@ class Conversation:
 
     def silence(self) -> list[Turn]:
         """Nobody answered and nobody is left to ask: go on without an answer, or give up."""
-        self._require("silence")
+        _CALLS.require(self._phase, DialogueCall.SILENCE)
         if isinstance(self._at, AskState) and self._at.unanswered is not None:
             return self._enter(self._at.unanswered, heard=False)
         return self._give_up("I heard no answer.")
 
     def abort(self) -> list[Turn]:
         """The run has ended, or the issue no longer matters."""
-        self._require("abort")
+        _CALLS.require(self._phase, DialogueCall.ABORT)
         return [self._close(CloseReason.ABORTED, None)]
 
     # --- Going from state to state ------------------------------------------------------------
@@ -190,22 +204,22 @@ class Conversation:
         state = self._following(name)
         match state:
             case AskState():
-                self._at, self._phase = state, Phase.ASKING
+                self._at, self._phase = state, ConversationPhase.ASKING
                 return [self._ask(state)]
             case HelpState():
-                self._at, self._phase = state, Phase.AWAITING_HELP
+                self._at, self._phase = state, ConversationPhase.AWAITING_HELP
                 self._reasks_left = self._script.reasks
-                return [Say(self._word(state.text)), AwaitHelp(state.help)]
+                return [Remark(self._word(state.text)), AwaitHelp(state.help)]
             case LeaveState():
-                return [Say(self._word(state.text)), self._close(CloseReason.LEFT_OUT, None)]
+                return [Remark(self._word(state.text)), self._close(CloseReason.LEFT_OUT, None)]
             case CloseState(resolution=Resolution.ROBOT_RETRY):
                 said = f"{self._word(state.text)} {self._next_after_failure()}"
                 close = self._close(CloseReason.RESOLVED, Resolution.ROBOT_RETRY, failed=True)
-                return [Say(said), close]
+                return [Remark(said), close]
             case CloseState(resolution=resolution):
                 helped = heard and resolution is Resolution.COLLAB_FINISH
                 close = self._close(CloseReason.RESOLVED, resolution, helped=helped)
-                return [Say(self._word(state.text)), close]
+                return [Remark(self._word(state.text)), close]
 
     def _ask(self, state: AskState) -> Ask:
         return Ask(
@@ -252,7 +266,7 @@ class Conversation:
                 then = ""
         failed = failed and resolution is Resolution.ROBOT_RETRY
         close = self._close(reason, resolution, helped=helped, failed=failed)
-        return [Say(f"{said} {then}".strip()), close]
+        return [Remark(f"{said} {then}".strip()), close]
 
     def _resolution_for(self, wanted: Resolution, helped: bool) -> Resolution:
         if helped and not self._outlook.helped_out:
@@ -267,7 +281,7 @@ class Conversation:
 
     def _give_up(self, last_word: str) -> list[Turn]:
         closing = self._close(CloseReason.GAVE_UP, Resolution.ROBOT_RETRY, failed=True)
-        return [Say(f"{last_word} {self._next_after_failure()}"), closing]
+        return [Remark(f"{last_word} {self._next_after_failure()}"), closing]
 
     def _next_after_failure(self) -> str:
         return sentence(self._said_with.if_it_fails())
@@ -280,16 +294,11 @@ class Conversation:
         helped: bool = False,
         failed: bool = False,
     ) -> Close:
-        self._at, self._phase = None, Phase.CLOSED
+        self._at, self._phase = None, ConversationPhase.CLOSED
         return Close(reason, resolution, helped, failed)
 
-    def _require(self, call: str) -> None:
-        expected = _LEGAL_CALLS[self._phase]
-        if call not in expected:
-            raise IllegalTransitionError(self._phase, call, expected)
-
-    def _require_help_state(self, call: str) -> HelpState:
-        self._require(call)
+    def _require_help_state(self, call: DialogueCall) -> HelpState:
+        _CALLS.require(self._phase, call)
         assert isinstance(self._at, HelpState)
         return self._at
 

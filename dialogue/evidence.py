@@ -58,7 +58,7 @@ class Change(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Look:
+class LookOutcome:
     """What one look saw: what is so of what matters, and where the object is (None: unseen).
 
     `blind`: the camera showed nothing of the table, so that the look tells of nothing there.
@@ -77,7 +77,7 @@ class PutRight:
     change: Change
 
 
-def change_between(first: Look | None, now: Look) -> Change:
+def change_between(first: LookOutcome | None, now: LookOutcome) -> Change:
     """What a look sees changed since the first one."""
     if first is None:
         return Change.UNKNOWN
@@ -95,7 +95,7 @@ def change_between(first: Look | None, now: Look) -> Change:
     return Change.MOVED if has_moved(first.position, now.position) else Change.NONE
 
 
-def change_since(looks: Sequence[Look], now: Look) -> Change:
+def change_since(looks: Sequence[LookOutcome], now: LookOutcome) -> Change:
     """What a look sees changed since the earlier ones, told by the first that it differs from.
 
     What has come back to where it was at one of them has moved all the same.
@@ -105,7 +105,9 @@ def change_since(looks: Sequence[Look], now: Look) -> Change:
     return next(iter([*made, *changes]), Change.UNKNOWN)
 
 
-def put_right(watched: Sequence[Expectation], first: Look, now: Look) -> PutRight | None:
+def put_right(
+    watched: Sequence[Expectation], first: LookOutcome, now: LookOutcome
+) -> PutRight | None:
     """What has put an issue right since the first look; `watched`: the most telling first."""
     change = change_between(first, now)
     moved = change in (Change.APPEARED, Change.MOVED)
@@ -120,7 +122,7 @@ def put_right(watched: Sequence[Expectation], first: Look, now: Look) -> PutRigh
 
 
 def contradiction(
-    watched: Sequence[Expectation], denied: frozenset[Expectation], first: Look
+    watched: Sequence[Expectation], denied: frozenset[Expectation], first: LookOutcome
 ) -> PutRight | None:
     """What the first look saw that the issue itself denies: the robot may have been wrong."""
     for each in watched:

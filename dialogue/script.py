@@ -60,7 +60,7 @@ class Ask:
 
 
 @dataclass(frozen=True, slots=True)
-class Say:
+class Remark:
     """A statement; nobody answers it."""
 
     text: str
@@ -86,7 +86,7 @@ class Close:
     failed: bool = False
 
 
-Turn = Ask | Say | AwaitHelp | Close
+Turn = Ask | Remark | AwaitHelp | Close
 
 
 class Expectation(StrEnum):

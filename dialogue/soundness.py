@@ -14,10 +14,11 @@ from mend.dialogue.script import (
     State,
 )
 from mend.dialogue.wording import FIELDS, unknown_fields
+from mend.errors import MendError
 from mend.tasks.resolution import Resolution
 
 
-class UnsoundScriptError(Exception):
+class UnsoundScriptError(MendError):
     """A script's table cannot be used; `problems` has one sentence per mistake."""
 
     def __init__(self, name: str, problems: list[str]) -> None:

@@ -6,8 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import distance_transform_edt
 
+from mend.errors import WrongInputError
 from mend.maps.compiled import compiled
-from mend.maps.vector_map import VectorMap, VectorMapError
+from mend.maps.vector_map import VectorMap
 
 Matrix = NDArray[np.float64]
 Grid = NDArray[np.float32]
@@ -33,14 +34,14 @@ class DistanceField:
 
 
 def distance_field(vector_map: VectorMap, cell_m: float, reach_m: float) -> DistanceField:
-    """The field of a map. Raises `VectorMapError` where it would be too large."""
+    """The field of a map. Raises `WrongInputError` where it would be too large."""
     x_min, y_min, x_max, y_max = vector_map.bounds
     origin = np.array([x_min, y_min]) - reach_m
     width, height = (
         int(np.ceil((span + 2.0 * reach_m) / cell_m)) + 2 for span in (x_max - x_min, y_max - y_min)
     )
     if width * height > MAX_CELLS:
-        raise VectorMapError(
+        raise WrongInputError(
             f"a map of {x_max - x_min:.0f} by {y_max - y_min:.0f} m is too large "
             f"for a likelihood field with cells of {cell_m:g} m: are its coordinates metres?"
         )

@@ -5,10 +5,11 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from mend.errors import WrongInputError
 from mend.localization.pose import Poses
 
 
-class InvalidScanError(ValueError):
+class InvalidScanError(WrongInputError, ValueError):
     """A scan or a motion that no localizer can use; the message is one sentence."""
 
 

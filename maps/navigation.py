@@ -13,6 +13,8 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import dijkstra
 
+from mend.errors import WrongInputError
+
 Matrix = NDArray[np.float64]
 
 
@@ -24,7 +26,7 @@ class WayKind(StrEnum):
     ELEVATOR = "elevator"
 
 
-class NavigationError(Exception):
+class NavigationError(WrongInputError):
     """A graph that makes no sense; raised with one sentence per mistake."""
 
     def __init__(self, mistakes: list[str]) -> None:

@@ -8,6 +8,8 @@ from typing import Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from mend.errors import WrongInputError
+
 Matrix = NDArray[np.float64]
 
 
@@ -15,13 +17,9 @@ FARTHEST_M = 10_000.0
 """No building is as large; farther out what is reckoned with squares would lose its accuracy."""
 
 
-class VectorMapError(Exception):
-    """A vector map that makes no sense, or a file that holds none; one sentence per line."""
-
-
 @dataclass(frozen=True)
 class VectorMap:
-    """Line segments as rows x0, y0, x1, y1 in metres, read-only. Raises `VectorMapError`."""
+    """Line segments as rows x0, y0, x1, y1 in metres, read-only. Raises `WrongInputError`."""
 
     segments: Matrix
     name: str = ""
@@ -31,17 +29,17 @@ class VectorMap:
         if segments.size == 0:
             segments = segments.reshape(0, 4)
         if segments.ndim != 2 or segments.shape[1] != 4:
-            raise VectorMapError(
+            raise WrongInputError(
                 f"a vector map needs rows of 4 numbers (x0, y0, x1, y1), not shape {segments.shape}"
             )
         wrong = np.flatnonzero(~np.isfinite(segments).all(axis=1))
         if len(wrong):
-            raise VectorMapError(
+            raise WrongInputError(
                 f"segment {wrong[0] + 1} of the vector map has a coordinate that is not finite"
             )
         far = np.flatnonzero((np.abs(segments) > FARTHEST_M).any(axis=1))
         if len(far):
-            raise VectorMapError(
+            raise WrongInputError(
                 f"segment {far[0] + 1} of the vector map is more than {FARTHEST_M / 1000:g} km "
                 "from its origin: coordinates are metres; are these millimetres?"
             )
@@ -50,7 +48,7 @@ class VectorMap:
 
     @classmethod
     def of(cls, rows: Sequence[ArrayLike], name: str = "") -> Self:
-        """A vector map of rows x0, y0, x1, y1. Raises `VectorMapError`."""
+        """A vector map of rows x0, y0, x1, y1. Raises `WrongInputError`."""
         return cls(np.array(rows, dtype=np.float64), name)
 
     def __len__(self) -> int:

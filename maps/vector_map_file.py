@@ -6,7 +6,8 @@ from pathlib import Path
 import numpy as np
 from pydantic import BaseModel, ConfigDict, FiniteFloat, TypeAdapter, ValidationError
 
-from mend.maps.vector_map import VectorMap, VectorMapError
+from mend.errors import WrongInputError
+from mend.maps.vector_map import VectorMap
 
 _MAX_TOLD = 10
 MAX_BYTES = 64 * 1024 * 1024
@@ -29,13 +30,13 @@ _SEGMENTS = TypeAdapter(list[_Segment])
 
 
 def read_vector_map(path: Path) -> VectorMap:
-    """The vector map of a `.txt` or `.json` file. Raises `VectorMapError`, or `OSError`."""
+    """The vector map of a `.txt` or `.json` file. Raises `WrongInputError`, or `OSError`."""
     if path.stat().st_size > MAX_BYTES:
-        raise VectorMapError(f"{path}: too large for a vector map ({MAX_BYTES >> 20} MB at most)")
+        raise WrongInputError(f"{path}: too large for a vector map ({MAX_BYTES >> 20} MB at most)")
     try:
         text = path.read_text(encoding="utf-8-sig")
     except UnicodeDecodeError as error:
-        raise VectorMapError(f"{path}: not a text file, so not a vector map") from error
+        raise WrongInputError(f"{path}: not a text file, so not a vector map") from error
     name = path.name.split(".")[0]
     if path.suffix == ".json" or text.lstrip().startswith("["):
         return VectorMap(_json_segments(text, path), name)
@@ -81,15 +82,15 @@ def _json_segments(text: str, path: Path) -> np.ndarray:
     try:
         read = _SEGMENTS.validate_python(json.loads(text))
     except json.JSONDecodeError as error:
-        raise VectorMapError(f"{path}:{error.lineno}: not JSON: {error.msg}") from error
+        raise WrongInputError(f"{path}:{error.lineno}: not JSON: {error.msg}") from error
     except RecursionError as error:
-        raise VectorMapError(f"{path}: nested too deeply for a vector map") from error
+        raise WrongInputError(f"{path}: nested too deeply for a vector map") from error
     except ValidationError as error:
         _tell([_describe(dict(each), path) for each in error.errors()], path)
         raise
     except ValueError as error:
         # A number with more digits than Python reads.
-        raise VectorMapError(f"{path}: a number in it is too long") from error
+        raise WrongInputError(f"{path}: a number in it is too long") from error
     rows = [[each.p0.x, each.p0.y, each.p1.x, each.p1.y] for each in read]
     return np.array(rows, dtype=np.float64).reshape(-1, 4)
 
@@ -108,4 +109,4 @@ def _tell(mistakes: list[str], path: Path) -> None:
         told = mistakes[:_MAX_TOLD]
         if len(mistakes) > _MAX_TOLD:
             told.append(f"{path}: and {len(mistakes) - _MAX_TOLD} more mistakes")
-        raise VectorMapError("\n".join(told))
+        raise WrongInputError("\n".join(told))

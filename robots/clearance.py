@@ -27,7 +27,7 @@ _NEAR_M = 0.05
 
 
 @dataclass(frozen=True, slots=True)
-class Room:
+class Gap:
     """How much room there is between a gripper and what is nearest to it, beside or under it."""
 
     room_m: float
@@ -42,7 +42,7 @@ def room_around(
     *,
     closed_m: float | None = None,
     stray_m: float = 0.0,
-) -> Room | None:
+) -> Gap | None:
     """The room that `boxes` leave a gripper coming straight down to `tool`; None if none is near.
 
     Its fingers are `opening_m` apart, and close to `closed_m` there, or open from it. Boxes may be
@@ -70,7 +70,7 @@ def room_around(
     some = np.flatnonzero(least_m <= enough_m)
     left = left_m(some)
     nearest = int(left.argmin())
-    return Room(float(left[nearest]), boxes[some[nearest]])
+    return Gap(float(left[nearest]), boxes[some[nearest]])
 
 
 def in_the_way(

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from mend.errors import MendError
 from mend.robots.body import Matrix4, ToolPose
 from mend.robots.catalogue import Part
 from mend.robots.gripper import GripperModel
@@ -27,7 +28,7 @@ _SHALLOW_M = 0.012
 _MM = 1e3
 
 
-class UngraspableError(Exception):
+class UngraspableError(MendError):
     """A gripper cannot take hold of a part at all; the message says why, and what it can."""
 
 

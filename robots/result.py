@@ -7,7 +7,7 @@ from mend.robots.link.messages import FinishedResult, Location
 
 
 @dataclass(frozen=True, slots=True)
-class Result:
+class JudgedResult:
     """A finished result to judge: the message that names it, and what it means to this robot."""
 
     message: FinishedResult

@@ -40,7 +40,7 @@ from mend.robots.link.messages import (
 )
 from mend.robots.looks import Looker, look_as_told
 from mend.robots.monitors.monitor import BEFORE_FIRST_STEP, Monitor
-from mend.robots.result import Result
+from mend.robots.result import JudgedResult
 from mend.robots.senses import FOREARM, Senses
 from mend.robots.showing import PoseDisplay
 from mend.robots.task_progress import TaskProgress
@@ -350,7 +350,7 @@ class Robot:
             self._arm.stop()
             self._activity, self._looking = None, False
 
-    def _looker(self, finished: Sequence[Result] = ()) -> Looker:
+    def _looker(self, finished: Sequence[JudgedResult] = ()) -> Looker:
         held = None if self._execution is None or self._execution.over else self._execution
         # What is held in the middle of a step stays there: only a resume or a retreat moves it.
         may_move = not self._executing and (held is None or held.step == 0)

@@ -4,14 +4,15 @@ from collections.abc import Collection, Iterable, Mapping
 
 from pydantic import ValidationError
 
+from mend.errors import MendError
 from mend.robots.behaviors.assignment import Assignment
 from mend.robots.behaviors.behavior import Behavior
 from mend.robots.catalogue import Catalogue, Part
 from mend.robots.link.messages import FinishedResult, Location, Look, Start
-from mend.robots.result import Result
+from mend.robots.result import JudgedResult
 
 
-class CommandError(Exception):
+class CommandError(MendError):
     """A command cannot be carried out; the message says why."""
 
 
@@ -83,11 +84,11 @@ class Understanding:
             raise CommandError(f"a look for '{look.expect}' needs an object")
         return part
 
-    def results_of(self, finished: Iterable[FinishedResult]) -> list[Result]:
+    def results_of(self, finished: Iterable[FinishedResult]) -> list[JudgedResult]:
         """Finished results, as far as this robot knows them."""
         parts, places = self._catalogue.parts, self._catalogue.places
         return [
-            Result(each, parts[each.object], places[each.place])
+            JudgedResult(each, parts[each.object], places[each.place])
             for each in finished
             if each.object in self._known_colors and each.object in parts and each.place in places
         ]

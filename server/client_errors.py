@@ -1,10 +1,11 @@
 """What goes wrong for a client of the service; each message is one sentence for people."""
 
+from mend.errors import MendError
 from mend.server.api.helper_messages import Error
 from mend.server.api.problems import Problem
 
 
-class ClientError(Exception):
+class ClientError(MendError):
     """Base of everything that a client of the service raises on purpose."""
 
 

@@ -53,19 +53,19 @@ class Finder:
         )
 
     def scene(self, name: str) -> Scene:
-        """Raises `NotInLibraryError` and `SceneFileError`."""
+        """Raises `NotInLibraryError` and `InvalidFileError`."""
         scene = check_scene_text(self.text(DocumentKind.SCENE, name), source=f"scenes/{name}.yaml")
         return scene.model_copy(update={"name": name})
 
     def task(self, name: str, scene: Scene | None = None) -> CheckedTask:
-        """Raises `NotInLibraryError` and `TaskFileError`; `scene` instead of the tree's own."""
+        """Raises `NotInLibraryError` and `InvalidFileError`; `scene` instead of the tree's own."""
         text = self.text(DocumentKind.TREE, name)
         return check_task_text(
             text, behavior_parameters(), self.scene, source=name, default_name=name, scene=scene
         )
 
     def scenario(self, name: str) -> Scenario:
-        """Raises `NotInLibraryError` and `ScenarioFileError`."""
+        """Raises `NotInLibraryError` and `InvalidFileError`."""
         scenario = check_scenario_text(self.text(DocumentKind.SCENARIO, name), source=name)
         return scenario.model_copy(update={"name": name})
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any, Literal, Protocol
 
-from mend.server.errors import InvalidError
+from mend.errors import WrongInputError
 from mend.server.journal.events import Author
 from mend.server.rendered import Rendered
 from mend.server.runtime.views import View
@@ -98,7 +98,7 @@ MOST_MISTAKES = 1000
 """So many mistakes of one document are told."""
 
 
-class WrongDocumentError(InvalidError):
+class WrongDocumentError(WrongInputError):
     """A document has mistakes; after the first 1000 only how many more there are is told."""
 
     def __init__(self, what: str, mistakes: Sequence[DocumentMistake]) -> None:
@@ -186,7 +186,7 @@ class DocumentLibrary(Protocol):
     async def summaries(self, offset: int = 0, limit: int = 1000) -> Sequence[DocumentSummary]: ...
 
     async def get(self, name: str) -> Rendered[DocumentView]:
-        """Raises `NotFoundError`, and `InvalidError` where it has mistakes by now."""
+        """Raises `NotFoundError`, and `WrongInputError` where it has mistakes by now."""
         ...
 
     async def kept(self, name: str) -> Rendered[KeptDocument]:
@@ -200,7 +200,7 @@ class DocumentLibrary(Protocol):
     async def save(self, name: str | None, text: str, author: Author | None = None) -> Kept:
         """Check and keep a document.
 
-        `name` wins over the file's own. Raises `InvalidError`, and `ConflictError` (built in, or
+        `name` wins over the file's own. Raises `WrongInputError`, and `ConflictError` (built in, or
         another uploaded document would no longer fit).
         """
         ...

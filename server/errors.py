@@ -3,34 +3,11 @@
 from collections.abc import Sequence
 from uuid import UUID
 
-from mend.server.limits import LimitName
+from mend.errors import ConflictError, UnavailableError, WrongInputError
 from mend.tasks.scene_problem import SceneProblem
 
 
-class ServiceError(Exception):
-    """Base: the message is one clear sentence for the user.
-
-    `limit` is the one that was reached, if that is why.
-    """
-
-    def __init__(self, message: str, *, limit: LimitName | None = None) -> None:
-        super().__init__(message)
-        self.limit = limit
-
-
-class NotFoundError(ServiceError):
-    """There is no such run, dialogue, prompt, tree, robot, camera or picture."""
-
-
-class UnreadableError(ServiceError):
-    """What the journal has of a run cannot be read, or is not what was written."""
-
-
-class ConflictError(ServiceError):
-    """The state of the thing does not allow what was asked."""
-
-
-class BusyError(ServiceError):
+class BusyError(UnavailableError):
     """The service has too much to do for this just now; nothing of it was done."""
 
     retry_after_s = 5
@@ -45,17 +22,7 @@ class LostRaceError(ConflictError):
         self.answered_by = answered_by
 
 
-class InvalidError(ServiceError):
-    """What was sent cannot be used; `problems` has one sentence per mistake."""
-
-    def __init__(
-        self, message: str, problems: list[str] | None = None, *, limit: LimitName | None = None
-    ) -> None:
-        super().__init__(message, limit=limit)
-        self.problems = problems or []
-
-
-class ImpossibleError(InvalidError):
+class ImpossibleError(WrongInputError):
     """A world's robot cannot do a tree in a scene; `scene_problems` say where in that, and why."""
 
     def __init__(self, message: str, scene_problems: Sequence[SceneProblem]) -> None:

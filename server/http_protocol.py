@@ -10,7 +10,7 @@ from uvicorn.protocols.http.h11_impl import H11Protocol
 from uvicorn.server import ServerState
 
 from mend.server.raw_answers import raw_problem
-from mend.server.visitors import STATE_KEY, Beyond, Phase, Visitor
+from mend.server.visitors import STATE_KEY, Beyond, ConnectionPhase, Visitor
 
 TOO_LATE = ("head_s", "body_s")
 SHUTTING_DOWN = "the service is shutting down"
@@ -47,7 +47,7 @@ class HttpProtocol(H11Protocol):
 
     def handle_websocket_upgrade(self, event: h11.Request) -> None:
         """Hand the connection over: from now on its client owes no request."""
-        self._visitor.enter(Phase.SERVICE)
+        self._visitor.enter(ConnectionPhase.SERVICE)
         self._visitor.end = lambda _: self.transport.abort()
         super().handle_websocket_upgrade(event)
 
@@ -60,11 +60,11 @@ class HttpProtocol(H11Protocol):
         if self.transport.is_closing() or self.transport.get_protocol() is not self:
             return
         if self.conn.their_state is h11.SEND_BODY:
-            self._visitor.enter(Phase.BODY)
+            self._visitor.enter(ConnectionPhase.BODY)
         elif self.conn.their_state is h11.IDLE and (self.cycle is None or self._has_begun()):
-            self._visitor.enter(Phase.HEAD)
+            self._visitor.enter(ConnectionPhase.HEAD)
         else:
-            self._visitor.enter(Phase.SERVICE)
+            self._visitor.enter(ConnectionPhase.SERVICE)
 
     def _has_begun(self) -> bool:
         """Whether there is a part of a request that could not be read yet."""

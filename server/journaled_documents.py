@@ -6,6 +6,7 @@ from datetime import datetime
 from functools import partial
 from typing import Any, TypeVar
 
+from mend.errors import ConflictError, NotFoundError, WrongInputError
 from mend.server.documents import (
     SPOKEN,
     DocumentCheck,
@@ -19,7 +20,6 @@ from mend.server.documents import (
     Uploaded,
     WrongDocumentError,
 )
-from mend.server.errors import ConflictError, InvalidError, NotFoundError
 from mend.server.journal.events import Author, DocumentDeleted, DocumentKept
 from mend.server.journal.journal import Document, Entry, Journal
 from mend.server.limits import Limits
@@ -90,11 +90,11 @@ class _Reading:
     def to_keep(
         self, name: str | None, text: str, uploaded: Uploaded
     ) -> tuple[str, Rendered[KeptDocument]]:
-        """The name and view of a document that is to be kept. Raises `InvalidError`."""
+        """The name and view of a document that is to be kept. Raises `WrongInputError`."""
         checked = self.checker.try_in_worlds(text, uploaded)
         name = name or checked.name
         if name is None:
-            raise InvalidError(
+            raise WrongInputError(
                 f"the {SPOKEN[self.kind]} needs a name: send 'name' with it, or put it in the file"
             )
         view = KeptDocument(

@@ -39,7 +39,7 @@ class Library:
     async def prepare(self, request: RunRequest) -> PreparedRun:
         """Read and check what a request names.
 
-        Raises `NotFoundError`, `InvalidError` or `BusyError`.
+        Raises `NotFoundError`, `WrongInputError` or `BusyError`.
         """
         named = [each for each in (request.tree, request.scene, request.scenario) if each]
         kinds = (DocumentKind.SCENARIO, DocumentKind.TREE, DocumentKind.SCENE)

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
-from mend.server.errors import NotFoundError
+from mend.errors import NotFoundError
 from mend.sim.world import ModelProvider, WorldAdapter, WorldUnavailableError
 
 URDF = "robot.urdf"

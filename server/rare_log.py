@@ -8,7 +8,7 @@ EVERY_S = 60.0
 
 
 @dataclass(slots=True)
-class _Told:
+class _LastTold:
     at: float
     times_since: int = 0
 
@@ -19,7 +19,7 @@ class RareLog:
     def __init__(self, log: logging.Logger, monotonic: Callable[[], float]) -> None:
         self._log = log
         self._monotonic = monotonic
-        self._told: dict[str, _Told] = {}
+        self._told: dict[str, _LastTold] = {}
 
     def warn(self, subject: str, sentence: str, error: Exception | None = None) -> None:
         """Log the sentence, unless one about this subject was logged within the last minute.
@@ -33,6 +33,6 @@ class RareLog:
             told.times_since += 1
             return
         more = f" ({told.times_since} times more since last told)" if told else ""
-        self._told[subject] = _Told(now)
+        self._told[subject] = _LastTold(now)
         rest = more if told and told.times_since else ""
         self._log.warning("%s%s", sentence, rest, exc_info=error)

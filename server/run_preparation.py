@@ -3,10 +3,11 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from mend.errors import NotFoundError, WrongInputError
 from mend.server.behaviors import behavior_step_counts
 from mend.server.document_checks import Finder
 from mend.server.documents import SPOKEN, DocumentKind, FixedDocuments, Uploaded
-from mend.server.errors import ImpossibleError, InvalidError, NotFoundError
+from mend.server.errors import ImpossibleError
 from mend.server.runtime.ports import LIVE, PreparedRun
 from mend.server.runtime.requests import RunRequest
 from mend.server.scene_checks import WorldChecks
@@ -26,7 +27,7 @@ class RunPreparer:
     worlds: WorldChecks
 
     def prepare(self, request: RunRequest, uploaded: Uploaded) -> PreparedRun:
-        """Raises `NotFoundError` or `InvalidError`."""
+        """Raises `NotFoundError` or `WrongInputError`."""
         finder = Finder(self.fixed, uploaded)
         scenario = self._scenario(request, finder)
         tree, scene = _load_tree(finder, request.tree, request.scene)
@@ -45,30 +46,28 @@ class RunPreparer:
             return None
         try:
             scenario = finder.scenario(request.scenario)
-        except NotInLibraryError as error:
-            raise NotFoundError(str(error)) from error
         except InvalidFileError as error:
             raise _unusable(DocumentKind.SCENARIO, request.scenario, error) from error
         if scenario.tree != request.tree:
-            raise InvalidError(
+            raise WrongInputError(
                 f"scenario '{scenario.name}' is for the tree '{scenario.tree}', "
                 f"not '{request.tree}'"
             )
         return scenario
 
     def _lay_out(self, request: RunRequest, tree: TaskTreeDefinition) -> Scene:
-        """A scene for a tree that has none. Raises `InvalidError` where the world cannot."""
+        """A scene for a tree that has none. Raises `WrongInputError` where the world cannot."""
         adapter = self.worlds.adapter(request.world)
         if not adapter.lays_out_anything:
-            raise InvalidError(
+            raise WrongInputError(
                 f"tree '{tree.name}' names no scene, and the world '{request.world}' needs one"
             )
         leaves = [each for each in tree.nodes if isinstance(each, BehaviorNode)]
         names = [(each.object, each.place) for each in leaves if each.object is not None]
         try:
             return adapter.lay_out(names, request.seed)
-        except ValueError as error:
-            raise InvalidError(f"tree '{tree.name}' cannot be laid out: {error}") from error
+        except WrongInputError as error:
+            raise WrongInputError(f"tree '{tree.name}' cannot be laid out: {error}") from error
 
     def _refuse_impossible(self, world: str, scene: Scene, tree: TaskTreeDefinition) -> None:
         """Raise `ImpossibleError` where the world's robot cannot do the tree in the scene."""
@@ -88,8 +87,6 @@ def _load_tree(
     """A tree and its scene; `scene` names another one that the tree fits."""
     try:
         chosen = finder.scene(scene) if scene else None
-    except NotInLibraryError as error:
-        raise NotFoundError(str(error)) from error
     except InvalidFileError as error:
         raise _unusable(DocumentKind.SCENE, scene or "", error) from error
     try:
@@ -103,14 +100,14 @@ def _load_tree(
 
 
 def _moved(scene: Scene, scenario: Scenario, tree: TaskTreeDefinition) -> Scene:
-    """The scene as the scenario begins it. Raises `InvalidError` where the two do not fit."""
+    """The scene as the scenario begins it. Raises `WrongInputError` where the two do not fit."""
     misfits = find_misfits(scenario, tree, scene, behavior_step_counts())
     if misfits:
         problems = [each.message for each in misfits]
-        raise InvalidError(f"scenario '{scenario.name}' does not fit this run", problems)
+        raise WrongInputError(f"scenario '{scenario.name}' does not fit this run", problems)
     return moved_scene(scene, scenario)
 
 
-def _unusable(kind: DocumentKind, name: str, error: InvalidFileError) -> InvalidError:
+def _unusable(kind: DocumentKind, name: str, error: InvalidFileError) -> WrongInputError:
     sentences = str(error).splitlines()
-    return InvalidError(f"the {SPOKEN[kind]} '{name}' cannot be used", sentences)
+    return WrongInputError(f"the {SPOKEN[kind]} '{name}' cannot be used", sentences)

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 
-from mend.server.errors import InvalidError
+from mend.errors import WrongInputError
 from mend.sim.world import SceneChecker, WorldAdapter, WorldUnavailableError
 from mend.tasks.definition import BehaviorNode, GoalNode, TaskTreeDefinition
 from mend.tasks.plugins import load_plugins
@@ -25,11 +25,11 @@ class WorldChecks:
     def only(self, world: str) -> "WorldChecks":
         """One of the worlds alone.
 
-        Raises `InvalidError` where there is no such world, and `WorldUnavailableError`.
+        Raises `WrongInputError` where there is no such world, and `WorldUnavailableError`.
         """
         if world not in self._adapters:
             known = ", ".join(sorted(self._adapters))
-            raise InvalidError(f"there is no world '{world}'; there are {known}")
+            raise WrongInputError(f"there is no world '{world}'; there are {known}")
         self._adapters[world].check_available()
         return WorldChecks({world: self._adapters[world]})
 

@@ -3,6 +3,7 @@
 import ssl
 from pathlib import Path
 
+from mend.errors import MendError
 from mend.server.settings import WrongSettingsError
 
 
@@ -30,7 +31,7 @@ def server_tls(certificate: Path, key: Path) -> ssl.SSLContext:
     return context
 
 
-class _PasswordWantedError(Exception):
+class _PasswordWantedError(MendError):
     pass
 
 

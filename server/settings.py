@@ -15,6 +15,7 @@ from pydantic_settings import (
     TomlConfigSettingsSource,
 )
 
+from mend.errors import WrongInputError
 from mend.server.dialogues.mail import MailSettings
 from mend.server.journal.sqlite import IN_MEMORY
 from mend.server.limits import Limits
@@ -33,7 +34,7 @@ MOST_CHARS = 500
 """Of a sentence about a setting."""
 
 
-class WrongSettingsError(Exception):
+class WrongSettingsError(WrongInputError):
     """The service cannot start with these settings; one sentence per mistake."""
 
     def __init__(self, problems: list[str]) -> None:

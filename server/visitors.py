@@ -20,7 +20,7 @@ STATE_KEY = "visitor"
 """Under this name a scope's state has the visitor whose request it is."""
 
 
-class Phase(StrEnum):
+class ConnectionPhase(StrEnum):
     """What a connection is waiting for."""
 
     HEAD = "head"
@@ -60,7 +60,7 @@ class Visitor:
         self.is_admitted = False
         self.principal: str | None = None
         self.shown: str | None = None
-        self.phase = Phase.HEAD
+        self.phase = ConnectionPhase.HEAD
         self.since = visitors.now()
         self._visitors = visitors
         self._connection: Connection | None = None
@@ -72,7 +72,7 @@ class Visitor:
         self._connection = connection
         self.end = end
 
-    def enter(self, phase: Phase) -> None:
+    def enter(self, phase: ConnectionPhase) -> None:
         """Something else is waited for; for the same again it gets no more time."""
         if phase is not self.phase:
             self.phase, self.since = phase, self._visitors.now()
@@ -223,16 +223,16 @@ class Visitors:
                 f"the client took nothing of what it was sent for {limits.stuck_client_s:g} s"
             )
             return Beyond("stuck_client_s", sentence)
-        if visitor.phase is Phase.HEAD and waited_s >= limits.head_s:
+        if visitor.phase is ConnectionPhase.HEAD and waited_s >= limits.head_s:
             return Beyond("head_s", f"no request came within {limits.head_s:g} s")
-        if visitor.phase is Phase.BODY and waited_s >= limits.body_s:
+        if visitor.phase is ConnectionPhase.BODY and waited_s >= limits.body_s:
             return Beyond("body_s", f"the request's body did not come within {limits.body_s:g} s")
         return None
 
     def _end(self, visitor: Visitor, beyond: Beyond) -> None:
         self.note(beyond)
         # So that it is ended once.
-        visitor.enter(Phase.SERVICE)
+        visitor.enter(ConnectionPhase.SERVICE)
         self.no_stranger(visitor)
         # One that cannot be ended must cost no other its end, or its place.
         with self._ending.one_pass():

@@ -29,7 +29,7 @@ _AGREE_M = 0.010
 
 
 @dataclass(frozen=True, slots=True)
-class Pinhole:
+class PinholeOptics:
     """The optics that rays come from."""
 
     focal_px: float
@@ -44,7 +44,7 @@ class DepthNoise:
         self._rng = rng
         self._exposures = exposures
 
-    def measure(self, depth_m: Depth, bgr: NDArray[np.uint8], optics: Pinhole) -> Depth:
+    def measure(self, depth_m: Depth, bgr: NDArray[np.uint8], optics: PinholeOptics) -> Depth:
         """What the camera gives for a rendered picture: NaN where no depth is measured."""
         if self._scale == 0.0:
             return depth_m
@@ -132,7 +132,7 @@ def _slope(depth_m: Depth) -> tuple[Depth, Depth]:
     return right, down
 
 
-def _incidence(depth_m: Depth, slope: tuple[Depth, Depth], optics: Pinhole) -> Depth:
+def _incidence(depth_m: Depth, slope: tuple[Depth, Depth], optics: PinholeOptics) -> Depth:
     """The angle between each pixel's ray and the normal of the surface that it hits."""
     rows, columns = depth_m.shape
     across = (np.arange(columns, dtype=np.float32) - np.float32(optics.center_px[0]))[None, :]

@@ -27,7 +27,7 @@ class Queued(StrictModel):
 
 
 @dataclass(frozen=True, slots=True)
-class Deed:
+class PersonAction:
     """Something that a person does now; `command` asked for it, None if a script did."""
 
     do: Intervention
@@ -77,17 +77,17 @@ class PendingInterventions:
             if each.do.act is Act.RELEASE or each.do.object not in (None, handled)
         ]
 
-    def take_due(self, time_s: float, progress: TaskProgress | None) -> list[Deed]:
+    def take_due(self, time_s: float, progress: TaskProgress | None) -> list[PersonAction]:
         """Those that are due now; they are no longer pending."""
-        due: list[Deed] = []
+        due: list[PersonAction] = []
         for index, scripted in enumerate(self._scripted):
             if index not in self._fired and _is_due(scripted, time_s, progress):
                 self._fired.add(index)
-                due.append(Deed(scripted.do, SCENARIO))
+                due.append(PersonAction(scripted.do, SCENARIO))
         ripe = [each for each in self._queued if each.at_s <= time_s + _EPSILON]
         self._queued = [each for each in self._queued if each.at_s > time_s + _EPSILON]
         ripe.sort(key=lambda each: each.at_s)
-        due.extend(Deed(each.do, each.by, each.command) for each in ripe)
+        due.extend(PersonAction(each.do, each.by, each.command) for each in ripe)
         return due
 
     def snapshot(self) -> PendingSnapshot:

@@ -33,7 +33,7 @@ class Promise:
 
 
 @dataclass(frozen=True, slots=True)
-class Deed:
+class KeptPromise:
     """What the person really does, `delay_s` after the promise on the run's clock."""
 
     intervention: Intervention
@@ -46,7 +46,7 @@ def deed(
     scene: Scene,
     others: Sequence[str],
     rng: np.random.Generator,
-) -> Deed | None:
+) -> KeptPromise | None:
     """What comes of a promise; None when nothing does.
 
     `others` are the objects that the person may confuse with the promised one. Raises `ValueError`
@@ -62,17 +62,19 @@ def deed(
         return None
     delay_s = person.delay_s + (person.late_s if late < person.late else 0.0)
     if act is Act.RELEASE and promise.in_the_way is not None:
-        return Deed(Intervention(act=act, object=promise.in_the_way), delay_s)
+        return KeptPromise(Intervention(act=act, object=promise.in_the_way), delay_s)
     if act is Act.RELEASE:
-        return Deed(Intervention(act=act, object=promise.object, place=promise.place), delay_s)
+        return KeptPromise(
+            Intervention(act=act, object=promise.object, place=promise.place), delay_s
+        )
     if act is Act.UNCOVER:
-        return Deed(Intervention(act=act), delay_s)
+        return KeptPromise(Intervention(act=act), delay_s)
     if promise.object is None:
         return None
     handled = promise.object
     if others and wrong_object < person.wrong_object:
         handled = others[int(rng.integers(len(others)))]
     if wrong_place < person.wrong_place and (to := free_pose(handled, scene, rng)) is not None:
-        return Deed(Intervention(act=Act.MOVE, object=handled, to=to), delay_s)
+        return KeptPromise(Intervention(act=Act.MOVE, object=handled, to=to), delay_s)
     place = promise.place if act is Act.PLACE else None
-    return Deed(Intervention(act=act, object=handled, place=place), delay_s)
+    return KeptPromise(Intervention(act=act, object=handled, place=place), delay_s)

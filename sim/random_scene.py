@@ -7,11 +7,12 @@ from typing import Any
 
 import numpy as np
 
+from mend.errors import WrongInputError
 from mend.robots.catalogue import Part
+from mend.sim.random_nesting import random_ordered_nesting
 from mend.sim.random_parts import DrawnSizes, PartLook, draw_look
-from mend.sim.standing_room import Standing, standing
+from mend.sim.standing_room import RestingPart, standing
 from mend.tasks.definition import BehaviorNode, GoalNode
-from mend.tasks.random_task import random_ordered_nesting
 from mend.tasks.scene import Place, Pose, Scene, Table
 from mend.tasks.scene_problem import SceneProblem
 
@@ -43,10 +44,6 @@ _SCENES_TRIED = 40
 _REPAIRS = 12
 
 
-class NoRoomError(ValueError):
-    """No scene was found with room for so many parts; raised by `random_scene`."""
-
-
 @dataclass(frozen=True, slots=True)
 class RandomTask:
     """A scene, and the document of a task tree in the nested form that places all its parts."""
@@ -61,7 +58,7 @@ class _Site:
 
     pose: Pose
     on: str | None
-    room: Standing
+    room: RestingPart
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +76,7 @@ def random_scene(
 ) -> RandomTask:
     """A scene with so many parts, else with 1 to `MOST_PARTS`; the same for the same arguments.
 
-    What `check` finds wrong is drawn anew. Raises `NoRoomError`.
+    What `check` finds wrong is drawn anew. Raises `WrongInputError`.
     """
     if parts is not None and not 1 <= parts <= MOST_PARTS:
         raise ValueError(f"a random scene has 1 to {MOST_PARTS} parts, not {parts}")
@@ -90,7 +87,7 @@ def random_scene(
         drawing = _Drawing(rng, sizes or DrawnSizes(), smallness)
         if drawing.fill(count) and _repair(drawing, seed, count, check):
             return RandomTask(drawing.scene(seed), drawing.tree(seed))
-    raise NoRoomError(f"no scene was found with room for {parts} parts: ask for fewer")
+    raise WrongInputError(f"no scene was found with room for {parts} parts: ask for fewer")
 
 
 def _repair(drawing: "_Drawing", seed: int, count: int, check: SceneCheck | None) -> bool:
@@ -301,7 +298,7 @@ class _Drawing:
         """Half of all parts stand straight, the others as they like."""
         return 0.0 if self._rng.random() < 0.5 else float(self._rng.uniform(-math.pi, math.pi))
 
-    def _room(self, look: PartLook, pose: Pose) -> Standing:
+    def _room(self, look: PartLook, pose: Pose) -> RestingPart:
         bottom = self._table.height if pose.z is None else pose.z
         return standing(Part("part", look.size, look.knob), pose.x, pose.y, bottom, pose.yaw)
 

@@ -27,7 +27,7 @@ from mend.robots.link.messages import (
 )
 from mend.robots.robot import Robot
 from mend.robots.task_progress import TaskProgress
-from mend.sim.interventions import HELPER, Deed, PendingInterventions, PendingSnapshot
+from mend.sim.interventions import HELPER, PendingInterventions, PendingSnapshot, PersonAction
 from mend.sim.world import ShownWorld, World
 from mend.tasks.intervention import Act, Intervention
 from mend.tasks.scenario import ScriptedIntervention
@@ -168,7 +168,7 @@ class SimulatedAgent:
 
     def _intervene_when_due(self, command_id: str, command: Intervene) -> None:
         if command.at is None or command.at <= self.time_s():
-            self._intervene(Deed(command.intervention, command.by, command_id))
+            self._intervene(PersonAction(command.intervention, command.by, command_id))
         else:
             self._pending.queue(command_id, command, command.at)
 
@@ -230,7 +230,7 @@ class SimulatedAgent:
         for deed in self._pending.take_due(self.time_s(), progress):
             self._intervene(deed)
 
-    def _intervene(self, deed: Deed) -> None:
+    def _intervene(self, deed: PersonAction) -> None:
         if deed.by == HELPER and deed.do.act in _PUT_DOWN:
             # What somebody stands in front of would be put down in vain: the robot is to see it.
             step_aside = Intervention(act=Act.RELEASE)

@@ -44,13 +44,13 @@ class Solid:
 
 
 @dataclass(frozen=True, slots=True)
-class Standing:
+class RestingPart:
     """A part at rest: what it fills, and what the gripper fills that grasps or has placed it."""
 
     body: Solid
     gripper: Sequence[Solid]
 
-    def hinders(self, other: "Standing") -> bool:
+    def hinders(self, other: "RestingPart") -> bool:
         """Whether the two parts, or either and the gripper at the other, have no room."""
         return (
             self.body.meets(other.body)
@@ -59,12 +59,12 @@ class Standing:
         )
 
 
-def standing(part: Part, x: float, y: float, bottom_z: float, yaw: float) -> Standing:
+def standing(part: Part, x: float, y: float, bottom_z: float, yaw: float) -> RestingPart:
     """A part that stands with its bottom centre at (x, y, bottom_z), base frame."""
     # The one that needs the least room; the others are there where they have room as well.
     grasp = max(grasps_of(part, PR2_GRIPPER), key=lambda each: (each.height_m, -each.opening_m))
     tool_z = bottom_z + grasp.height_m
-    return Standing(
+    return RestingPart(
         Solid(Footprint(x, y, yaw, part.size[0], part.size[1]), bottom_z, bottom_z + part.height),
         [
             Solid(Footprint(x, y, yaw + grasp.yaw, length_m, width_m), tool_z + bottom_m)

@@ -6,6 +6,7 @@ from typing import Any, Protocol, runtime_checkable
 
 from pydantic import BaseModel
 
+from mend.errors import UnavailableError
 from mend.robots.agent import AgentCore
 from mend.robots.body import Body
 from mend.robots.link.messages import ShownObject, ShownPose
@@ -78,7 +79,7 @@ class ShownWorld(Protocol):
         ...
 
 
-class WorldUnavailableError(Exception):
+class WorldUnavailableError(UnavailableError):
     """A world cannot run on this machine; the message says what to install."""
 
 
@@ -140,7 +141,7 @@ class ColorTeacher(Protocol):
     def train_colors(self, scene: Scene) -> ColorModel:
         """Learn the colours of a scene's objects from rendered pictures of them.
 
-        Raises `ColorModelError` for an object without a colour of its own, and
+        Raises `WrongInputError` for an object without a colour of its own, and
         `WorldUnavailableError`.
         """
         ...

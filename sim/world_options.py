@@ -5,18 +5,15 @@ from typing import Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
+from mend.errors import WrongInputError
 from mend.tasks.problem import list_names
 from mend.tasks.validation import describe_mistake
 
 Options = TypeVar("Options", bound=BaseModel)
 
 
-class WorldOptionError(ValueError):
-    """A world has no such option, or it cannot have that value; the message says what would do."""
-
-
 def read_options(model: type[Options], world: str, given: Mapping[str, Any]) -> Options:
-    """The options of a world, as its adapter's model has them; raises `WorldOptionError`."""
+    """The options of a world, as its adapter's model has them; raises `WrongInputError`."""
     try:
         return model.model_validate(dict(given))
     except ValidationError as error:
@@ -29,4 +26,4 @@ def read_options(model: type[Options], world: str, given: Mapping[str, Any]) -> 
         said = f"the world '{world}' has no option '{name}'; it has {known}"
     else:
         said = f"the world '{world}' has no options, but '{name}' is given"
-    raise WorldOptionError(said)
+    raise WrongInputError(said)

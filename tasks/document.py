@@ -9,6 +9,7 @@ from typing import Any
 
 import yaml
 
+from mend.errors import WrongInputError
 from mend.tasks.problem import Problem
 
 MAX_BYTES = 32 * 1024 * 1024
@@ -33,7 +34,7 @@ _SURROGATES = re.compile(r"(\\\\)|\\u([dD][89abAB][0-9a-fA-F]{2})\\u([dD][c-fC-F
 _LOADER: type[Any] = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
 
-class DocumentError(Exception):
+class DocumentError(WrongInputError):
     """A text cannot be read at all; raised by `read_document` and `read_text`."""
 
     def __init__(self, line: int | None, message: str, column: int | None = None) -> None:

@@ -3,13 +3,14 @@
 from dataclasses import dataclass
 from importlib.resources import files
 
+from mend.errors import NotFoundError
 from mend.tasks.problem import list_names
 
 MOST_SHOWN = 64
 """Characters of an unknown name in a sentence; no name that there is has more."""
 
 
-class NotInLibraryError(LookupError):
+class NotInLibraryError(NotFoundError):
     """The library has nothing of that name; raised by `Shelf.read`."""
 
 

@@ -5,8 +5,10 @@ from importlib.metadata import entry_points
 from types import MappingProxyType
 from typing import Any
 
+from mend.errors import UnavailableError
 
-class PluginError(Exception):
+
+class PluginError(UnavailableError):
     """A package's entry point cannot be used; the message says which and why."""
 
 

@@ -3,6 +3,8 @@
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
+from mend.errors import WrongInputError
+
 _MAX_TOLD = 50
 _MAX_LISTED = 12
 _MOST_CHARS = 1000
@@ -29,7 +31,7 @@ class Problem:
         return f"{place}: {node}{self.message[:_MOST_CHARS]}{cut}"
 
 
-class InvalidFileError(Exception):
+class InvalidFileError(WrongInputError):
     """A file has mistakes; `problems` holds every one of them, in the order of their lines."""
 
     def __init__(self, source: str, problems: Iterable[Problem]) -> None:

@@ -16,10 +16,6 @@ from mend.tasks.scene import Scene
 from mend.tasks.validation import find_line, show_kind, validate_part
 
 
-class ScenarioFileError(InvalidFileError):
-    """A scenario file has mistakes; raised by every function that reads one."""
-
-
 @dataclass(frozen=True, slots=True)
 class Misfit:
     """What a scenario expects of its tree or scene and does not get.
@@ -43,15 +39,10 @@ class ReadScenario:
         return Problem(find_line(self.document, misfit.where), None, misfit.message)
 
 
-def check_scenario_file(path: Path) -> Scenario:
-    """Read and check a scenario file (YAML or JSON). Raises `ScenarioFileError`."""
-    return read_scenario_file(path).scenario
-
-
 def check_scenario_text(text: str, *, source: str = "scenario") -> Scenario:
     """Check the text of a scenario file; `source` names it in errors.
 
-    Raises `ScenarioFileError`.
+    Raises `InvalidFileError`.
     """
     return read_scenario_text(text, source=source).scenario
 
@@ -59,28 +50,28 @@ def check_scenario_text(text: str, *, source: str = "scenario") -> Scenario:
 def read_scenario_file(path: Path) -> ReadScenario:
     """Read and check a scenario file, and keep the line of everything.
 
-    Raises `ScenarioFileError`.
+    Raises `InvalidFileError`.
     """
     try:
         text = read_text(path)
     except DocumentError as error:
-        raise ScenarioFileError(str(path), [error.problem]) from error
+        raise InvalidFileError(str(path), [error.problem]) from error
     return read_scenario_text(text, source=str(path))
 
 
 def read_scenario_text(text: str, *, source: str = "scenario") -> ReadScenario:
-    """As `read_scenario_file`, for the text of one. Raises `ScenarioFileError`."""
+    """As `read_scenario_file`, for the text of one. Raises `InvalidFileError`."""
     try:
         document, problems = read_document(text)
     except DocumentError as error:
-        raise ScenarioFileError(source, [error.problem]) from error
+        raise InvalidFileError(source, [error.problem]) from error
     if not isinstance(document, LinedMapping):
         message = f"a scenario file is a mapping, but this is {show_kind(document)}"
-        raise ScenarioFileError(source, [*problems, Problem(1, None, message)])
+        raise InvalidFileError(source, [*problems, Problem(1, None, message)])
     scenario, mistakes = validate_part(Scenario, document)
     problems += mistakes
     if scenario is None or problems:
-        raise ScenarioFileError(source, problems)
+        raise InvalidFileError(source, problems)
     return ReadScenario(scenario, document)
 
 

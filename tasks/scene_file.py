@@ -13,10 +13,6 @@ from mend.tasks.scene import Scene
 from mend.tasks.validation import find_line, show_kind, validate_part
 
 
-class SceneFileError(InvalidFileError):
-    """A scene file has mistakes; raised by every function that reads one."""
-
-
 @dataclass(frozen=True, slots=True)
 class ReadScene:
     """A scene, and the document that it was read from, several poses as several entries."""
@@ -30,38 +26,38 @@ class ReadScene:
 
 
 def check_scene_file(path: Path) -> Scene:
-    """Read and check a scene file (YAML or JSON). Raises `SceneFileError`."""
+    """Read and check a scene file (YAML or JSON). Raises `InvalidFileError`."""
     return read_scene_file(path).scene
 
 
 def check_scene_text(text: str, *, source: str = "scene") -> Scene:
-    """Check the text of a scene file; `source` names it in errors. Raises `SceneFileError`."""
+    """Check the text of a scene file; `source` names it in errors. Raises `InvalidFileError`."""
     return read_scene_text(text, source=source).scene
 
 
 def read_scene_file(path: Path) -> ReadScene:
-    """Read and check a scene file, and keep the line of everything. Raises `SceneFileError`."""
+    """Read and check a scene file, and keep the line of everything. Raises `InvalidFileError`."""
     try:
         text = read_text(path)
     except DocumentError as error:
-        raise SceneFileError(str(path), [error.problem]) from error
+        raise InvalidFileError(str(path), [error.problem]) from error
     return read_scene_text(text, source=str(path))
 
 
 def read_scene_text(text: str, *, source: str = "scene") -> ReadScene:
-    """As `read_scene_file`, for the text of one. Raises `SceneFileError`."""
+    """As `read_scene_file`, for the text of one. Raises `InvalidFileError`."""
     try:
         document, problems = read_document(text)
     except DocumentError as error:
-        raise SceneFileError(source, [error.problem]) from error
+        raise InvalidFileError(source, [error.problem]) from error
     if not isinstance(document, LinedMapping):
         message = f"a scene file is a mapping, but this is {show_kind(document)}"
-        raise SceneFileError(source, [*problems, Problem(1, None, message)])
+        raise InvalidFileError(source, [*problems, Problem(1, None, message)])
     problems += expand_rows(document)
     scene, mistakes = validate_part(Scene, document)
     problems += mistakes
     if scene is None or problems:
-        raise SceneFileError(source, problems)
+        raise InvalidFileError(source, problems)
     return ReadScene(scene, document)
 
 

@@ -14,18 +14,14 @@ from mend.tasks.library import TREES, NotInLibraryError
 from mend.tasks.nested_form import draft_nested_tree
 from mend.tasks.problem import InvalidFileError, Problem
 from mend.tasks.scene import Scene
-from mend.tasks.scene_file import SceneFileError, built_in_scene, check_scene_file
+from mend.tasks.scene_file import built_in_scene, check_scene_file
 from mend.tasks.tree_problems import find_tree_problems
 from mend.tasks.validation import find_extra_keys, show_kind
 
 FindScene = Callable[[str], Scene]
-"""Finds a scene by name; raises `NotInLibraryError` or `SceneFileError`."""
+"""Finds a scene by name; raises `NotInLibraryError` or `InvalidFileError`."""
 
 _HEAD_KEYS = ("name", "description", "scene")
-
-
-class TaskFileError(InvalidFileError):
-    """A task file has mistakes; raised by every function that reads one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +39,7 @@ def check_task_file(
     find_scene: FindScene | None = None,
     scene: Scene | None = None,
 ) -> CheckedTask:
-    """Read and check a task file (YAML or JSON). Raises `TaskFileError`.
+    """Read and check a task file (YAML or JSON). Raises `InvalidFileError`.
 
     Its scene is looked for in `scenes/` beside the file, then in the library, unless `find_scene`
     is given, or `scene`, which is taken instead of it.
@@ -51,7 +47,7 @@ def check_task_file(
     try:
         text = read_text(path)
     except DocumentError as error:
-        raise TaskFileError(str(path), [error.problem]) from error
+        raise InvalidFileError(str(path), [error.problem]) from error
 
     def find_beside(name: str) -> Scene:
         beside = path.parent / "scenes" / f"{name}.yaml"
@@ -86,7 +82,7 @@ def check_task_text(
     default_name: str = "task",
     scene: Scene | None = None,
 ) -> CheckedTask:
-    """Check the text of a task file; `source` names it in errors. Raises `TaskFileError`.
+    """Check the text of a task file; `source` names it in errors. Raises `InvalidFileError`.
 
     `default_name` is the name of a flat file, which need not have one of its own. `scene` is taken
     instead of the one that the file names.
@@ -94,10 +90,10 @@ def check_task_text(
     try:
         document, problems = read_document(text)
     except DocumentError as error:
-        raise TaskFileError(source, [error.problem]) from error
+        raise InvalidFileError(source, [error.problem]) from error
     if not isinstance(document, LinedMapping):
         message = f"a task file is a mapping, but this is {show_kind(document)}"
-        raise TaskFileError(source, [*problems, Problem(1, None, message)])
+        raise InvalidFileError(source, [*problems, Problem(1, None, message)])
     is_flat = any(key in document for key in FLAT_KEYS)
     if is_flat and "name" not in document and find_name_mistake(default_name) is None:
         document["name"] = default_name
@@ -106,7 +102,7 @@ def check_task_text(
     draft = _draft_tree(document, is_flat, problems)
     nodes = _check_nodes(draft, behaviors, scene)
     if draft.problems:
-        raise TaskFileError(source, draft.problems)
+        raise InvalidFileError(source, draft.problems)
     lines = [each.source.line for each in draft.nodes]
     return CheckedTask(TaskTreeDefinition(nodes=nodes, **head), scene, lines)
 
@@ -136,7 +132,7 @@ def _find_scene(
         return find_scene(name)
     except NotInLibraryError as error:
         message = str(error)
-    except SceneFileError as error:
+    except InvalidFileError as error:
         first = error.problems[0].describe(error.source)
         message = f"the scene '{name}' has mistakes, the first one: {first}"
     problems.append(Problem(document.line_of("scene"), None, message))

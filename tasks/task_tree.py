@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from mend.errors import IllegalTransitionError
 from mend.tasks.activation import FullEvaluation, level_of
 from mend.tasks.choice import choose_leaf
 from mend.tasks.definition import BehaviorNode, NodeKind, TaskTreeDefinition
@@ -16,16 +17,6 @@ from mend.tasks.resolution import Resolution
 from mend.tasks.taking_back import TakeBack, find_begun_after, find_take_back
 from mend.tasks.tree_shape import NO_NODE
 from mend.tasks.tree_state import LeafStatus, TreeState
-
-
-class IllegalTransitionError(Exception):
-    """A node cannot do what was asked of it in the state that it is in."""
-
-    def __init__(self, node: str, transition: str, expected: str, came: str) -> None:
-        super().__init__(f"cannot {transition} {node}: it must be {expected}, but it is {came}")
-        self.node = node
-        self.expected = expected
-        self.came = came
 
 
 class TaskTree:
@@ -70,7 +61,7 @@ class TaskTree:
         return self._shape.leaves
 
     def index_of(self, path: str) -> int:
-        """The node at a path (`/0/2/1`). Raises `UnknownNodeError` if there is none."""
+        """The node at a path (`/0/2/1`). Raises `NotFoundError` if there is none."""
         return self._shape.index_of(path)
 
     def path_of(self, node: int) -> str:
@@ -82,9 +73,6 @@ class TaskTree:
 
     def name_of(self, node: int) -> str:
         return self.nodes.names[node]
-
-    def children_of(self, node: int) -> Sequence[int]:
-        return self._shape.children[node]
 
     def parent_of(self, node: int) -> int | None:
         parent = self._shape.parents[node]
@@ -253,9 +241,9 @@ class TaskTree:
         """
         self._require_done(leaf, "take back")
         if after := find_begun_after(self._shape, self._state, leaf):
-            expected = "followed by nothing active or done"
-            came = f"followed by {', '.join(self._describe(each) for each in after)}"
-            raise IllegalTransitionError(self._describe(leaf), "take back", expected, came)
+            state = f"followed by {', '.join(self._describe(each) for each in after)}"
+            expected = "it to be followed by nothing active or done"
+            raise IllegalTransitionError(self._describe(leaf), state, "'take back'", expected)
         self._eligible.note_change(self._state.take_back(leaf))
 
     def abandon(self, alternative: int) -> None:
@@ -300,8 +288,9 @@ class TaskTree:
             raise self._illegal(leaf, transition, "done")
 
     def _illegal(self, node: int, transition: str, expected: str) -> IllegalTransitionError:
+        state = self._describe_state(node)
         return IllegalTransitionError(
-            self._describe(node), transition, expected, self._describe_state(node)
+            self._describe(node), state, f"'{transition}'", f"it to be {expected}"
         )
 
     def _describe(self, node: int) -> str:

@@ -7,6 +7,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from mend.errors import NotFoundError
 from mend.tasks.definition import NodeKind
 
 NO_NODE = -1
@@ -19,10 +20,6 @@ _CODES = {
     NodeKind.OR: OR_CODE,
     NodeKind.BEHAVIOR: LEAF_CODE,
 }
-
-
-class UnknownNodeError(LookupError):
-    """A path leads to no node of the tree; raised by `TreeShape.index_of`."""
 
 
 class TreeShape:
@@ -106,19 +103,19 @@ class TreeShape:
         return "/" + "/".join(reversed(steps))
 
     def index_of(self, path: str) -> int:
-        """The node at a path. Raises `UnknownNodeError` if there is none."""
+        """The node at a path. Raises `NotFoundError` if there is none."""
         node = 0
         if path == "/":
             return node
         root, *steps = path.split("/")
         if root or not steps:
-            raise UnknownNodeError(f"'{path}' is not a node path; one looks like /0/2 or /")
+            raise NotFoundError(f"'{path}' is not a node path; one looks like /0/2 or /")
         for step in steps:
             siblings = self.children[node]
             if not (step.isascii() and step.isdigit() and str(int(step)) == step):
-                raise UnknownNodeError(f"'{path}' is not a node path: '{step}' is not a number")
+                raise NotFoundError(f"'{path}' is not a node path: '{step}' is not a number")
             if int(step) >= len(siblings):
-                raise UnknownNodeError(
+                raise NotFoundError(
                     f"no node at '{path}': '{self.path_of(node)}' has {len(siblings)} children"
                 )
             node = siblings[int(step)]

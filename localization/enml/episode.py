@@ -10,7 +10,7 @@ from mend.localization.enml.motion_model import Travel
 from mend.localization.enml.parameters import EnmlParameters
 from mend.localization.enml.pose_node import PoseNode
 from mend.localization.enml.prior import prior_on_last
-from mend.localization.enml.problem import Floats, LtfConstraints, Problem
+from mend.localization.enml.problem import Floats, LtfConstraints, PoseGraph
 from mend.localization.points import ScanPoints
 from mend.localization.pose import Poses, compose, relative
 from mend.localization.scan import Scan
@@ -77,13 +77,13 @@ class Episode:
         self.poses = compose(newest, relative(self.poses[-1], self.poses))
         self.prior, self.prior_whitening = self.poses[0].copy(), prior_whitening
 
-    def problem(self, ties: Ties, first: int = 0, last: int | None = None) -> Problem:
+    def problem(self, ties: Ties, first: int = 0, last: int | None = None) -> PoseGraph:
         """The constraints on the poses from `first` to `last` (exclusive; all if None)."""
         nodes = self.nodes[first:last]
         parameters = self._parameters
         width_m = parameters.robust_width_m
         moves = [node.travel for node in nodes[1:]]
-        return Problem(
+        return PoseGraph(
             prior=self.prior,
             prior_whitening=self.prior_whitening,
             odometry=np.array([each.motion for each in moves]).reshape(-1, 3),
@@ -121,7 +121,7 @@ def _ltf_constraints(nodes: list[PoseNode], width_per_gate: float) -> LtfConstra
     )
 
 
-def _without_last_ltf(problem: Problem) -> Problem:
+def _without_last_ltf(problem: PoseGraph) -> PoseGraph:
     ltf = problem.ltf
     start = ltf.start.copy()
     start[-1] = start[-2]

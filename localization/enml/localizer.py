@@ -14,7 +14,7 @@ from mend.localization.enml.episode import Episode, Ties
 from mend.localization.enml.episodes import episode_start
 from mend.localization.enml.familiarity import LEAST_RETURNS, Familiarity
 from mend.localization.enml.global_search import Region, same_place
-from mend.localization.enml.lost import Evidence, evidence_of
+from mend.localization.enml.lost import MapFit, evidence_of
 from mend.localization.enml.parameters import EnmlParameters
 from mend.localization.enml.prior import whitening_of
 from mend.localization.enml.problem import Floats
@@ -69,7 +69,7 @@ class EnmlLocalizer:
             self._parameters,
         )
         self._mode = Mode.TRACKING
-        self._evidence = Evidence()
+        self._evidence = MapFit()
         self._familiarity = Familiarity(self._recovery.behind, self._parameters)
         self._may_be_anywhere = False
         self._driven_m = self._next_search_m = 0.0
@@ -92,7 +92,7 @@ class EnmlLocalizer:
         self._driven_m, self._next_search_m = 0.0, self._parameters.recovery_every_m
         self._probation_until_m = 0.0
         self._recovery.forget()
-        self._track(Evidence())
+        self._track(MapFit())
         self._may_be_anywhere = bool(
             covariance[0, 0] + covariance[1, 1] > self._parameters.recovery_near_m**2
         )
@@ -234,7 +234,7 @@ class EnmlLocalizer:
         self._next_search_m = self._driven_m + self._parameters.recovery_every_m
         self._episode.leave_map(np.diag(1.0 / _LOST_STD))
 
-    def _track(self, seen: Evidence) -> None:
+    def _track(self, seen: MapFit) -> None:
         self._mode = Mode.TRACKING
         self._evidence = seen
         self._familiarity.forget()

@@ -6,7 +6,7 @@ import numpy as np
 
 from mend.localization.distance_field import DistanceField
 from mend.localization.enml.episode import Episode
-from mend.localization.enml.lost import Evidence, evidence
+from mend.localization.enml.lost import MapFit, evidence
 from mend.localization.enml.pose_node import PoseNode
 from mend.localization.enml.problem import Floats
 from mend.localization.enml.visible import Visible
@@ -23,7 +23,7 @@ _ROUGHLY_BEHIND_COUNTS = 2.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Look:
+class ScanLook:
     """Some beams of one scan: sensor's pose, points and normals in the frame of the newest pose."""
 
     sensor: Poses
@@ -38,11 +38,11 @@ class Look:
 class Weight:
     """What speaks for a place, and how sharply what is on the map fits it (returns)."""
 
-    evidence: Evidence
+    evidence: MapFit
     sharp: float
 
 
-def looks_of(episode: Episode, scans: int, most_beams: int = _MOST_BEAMS) -> list[Look]:
+def looks_of(episode: Episode, scans: int, most_beams: int = _MOST_BEAMS) -> list[ScanLook]:
     """So many scans, spread over an episode, the newest among them; of each so many beams."""
     newest = episode.poses[-1]
     return [
@@ -51,10 +51,10 @@ def looks_of(episode: Episode, scans: int, most_beams: int = _MOST_BEAMS) -> lis
     ]
 
 
-def look_of(node: PoseNode, pose: Poses, most_beams: int = _MOST_BEAMS) -> Look:
+def look_of(node: PoseNode, pose: Poses, most_beams: int = _MOST_BEAMS) -> ScanLook:
     """So many beams of a scan, from its pose in the frame of the newest pose."""
     some = slice(None, None, max(-(-len(node.bearings) // most_beams), 1))
-    return Look(
+    return ScanLook(
         compose(pose, node.sensor_offset),
         transform(pose, node.scan_points.points[some]),
         turn(float(pose[2]), node.scan_points.normals[some]),
@@ -64,9 +64,9 @@ def look_of(node: PoseNode, pose: Poses, most_beams: int = _MOST_BEAMS) -> Look:
     )
 
 
-def weigh(visible: Visible, field: DistanceField, looks: list[Look], place: Poses) -> Weight:
+def weigh(visible: Visible, field: DistanceField, looks: list[ScanLook], place: Poses) -> Weight:
     """What the looks say about the newest pose being at a place."""
-    total, sharp = Evidence(), 0.0
+    total, sharp = MapFit(), 0.0
     for look in looks:
         sensor = compose(place, look.sensor)
         expected_m = visible.cast(sensor, look.bearings, look.reach_m)
@@ -78,7 +78,7 @@ def weigh(visible: Visible, field: DistanceField, looks: list[Look], place: Pose
     return Weight(total, sharp)
 
 
-def glance(visible: Visible, look: Look, place: Poses) -> float:
+def glance(visible: Visible, look: ScanLook, place: Poses) -> float:
     """At most 1: how well a look fits a place that may be off by some decimetres."""
     if not len(look.ranges_m):
         return 0.0

@@ -21,7 +21,7 @@ mapped: it hardly speaks against a pose."""
 
 
 @dataclass(frozen=True, slots=True)
-class Evidence:
+class MapFit:
     """How many returns lie on what the map shows, behind it, and before it or where it is empty.
 
     A return from behind a wall of the map is what a right pose never has, unless the wall is gone.
@@ -52,24 +52,24 @@ class Evidence:
         total = against + self.on_map
         return against / total if total > 0.0 else 1.0
 
-    def faded(self, share: float, newer: "Evidence") -> "Evidence":
+    def faded(self, share: float, newer: "MapFit") -> "MapFit":
         """This evidence at a share of its weight, and newer evidence at its full weight."""
-        return Evidence(
+        return MapFit(
             share * self.on_map + newer.on_map,
             share * self.behind + newer.behind,
             share * self.before + newer.before,
         )
 
 
-def evidence(measured_m: Floats, expected_m: Floats, is_ltf: NDArray[np.bool_]) -> Evidence:
+def evidence(measured_m: Floats, expected_m: Floats, is_ltf: NDArray[np.bool_]) -> MapFit:
     """Weigh the returns of one scan against what the map foretells along the same bearings."""
     on_map = is_ltf | (np.abs(measured_m - expected_m) < _AT_WALL_M)
     behind = ~on_map & (measured_m > expected_m + _BEHIND_WALL_M)
-    return Evidence(
+    return MapFit(
         float(on_map.sum()), float(behind.sum()), float(len(on_map) - on_map.sum() - behind.sum())
     )
 
 
-def evidence_of(node: PoseNode) -> Evidence:
+def evidence_of(node: PoseNode) -> MapFit:
     """The evidence of a pose of the episode, at the pose where it was classified."""
     return evidence(node.ranges_m, node.expected_m, node.is_ltf)

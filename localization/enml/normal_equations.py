@@ -9,11 +9,11 @@ import math
 
 import numpy as np
 
-from mend.localization.enml.problem import Floats, Indices, Problem
+from mend.localization.enml.problem import Floats, Indices, PoseGraph
 from mend.maps.compiled import compiled
 
 
-def linearize(problem: Problem, poses: Floats) -> tuple[float, Floats, Floats]:
+def linearize(problem: PoseGraph, poses: Floats) -> tuple[float, Floats, Floats]:
     """The cost at some poses (n, 3), its gradient (3n) and its Gauss-Newton matrix (3n, 3n)."""
     size = 3 * len(poses)
     gradient = np.zeros(size)

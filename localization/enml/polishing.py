@@ -5,7 +5,7 @@ from math import cos
 import numpy as np
 
 from mend.localization.enml.classification import cast_around, match_lines
-from mend.localization.enml.looks import Look
+from mend.localization.enml.looks import ScanLook
 from mend.localization.enml.parameters import EnmlParameters
 from mend.localization.enml.problem import Floats
 from mend.localization.enml.visible import Visible
@@ -21,7 +21,7 @@ _STIFFNESS = 1.0
 
 def polish(
     visible: Visible,
-    looks: list[Look],
+    looks: list[ScanLook],
     place: Poses,
     parameters: EnmlParameters,
     gates_m: tuple[float, ...] = GATES_M,

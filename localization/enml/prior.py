@@ -4,10 +4,10 @@ import numpy as np
 from scipy.linalg import LinAlgError, cholesky
 
 from mend.localization.enml.normal_equations import linearize
-from mend.localization.enml.problem import Floats, Problem
+from mend.localization.enml.problem import Floats, PoseGraph
 
 
-def prior_on_last(problem: Problem, poses: Floats) -> tuple[Floats, Floats]:
+def prior_on_last(problem: PoseGraph, poses: Floats) -> tuple[Floats, Floats]:
     """Mean (3,) and whitening (3, 3) that the problem leaves on its last pose.
 
     The other poses are marginalized at `poses`, where the whole episode was optimal.

@@ -52,7 +52,7 @@ class StfConstraints:
 
 
 @dataclass(frozen=True, slots=True)
-class Problem:
+class PoseGraph:
     """All constraints on n poses.
 
     `odometry[i]` is the measured motion from pose i to pose i + 1 in the frame of pose i, and

@@ -8,8 +8,8 @@ import numpy as np
 from mend.localization.distance_field import DistanceField
 from mend.localization.enml.episode import Episode
 from mend.localization.enml.global_search import GlobalSearch, Region, distinct, same_place
-from mend.localization.enml.looks import Look, Weight, glance, look_of, looks_of, weigh
-from mend.localization.enml.lost import Evidence
+from mend.localization.enml.looks import ScanLook, Weight, glance, look_of, looks_of, weigh
+from mend.localization.enml.lost import MapFit
 from mend.localization.enml.parameters import EnmlParameters
 from mend.localization.enml.polishing import polish
 from mend.localization.enml.pose_node import PoseNode
@@ -52,7 +52,7 @@ class Found:
     weight: Weight
 
     @property
-    def evidence(self) -> Evidence:
+    def evidence(self) -> MapFit:
         """What the map says about what is seen from there."""
         return self.weight.evidence
 
@@ -180,7 +180,7 @@ class Recovery:
         ]
         return max([found, *self._found(around, looks)], key=lambda each: each.score)
 
-    def _found(self, places: list[Poses], looks: list[Look]) -> list[Found]:
+    def _found(self, places: list[Poses], looks: list[ScanLook]) -> list[Found]:
         return [Found(place, weigh(self._visible, self._field, looks, place)) for place in places]
 
     def _clear_winner(

@@ -7,9 +7,9 @@ import numpy as np
 from scipy.linalg import LinAlgError, cho_factor, cho_solve
 
 from mend.localization.enml.normal_equations import linearize
-from mend.localization.enml.problem import Floats, Problem
+from mend.localization.enml.problem import Floats, PoseGraph
 
-Linearize = Callable[[Problem, Floats], tuple[float, Floats, Floats]]
+Linearize = Callable[[PoseGraph, Floats], tuple[float, Floats, Floats]]
 
 _FIRST_DAMPING = 1e-4
 _LEAST_DAMPING = 1e-9
@@ -44,7 +44,7 @@ class Solution:
 
 
 def solve(
-    problem: Problem,
+    problem: PoseGraph,
     poses: Floats,
     iterations: int,
     linearize: Linearize = linearize,

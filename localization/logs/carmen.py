@@ -11,7 +11,8 @@ from pathlib import Path
 
 import numpy as np
 
-from mend.localization.logs.log import Log, LogError, LogStep, with_equal_beams
+from mend.errors import WrongInputError
+from mend.localization.logs.log import Log, LogStep, with_equal_beams
 from mend.localization.logs.no_return import no_return_range
 from mend.localization.logs.text_lines import numbered_lines
 from mend.localization.pose import Poses, relative
@@ -38,7 +39,7 @@ class _Sweep:
 
 
 @dataclass(slots=True)
-class _Content:
+class _CarmenContent:
     sweeps: list[_Sweep] = field(default_factory=list)
     odometry: Poses | None = None
     corrected: bool = False
@@ -46,13 +47,13 @@ class _Content:
 
 
 def read_carmen(path: Path, *, corrected: bool | None = None) -> Log:
-    """The log of a file, `.gz` or not. Raises `LogError`, or `OSError`.
+    """The log of a file, `.gz` or not. Raises `WrongInputError`, or `OSError`.
 
     `corrected` says whether the poses of the scans are references rather than odometry; None
     decides it by what mapping programs leave behind (NEFF lines, or a laser pose that wanders
     against the robot's odometry). Lines that are cut off or hold no numbers are skipped.
     """
-    content = _Content()
+    content = _CarmenContent()
     for _, line in numbered_lines(path):
         fields = line.split()
         if not fields:
@@ -62,13 +63,13 @@ def read_carmen(path: Path, *, corrected: bool | None = None) -> Log:
         except (ValueError, IndexError):
             content.skipped += 1
     if not content.sweeps:
-        raise LogError(f"{path}: there is no scan (FLASER or ROBOTLASER1) in it")
+        raise WrongInputError(f"{path}: there is no scan (FLASER or ROBOTLASER1) in it")
     if corrected is None:
         corrected = content.corrected or _wanders(content.sweeps)
     return _log(path, content, corrected)
 
 
-def _take(fields: list[str], content: _Content) -> None:
+def _take(fields: list[str], content: _CarmenContent) -> None:
     match fields[0]:
         case "ODOM":
             content.odometry = _pose(fields[1:4])
@@ -96,7 +97,7 @@ def _take(fields: list[str], content: _Content) -> None:
 
 
 def _add(
-    content: _Content, ranges: list[str], angle_min: float, increment: float, tail: list[str]
+    content: _CarmenContent, ranges: list[str], angle_min: float, increment: float, tail: list[str]
 ) -> None:
     time_s = float(tail[6])
     if not isfinite(time_s):
@@ -134,7 +135,7 @@ def _wanders(sweeps: list[_Sweep]) -> bool:
     return bool((np.abs(mounts - mounts[0])[:, :2] > 0.01).any())
 
 
-def _log(path: Path, content: _Content, corrected: bool) -> Log:
+def _log(path: Path, content: _CarmenContent, corrected: bool) -> Log:
     sweeps = content.sweeps
     no_return = no_return_range(each.ranges for each in sweeps)
     steps: list[LogStep] = []
@@ -161,7 +162,7 @@ def _log(path: Path, content: _Content, corrected: bool) -> Log:
         steps.append(LogStep(motion, scan, sweep.laser if corrected else None))
         previous = sweep
     if not steps:
-        raise LogError(f"{path}: none of its {len(sweeps)} scans can be used")
+        raise WrongInputError(f"{path}: none of its {len(sweeps)} scans can be used")
     kept = with_equal_beams(steps)
     return Log(path.name.split(".")[0], kept, skipped + len(steps) - len(kept))
 

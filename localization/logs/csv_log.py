@@ -14,9 +14,10 @@ from pathlib import Path
 
 import numpy as np
 
-from mend.localization.logs.log import Log, LogError, LogStep
+from mend.errors import WrongInputError
+from mend.localization.logs.log import Log, LogStep
 from mend.localization.logs.text_lines import numbered_lines
-from mend.localization.pose import Poses, compose, relative
+from mend.localization.pose import Poses, relative
 from mend.localization.scan import InvalidScanError, Scan
 
 _ODOMETRY = ("odom_x", "odom_y", "odom_theta")
@@ -27,7 +28,7 @@ _MAX_TOLD = 10
 
 
 @dataclass(slots=True)
-class _Content:
+class _CsvContent:
     laser: dict[str, float] = field(default_factory=dict)
     names: list[str] | None = None
     rows: list[tuple[int, list[str]]] = field(default_factory=list)
@@ -35,24 +36,26 @@ class _Content:
 
 
 def read_csv(path: Path) -> Log:
-    """The log of a file, `.gz` or not. Raises `LogError` with line numbers, or `OSError`."""
-    content = _Content()
+    """The log of a file, `.gz` or not. Raises `WrongInputError` with line numbers, or `OSError`."""
+    content = _CsvContent()
     for number, line in numbered_lines(path):
         _take(number, line.lstrip("\ufeff"), content, path)
     names = content.names
     missing = [name for name in _LASER if name not in content.laser]
     missing += [name for name in ("time_s", *_ODOMETRY) if names is None or name not in names]
     if missing or names is None:
-        raise LogError("\n".join([*content.mistakes, f"{path}: {', '.join(missing)} missing"]))
+        raise WrongInputError(
+            "\n".join([*content.mistakes, f"{path}: {', '.join(missing)} missing"])
+        )
     steps = _steps(content, names, path)
     if content.mistakes:
-        raise LogError("\n".join(content.mistakes[:_MAX_TOLD]))
+        raise WrongInputError("\n".join(content.mistakes[:_MAX_TOLD]))
     if not steps:
-        raise LogError(f"{path}: there is no scan in it")
+        raise WrongInputError(f"{path}: there is no scan in it")
     return Log(path.name.split(".")[0], tuple(steps))
 
 
-def _take(number: int, line: str, content: _Content, path: Path) -> None:
+def _take(number: int, line: str, content: _CsvContent, path: Path) -> None:
     if not line:
         return
     if line.startswith("#"):
@@ -70,7 +73,7 @@ def _take(number: int, line: str, content: _Content, path: Path) -> None:
         content.rows.append((number, fields))
 
 
-def _steps(content: _Content, names: list[str], path: Path) -> list[LogStep]:
+def _steps(content: _CsvContent, names: list[str], path: Path) -> list[LogStep]:
     known = {"time_s", *_ODOMETRY, *_REFERENCE}
     beams = [(place, name) for place, name in enumerate(names) if name not in known]
     with_reference = all(name in names for name in _REFERENCE)
@@ -109,31 +112,3 @@ def _number(column: str, text: str) -> float:
         return float(text)
     except ValueError:
         raise ValueError(f"{column} has to be a number, which '{text[:40]}' is not") from None
-
-
-def write_csv(log: Log, path: Path) -> None:
-    """Write a log as CSV; metres with millimetres, radians with tenths of milliradians."""
-    scan = log.steps[0].scan
-    with_reference = all(each.reference is not None for each in log.steps)
-    laser = (scan.angle_min, scan.angle_increment, scan.max_range)
-    names = ["time_s", *_ODOMETRY, *(_REFERENCE if with_reference else ())]
-    names += [f"r{beam}" for beam in range(len(scan.ranges))]
-    with path.open("w", encoding="utf-8", newline="") as file:
-        for name, value in zip(_LASER, laser, strict=True):
-            file.write(f"# {name}={value:.9g}\n")
-        if scan.sensor_offset.any():
-            for name, value in zip(_SENSOR, scan.sensor_offset, strict=True):
-                file.write(f"# {name}={value:.9g}\n")
-        rows = csv.writer(file, lineterminator="\n")
-        rows.writerow(names)
-        odometry = np.zeros(3)
-        for step in log.steps:
-            odometry = compose(odometry, step.odometry)
-            poses = [odometry] if step.reference is None else [odometry, step.reference]
-            rows.writerow(
-                [
-                    f"{step.scan.time_s:.3f}",
-                    *(f"{value:.4f}" for pose in poses for value in pose),
-                    *(f"{value:.3f}" if np.isfinite(value) else "" for value in step.scan.ranges),
-                ]
-            )

@@ -10,10 +10,6 @@ from mend.localization.pose import Poses, compose
 from mend.localization.scan import Scan
 
 
-class LogError(Exception):
-    """A log that cannot be read; the message is one sentence per line."""
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class LogStep:
     """One scan, the motion since the last (robot's frame), and the reference pose (map's frame)."""

@@ -3,9 +3,10 @@
 from collections.abc import Callable
 from pathlib import Path
 
+from mend.errors import WrongInputError
 from mend.localization.logs.carmen import read_carmen
 from mend.localization.logs.csv_log import read_csv
-from mend.localization.logs.log import Log, LogError
+from mend.localization.logs.log import Log
 from mend.localization.logs.text_lines import numbered_lines
 from mend.localization.logs.wean import read_wean
 
@@ -19,7 +20,7 @@ _CARMEN = ("FLASER", "RLASER", "ROBOTLASER1", "ODOM", "PARAM", "NEFF", "SYNC", "
 
 
 def read_log(path: Path) -> Log:
-    """The log of a file. Raises `LogError`, or `OSError`."""
+    """The log of a file. Raises `WrongInputError`, or `OSError`."""
     return FORMATS[_format_of(path)](path)
 
 
@@ -34,7 +35,7 @@ def _format_of(path: Path) -> str:
             return "csv"
         if number >= _LINES_LOOKED_AT:
             break
-    raise LogError(
+    raise WrongInputError(
         f"{path}: neither a CARMEN log (FLASER, ODOM lines), nor a Wean Hall log (L, O lines), "
         "nor CSV whose first column is time_s"
     )

@@ -5,13 +5,13 @@ import zlib
 from collections.abc import Iterator
 from pathlib import Path
 
-from mend.localization.logs.log import LogError
+from mend.errors import WrongInputError
 
 _GZIP = b"\x1f\x8b"
 
 
 def numbered_lines(path: Path) -> Iterator[tuple[int, str]]:
-    """Lines counted from 1, without their ends. Raises `LogError`, or `OSError`."""
+    """Lines counted from 1, without their ends. Raises `WrongInputError`, or `OSError`."""
     with path.open("rb") as file:
         compressed = file.read(2) == _GZIP
     with (
@@ -23,4 +23,4 @@ def numbered_lines(path: Path) -> Iterator[tuple[int, str]]:
             for number, line in enumerate(lines, start=1):
                 yield number, line.strip()
         except (EOFError, zlib.error, gzip.BadGzipFile) as error:
-            raise LogError(f"{path}: the compressed file is damaged: {error}") from error
+            raise WrongInputError(f"{path}: the compressed file is damaged: {error}") from error

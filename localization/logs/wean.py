@@ -5,7 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
-from mend.localization.logs.log import Log, LogError, LogStep
+from mend.errors import WrongInputError
+from mend.localization.logs.log import Log, LogStep
 from mend.localization.logs.no_return import no_return_range
 from mend.localization.logs.text_lines import numbered_lines
 from mend.localization.pose import Poses, relative
@@ -17,7 +18,7 @@ _CM = np.array([0.01, 0.01, 1.0])
 
 
 def read_wean(path: Path) -> Log:
-    """The log of a file: raw odometry, no reference. Raises `LogError`, or `OSError`."""
+    """The log of a file: raw odometry, no reference. Raises `WrongInputError`, or `OSError`."""
     sweeps: list[tuple[Poses, Poses, np.ndarray, float]] = []
     skipped = 0
     for _, line in numbered_lines(path):
@@ -35,7 +36,7 @@ def read_wean(path: Path) -> Log:
         robot, laser = values[:3] * _CM, values[3:6] * _CM
         sweeps.append((robot, laser, values[6:-1] * 0.01, float(values[-1])))
     if not sweeps:
-        raise LogError(f"{path}: there is no scan (a line L with {_FIELDS} numbers) in it")
+        raise WrongInputError(f"{path}: there is no scan (a line L with {_FIELDS} numbers) in it")
     no_return = no_return_range([each[2].tolist() for each in sweeps])
     steps: list[LogStep] = []
     before, time_s = sweeps[0][0], -np.inf

@@ -7,11 +7,11 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from mend.errors import UnavailableError
 from mend.localization.localizer import Estimate
 from mend.localization.pictures.canvas import Canvas, Image, Raster, Svg
 from mend.localization.pictures.colors import ELLIPSE, MAP, POINTS, REFERENCE, TRAJECTORY
-from mend.localization.pictures.failure import PictureError
-from mend.localization.pictures.view import View, view_of
+from mend.localization.pictures.view import MapView, view_of
 from mend.localization.pose import Poses, transform
 from mend.maps.vector_map import VectorMap
 
@@ -32,7 +32,7 @@ _DEVIATIONS = 3.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Moment:
+class DriveFrame:
     """What one estimate leaves in a picture; points are in the map's frame."""
 
     pose: Poses
@@ -49,7 +49,7 @@ class Drive:
     title: str
     references: Poses
     poses: list[Poses] = field(default_factory=list)
-    moments: list[Moment] = field(default_factory=list)
+    moments: list[DriveFrame] = field(default_factory=list)
     _since_m: float = np.inf
 
     def take(self, estimate: Estimate) -> None:
@@ -61,10 +61,12 @@ class Drive:
         if self._since_m >= _KEPT_EVERY_M:
             self._since_m = 0.0
             seen = transform(estimate.pose, estimate.points.points).astype(np.float32)
-            self.moments.append(Moment(estimate.pose, estimate.covariance, seen, estimate.classes))
+            self.moments.append(
+                DriveFrame(estimate.pose, estimate.covariance, seen, estimate.classes)
+            )
 
     def save_picture(self, path: Path) -> None:
-        """Write a `.png` or `.svg`. Raises `PictureError`, or `OSError`."""
+        """Write a `.png` or `.svg`. Raises `UnavailableError`, or `OSError`."""
         view = self._view(_PICTURE_PX)
         if path.suffix == ".svg":
             svg = Svg(view.width_px, view.height_px)
@@ -76,7 +78,7 @@ class Drive:
         _write_png(raster.image, path)
 
     def save_animation(self, path: Path) -> None:
-        """Write an `.mp4` or `.gif`. Raises `PictureError`."""
+        """Write an `.mp4` or `.gif`. Raises `UnavailableError`."""
         frames = self._frames(_MAX_GIF_FRAMES if path.suffix == ".gif" else _MAX_FRAMES)
         if path.suffix == ".gif":
             animation = cv2.Animation()
@@ -86,13 +88,13 @@ class Drive:
         else:
             written = _write_video(frames, path)
         if not written:
-            raise PictureError(f"'{path}' could not be written as a {path.suffix} animation")
+            raise UnavailableError(f"'{path}' could not be written as a {path.suffix} animation")
 
-    def _view(self, longest_px: int) -> View:
+    def _view(self, longest_px: int) -> MapView:
         seen = [self.vector_map.segments.reshape(-1, 2), np.array(self.poses)[:, :2]]
         return view_of(np.vstack(seen), longest_px)
 
-    def _draw_whole(self, canvas: Canvas, view: View) -> None:
+    def _draw_whole(self, canvas: Canvas, view: MapView) -> None:
         for moment in self.moments:
             _draw_points(canvas, view, moment, 0.8)
         canvas.segments(view.pixels(_ends(self.vector_map)).reshape(-1, 4), MAP)
@@ -102,7 +104,7 @@ class Drive:
             canvas.path(view.pixels(_ellipse(moment)), ELLIPSE)
         _draw_legend(canvas, self.title)
 
-    def _draw_references(self, canvas: Canvas, view: View) -> None:
+    def _draw_references(self, canvas: Canvas, view: MapView) -> None:
         known = self.references[np.isfinite(self.references).all(axis=1), :2]
         if len(known):
             canvas.path(view.pixels(known), REFERENCE)
@@ -127,7 +129,7 @@ class Drive:
 
 
 def save_map_picture(vector_map: VectorMap, path: Path) -> None:
-    """Draw a vector map as `.png` or `.svg`. Raises `PictureError`, or `OSError`."""
+    """Draw a vector map as `.png` or `.svg`. Raises `UnavailableError`, or `OSError`."""
     view = view_of(vector_map.segments.reshape(-1, 2), _PICTURE_PX)
     rows = view.pixels(_ends(vector_map)).reshape(-1, 4)
     title = f"{vector_map.name}: {len(vector_map)} segments, {vector_map.lengths.sum():.0f} m"
@@ -144,7 +146,7 @@ def _ends(vector_map: VectorMap) -> Matrix:
     return vector_map.segments.reshape(-1, 2, 2)
 
 
-def _draw_points(canvas: Canvas, view: View, moment: Moment, radius: float) -> None:
+def _draw_points(canvas: Canvas, view: MapView, moment: DriveFrame, radius: float) -> None:
     for kind, color in POINTS.items():
         points = moment.points[moment.classes == kind].astype(np.float64)
         canvas.dots(view.pixels(points), color, radius)
@@ -161,7 +163,7 @@ def _draw_legend(canvas: Canvas, title: str) -> None:
     canvas.text(x + 40, 18, title)
 
 
-def _ellipse(moment: Moment) -> Matrix:
+def _ellipse(moment: DriveFrame) -> Matrix:
     """The outline of the place's covariance, in metres of the map's frame."""
     values, axes = np.linalg.eigh(moment.covariance[:2, :2])
     around = np.linspace(0.0, 2.0 * np.pi, 25)
@@ -180,7 +182,7 @@ def _robot(pose: Poses) -> Matrix:
 def _write_png(image: Image, path: Path) -> None:
     encoded, data = cv2.imencode(".png", image)
     if not encoded:
-        raise PictureError(f"'{path}' could not be written as a picture")
+        raise UnavailableError(f"'{path}' could not be written as a picture")
     path.write_bytes(data.tobytes())
 
 

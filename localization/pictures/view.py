@@ -12,7 +12,7 @@ LEGEND_PX = 28
 
 
 @dataclass(frozen=True, slots=True)
-class View:
+class MapView:
     """A rectangle of the map's frame in metres, drawn with `scale` pixels per metre."""
 
     x_min: float
@@ -32,7 +32,7 @@ class View:
         )
 
 
-def view_of(places: Matrix, longest_px: int) -> View:
+def view_of(places: Matrix, longest_px: int) -> MapView:
     """A view of all places (n, 2) in metres, with a margin; even sizes, as videos need them."""
     finite = places[np.isfinite(places).all(axis=1)]
     if not len(finite):
@@ -40,7 +40,7 @@ def view_of(places: Matrix, longest_px: int) -> View:
     low, high = finite.min(axis=0) - _MARGIN_M, finite.max(axis=0) + _MARGIN_M
     scale = longest_px / float((high - low).max())
     width, height = ((high - low) * scale).astype(int)
-    return View(
+    return MapView(
         float(low[0]),
         float(high[1]),
         scale,

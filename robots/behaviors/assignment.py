@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from mend.robots.behaviors.behavior import Behavior
 from mend.robots.catalogue import Part
 from mend.robots.link.messages import Location, WasDone
-from mend.robots.result import Result
+from mend.robots.result import JudgedResult
 from mend.tasks.scene import StrictModel
 
 
@@ -24,4 +24,4 @@ class Assignment:
     target: Location | None
     needs_help: bool
     was_done: WasDone | None = None
-    finished: Sequence[Result] = ()
+    finished: Sequence[JudgedResult] = ()

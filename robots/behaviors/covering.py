@@ -4,7 +4,7 @@ from mend.robots.behaviors.assignment import Assignment
 from mend.robots.behaviors.phase import Phase
 from mend.robots.catalogue import Part
 from mend.robots.link.messages import Location
-from mend.robots.result import Result
+from mend.robots.result import JudgedResult
 from mend.robots.senses import Senses
 from mend.tasks.footprint import Footprint
 
@@ -27,7 +27,7 @@ class Covering:
     def __init__(self, assignment: Assignment, senses: Senses) -> None:
         self._senses = senses
         self._watched = _covered(assignment, senses)
-        self._doubted: list[Result] = []
+        self._doubted: list[JudgedResult] = []
         self._next_look_s = 0.0
 
     def look_if_due(self, phase: Phase, now_s: float) -> None:
@@ -45,7 +45,7 @@ class Covering:
             raise CoveredResultGone
 
 
-def _covered(assignment: Assignment, senses: Senses) -> list[Result]:
+def _covered(assignment: Assignment, senses: Senses) -> list[JudgedResult]:
     part, target = assignment.part, assignment.target
     if part is None or target is None:
         return []

@@ -6,7 +6,7 @@ from typing import Any
 from mend.robots.arm import Routine
 from mend.robots.behaviors.confirmation import look_at_outcome
 from mend.robots.behaviors.covering import CoveredResultGone
-from mend.robots.behaviors.execution_state import ExecutionState, is_over
+from mend.robots.behaviors.execution_state import EXECUTION, ExecutionState
 from mend.robots.behaviors.preparation import prepare
 from mend.robots.behaviors.put_down import put_down
 from mend.robots.behaviors.step_walk import StepWalk
@@ -53,7 +53,7 @@ class Execution:
     @property
     def over(self) -> bool:
         """Whether nothing can follow."""
-        return is_over(self.state)
+        return EXECUTION.is_last(self.state)
 
     @property
     def way(self) -> list[ToolPose]:
@@ -83,25 +83,25 @@ class Execution:
         return self._attempt(resumed=False)
 
     def resume(self) -> Routine[None]:
-        """Go on after a hold, where the hands allow it. Raises `ExecutionTransitionError`."""
+        """Go on after a hold, where the hands allow it. Raises `IllegalTransitionError`."""
         self._progress.move_to(ExecutionState.PREPARING)
         return self._attempt(resumed=True)
 
     def hold(self) -> None:
-        """Stop within one control cycle and hold. Raises `ExecutionTransitionError`."""
+        """Stop within one control cycle and hold. Raises `IllegalTransitionError`."""
         self._arm.stop()
         if self.state is not ExecutionState.HOLDING:
             self._progress.move_to(ExecutionState.HOLDING)
 
     def end(self) -> None:
-        """Another execution takes its place. Raises `ExecutionTransitionError`."""
+        """Another execution takes its place. Raises `IllegalTransitionError`."""
         self._arm.be_careful(1.0)
         self._progress.move_to(ExecutionState.ENDED)
 
     def retreat(self, end: bool) -> Routine[None]:
         """Put down or let go what is held, move to neutral, and hold there (or `end`).
 
-        Raises `ExecutionTransitionError`.
+        Raises `IllegalTransitionError`.
         """
         if self.state is not ExecutionState.RETREATING:
             self._progress.move_to(ExecutionState.RETREATING)

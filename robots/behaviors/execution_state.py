@@ -2,6 +2,8 @@
 
 from enum import StrEnum
 
+from mend.tasks.transitions import Transitions
+
 
 class ExecutionState(StrEnum):
     """What an execution is doing."""
@@ -22,64 +24,19 @@ class ExecutionState(StrEnum):
     """Given up at the service's command."""
 
 
-class ExecutionTransitionError(Exception):
-    """An execution was told to do what its state does not allow; the message says both."""
+_S = ExecutionState
 
-
-_NEXT: dict[ExecutionState, frozenset[ExecutionState]] = {
-    ExecutionState.PREPARING: frozenset(
-        {
-            ExecutionState.RUNNING,
-            ExecutionState.RETREATING,
-            ExecutionState.HOLDING,
-            ExecutionState.FINISHED,
-            ExecutionState.ENDED,
-        }
-    ),
-    ExecutionState.RUNNING: frozenset(
-        {
-            ExecutionState.BACKING_OFF,
-            ExecutionState.CONFIRMING,
-            ExecutionState.RETREATING,
-            ExecutionState.HOLDING,
-            ExecutionState.FINISHED,
-        }
-    ),
-    ExecutionState.BACKING_OFF: frozenset(
-        {
-            ExecutionState.PREPARING,
-            ExecutionState.RUNNING,
-            ExecutionState.RETREATING,
-            ExecutionState.HOLDING,
-        }
-    ),
-    ExecutionState.CONFIRMING: frozenset(
-        {
-            ExecutionState.PREPARING,
-            ExecutionState.RETREATING,
-            ExecutionState.HOLDING,
-            ExecutionState.FINISHED,
-        }
-    ),
-    ExecutionState.RETREATING: frozenset({ExecutionState.HOLDING, ExecutionState.ENDED}),
-    ExecutionState.HOLDING: frozenset(
-        {ExecutionState.PREPARING, ExecutionState.RETREATING, ExecutionState.ENDED}
-    ),
-    ExecutionState.FINISHED: frozenset(),
-    ExecutionState.ENDED: frozenset(),
-}
-
-
-def is_over(state: ExecutionState) -> bool:
-    """Whether nothing can follow."""
-    return not _NEXT[state]
-
-
-def follow(state: ExecutionState, wanted: ExecutionState) -> ExecutionState:
-    """The wanted state. Raises `ExecutionTransitionError` if it may not follow this one."""
-    if wanted not in _NEXT[state]:
-        expected = " or ".join(sorted(_NEXT[state])) or "nothing more"
-        raise ExecutionTransitionError(
-            f"an execution that is {state} can become {expected}, not {wanted}"
-        )
-    return wanted
+EXECUTION = Transitions(
+    "the execution",
+    {
+        _S.PREPARING: (_S.RUNNING, _S.RETREATING, _S.HOLDING, _S.FINISHED, _S.ENDED),
+        _S.RUNNING: (_S.BACKING_OFF, _S.CONFIRMING, _S.RETREATING, _S.HOLDING, _S.FINISHED),
+        _S.BACKING_OFF: (_S.PREPARING, _S.RUNNING, _S.RETREATING, _S.HOLDING),
+        _S.CONFIRMING: (_S.PREPARING, _S.RETREATING, _S.HOLDING, _S.FINISHED),
+        _S.RETREATING: (_S.HOLDING, _S.ENDED),
+        _S.HOLDING: (_S.PREPARING, _S.RETREATING, _S.ENDED),
+        _S.FINISHED: (),
+        _S.ENDED: (),
+    },
+)
+"""Which state may follow which."""

@@ -12,7 +12,7 @@ from mend.robots.behaviors.behavior import Move, SetGripper, Situation, Step
 from mend.robots.behaviors.errand import Errand
 from mend.robots.body import ToolPose
 from mend.robots.catalogue import Part
-from mend.robots.clearance import ROOM_M, Room, room_around
+from mend.robots.clearance import ROOM_M, Gap, room_around
 from mend.robots.grasp import Grasp, grasps_of, half_turn
 from mend.robots.gripper import GripperModel
 from mend.robots.link.messages import Location
@@ -145,7 +145,7 @@ def crowding(
 
 def room_for(
     grip: Grip, gripper: GripperModel, boxes: Sequence[SeenBox], stray_m: float
-) -> Room | None:
+) -> Gap | None:
     """The room around fingers that close or open; None if nothing is near."""
     stray_m = 0.0 if grip.at_place else stray_m
     opening_m, closed_m = grip.opening_m, grip.closed_m

@@ -107,7 +107,7 @@ class Barred:
 
 
 @dataclass(frozen=True, slots=True)
-class _Way:
+class _WayToDo:
     """One way of doing it: its steps, the first that is to walk, and what leaves it least room."""
 
     steps: Sequence[Step]
@@ -195,9 +195,9 @@ def _lay_out(
     table: Table,
     boxes: Sequence[SeenBox],
     spare: Spare,
-) -> list[_Way]:
+) -> list[_WayToDo]:
     """All ways, in their order; those that differ in nothing once."""
-    ways: list[_Way] = []
+    ways: list[_WayToDo] = []
     laid_out: set[tuple[Grasp | None, tuple[Step, ...]]] = set()
     known: dict[Sequence[Grip], Crowding | None] = {}
     for turned in (False, True):
@@ -213,5 +213,5 @@ def _lay_out(
             closings = grips(steps[first - 1 :], grasp, gripper)
             if closings not in known:
                 known[closings] = crowding(closings, gripper, boxes, spare.stray_m)
-            ways.append(_Way(steps, first, grasp, known[closings]))
+            ways.append(_WayToDo(steps, first, grasp, known[closings]))
     return ways

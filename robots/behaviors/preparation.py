@@ -1,9 +1,9 @@
 """Before the first step: what is seen and held, and the plan to walk that follows from it."""
 
+from mend.errors import IllegalTransitionError
 from mend.robots.arm import Routine
 from mend.robots.behaviors.backing_off import get_out_of_view
 from mend.robots.behaviors.errand import errand_of
-from mend.robots.behaviors.execution_state import ExecutionTransitionError
 from mend.robots.behaviors.findings import Findings, is_inexact
 from mend.robots.behaviors.grasp_choice import ways_to_grasp
 from mend.robots.behaviors.phase import Phase
@@ -86,9 +86,8 @@ def _judged(work: Work, watch: Watch) -> Plan:
         # Nothing that is seen explains it.
         watch.judge(progress.felt)
     if progress.plan is None:
-        raise ExecutionTransitionError(
-            f"expected a path for {work.assignment.behavior.name} or an issue, got neither"
-        )
+        expected = f"a path for {work.assignment.behavior.name} or an issue"
+        raise IllegalTransitionError("the execution", progress.state, "neither", expected)
     progress.picked_at = progress.plan.picked_at or progress.picked_at
     return progress.plan
 
@@ -98,7 +97,8 @@ def _require_sight(work: Work, watch: Watch) -> None:
     blind = work.progress.seen.blind
     if blind is not None:
         watch.check(None)
-        raise ExecutionTransitionError(f"expected an issue, as {blind}, got none")
+        expected = f"an issue, as {blind}"
+        raise IllegalTransitionError("the execution", work.progress.state, "none", expected)
 
 
 def _goes_on_carrying(work: Work) -> bool:

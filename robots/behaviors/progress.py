@@ -2,8 +2,9 @@
 
 from dataclasses import dataclass, field
 
+from mend.errors import IllegalTransitionError
 from mend.robots.behaviors.contact import Contact
-from mend.robots.behaviors.execution_state import ExecutionState, ExecutionTransitionError, follow
+from mend.robots.behaviors.execution_state import EXECUTION, ExecutionState
 from mend.robots.behaviors.findings import Findings, Outcome
 from mend.robots.behaviors.phase import Phase
 from mend.robots.behaviors.planning import Plan, waypoints_of
@@ -40,8 +41,8 @@ class Progress:
     picked_at: ToolPose | None = None
 
     def move_to(self, state: ExecutionState) -> None:
-        """Become this. Raises `ExecutionTransitionError`."""
-        self.state = follow(self.state, state)
+        """Become this. Raises `IllegalTransitionError`."""
+        self.state = EXECUTION.require(self.state, state)
 
     def start_again(self) -> None:
         """Forget what was planned and seen: the first step is still to come."""
@@ -50,9 +51,9 @@ class Progress:
 
     @property
     def planned(self) -> Plan:
-        """The plan that is walked. Raises `ExecutionTransitionError` before there is one."""
+        """The plan that is walked. Raises `IllegalTransitionError` before there is one."""
         if self.plan is None:
-            raise ExecutionTransitionError(f"expected a plan while it is {self.state}, got none")
+            raise IllegalTransitionError("the execution", self.state, "none", "a plan")
         return self.plan
 
     @property

@@ -4,12 +4,13 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from mend.errors import IllegalTransitionError
 from mend.robots.arm import Routine
 from mend.robots.behaviors.backing_off import back_off, try_again
 from mend.robots.behaviors.behavior import Move, Step
 from mend.robots.behaviors.contact import Contact, ContactWatch, Track, Try, hindering_n, is_arrival
 from mend.robots.behaviors.covering import Covering
-from mend.robots.behaviors.execution_state import ExecutionState, ExecutionTransitionError
+from mend.robots.behaviors.execution_state import ExecutionState
 from mend.robots.behaviors.phase import Phase
 from mend.robots.behaviors.planning import Plan
 from mend.robots.behaviors.watch import Watch
@@ -80,7 +81,8 @@ class StepWalk:
                 progress.move_to(ExecutionState.PREPARING)
                 return False
             try_again(self._work, watch, contact, last=count == len(tries))
-        raise ExecutionTransitionError(f"expected a try of step {number}, got none")
+        expected = f"a try of step {number}"
+        raise IllegalTransitionError("the execution", progress.state, "none", expected)
 
     def _let_go_to_regrasp(self) -> Routine[None]:
         self._progress.regrasps += 1

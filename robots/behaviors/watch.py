@@ -4,9 +4,9 @@ import math
 from collections.abc import Sequence
 from typing import Any, NoReturn
 
+from mend.errors import IllegalTransitionError
 from mend.robots.behaviors.behavior import SetGripper
 from mend.robots.behaviors.contact import Contact, Try
-from mend.robots.behaviors.execution_state import ExecutionTransitionError
 from mend.robots.behaviors.phase import Phase
 from mend.robots.behaviors.work import Work
 from mend.robots.grip import GripReading
@@ -86,9 +86,8 @@ class Watch:
         """Let the monitors judge what was felt. Raises `Interruption`."""
         self._progress.contact = contact
         self.check(None)
-        raise ExecutionTransitionError(
-            f"expected an issue of {contact.force_n:.0f} N against the arm, got none"
-        )
+        expected = f"an issue of {contact.force_n:.0f} N against the arm"
+        raise IllegalTransitionError("the execution", self._progress.state, "none", expected)
 
     def grip_is_open_question(self, arrived_s: float) -> bool:
         """Whether the pictures have yet to show what the gripper holds.

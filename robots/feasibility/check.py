@@ -65,15 +65,15 @@ class _SceneCheck:
     def problems(self) -> list[SceneProblem]:
         """The plain mistakes first; what follows from one is not told as well."""
         found = [*self._handling()]
-        found += [*self._standing(_Told(found)), *self._overlaps(), *self._merging()]
-        return [*found, *_each_once(self._doing(_Told(found)))]
+        found += [*self._standing(_ToldProblems(found)), *self._overlaps(), *self._merging()]
+        return [*found, *_each_once(self._doing(_ToldProblems(found)))]
 
     def _handling(self) -> list[SceneProblem]:
         names = dict.fromkeys(job.name for job in self._jobs)
         objects = self._scene.objects
         return [p for name in names for p in cannot_handle(name, objects[name], self._gripper)]
 
-    def _standing(self, told: "_Told") -> list[SceneProblem]:
+    def _standing(self, told: "_ToldProblems") -> list[SceneProblem]:
         found: dict[tuple[str, ...], SceneProblem] = {}
         standing = list(self._starts.values())
         for each in standing:
@@ -127,7 +127,7 @@ class _SceneCheck:
         jobs = self._jobs if self._together else []
         return list(one_surface(self._scene, list(self._starts.values()), jobs, self._order))
 
-    def _doing(self, told: "_Told") -> list[SceneProblem]:
+    def _doing(self, told: "_ToldProblems") -> list[SceneProblem]:
         jobs = [
             job
             for job in self._jobs
@@ -205,7 +205,7 @@ def _each_once(found: Sequence[SceneProblem]) -> list[SceneProblem]:
     ]
 
 
-class _Told:
+class _ToldProblems:
     """What problems were told of already."""
 
     def __init__(self, found: Sequence[SceneProblem]) -> None:

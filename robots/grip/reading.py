@@ -6,6 +6,7 @@ from enum import StrEnum
 from mend.robots.body import CameraImage
 from mend.robots.grip.composition import Composition
 from mend.robots.vision.blob import Blob
+from mend.tasks.transitions import Transitions
 
 _MM = 1e3
 _ALL_ITS_OWN = 0.8
@@ -25,25 +26,17 @@ class GripState(StrEnum):
     """It was held, and is not any more."""
 
 
-_NEXT = {
-    GripState.UNDECIDED: {GripState.HELD, GripState.ABSENT, GripState.ASKEW},
-    GripState.HELD: {GripState.LOST},
-    GripState.ABSENT: set[GripState](),
-    GripState.ASKEW: set[GripState](),
-    GripState.LOST: set[GripState](),
-}
-
-
-class GripTransitionError(Exception):
-    """A grip changed in a way that cannot be; the message says from what to what."""
-
-
-def follow(state: GripState, wanted: GripState) -> GripState:
-    """The wanted state. Raises `GripTransitionError` if it may not follow this one."""
-    if wanted not in _NEXT[state]:
-        expected = " or ".join(sorted(_NEXT[state])) or "nothing more"
-        raise GripTransitionError(f"a grip that is {state} can become {expected}, not {wanted}")
-    return wanted
+GRIP = Transitions(
+    "the grip",
+    {
+        GripState.UNDECIDED: (GripState.HELD, GripState.ABSENT, GripState.ASKEW),
+        GripState.HELD: (GripState.LOST,),
+        GripState.ABSENT: (),
+        GripState.ASKEW: (),
+        GripState.LOST: (),
+    },
+)
+"""Which verdict may follow which."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

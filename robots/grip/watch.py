@@ -13,7 +13,7 @@ from mend.robots.grasp import Grasp, corners_in_tool
 from mend.robots.grip.belief import Belief, Between
 from mend.robots.grip.composition import Composition
 from mend.robots.grip.cues import CueModel, HandReading
-from mend.robots.grip.reading import GripReading, GripState, follow
+from mend.robots.grip.reading import GRIP, GripReading, GripState
 from mend.robots.grip.view import (
     REFERENCE_WIDTH_PX,
     composition,
@@ -45,7 +45,7 @@ _LEAST_BLOB_PX = 12
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Hand:
+class HandSnapshot:
     """The hand at one moment: its picture, where it is, and what the fingers feel.
 
     `tool` is the tool point's pose; `fingers` are the convex pieces (n, 3) of the gripper in the
@@ -108,7 +108,7 @@ class GripWatch:
         wavering = self._state is GripState.HELD and 0 < self._unsure < _LONGEST_DOUBT
         return self._state is GripState.UNDECIDED or wavering
 
-    def update(self, hand: Hand) -> GripReading:
+    def update(self, hand: HandSnapshot) -> GripReading:
         """Take a reading into account."""
         reading = self.measure(hand)
         now_s = hand.image.time
@@ -131,7 +131,7 @@ class GripWatch:
             scale = reading.image.bgr.shape[1] / REFERENCE_WIDTH_PX
             self._shift = self._shift + (np.array(blob.center) - reading.expected) / scale
 
-    def measure(self, hand: Hand) -> GripReading:
+    def measure(self, hand: HandSnapshot) -> GripReading:
         """Read the hand without coming to a verdict; `probability` is this reading's alone."""
         image = hand.image
         scale = image.bgr.shape[1] / REFERENCE_WIDTH_PX
@@ -162,7 +162,7 @@ class GripWatch:
         alone.update(self._log_likelihoods(reading))
         return replace(reading, probability=alone.probability)
 
-    def _composition(self, hand: Hand, segmentation: Segmentation) -> Composition | None:
+    def _composition(self, hand: HandSnapshot, segmentation: Segmentation) -> Composition | None:
         hiding = [*hand.fingers, *in_front(hand.image, hand.tool, hand.around)]
         region = visible_region(hand.image, hand.tool, self._near, hiding)
         return composition(region, segmentation, self._model, self.part.name)
@@ -175,9 +175,9 @@ class GripWatch:
         sure = self.probability >= _SURE or self.probability <= 1.0 - _SURE
         self._unsure = 0 if sure else self._unsure + 1
         if self._state is GripState.UNDECIDED and (sure or self._unsure >= _LONGEST_DOUBT):
-            self._state = follow(self._state, self._first_verdict())
+            self._state = GRIP.require(self._state, self._first_verdict())
         elif self._state is GripState.HELD and self.probability <= 1.0 - _SURE:
-            self._state = follow(self._state, GripState.LOST)
+            self._state = GRIP.require(self._state, GripState.LOST)
 
     def _first_verdict(self) -> GripState:
         as_planned = max(self._belief.of(Between.STRAIGHT), self._belief.of(Between.NOTHING))

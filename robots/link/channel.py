@@ -3,12 +3,14 @@
 import asyncio
 from typing import Protocol
 
+from mend.errors import MendError
 
-class ChannelClosedError(Exception):
+
+class ChannelClosedError(MendError):
     """The other end is gone; raised by `send` and `receive`."""
 
 
-class LinkRefusedError(Exception):
+class LinkRefusedError(MendError):
     """The service does not want this robot; the message says why. Trying again will not help."""
 
 

@@ -13,7 +13,7 @@ ENROL_PATH = "/api/robots/enrol"
 PATIENCE_S = 10.0
 
 
-class Credential(BaseModel):
+class RobotCredential(BaseModel):
     """A robot's own credential, as the service gives it."""
 
     model_config = ConfigDict(extra="ignore", frozen=True)
@@ -69,7 +69,7 @@ def enrol(url: str, robot: str, code: str) -> str:
         raise LinkRefusedError(f"{address} turned the robot away: {_detail(response)}")
     try:
         response.raise_for_status()
-        return Credential.model_validate_json(response.content).token
+        return RobotCredential.model_validate_json(response.content).token
     except (httpx.HTTPStatusError, ValidationError) as error:
         raise ChannelClosedError(f"{address} answered {response.status_code}") from error
 

@@ -2,11 +2,13 @@
 
 import base64
 
+from mend.errors import MendError
+
 BEGIN = b"\xff\xd8\xff"
 END = b"\xff\xd9"
 
 
-class NotJpegError(ValueError):
+class NotJpegError(MendError, ValueError):
     """What should be a picture is none; the message says why, without a subject."""
 
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from mend.errors import UnavailableError
 from mend.robots.link.messages import Report, ReportBody
 
 IN_MEMORY = ":memory:"
@@ -19,14 +20,6 @@ CREATE TABLE IF NOT EXISTS reports (
     UNIQUE (robot, boot, seq)
 )
 """
-
-
-class OutboxError(Exception):
-    """The outbox cannot be used; the message says why."""
-
-
-class OutboxFullError(OutboxError):
-    """There are as many undelivered reports as the outbox may hold."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +39,7 @@ class Outbox:
     what they had not delivered never happened.
 
     At most `capacity` reports are kept; a robot without a connection finishes what it was told to
-    do and then waits, which takes dozens. Raises `OutboxError` if the file cannot be used or
+    do and then waits, which takes dozens. Raises `UnavailableError` if the file cannot be used or
     another program has it open.
     """
 
@@ -57,7 +50,7 @@ class Outbox:
         try:
             self._database = _open(str(path))
         except sqlite3.Error as error:
-            raise OutboxError(f"the outbox '{path}' cannot be used: {error}") from error
+            raise UnavailableError(f"the outbox '{path}' cannot be used: {error}") from error
         self._count = self._number("SELECT count(*) FROM reports WHERE robot = ?", robot)
         self._last_seq = self._number(
             "SELECT ifnull(max(seq), 0) FROM reports WHERE robot = ? AND boot = ?", robot, boot
@@ -73,9 +66,9 @@ class Outbox:
         return self._count >= self.capacity // 2
 
     def add(self, body: ReportBody, time: float, world: dict[str, Any] | None) -> Report:
-        """Keep a new report of this boot. Raises `OutboxFullError`."""
+        """Keep a new report of this boot. Raises `UnavailableError`."""
         if self._count >= self.capacity:
-            raise OutboxFullError(
+            raise UnavailableError(
                 f"the outbox of '{self.robot}' is full: {self.capacity} reports are undelivered"
             )
         seq = self._last_seq + 1

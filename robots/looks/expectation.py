@@ -7,7 +7,7 @@ from mend.robots.link.messages import Location
 from mend.robots.looks.looker import Looker
 
 
-class Expectation(Protocol):
+class VisualCheck(Protocol):
     """Something that a look waits for."""
 
     def is_fulfilled(self) -> bool:

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 from mend.robots.arm import Routine
 from mend.robots.link.messages import Look, Looked
-from mend.robots.looks.expectation import AtPlace, Expectation, ViewClear
+from mend.robots.looks.expectation import AtPlace, ViewClear, VisualCheck
 from mend.robots.looks.hand_over import take_from_person
 from mend.robots.looks.in_reach import InReach
 from mend.robots.looks.looker import Looker
@@ -25,7 +25,7 @@ def look_as_told(
     if look.expect == "in_gripper":
         part = understanding.object_of(look)
         return take_from_person(looker, command, part, look.within_s)
-    make: dict[str, Callable[[], Expectation]] = {
+    make: dict[str, Callable[[], VisualCheck]] = {
         "at_place": lambda: AtPlace(
             looker, understanding.object_of(look), understanding.place_of(look)
         ),
@@ -44,7 +44,7 @@ def look_once(looker: Looker, command: str) -> Routine[Looked]:
 
 
 def look_until(
-    looker: Looker, command: str, expectation: Expectation, within_s: float
+    looker: Looker, command: str, expectation: VisualCheck, within_s: float
 ) -> Routine[Looked]:
     """Look every half second until it is so or `within_s` have passed."""
     yield from looker.free_view()

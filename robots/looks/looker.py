@@ -8,7 +8,7 @@ from mend.robots.behaviors.execution import Execution
 from mend.robots.behaviors.search import LOOK_AGAIN_S, LOOKS
 from mend.robots.body import CameraImage
 from mend.robots.link.messages import FinishedResult, Looked, ReportBody
-from mend.robots.result import Result
+from mend.robots.result import JudgedResult
 from mend.robots.senses import Senses
 from mend.robots.vision.presence import Presence
 
@@ -26,7 +26,7 @@ class Looker:
     report: Callable[[ReportBody], None]
     held: Execution | None
     may_move: bool
-    finished: Sequence[Result] = ()
+    finished: Sequence[JudgedResult] = ()
 
     def feel_whether_it_is_held(self) -> Routine[None]:
         """Find out by fresh pictures of the hand whether what it held was taken away meanwhile."""
@@ -75,7 +75,7 @@ class Looker:
         return self.senses.head.why_blind(image, of)
 
     def _judge(
-        self, image: CameraImage, results: Sequence[Result]
+        self, image: CameraImage, results: Sequence[JudgedResult]
     ) -> dict[FinishedResult, Presence]:
         if self._why_blind(image) is not None:
             return {each.message: Presence.HIDDEN for each in results}

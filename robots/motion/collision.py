@@ -25,7 +25,7 @@ _QHULL_OPTIONS = "Qt"
 
 
 @dataclass(frozen=True, slots=True)
-class Hand:
+class HandPosture:
     """How the gripper is on a way: the angles of its joints, and what it holds."""
 
     angles_rad: Mapping[str, float]
@@ -75,7 +75,7 @@ class CollisionModel:
         self._tool = self._model.frames[self._model.getFrameId(tool_frame)]
 
     def among(
-        self, boxes: Sequence[SeenBox], hand: Hand, margins: Callable[[SeenBox], Margins]
+        self, boxes: Sequence[SeenBox], hand: HandPosture, margins: Callable[[SeenBox], Margins]
     ) -> "Surrounded":
         """The arm with its gripper so, amid boxes from each of which it keeps away."""
         geometry = pin.GeometryModel()
@@ -117,7 +117,7 @@ class CollisionModel:
         tree = pin.BroadPhaseManager_DynamicAABBTreeCollisionManager(self._model, geometry, data)
         return _Pairs(geometry, data, tree, [box for box in boxes for _ in beyond_wrist])
 
-    def with_hand(self, hand: Hand) -> NDArray[np.float64]:
+    def with_hand(self, hand: HandPosture) -> NDArray[np.float64]:
         """All joints as pinocchio counts them (`with_joints`), with the gripper so."""
         whole = pin.neutral(self._model)
         for name, angle_rad in hand.angles_rad.items():

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from mend.errors import WrongInputError
 from mend.maps.compiled import compiled
 from mend.robots.body import Matrix4
 
@@ -25,19 +26,15 @@ _DAMPING = 1e-3
 _MAX_STEP_RAD = 0.3
 
 
-class UrdfError(Exception):
-    """A URDF does not describe the chain that was asked for; the message says what is missing."""
-
-
 class KinematicChain:
     """The revolute joints between a URDF's root and one of its links, all others at zero."""
 
     def __init__(self, urdf: Path, tip: str, joints: Sequence[str]) -> None:
-        """Raises `UrdfError` when `tip` is no link or a joint does not lead to it."""
+        """Raises `WrongInputError` when `tip` is no link or a joint does not lead to it."""
         self.joints = tuple(joints)
         links = _load_links(urdf)
         if tip not in links:
-            raise UrdfError(f"{urdf.name} has no link '{tip}'")
+            raise WrongInputError(f"{urdf.name} has no link '{tip}'")
         offsets, axes, limits = [], [], []
         pending = np.eye(4)
         found = []
@@ -50,7 +47,7 @@ class KinematicChain:
                 found.append(joint.name)
                 pending = np.eye(4)
         if found != list(joints):
-            raise UrdfError(
+            raise WrongInputError(
                 f"the joints that lead to '{tip}' in {urdf.name} are {', '.join(found)}; "
                 f"expected {', '.join(joints)}"
             )

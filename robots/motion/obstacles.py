@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mend.robots.motion.collision import CollisionModel, Hand, Margins, Surrounded
+from mend.robots.motion.collision import CollisionModel, HandPosture, Margins, Surrounded
 from mend.robots.motion.curve import JointCurve
 from mend.robots.motion.kinematics import Joints
 from mend.robots.motion.planner import PathSegment
@@ -28,7 +28,7 @@ _FEWEST_SAMPLES = 6
 class _Made:
     """An arm with such a hand amid such boxes, keeping so far away."""
 
-    hand: Hand
+    hand: HandPosture
     boxes: Sequence[SeenBox]
     kept: Margins
     surrounded: Surrounded
@@ -38,7 +38,11 @@ class PathObstacles:
     """Boxes around an arm whose gripper is like `hands[i]` on segment i of a path."""
 
     def __init__(
-        self, arm: CollisionModel, boxes: Sequence[SeenBox], hands: Sequence[Hand], start: Joints
+        self,
+        arm: CollisionModel,
+        boxes: Sequence[SeenBox],
+        hands: Sequence[HandPosture],
+        start: Joints,
     ) -> None:
         """What is near where the path begins is kept away from less; what is touched there is left.
 

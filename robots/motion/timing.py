@@ -5,6 +5,7 @@ import math
 import numpy as np
 from ruckig import InputParameter, OutputParameter, Result, Ruckig
 
+from mend.errors import MendError
 from mend.robots.motion.curve import JointCurve
 from mend.robots.motion.kinematics import Joints
 from mend.robots.motion.limits import MotionLimits
@@ -16,10 +17,6 @@ _TURN_BACK = 1e-6
 
 _SLOWEST = 1e-3
 """Slower than this fraction of full speed a motion would never end."""
-
-
-class TimingError(Exception):
-    """A motion cannot be timed; the message says what the generator answered."""
 
 
 class TimedMotion:
@@ -85,7 +82,7 @@ class TimedMotion:
             return self._curve.end, np.zeros(len(self._curve.end))
         result = self._generator.update(self._input, self._output)
         if result not in (Result.Working, Result.Finished):
-            raise TimingError(f"no jerk-limited motion along the path was found ({result})")
+            raise MendError(f"no jerk-limited motion along the path was found ({result})")
         self._output.pass_to_input(self._input)
         self._finished = result == Result.Finished
         self._parameter = min(self._output.new_position[0], self._curve.length)

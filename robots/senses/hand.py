@@ -7,7 +7,7 @@ from mend.robots.catalogue import Part
 from mend.robots.clip import Clip
 from mend.robots.grasp import Grasp, grasp_of
 from mend.robots.grip.reading import GripState
-from mend.robots.grip.watch import GripWatch, Hand
+from mend.robots.grip.watch import GripWatch, HandSnapshot
 from mend.robots.link.messages import Position
 from mend.robots.vision.color_model import ColorModel
 from mend.robots.vision.seen_box import SeenBox
@@ -71,10 +71,10 @@ class HandSense:
         """
         self.grip = self.new_watch(part, grasp, regrasp=regrasp)
 
-    def feel(self, around: Sequence[SeenBox]) -> Hand:
+    def feel(self, around: Sequence[SeenBox]) -> HandSnapshot:
         """The hand as it is now; `around` is what the head camera saw there last."""
         body = self._body
-        return Hand(
+        return HandSnapshot(
             image=self._look(),
             tool=body.tool_pose(),
             opening_m=body.gripper_opening_m(),

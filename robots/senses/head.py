@@ -9,7 +9,7 @@ import numpy as np
 from mend.robots.body import Body, CameraImage, ToolPose
 from mend.robots.catalogue import Part
 from mend.robots.link.messages import Location, Sighting
-from mend.robots.result import Result
+from mend.robots.result import JudgedResult
 from mend.robots.senses.own_arm import OwnArm
 from mend.robots.senses.understanding import TableUnderstanding
 from mend.robots.vision.blindness import why_frozen, why_outdated
@@ -152,7 +152,7 @@ class HeadSense:
             view, part, self._table.equals_of(part), target, self._catalogue.height_of(target)
         )
 
-    def seen_gone(self, image: CameraImage, results: Iterable[Result]) -> list[Result]:
+    def seen_gone(self, image: CameraImage, results: Iterable[JudgedResult]) -> list[JudgedResult]:
         """Of some results those whose part a picture shows, past the arm, not to be there."""
         heights = measure_heights(image, self._catalogue.table, self._own_arm.includes)
         if heights is None:

@@ -15,6 +15,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from mend.errors import WrongInputError
 from mend.robots.vision.blob import Mask
 
 Histogram = NDArray[np.float32]
@@ -28,10 +29,6 @@ _KERNEL = np.ones((3, 3), np.uint8)
 _NOISE_SEED = 1
 _TOLD_APART = 2.0
 """Colours are told apart that are this many times their joint inaccuracy apart."""
-
-
-class ColorModelError(Exception):
-    """A colour model cannot be trained or read; the message says why."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,7 +98,7 @@ class Segmentation:
         """Where the colours of one object are: 255 there, 0 elsewhere.
 
         Objects whose colours the cameras cannot tell apart have each other's. Raises
-        `ColorModelError` for an object that the model was not trained for.
+        `WrongInputError` for an object that the model was not trained for.
         """
         return np.where(_of(self._owned, name)[self._bins], 255, 0).astype(np.uint8)
 
@@ -121,7 +118,7 @@ class Segmentation:
 def _of(bins: Mapping[str, NDArray[np.bool_]], name: str) -> NDArray[np.bool_]:
     if name not in bins:
         known = ", ".join(sorted(bins))
-        raise ColorModelError(f"the colour model does not know '{name}'; it knows {known}")
+        raise WrongInputError(f"the colour model does not know '{name}'; it knows {known}")
     return bins[name]
 
 
@@ -139,7 +136,7 @@ class ColorModel:
         tints: Mapping[str, Tint] | None = None,
     ) -> None:
         if not learned:
-            raise ColorModelError("a colour model holds at least one object, not 0")
+            raise WrongInputError("a colour model holds at least one object, not 0")
         self._learned = dict(learned)
         self._histograms = {name: each.histogram for name, each in learned.items()}
         self._settings = settings
@@ -235,12 +232,12 @@ class ColorModel:
 
     @classmethod
     def load(cls, path: Path) -> "ColorModel":
-        """Read a model that `save` wrote. Raises `ColorModelError` saying what is wrong."""
+        """Read a model that `save` wrote. Raises `WrongInputError` saying what is wrong."""
         try:
             with path.open("rb") as file, np.load(file, allow_pickle=False) as arrays:
                 return cls._from_arrays(path, dict(arrays))
         except FileNotFoundError as error:
-            raise ColorModelError(f"there is no colour model at '{path}'") from error
+            raise WrongInputError(f"there is no colour model at '{path}'") from error
         except (
             BadZipFile,
             ValueError,
@@ -250,19 +247,19 @@ class ColorModel:
             TypeError,
             EOFError,
         ) as error:
-            raise ColorModelError(f"'{path}' is not a colour model: {error}") from error
+            raise WrongInputError(f"'{path}' is not a colour model: {error}") from error
 
     @classmethod
     def _from_arrays(cls, path: Path, arrays: Mapping[str, NDArray[Any]]) -> "ColorModel":
         version = int(arrays["version"])
         if version != FILE_VERSION:
-            raise ColorModelError(
+            raise WrongInputError(
                 f"'{path}' is a colour model of version {version}; this reads {FILE_VERSION}"
             )
         names, histograms = arrays["names"].tolist(), arrays["histograms"].astype(np.float32)
         shown = arrays["shown"].astype(np.bool_)
         if histograms.ndim != 3 or len(names) != len(histograms) or shown.shape != histograms.shape:
-            raise ColorModelError(f"'{path}' is not a colour model: its histograms do not fit")
+            raise WrongInputError(f"'{path}' is not a colour model: its histograms do not fit")
         limits = [int(each) for each in arrays["limits"]]
         _, hue_bins, saturation_bins = histograms.shape
         settings = ColorSettings(
@@ -293,7 +290,7 @@ def tint_sigma(tint: Tint | NDArray[np.float64]) -> NDArray[np.float64]:
 def learn(name: str, samples: Sequence[Sample], settings: ColorSettings) -> LearnedColor:
     """What one object's colour looks like.
 
-    Raises `ColorModelError` for a mask that does not fit its picture.
+    Raises `WrongInputError` for a mask that does not fit its picture.
     """
     bins = [settings.hue_bins, settings.saturation_bins]
     surely = (0, settings.min_training_saturation, settings.min_training_value)
@@ -303,7 +300,7 @@ def learn(name: str, samples: Sequence[Sample], settings: ColorSettings) -> Lear
     rng = np.random.default_rng(_NOISE_SEED)
     for sample in samples:
         if sample.bgr.shape[:2] != sample.mask.shape:
-            raise ColorModelError(
+            raise WrongInputError(
                 f"a mask of '{name}' is {sample.mask.shape}, its picture {sample.bgr.shape[:2]}"
             )
         # Masks and rims are a pixel off now and then.

@@ -13,23 +13,23 @@ _ACROSS = 12
 
 
 @dataclass(frozen=True, slots=True)
-class Sight:
+class Visibility:
     """The share of a box's top that is seen, and what hides most of it."""
 
     share: float
     hider: SeenBox | None
 
 
-def sight_of(eye: NDArray[np.float64], box: SeenBox, others: Sequence[SeenBox]) -> Sight:
+def sight_of(eye: NDArray[np.float64], box: SeenBox, others: Sequence[SeenBox]) -> Visibility:
     """What is seen of a box's top from `eye` (3, base frame) past other boxes."""
     points = _top(box)
     hidden = [_is_beyond(eye, points, other) for other in others]
     if not hidden:
-        return Sight(1.0, None)
+        return Visibility(1.0, None)
     shares = [float(each.mean()) for each in hidden]
     most = int(np.argmax(shares))
     share = 1.0 - float(np.any(hidden, axis=0).mean())
-    return Sight(share, others[most] if shares[most] > 0.0 else None)
+    return Visibility(share, others[most] if shares[most] > 0.0 else None)
 
 
 def _top(box: SeenBox) -> NDArray[np.float64]:

@@ -79,7 +79,7 @@ class Match:
 
 
 @dataclass(frozen=True, slots=True)
-class _Way:
+class _TopOfPart:
     """One way in which a part can show a level top."""
 
     part: Part
@@ -261,14 +261,14 @@ def _knob_along(top: Top) -> NDArray[np.float64]:
     return np.array(knob.extents[::-1] if crossed else knob.extents)
 
 
-def _ways_of(part: Part) -> list[_Way]:
+def _ways_of(part: Part) -> list[_TopOfPart]:
     x, y, z = part.size
-    ways = [_Way(part, (x, y), z, 0.0, True, part.knob is not None)]
+    ways = [_TopOfPart(part, (x, y), z, 0.0, True, part.knob is not None)]
     if part.knob is not None:
         height_m = z + part.knob[2]
-        ways.append(_Way(part, part.knob[:2], height_m, _KNOB_UNSEEN_COST, True))
-    ways.append(_Way(part, (x, z), y, _TOPPLED_COST, False))
-    ways.append(_Way(part, (z, y), x, _TOPPLED_COST, False))
+        ways.append(_TopOfPart(part, part.knob[:2], height_m, _KNOB_UNSEEN_COST, True))
+    ways.append(_TopOfPart(part, (x, z), y, _TOPPLED_COST, False))
+    ways.append(_TopOfPart(part, (z, y), x, _TOPPLED_COST, False))
     return ways
 
 

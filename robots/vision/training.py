@@ -5,7 +5,8 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from mend.robots.vision.color_model import ColorModelError, Sample
+from mend.errors import WrongInputError
+from mend.robots.vision.color_model import Sample
 
 MASK_SUFFIX = ".mask.png"
 
@@ -14,20 +15,20 @@ def load_samples(folder: Path) -> dict[str, list[Sample]]:
     """Read `folder/<object>/<picture>.png`, the object being where the mask is not black.
 
     The mask is the picture's own alpha channel or `<picture>.mask.png` beside it. Raises
-    `ColorModelError` naming the file that is wrong or missing.
+    `WrongInputError` naming the file that is wrong or missing.
     """
     if not folder.is_dir():
-        raise ColorModelError(f"there is no folder '{folder}' with training pictures")
+        raise WrongInputError(f"there is no folder '{folder}' with training pictures")
     samples = {
         each.name: [_load_sample(path) for path in _pictures(each)]
         for each in sorted(folder.iterdir())
         if each.is_dir()
     }
     if not samples:
-        raise ColorModelError(f"'{folder}' has no folder per object with pictures of it")
+        raise WrongInputError(f"'{folder}' has no folder per object with pictures of it")
     for name, found in samples.items():
         if not found:
-            raise ColorModelError(f"'{folder / name}' has no .png picture of '{name}'")
+            raise WrongInputError(f"'{folder / name}' has no .png picture of '{name}'")
     return samples
 
 
@@ -38,12 +39,12 @@ def _pictures(folder: Path) -> list[Path]:
 def _load_sample(path: Path) -> Sample:
     picture = cv2.imread(str(path), cv2.IMREAD_UNCHANGED)
     if picture is None or picture.dtype != np.uint8 or picture.ndim != 3:
-        raise ColorModelError(f"'{path}' is not a colour picture with 8 bits per channel")
+        raise WrongInputError(f"'{path}' is not a colour picture with 8 bits per channel")
     if picture.shape[2] == 4:
         bgra = np.asarray(picture, np.uint8)
         return Sample(np.ascontiguousarray(bgra[:, :, :3]), bgra[:, :, 3].copy())
     mask_path = path.with_name(path.stem + MASK_SUFFIX)
     mask = cv2.imread(str(mask_path), cv2.IMREAD_GRAYSCALE)
     if mask is None:
-        raise ColorModelError(f"'{path}' has no alpha channel and no mask '{mask_path.name}'")
+        raise WrongInputError(f"'{path}' has no alpha channel and no mask '{mask_path.name}'")
     return Sample(np.asarray(picture, np.uint8), np.asarray(mask, np.uint8))

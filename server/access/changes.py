@@ -6,27 +6,26 @@ from datetime import datetime, timedelta
 from pathlib import Path
 from uuid import UUID, uuid4
 
+from mend.errors import ConflictError, NotFoundError, RefusalError, WrongInputError
 from mend.robots.link.shown_name import can_be_shown
 from mend.server.access.principal import RESERVED
 from mend.server.access.principals_file import (
     KEPT_CHANGES,
-    Change,
     Enrolment,
     KeptPrincipal,
+    PrincipalChange,
     Principals,
     What,
     edited,
 )
 from mend.server.access.roles import Role, with_article
 from mend.server.access.tokens import fingerprint, fits, new_code, new_token, plain_code
-from mend.server.errors import ConflictError, InvalidError, NotFoundError, ServiceError
 
-LONGEST_DAYS = 3650
 LONGEST_NAME = 64
 LONGEST_ROBOT_NAME = 128
 
 
-class EnrolmentRefusedError(ServiceError):
+class EnrolmentRefusedError(RefusalError):
     """A robot's code is wrong, used, or too old."""
 
 
@@ -45,12 +44,12 @@ class PrincipalsEditor:
     role: Role = Role.ADMIN
     address: str | None = None
     change_id: UUID | None = None
-    made: list[Change] = field(default_factory=list)
+    made: list[PrincipalChange] = field(default_factory=list)
 
     def add(self, name: str, role: Role, now: datetime, expires_days: float | None = None) -> str:
         """Add a principal and return its token.
 
-        Raises `ConflictError` if the name is taken, `InvalidError` if it cannot be one.
+        Raises `ConflictError` if the name is taken, `WrongInputError` if it cannot be one.
         """
         _refuse_name(name, LONGEST_NAME)
         with edited(self.path) as edit:
@@ -96,7 +95,7 @@ class PrincipalsEditor:
         """Let a robot fetch its credential once, and return the code for that.
 
         A code that it was given before is good no longer; a credential that it has is, until the
-        new one is fetched. Raises `ConflictError` if a person has the name, `InvalidError` if it
+        new one is fetched. Raises `ConflictError` if a person has the name, `WrongInputError` if it
         cannot be one.
         """
         _refuse_name(robot, LONGEST_ROBOT_NAME)
@@ -148,7 +147,7 @@ class PrincipalsEditor:
     def _noted(
         self, principals: Principals, now: datetime, what: What, name: str, role: Role
     ) -> Principals:
-        change = Change(
+        change = PrincipalChange(
             id=self.change_id or uuid4(),
             when=now,
             by=self.by,
@@ -165,13 +164,15 @@ class PrincipalsEditor:
 
 def _refuse_name(name: str, longest: int) -> None:
     if unicodedata.normalize("NFKC", name).strip().casefold() in RESERVED:
-        raise InvalidError(f"nobody can be called '{name}': that is what the service calls others")
+        raise WrongInputError(
+            f"nobody can be called '{name}': that is what the service calls others"
+        )
     if not 0 < len(name) <= longest or not can_be_shown(name):
-        raise InvalidError(
+        raise WrongInputError(
             f"a name has 1 to {longest} characters that can be seen, and no blank at its ends"
         )
     if "/" in name or name in (".", ".."):
-        raise InvalidError(f"nobody can be called '{name}': a name has no '/'")
+        raise WrongInputError(f"nobody can be called '{name}': a name has no '/'")
 
 
 def _enrolment(robot: str, code: str, expires: datetime) -> Enrolment:

@@ -8,7 +8,7 @@ from datetime import datetime, timedelta
 from uuid import UUID
 
 from mend.server.access.principal import Caller, Principal
-from mend.server.access.principals_file import KEPT_CHANGES, Change
+from mend.server.access.principals_file import KEPT_CHANGES, PrincipalChange
 from mend.server.access.roles import Role
 from mend.server.access.sessions import Session, Sessions
 from mend.server.access.tally import Tally
@@ -66,7 +66,7 @@ class DeedLog:
             self._journaled.pop(change, None)
             raise
 
-    async def access_changed(self, change: Change, author: ev.Author) -> None:
+    async def access_changed(self, change: PrincipalChange, author: ev.Author) -> None:
         """Somebody was given access or lost it, through the API; returns once it is journaled.
 
         Raises `ToldLaterError` where it cannot be now: it is as soon as it can be.
@@ -169,7 +169,7 @@ class DeedLog:
         """A sentence for each event that belongs to no run and could not be read."""
         return tuple(self._unreadable)
 
-    def take_changes(self, changes: Sequence[Change]) -> None:
+    def take_changes(self, changes: Sequence[PrincipalChange]) -> None:
         """Journal what was done to the file and is not in the journal, each change once.
 
         That is what was done on this machine, and what a kill kept the service from journaling.
@@ -215,7 +215,7 @@ class DeedLog:
         await asyncio.gather(*self._writing, return_exceptions=True)
 
 
-def _access_changed(change: Change, author: ev.Author) -> ev.AccessChanged:
+def _access_changed(change: PrincipalChange, author: ev.Author) -> ev.AccessChanged:
     return ev.AccessChanged(
         wall_time=change.when,
         what=change.what,

@@ -8,8 +8,8 @@ from pathlib import Path
 
 from mend.server.access.principal import Principal
 from mend.server.access.principals_file import (
-    Change,
     KeptPrincipal,
+    PrincipalChange,
     Principals,
     PrincipalsFileError,
     UnreadablePrincipalsError,
@@ -49,7 +49,7 @@ class KnownPrincipals:
         return self._expected or self._stamp is not None
 
     @property
-    def changes(self) -> Sequence[Change]:
+    def changes(self) -> Sequence[PrincipalChange]:
         """What was done to the file on this machine, the latest ones."""
         return self._principals.changes
 

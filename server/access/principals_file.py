@@ -23,6 +23,7 @@ from pydantic import (
 )
 from pydantic_core import ErrorDetails
 
+from mend.errors import MendError
 from mend.robots.link.shown_name import SHOWN
 from mend.server.access.principal import RESERVED
 from mend.server.access.roles import Role
@@ -55,7 +56,7 @@ RobotName = Annotated[
 Sha256 = Annotated[str, StringConstraints(pattern=SHA256)]
 
 
-class PrincipalsFileError(Exception):
+class PrincipalsFileError(MendError):
     """The file of principals cannot be used; one sentence per mistake."""
 
 
@@ -93,7 +94,7 @@ class Enrolment(FileModel):
 What = Literal["added", "rotated", "revoked", "enrolment_opened", "enrolled"]
 
 
-class Change(FileModel):
+class PrincipalChange(FileModel):
     """What was done to the file, and `by` whom.
 
     That is a user of the operating system, who counts as an admin, or through the API a principal,
@@ -115,7 +116,7 @@ class Principals(FileModel):
 
     principals: list[KeptPrincipal] = []
     enrolments: list[Enrolment] = []
-    changes: Annotated[list[Change], Field(max_length=KEPT_CHANGES)] = []
+    changes: Annotated[list[PrincipalChange], Field(max_length=KEPT_CHANGES)] = []
 
     @model_validator(mode="after")
     def _each_once(self) -> Self:

@@ -9,6 +9,7 @@ from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from mend.errors import ConflictError
 from mend.server.access.principal import Principal
 from mend.server.access.tokens import bytes_of
 
@@ -19,7 +20,7 @@ SESSIONS_AN_HOUR = 600
 """So many may be begun with one credential: each that is signed out leaves an event."""
 
 
-class TooManySessionsError(Exception):
+class TooManySessionsError(ConflictError):
     """Somebody signs in again and again; in `wait_s` they may once more."""
 
     def __init__(self, message: str, wait_s: float) -> None:

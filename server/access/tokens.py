@@ -12,6 +12,8 @@ from dataclasses import dataclass
 MARK = "mend"
 SECRET_BYTES = 32
 CODE_BYTES = 15
+LONGEST_DAYS = 3650
+"""For which a token may be good."""
 
 
 @dataclass(frozen=True, slots=True)

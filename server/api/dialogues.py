@@ -6,11 +6,11 @@ from uuid import UUID
 from fastapi import APIRouter, Body, Query
 from pydantic import BaseModel, ConfigDict, Field
 
+from mend.errors import WrongInputError
 from mend.server.access.principal import Caller
 from mend.server.api.parts import DialogueId, HelperName, Limit, Offset, WithCaller, WithParts
 from mend.server.api.problems import documented
 from mend.server.api.repeatable import RepeatableRoute
-from mend.server.errors import InvalidError
 from mend.server.journal.events import Answered, DeadlineExtended
 from mend.server.runtime.views import DialogueView
 
@@ -127,9 +127,9 @@ async def release_dialogue(
 
 
 def _helper(caller: Caller, declared: str | None) -> str:
-    """What the helper is called. Raises `InvalidError` where nobody says so."""
+    """What the helper is called. Raises `WrongInputError` where nobody says so."""
     name = caller.helper_name(declared)
     if name is None:
         missing = "body.helper: is missing: with this token everybody says who it is"
-        raise InvalidError(missing, [missing])
+        raise WrongInputError(missing, [missing])
     return name

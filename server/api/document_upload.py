@@ -2,8 +2,8 @@
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
+from mend.errors import WrongInputError
 from mend.server.api.mistakes import validation_sentences
-from mend.server.errors import InvalidError
 from mend.tasks.scene import Name
 
 
@@ -17,9 +17,9 @@ class DocumentUpload(BaseModel):
 
 
 def read_upload(body: bytes) -> DocumentUpload:
-    """What a body in JSON says. Raises `InvalidError`."""
+    """What a body in JSON says. Raises `WrongInputError`."""
     try:
         return DocumentUpload.model_validate_json(body)
     except ValidationError as error:
         sentences = validation_sentences(error.errors(include_url=False))
-        raise InvalidError("the upload cannot be used", sentences) from None
+        raise WrongInputError("the upload cannot be used", sentences) from None

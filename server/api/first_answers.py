@@ -5,10 +5,10 @@ That is for requests whose answer was not kept, as the service ended before it w
 
 from pydantic import BaseModel
 
+from mend.errors import ConflictError
 from mend.server.api.json_answer import JSON
 from mend.server.api.parts import Parts
 from mend.server.documents import DocumentKind, DocumentLibrary
-from mend.server.errors import ConflictError
 from mend.server.journal import events as ev
 from mend.server.journal.keyed_request import FirstAnswer
 from mend.server.runtime.journaled_tree import read_without_tree

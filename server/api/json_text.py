@@ -5,12 +5,14 @@ import math
 from collections.abc import Iterable
 from typing import Any, NoReturn
 
+from mend.errors import MendError
 
-class NotJsonError(Exception):
+
+class NotJsonError(MendError):
     """What was sent is not JSON, or cannot be read; the message is one clear sentence."""
 
 
-class TooManyValuesError(Exception):
+class TooManyValuesError(MendError):
     """What was sent has more values than anybody may send; the message says how many that is."""
 
 

@@ -5,6 +5,7 @@ from uuid import UUID
 from fastapi import APIRouter
 from starlette.websockets import WebSocket
 
+from mend.errors import NotFoundError, UnreadableError
 from mend.server.api.helper_connection import (
     GOING_AWAY,
     THE_END,
@@ -13,7 +14,6 @@ from mend.server.api.helper_connection import (
     until_one_ends,
 )
 from mend.server.api.problems import problem, problem_of
-from mend.server.errors import NotFoundError, UnreadableError
 from mend.server.poses.feed import RunPoses
 from mend.server.poses.layout import Layout
 

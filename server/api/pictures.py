@@ -4,9 +4,9 @@ from uuid import UUID
 
 from fastapi import APIRouter, Response
 
+from mend.errors import NotFoundError
 from mend.server.api.parts import WithParts
 from mend.server.api.problems import documented
-from mend.server.errors import NotFoundError
 
 router = APIRouter(prefix="/api/pictures", tags=["pictures"])
 

@@ -5,9 +5,9 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query, Response
 
+from mend.errors import NotFoundError
 from mend.server.api.parts import RunId, WithParts
 from mend.server.api.problems import documented
-from mend.server.errors import NotFoundError
 from mend.server.poses.frame import framed
 from mend.server.poses.layout import Layout
 

@@ -9,10 +9,11 @@ from fastapi import APIRouter, Path, Query
 from pydantic import AwareDatetime, BaseModel, ConfigDict, Field
 from starlette.concurrency import run_in_threadpool
 
-from mend.server.access.changes import LONGEST_DAYS, PrincipalsEditor
+from mend.server.access.changes import PrincipalsEditor
 from mend.server.access.deeds import DEEDS, Deed, deed_of
 from mend.server.access.principals_file import PrincipalName, RobotName
 from mend.server.access.roles import Role
+from mend.server.access.tokens import LONGEST_DAYS
 from mend.server.api.parts import After, Limit, Parts, WithCaller, WithParts
 from mend.server.api.problems import ProblemError, documented
 from mend.server.api.repeatable import SecretRoute
@@ -20,6 +21,7 @@ from mend.server.journal.events import Author
 from mend.server.journal.journal import JournalReadError, JournalWriteError
 from mend.server.journal.subscriptions import Record
 from mend.server.runtime.journaled_tree import read_without_tree
+from mend.server.runtime.views import View
 
 router = APIRouter(prefix="/api/access", tags=["access"], route_class=SecretRoute)
 
@@ -60,10 +62,6 @@ class NewEnrolment(Strict):
 
     robot: RobotName = Field(examples=["arm-1"])
     minutes: Annotated[float, Field(gt=0, le=7 * 24 * 60, allow_inf_nan=False)] = 15
-
-
-class View(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
 
 
 class PrincipalView(View):

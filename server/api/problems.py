@@ -4,7 +4,7 @@ import json
 import logging
 from collections.abc import Mapping
 from http import HTTPStatus
-from typing import Any
+from typing import Any, cast
 from uuid import UUID
 
 from fastapi import FastAPI, Request
@@ -13,6 +13,15 @@ from pydantic import BaseModel, ConfigDict
 from starlette.exceptions import HTTPException
 from starlette.responses import Response
 
+from mend.errors import (
+    ConflictError,
+    MendError,
+    NotFoundError,
+    RefusalError,
+    UnavailableError,
+    UnreadableError,
+    WrongInputError,
+)
 from mend.server.access.changes import EnrolmentRefusedError
 from mend.server.access.deed_log import ToldLaterError
 from mend.server.access.principals_file import PrincipalsFileError
@@ -21,15 +30,7 @@ from mend.server.api.mistakes import MOST_TOLD, validation_sentences
 from mend.server.api.parts import parts_of
 from mend.server.api.safe_headers import SAFE_HEADERS
 from mend.server.descriptors import NO_DESCRIPTOR
-from mend.server.errors import (
-    BusyError,
-    ConflictError,
-    InvalidError,
-    LostRaceError,
-    NotFoundError,
-    ServiceError,
-    UnreadableError,
-)
+from mend.server.errors import BusyError, LostRaceError
 from mend.server.journal.journal import JournalClosedError, JournalReadError, JournalWriteError
 from mend.server.limits import LimitName
 from mend.server.refusals import Refusals
@@ -42,9 +43,9 @@ STATUSES: tuple[tuple[type[Exception], int], ...] = (
     (EnrolmentRefusedError, 403),
     (NotFoundError, 404),
     (ConflictError, 409),
-    (InvalidError, 422),
+    (WrongInputError, 422),
     (UnreadableError, 500),
-    (BusyError, 503),
+    (UnavailableError, 503),
     (JournalReadError, 500),
     (PrincipalsFileError, 503),
     (JournalWriteError, 503),
@@ -70,7 +71,7 @@ class Problem(BaseModel):
     errors: list[str] | None = None
 
 
-class ProblemError(Exception):
+class ProblemError(MendError):
     """A refusal that the API itself decides on; `limit` is the one that was reached, if any."""
 
     def __init__(
@@ -103,15 +104,15 @@ def problem_of(error: Exception) -> Problem | None:
         return None
     if isinstance(error, LostRaceError):
         return problem(status, str(error), answered_by=error.answered_by, prompt=error.prompt)
-    if isinstance(error, InvalidError):
-        return problem(status, str(error), errors=error.problems or [str(error)])
+    if isinstance(error, WrongInputError):
+        return problem(status, str(error), errors=error.sentences or [str(error)])
     return problem(status, str(error))
 
 
 def count_refusal(error: Exception, refusals: Refusals) -> None:
     """Count what was refused because a limit was reached."""
-    if isinstance(error, ServiceError | ProblemError) and error.limit is not None:
-        refusals.note(error.limit)
+    if isinstance(error, RefusalError | ProblemError) and error.limit is not None:
+        refusals.note(cast(LimitName, error.limit))
 
 
 def problem_text(refusal: Problem) -> bytes:
@@ -146,14 +147,7 @@ def answer_errors_with_problems(app: FastAPI) -> None:
     app.add_exception_handler(RequestValidationError, _validation_error)
     app.add_exception_handler(ProblemError, _problem_error)
     app.add_exception_handler(OSError, _no_descriptor)
-    for kind in (
-        ServiceError,
-        JournalReadError,
-        JournalWriteError,
-        JournalClosedError,
-        PrincipalsFileError,
-    ):
-        app.add_exception_handler(kind, _service_error)
+    app.add_exception_handler(MendError, _mend_error)
     app.add_exception_handler(Exception, _defect)
 
 
@@ -181,9 +175,10 @@ async def _problem_error(request: Request, error: Exception) -> Response:
     return problem_response(problem(error.status, str(error)), error.headers)
 
 
-async def _service_error(request: Request, error: Exception) -> Response:
+async def _mend_error(request: Request, error: Exception) -> Response:
     refusal = problem_of(error)
-    assert refusal is not None, "every service error has a status"
+    if refusal is None:
+        return await _defect(request, error)
     count_refusal(error, parts_of(request).refusals)
     return problem_response(refusal, _retry_after(error))
 

@@ -122,23 +122,23 @@ async def _end_when(gone: asyncio.Event, channel: StarletteChannel) -> None:
 
 
 @dataclass(frozen=True, slots=True)
-class _Shown:
+class _ShownRobot:
     """As which robot a connection may say hello; `caller` None: a process of this service's."""
 
     robot: Pass
     caller: Caller | None
 
 
-async def _shown(websocket: WebSocket, access: Access) -> _Shown | Response:
+async def _shown(websocket: WebSocket, access: Access) -> _ShownRobot | Response:
     if "origin" in websocket.headers:
         return problem_response(problem(403, "robots connect without an Origin header"))
     own = access.own_robot(websocket)
     if own is not None:
-        return _Shown(own, None)
+        return _ShownRobot(own, None)
     admission = await access.in_time(access.by_bearer(websocket))
     if admission.wait_s:
         return problem_response(problem(429, admission.too_many), admission.retry_after)
     robot = None if admission.caller is None else access.robot_pass(admission.caller)
     if robot is None:
         return problem_response(problem(401, NO_CREDENTIAL), {"WWW-Authenticate": "Bearer"})
-    return _Shown(robot, admission.caller)
+    return _ShownRobot(robot, admission.caller)

@@ -6,9 +6,9 @@ from uuid import UUID
 from fastapi import APIRouter, Path, Response
 from pydantic import BaseModel, ConfigDict
 
+from mend.errors import NotFoundError
 from mend.server.api.parts import DialogueId, Parts, WithParts
 from mend.server.api.problems import ProblemError, documented
-from mend.server.errors import NotFoundError
 from mend.server.speech.commands import PHRASES, Command
 from mend.server.speech.ear import NoEars
 from mend.server.speech.phrases import FIXED, effect_text, help_text

@@ -7,6 +7,7 @@ from fastapi import APIRouter
 from pydantic import BaseModel
 from starlette.websockets import WebSocket
 
+from mend.errors import IllegalTransitionError, RefusalError
 from mend.server.api.helper_connection import HelperConnection, HelperQuery
 from mend.server.api.helper_messages import Auth
 from mend.server.api.problems import count_refusal, problem, problem_of
@@ -23,16 +24,9 @@ from mend.server.api.speech_messages import (
     Spoken,
     speech_client_message,
 )
-from mend.server.errors import ServiceError
 from mend.server.speech import conversation as talking
-from mend.server.speech.conversation import (
-    Act,
-    Conversation,
-    EndReason,
-    IllegalTransitionError,
-    Saying,
-)
-from mend.server.speech.ear import NoEars, TooManyConversationsError
+from mend.server.speech.conversation import Act, EndReason, Saying, SpokenConversation
+from mend.server.speech.ear import NoEars
 from mend.server.speech.phrases import help_text
 from mend.server.speech.question import open_question, wait_until_over
 from mend.server.speech.talk import Talk
@@ -89,11 +83,9 @@ class SpeechSocket(HelperConnection[HelperQuery]):
             await self._do(message)
         except IllegalTransitionError as error:
             await self._refuse(problem(409, str(error)), message.id)
-        except TooManyConversationsError as error:
-            await self._refuse(problem(503, str(error)), message.id)
-        except ServiceError as error:
+        except RefusalError as error:
             refusal = problem_of(error)
-            assert refusal is not None, "every other service error has a status"
+            assert refusal is not None, "every refusal has a status"
             count_refusal(error, self._parts.refusals)
             await self._refuse(refusal, message.id)
 
@@ -128,7 +120,7 @@ class SpeechSocket(HelperConnection[HelperQuery]):
         )
         aloud = Aloud(message.dialogue, message.prompt, not self._silent)
         self._talk = Talk(
-            Conversation(question.text, help_text(question.answers), time.monotonic),
+            SpokenConversation(question.text, help_text(question.answers), time.monotonic),
             ears,
             lambda act: self._send(aloud.message(act)),
             over,
@@ -161,16 +153,16 @@ class Aloud:
 
     def message(self, act: Act) -> BaseModel:
         match act:
-            case talking.Say(what=what, text=text):
+            case talking.SayAloud(what=what, text=text):
                 return Say(what=what, text=text, audio=self._audio[what] if self._audible else None)
-            case talking.Listen():
+            case talking.StartListening():
                 return Listening()
             case talking.Hear():
                 return Hearing()
             case talking.Understood(command=command, phrase=phrase, latency_s=latency_s):
                 latency_ms = round(latency_s * 1000, 1)
                 return HeardMessage(command=command, phrase=phrase, latency_ms=latency_ms)
-            case talking.GiveUp():
+            case talking.StopTrying():
                 return GaveUp()
             case talking.End(reason=reason):
                 return Ended(reason=reason)

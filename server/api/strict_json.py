@@ -8,10 +8,10 @@ from starlette.exceptions import HTTPException
 from starlette.requests import Request
 from starlette.responses import Response
 
+from mend.errors import RefusalError
 from mend.server.api.json_text import NotJsonError, TooManyValuesError, may_have, read_json
 from mend.server.api.parts import parts_of
 from mend.server.api.problems import ProblemError
-from mend.server.errors import ServiceError
 from mend.server.off_loop import MUCH_CHARS
 
 OTHER_VALUES = 1000
@@ -48,7 +48,7 @@ class StrictJsonRoute(APIRoute):
                 return await handle(StrictJsonRequest(request.scope, request.receive))
             except HTTPException as error:
                 # What goes wrong with a body is told as one thing, whatever it was.
-                if isinstance(error.__cause__, ProblemError | ServiceError):
+                if isinstance(error.__cause__, ProblemError | RefusalError):
                     raise error.__cause__ from None
                 raise
 

@@ -2,35 +2,20 @@
 
 import os
 import sys
-from collections.abc import Callable
 from importlib.metadata import version
 from typing import Annotated
 
 import typer
 
-from mend.server.cli.access import access_app
-from mend.server.cli.check import check
 from mend.server.cli.failures import CommandLineError
-from mend.server.cli.journal import journal_app
-from mend.server.cli.localize import localize
-from mend.server.cli.map import maps_app
-from mend.server.cli.replay import replay
-from mend.server.cli.run import run
-from mend.server.cli.scenarios import scenarios
-from mend.server.cli.scene import scene_app
-from mend.server.cli.scenes import scenes
-from mend.server.cli.schedule import schedule
-from mend.server.cli.schema import schema
-from mend.server.cli.serve import serve
-from mend.server.cli.talk import talk
-from mend.server.cli.train_colors import train_colors
-from mend.server.cli.trees import trees
+from mend.server.cli.lazy_commands import LazyGroup, add_commands
 
 PIPE_CLOSED = 141
 """Exit code when whoever read the output went away (128 and the number of SIGPIPE)."""
 
 app = typer.Typer(
     name="mend",
+    cls=LazyGroup,
     help="Run robots through task trees, and ask a person for help when they fail.",
     no_args_is_help=True,
     rich_markup_mode=None,
@@ -55,27 +40,7 @@ def common_options(
     """Run robots through task trees, and ask a person for help when they fail."""
 
 
-COMMANDS: dict[str, tuple[Callable[..., None], str]] = {
-    "run": (run, "Run a task tree and print what happens."),
-    "serve": (serve, "Serve the API, the helper console, the robots."),
-    "talk": (talk, "Answer a robot by voice, from a terminal."),
-    "check": (check, "Find the mistakes of a file."),
-    "trees": (trees, "List the task trees that there are."),
-    "scenes": (scenes, "List the scenes that there are."),
-    "scenarios": (scenarios, "List the scenarios that there are."),
-    "schema": (schema, "Print a schema as JSON."),
-    "schedule": (schedule, "Plan deliveries for several robots."),
-    "localize": (localize, "Follow a robot through a recorded drive."),
-    "replay": (replay, "Tell a run again from its journal."),
-    "train-colors": (train_colors, "Learn the colours of objects."),
-}
-
-for name, (command, summary) in COMMANDS.items():
-    app.command(name, short_help=summary)(command)
-app.add_typer(access_app)
-app.add_typer(maps_app)
-app.add_typer(journal_app)
-app.add_typer(scene_app)
+add_commands(app)
 
 
 def main() -> None:

@@ -5,21 +5,22 @@ from collections.abc import Sequence
 from datetime import UTC, datetime
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from mend.server.access.changes import LONGEST_DAYS, PrincipalsEditor
-from mend.server.access.principals_file import read_principals
 from mend.server.access.roles import Role
+from mend.server.access.tokens import LONGEST_DAYS
 from mend.server.cli.failures import NOT_FINISHED, CommandLineError, told_plainly
-from mend.server.cli.local_user import local_user
-from mend.server.cli.output import print_rows
-from mend.server.settings import Settings, load_settings
+from mend.server.cli.rows import print_rows
+
+if TYPE_CHECKING:
+    from mend.server.access.changes import PrincipalsEditor
+    from mend.server.settings import Settings
 
 MOST_DAMAGE_TOLD = 20
 
-access_app = typer.Typer(
+app = typer.Typer(
     name="access",
     help="Say who may do what, enrol robots, and see who did what.",
     short_help="Say who may do what, and see who did what.",
@@ -44,7 +45,7 @@ class PersonsRole(StrEnum):
     ADMIN = "admin"
 
 
-@access_app.command()
+@app.command()
 def add(
     name: Name,
     role: Annotated[PersonsRole, typer.Option(help="What they may do; each more than the last.")],
@@ -53,17 +54,19 @@ def add(
 ) -> None:
     """Add a principal and print its token, which is kept nowhere else."""
     with told_plainly():
-        settings = load_settings(config)
+        settings = _settings(config)
         token = _editor(settings).add(name, Role(role), datetime.now(UTC), expires)
         typer.echo(token)
         _warn_without_admin(settings)
 
 
-@access_app.command("list")
+@app.command("list")
 def list_principals(config: Config = None) -> None:
     """List the principals and the robots that have a credential of their own."""
+    from mend.server.access.principals_file import read_principals
+
     with told_plainly():
-        principals = read_principals(load_settings(config).principals_path)
+        principals = read_principals(_settings(config).principals_path)
     now = datetime.now(UTC)
     print_rows(
         [
@@ -80,21 +83,21 @@ def list_principals(config: Config = None) -> None:
     )
 
 
-@access_app.command()
+@app.command()
 def rotate(name: Name, expires: Expires = None, config: Config = None) -> None:
     """Give a principal a new token and print it; the old one and its sessions end."""
     with told_plainly():
-        typer.echo(_editor(load_settings(config)).rotate(name, datetime.now(UTC), expires))
+        typer.echo(_editor(_settings(config)).rotate(name, datetime.now(UTC), expires))
 
 
-@access_app.command()
+@app.command()
 def revoke(name: Name, config: Config = None) -> None:
     """End a principal: its token, its sessions and its connections."""
     with told_plainly():
-        _editor(load_settings(config)).revoke(name, datetime.now(UTC))
+        _editor(_settings(config)).revoke(name, datetime.now(UTC))
 
 
-@access_app.command()
+@app.command()
 def enrol(
     robot: Annotated[str, typer.Argument(metavar="ROBOT", help="The robot's name.")],
     minutes: Annotated[float, typer.Option(min=0.1, max=10_080, help="How long it is good.")] = 15,
@@ -102,12 +105,12 @@ def enrol(
 ) -> None:
     """Print a code with which a robot fetches its own credential, once."""
     with told_plainly():
-        settings = load_settings(config)
+        settings = _settings(config)
         typer.echo(_editor(settings).open_enrolment(robot, datetime.now(UTC), minutes))
         _warn_without_admin(settings)
 
 
-@access_app.command()
+@app.command()
 def audit(
     journal: Annotated[Path | None, typer.Option(help="The journal's file.")] = None,
     who: Annotated[str | None, typer.Option(help="Only what this principal did.")] = None,
@@ -119,11 +122,10 @@ def audit(
     Where the journal is not what was committed the deeds concerned are marked as DAMAGED, and the
     exit code is 1.
     """
-    # Imported only here: events bring half of the service with them.
     from mend.server.access.deeds import audit_of
 
     with told_plainly():
-        audit = audit_of(journal or load_settings(config).journal_path)
+        audit = audit_of(journal or _settings(config).journal_path)
     found = [each for each in audit.deeds if who in (None, each.who)]
     if as_json:
         for each in found:
@@ -157,12 +159,23 @@ def _damaged(damage: Sequence[str], marked: int) -> str:
     return "\n".join([first, *told])
 
 
-def _editor(settings: Settings) -> PrincipalsEditor:
+def _settings(config: Path | None) -> "Settings":
+    from mend.server.settings import load_settings
+
+    return load_settings(config)
+
+
+def _editor(settings: "Settings") -> "PrincipalsEditor":
+    from mend.server.access.changes import PrincipalsEditor
+    from mend.server.cli.local_user import local_user
+
     return PrincipalsEditor(settings.principals_path, by=local_user())
 
 
-def _warn_without_admin(settings: Settings) -> None:
+def _warn_without_admin(settings: "Settings") -> None:
     """Once there are principals a service asks everybody for a token; somebody should have one."""
+    from mend.server.access.principals_file import read_principals
+
     if settings.token is not None:
         return
     principals = read_principals(settings.principals_path).principals

@@ -2,30 +2,12 @@
 
 import json
 import re
-from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from mend.server.cli.failures import NOT_FINISHED, CommandLineError, told_plainly
-from mend.server.cli.mistakes import (
-    Checked,
-    delivery_mistakes,
-    in_worlds,
-    scenario_mistakes,
-    scene_mistakes,
-    task_mistakes,
-)
-from mend.server.cli.task_files import read_text
-from mend.server.scene_checks import WorldChecks, load_world_checks
-
-CHECKERS: Mapping[str, Callable[[Path, WorldChecks], Checked]] = {
-    "task": task_mistakes,
-    "scene": scene_mistakes,
-    "scenario": scenario_mistakes,
-    "delivery": delivery_mistakes,
-}
 
 DELIVERY_KEYS = {"travel", "robots", "items"}
 SCENE_KEYS = {"objects", "places"}
@@ -54,6 +36,10 @@ def check(
     Also what the robot of a world cannot do: parts that it cannot grasp or tell apart, that it
     cannot reach, that have no room. The exit code is 1 if there are any mistakes.
     """
+    from mend.server.cli.mistakes import CHECKERS, in_worlds
+    from mend.server.cli.task_files import read_text
+    from mend.server.scene_checks import load_world_checks
+
     with told_plainly():
         kind = kind_of_file(read_text(file))
         worlds = load_world_checks()

@@ -4,21 +4,21 @@ import asyncio
 from collections.abc import Iterable
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 from uuid import UUID
 
 import typer
-from pydantic import ValidationError
 
 from mend.server.cli.failures import NOT_FINISHED, CommandLineError, told_plainly
-from mend.server.journal.events import Event
-from mend.server.journal.full_check import Finding
-from mend.server.retention import KeepSettings
-from mend.server.settings import load_settings
+
+if TYPE_CHECKING:
+    from mend.server.journal.events import Event
+    from mend.server.journal.full_check import Finding
+    from mend.server.retention import KeepSettings
 
 MOST_RUNS_NAMED = 10
 
-journal_app = typer.Typer(
+app = typer.Typer(
     name="journal",
     help="Check, prune, back up and restore a journal.",
     no_args_is_help=True,
@@ -31,7 +31,7 @@ JournalFile = Annotated[
 Force = Annotated[bool, typer.Option("--force", help="Replace the file that is there.")]
 
 
-@journal_app.command("check", short_help="Find what is damaged in a journal.")
+@app.command("check", short_help="Find what is damaged in a journal.")
 def check(
     file: Annotated[
         Path | None, typer.Argument(metavar="[FILE]", help="The service's own without it.")
@@ -50,7 +50,7 @@ def check(
         path = _journal(file)
         scripts = load_scripts()
 
-        def fold(run: UUID, events: Iterable[Event]) -> None:
+        def fold(run: UUID, events: "Iterable[Event]") -> None:
             state = None
             for event in events:
                 state = fold_event(run, state, event, scripts)
@@ -63,7 +63,7 @@ def check(
     typer.echo(f"{path}: {found.runs} runs, {found.events} events, nothing is wrong")
 
 
-def _told(finding: Finding) -> str:
+def _told(finding: "Finding") -> str:
     named = sorted(run for run in finding.runs if run not in finding.sentence)
     if not named:
         return finding.sentence
@@ -72,7 +72,7 @@ def _told(finding: Finding) -> str:
     return f"{finding.sentence} [runs {runs}]"
 
 
-@journal_app.command("prune", short_help="Delete ended runs that are not kept.")
+@app.command("prune", short_help="Delete ended runs that are not kept.")
 def prune(
     days: Annotated[
         float | None, typer.Option(help="Keep runs that ended within so many days.")
@@ -109,8 +109,13 @@ def prune(
     )
 
 
-def _keep(**given: Any) -> KeepSettings:
+def _keep(**given: Any) -> "KeepSettings":
     """What the options say; what the settings say without any."""
+    from pydantic import ValidationError
+
+    from mend.server.retention import KeepSettings
+    from mend.server.settings import load_settings
+
     chosen = {name: value for name, value in given.items() if value is not None}
     if not chosen:
         return load_settings().keep
@@ -124,7 +129,7 @@ def _keep(**given: Any) -> KeepSettings:
         raise CommandLineError("\n".join(sentences)) from error
 
 
-@journal_app.command("backup", short_help="Copy a journal, also while it is written.")
+@app.command("backup", short_help="Copy a journal, also while it is written.")
 def backup(
     target: Annotated[Path, typer.Argument(metavar="TARGET", help="The copy's file.")],
     journal: JournalFile = None,
@@ -139,7 +144,7 @@ def backup(
     typer.echo(f"{target}: a copy of {path}")
 
 
-@journal_app.command("restore", short_help="Put a backup in a journal's place.")
+@app.command("restore", short_help="Put a backup in a journal's place.")
 def restore(
     backup: Annotated[Path, typer.Argument(metavar="BACKUP", help="What `backup` has made.")],
     journal: JournalFile = None,
@@ -155,4 +160,6 @@ def restore(
 
 
 def _journal(file: Path | None) -> Path:
+    from mend.server.settings import load_settings
+
     return file if file is not None else load_settings().journal_path

@@ -8,12 +8,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 from uuid import UUID
 
+from mend.errors import ConflictError
 from mend.server.cli.failures import INTERRUPTED, NOT_FINISHED, CommandLineError
 from mend.server.cli.local_user import local_author
 from mend.server.cli.output import EventOutput, JsonLines
 from mend.server.cli.reports import write_run_report
 from mend.server.cli.terminal_helper import TerminalHelper
-from mend.server.errors import ConflictError
 from mend.server.journal import events as ev
 from mend.server.journal.reader import JournalReader
 from mend.server.journal.subscriptions import SubscriptionOverflowError

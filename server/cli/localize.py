@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from mend.server.cli.failures import INTERRUPTED, CommandLineError, told_plainly
-from mend.server.cli.output import print_rows
+from mend.server.cli.rows import print_rows
 
 if TYPE_CHECKING:
     from rich.console import Console

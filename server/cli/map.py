@@ -8,7 +8,7 @@ import typer
 from mend.server.cli.failures import CommandLineError, told_plainly
 from mend.server.cli.localize import checked_suffix, progress
 
-maps_app = typer.Typer(
+app = typer.Typer(
     name="map", help="Build and clean up vector maps.", no_args_is_help=True, rich_markup_mode=None
 )
 
@@ -18,7 +18,7 @@ OutputFile = Annotated[
 PlotFile = Annotated[Path | None, typer.Option(help="Draw the map, as .png or .svg.")]
 
 
-@maps_app.command("build", short_help="Build a vector map from a recorded drive.")
+@app.command("build", short_help="Build a vector map from a recorded drive.")
 def build(
     log: Annotated[Path, typer.Argument(metavar="LOG", help="A CARMEN, Wean Hall or CSV log.")],
     output: OutputFile,
@@ -59,7 +59,7 @@ def build(
     typer.echo(f"{output}: {len(vector_map)} segments, {vector_map.lengths.sum():.1f} m of walls")
 
 
-@maps_app.command("clean", short_help="Clean a vector map up.")
+@app.command("clean", short_help="Clean a vector map up.")
 def clean(
     map_file: Annotated[Path, typer.Argument(metavar="MAP", help="A vector map.")],
     output: OutputFile,

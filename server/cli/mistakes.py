@@ -1,6 +1,6 @@
 """Every mistake of a file, one `file:line: sentence` each, also what no robot could do."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -76,6 +76,14 @@ def delivery_mistakes(path: Path, worlds: WorldChecks) -> Checked:  # noqa: ARG0
     except InvalidFileError as error:
         return Checked(str(error).splitlines())
     return Checked([each.describe(str(path)) for each in delivery.contradictions])
+
+
+CHECKERS: Mapping[str, Callable[[Path, WorldChecks], Checked]] = {
+    "task": task_mistakes,
+    "scene": scene_mistakes,
+    "scenario": scenario_mistakes,
+    "delivery": delivery_mistakes,
+}
 
 
 def _in_scene(problems: InWorlds, scene: SceneSource) -> Checked:

@@ -3,17 +3,15 @@
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 from uuid import UUID
 
 import typer
 
 from mend.server.cli.failures import CommandLineError, told_plainly
-from mend.server.cli.journals import known_journals
-from mend.server.cli.output import EventOutput, JsonLines, LiveTranscript
-from mend.server.cli.reports import write_run_report
-from mend.server.journal.migrations import JournalSchemaError
-from mend.server.journal.reader import JournalReader
+
+if TYPE_CHECKING:
+    from mend.server.cli.output import EventOutput
 
 MAX_LISTED = 5
 
@@ -32,6 +30,11 @@ def replay(
     ] = None,
 ) -> None:
     """Print the transcript of a run that a journal holds, and write its report."""
+    from mend.server.cli.journals import known_journals
+    from mend.server.cli.output import JsonLines, LiveTranscript
+    from mend.server.cli.reports import write_run_report
+    from mend.server.journal.reader import JournalReader
+
     with told_plainly():
         found = _find([journal] if journal else known_journals(), run, exact=journal is not None)
         output: EventOutput = JsonLines() if json else LiveTranscript()
@@ -72,6 +75,9 @@ def _find(journals: Sequence[Path], prefix: str, *, exact: bool) -> _Found:
 
 def _runs_of(journal: Path, *, exact: bool) -> list[UUID]:
     """The runs of a journal; a file that is none counts only if it was asked for."""
+    from mend.server.journal.migrations import JournalSchemaError
+    from mend.server.journal.reader import JournalReader
+
     try:
         with JournalReader(journal) as reader:
             return reader.runs()

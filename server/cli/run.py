@@ -1,28 +1,14 @@
 """`mend run`: one run of a task tree, without a server, told live."""
 
 import asyncio
-import secrets
 import sys
 from functools import partial
-from json import loads
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
-from pydantic import SecretStr, ValidationError
-from pydantic_core import ErrorDetails
 
-from mend.server.cli.answers import Answers, read_answers
 from mend.server.cli.failures import CommandLineError, told_plainly
-from mend.server.cli.journals import new_run_journal
-from mend.server.cli.live_run import LiveRun
-from mend.server.cli.output import JsonLines, LiveTranscript
-from mend.server.cli.run_files import RunFiles, read_run_files
-from mend.server.errors import ImpossibleError
-from mend.server.runtime.requests import RunRequest
-from mend.server.settings import Settings, load_settings
-from mend.tasks.scenario import Person, Scenario
-from mend.tasks.validation import what_is_right
 
 
 def run(
@@ -91,30 +77,41 @@ def run(
     also finishes without a part that a helper said to leave out; the last line names it, and who
     said so. Ctrl-C aborts the run.
     """
-    # Imported only here: the whole service would make every other command wait.
+    from mend.server.cli.live_run import LiveRun
+    from mend.server.cli.output import JsonLines, LiveTranscript
+    from mend.server.cli.run_files import read_run_files
+    from mend.server.cli.run_request import (
+        answers_given,
+        read_options,
+        read_request,
+        read_speed,
+        settings_of_its_own,
+    )
     from mend.server.composition import open_service
+    from mend.server.errors import ImpossibleError
+    from mend.tasks.scenario import Person
 
     with told_plainly():
         files = read_run_files(tree, scene, scenario)
-        given = _answers(answers, files.scenario)
+        given = answers_given(answers, files.scenario)
         asks_at_terminal = given is None and sys.stdin.isatty() and not json
-        request = _request(
+        request = read_request(
             tree=files.tree,
             world=world,
             scene=files.scene,
             scenario=files.scenario.name if files.scenario else None,
-            speed=_read_speed(speed),
+            speed=read_speed(speed),
             seed=seed,
             answers="none" if given is None and not asks_at_terminal else given,
             interventions=interventions,
             max_attempts=max_attempts,
-            world_options=_read_options(option or []),
+            world_options=read_options(option or []),
             person=None if person is None else Person(acts=person),
         )
         if report is not None:
             # A report that cannot be written is told before the run, not after it.
             report.parent.mkdir(parents=True, exist_ok=True)
-        settings = _settings(journal, files)
+        settings = settings_of_its_own(journal, files)
         output = JsonLines() if json else LiveTranscript()
         live_run = LiveRun(
             partial(open_service, given=files.given),
@@ -130,68 +127,3 @@ def run(
             told = [str(error), *files.described(error.scene_problems)]
             raise CommandLineError("\n".join(told)) from error
     raise typer.Exit(exit_code)
-
-
-def _settings(journal: Path | None, files: RunFiles) -> Settings:
-    """A service that only this process can use: loopback, a free port, a token of its own."""
-    own = load_settings(
-        host="127.0.0.1",
-        port=0,
-        token=SecretStr(secrets.token_urlsafe(32)),
-        log_level="warning",
-    )
-    chosen = journal or new_run_journal(own, files.tree)
-    return own.model_copy(update={"journal": chosen, "scenes": files.scenes or own.scenes})
-
-
-def _answers(text: str | None, scenario: Scenario | None) -> Answers | None:
-    """The scripted answers of the command line, else of the scenario, else None."""
-    if text is not None:
-        return read_answers(text)
-    return list(scenario.answers) or None if scenario is not None else None
-
-
-def _read_speed(text: str) -> Any:
-    if text == "max":
-        return text
-    try:
-        return float(text)
-    except ValueError:
-        raise CommandLineError(f"--speed is '{text}'; it has to be a number or max") from None
-
-
-def _read_options(given: list[str]) -> dict[str, Any]:
-    options: dict[str, Any] = {}
-    for each in given:
-        name, equals, text = each.partition("=")
-        if not (name and equals):
-            raise CommandLineError(f"--option is '{each}'; it has to be NAME=VALUE")
-        if name in options:
-            raise CommandLineError(f"--option '{name}' is given twice")
-        options[name] = _read_value(text)
-    return options
-
-
-def _read_value(text: str) -> Any:
-    """A number, true or false; anything else is text."""
-    try:
-        value = loads(text)
-    except ValueError:
-        return text
-    return value if isinstance(value, (bool, int, float)) else text
-
-
-def _request(**fields: Any) -> RunRequest:
-    try:
-        return RunRequest(**fields)
-    except ValidationError as error:
-        wrong: dict[str, list[ErrorDetails]] = {}
-        for each in error.errors():
-            wrong.setdefault(str(each["loc"][0]), []).append(each)
-        raise CommandLineError(
-            "\n".join(
-                f"{'TREE' if name == 'tree' else '--' + name.replace('_', '-')} "
-                f"{what_is_right(mistakes, None)}"
-                for name, mistakes in wrong.items()
-            )
-        ) from error

@@ -10,14 +10,9 @@ from mend.server.cli.task_files import SceneSource, read_task, read_text
 from mend.server.documents import DocumentKind
 from mend.server.fixed_documents import GivenFiles
 from mend.tasks.library import TREES
+from mend.tasks.problem import InvalidFileError
 from mend.tasks.scenario import Scenario
-from mend.tasks.scenario_file import (
-    Misfit,
-    ScenarioFileError,
-    built_in_scenario,
-    find_misfits,
-    read_scenario_file,
-)
+from mend.tasks.scenario_file import Misfit, built_in_scenario, find_misfits, read_scenario_file
 from mend.tasks.scene import Scene
 from mend.tasks.scene_file import built_in_scene, check_scene_file, read_scene_file
 from mend.tasks.scene_problem import SceneProblem
@@ -123,7 +118,7 @@ def _read_scenario(
     if task is not None:
         found = _misfits(scenario, task, scene or task.scene)
         if found:
-            raise ScenarioFileError(argument, [read.problem(each) for each in found])
+            raise InvalidFileError(argument, [read.problem(each) for each in found])
     texts[DocumentKind.SCENARIO] = {scenario.name: read_text(Path(argument))}
     return scenario
 

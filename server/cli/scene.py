@@ -5,19 +5,17 @@ from typing import Annotated
 import typer
 import yaml
 
-from mend.server.cli.failures import CommandLineError, told_plainly
+from mend.server.cli.failures import told_plainly
 
-scene_app = typer.Typer(
-    name="scene", help="Make up scenes.", no_args_is_help=True, rich_markup_mode=None
-)
+app = typer.Typer(name="scene", help="Make up scenes.", no_args_is_help=True, rich_markup_mode=None)
 
 
-@scene_app.callback()
+@app.callback()
 def scene() -> None:
     """Make up scenes."""
 
 
-@scene_app.command("random", short_help="Print a random scene, or a task tree for it.")
+@app.command("random", short_help="Print a random scene, or a task tree for it.")
 def random(
     seed: Annotated[int, typer.Option(min=0, help="Another scene for each; always the same.")],
     parts: Annotated[
@@ -36,14 +34,11 @@ def random(
     scenes/random_SEED.yaml beside the task file, or give it to `mend run` with --scene.
     """
     from mend.server.scene_checks import load_world_checks
-    from mend.sim.random_scene import NoRoomError, random_scene, scene_document
+    from mend.sim.random_scene import random_scene, scene_document
 
     with told_plainly():
-        try:
-            check = load_world_checks().only(world).check_of(world)
-            made = random_scene(seed, parts, check)
-        except NoRoomError as error:
-            raise CommandLineError(str(error)) from error
+        check = load_world_checks().only(world).check_of(world)
+        made = random_scene(seed, parts, check)
     document = made.tree if tree else scene_document(made.scene)
     typer.echo(
         yaml.safe_dump(document, sort_keys=False, default_flow_style=None, width=100), nl=False

@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from mend.server.cli.failures import NOT_FINISHED, CommandLineError, told_plainly
-from mend.server.cli.output import print_rows
+from mend.server.cli.rows import print_rows
 
 
 def schedule(

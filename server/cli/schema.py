@@ -7,9 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
-from mend.server.behaviors import behavior_parameters
 from mend.server.cli.failures import told_plainly
-from mend.tasks.json_schema import scenario_schema, scene_schema, task_schema
 
 
 class SchemaName(StrEnum):
@@ -41,7 +39,7 @@ def schema(
     typer.echo(json.dumps(described, indent=2))
 
 
-# What describes the wire is imported only here: it brings the whole API with it.
+# What is described is imported only here: its own help would wait for the whole API.
 
 
 def _openapi() -> dict[str, Any]:
@@ -68,6 +66,25 @@ def _events() -> dict[str, Any]:
     return json_schemas()["event"]
 
 
+def _task() -> dict[str, Any]:
+    from mend.server.behaviors import behavior_parameters
+    from mend.tasks.json_schema import task_schema
+
+    return task_schema(behavior_parameters())
+
+
+def _scene() -> dict[str, Any]:
+    from mend.tasks.json_schema import scene_schema
+
+    return scene_schema()
+
+
+def _scenario() -> dict[str, Any]:
+    from mend.tasks.json_schema import scenario_schema
+
+    return scenario_schema()
+
+
 def _delivery() -> dict[str, Any]:
     from mend.fleet.scheduling.problem_file import delivery_schema
 
@@ -79,8 +96,8 @@ SCHEMAS: Mapping[SchemaName, Callable[[], dict[str, Any]]] = {
     SchemaName.ASYNCAPI: _asyncapi,
     SchemaName.CONSOLE: _console,
     SchemaName.EVENTS: _events,
-    SchemaName.TASK: lambda: task_schema(behavior_parameters()),
-    SchemaName.SCENE: scene_schema,
-    SchemaName.SCENARIO: scenario_schema,
+    SchemaName.TASK: _task,
+    SchemaName.SCENE: _scene,
+    SchemaName.SCENARIO: _scenario,
     SchemaName.DELIVERY: _delivery,
 }

@@ -3,14 +3,14 @@
 import asyncio
 import signal
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from mend.server.cli.failures import told_plainly
-from mend.server.cli.live_run import OpenService
-from mend.server.garbage import settle_garbage
-from mend.server.settings import Settings, load_settings
+
+if TYPE_CHECKING:
+    from mend.server.settings import Settings
 
 
 def serve(
@@ -26,15 +26,17 @@ def serve(
     Settings come from these options, then from MEND_* variables, then from the file. Runs that had
     not ended when the service stopped go on. Ctrl-C stops it.
     """
-    # Imported only here: the whole service would make every other command wait.
-    from mend.server.composition import open_service
+    from mend.server.settings import load_settings
 
     with told_plainly():
         settings = load_settings(config, host=host, port=port, journal=journal)
-        asyncio.run(_serve(open_service, settings))
+        asyncio.run(_serve(settings))
 
 
-async def _serve(open_service: OpenService, settings: Settings) -> None:
+async def _serve(settings: "Settings") -> None:
+    from mend.server.composition import open_service
+    from mend.server.garbage import settle_garbage
+
     stop = asyncio.Event()
     loop = asyncio.get_running_loop()
     async with open_service(settings, recover=True) as service:

@@ -5,8 +5,8 @@ import getpass
 import sys
 from typing import Literal
 
+from mend.errors import ConflictError
 from mend.server.cli.output import EventOutput
-from mend.server.errors import ConflictError
 from mend.server.journal import events as ev
 from mend.server.runtime.service import RunService
 

@@ -1,16 +1,14 @@
 """`mend train-colors`: what colour each object has, learned from pictures and kept in a file."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from mend.robots.vision.color_model import ColorModel
-from mend.robots.vision.training import load_samples
 from mend.server.cli.failures import CommandLineError, told_plainly
-from mend.server.cli.task_files import read_scene
-from mend.sim.world import ColorTeacher
-from mend.tasks.plugins import load_plugins
+
+if TYPE_CHECKING:
+    from mend.sim.world import ColorTeacher
 
 
 def train_colors(
@@ -30,6 +28,10 @@ def train_colors(
     world: Annotated[str, typer.Option(help="The world that renders them.")] = "tabletop",
 ) -> None:
     """Train the colour model of a robot's cameras, from your pictures or from rendered ones."""
+    from mend.robots.vision.color_model import ColorModel
+    from mend.robots.vision.training import load_samples
+    from mend.server.cli.task_files import read_scene
+
     if (images is None) == (scene is None):
         raise CommandLineError("train-colors needs either --images or --scene")
     if output.suffix != ".npz":
@@ -47,7 +49,10 @@ def train_colors(
     typer.echo(f"{output}: the colours of {', '.join(model.names)}")
 
 
-def _teacher(world: str) -> ColorTeacher:
+def _teacher(world: str) -> "ColorTeacher":
+    from mend.sim.world import ColorTeacher
+    from mend.tasks.plugins import load_plugins
+
     adapters = load_plugins("mend.worlds")
     if world not in adapters:
         raise CommandLineError(f"there is no world '{world}'; there are {', '.join(adapters)}")

@@ -23,6 +23,8 @@ from pydantic import (
     model_validator,
 )
 
+from mend.errors import MendError
+
 FOR_GOOD = 500
 """SMTP's answers below that are about this moment only."""
 
@@ -113,7 +115,7 @@ class RefusedAddress:
     for_now: bool
 
 
-class MailError(Exception):
+class MailError(MendError):
     """A mail could not be sent; the message says through which server, and why.
 
     `for_now`: it is worth trying again.

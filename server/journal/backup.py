@@ -5,6 +5,7 @@ import sqlite3
 from contextlib import closing
 from pathlib import Path
 
+from mend.errors import MendError
 from mend.server.journal.file_lock import FileLock
 from mend.server.journal.file_mode import OWNERS_FOLDER, keep_to_owner
 from mend.server.journal.reader import JournalReader
@@ -13,15 +14,11 @@ from mend.server.journal.sqlite_errors import SQLITE_ERRORS
 BUSY_TIMEOUT_S = 5.0
 
 
-class BackupError(Exception):
-    """A journal cannot be copied there; the message says why, and what to do."""
-
-
 def back_up(journal: Path, target: Path, *, force: bool = False) -> None:
     """Copy a journal as it is at one moment, also while a service writes to it.
 
     A target that is there is replaced only by `force`, and only once the copy is whole. Raises
-    `JournalLockedError` while a service has the target, `BackupError`, `JournalSchemaError` or
+    `JournalLockedError` while a service has the target, `MendError`, `JournalSchemaError` or
     `OSError`.
     """
     with JournalReader(journal):
@@ -39,7 +36,7 @@ def back_up(journal: Path, target: Path, *, force: bool = False) -> None:
 def restore(backup: Path, journal: Path, *, force: bool = False) -> None:
     """Put a backup in a journal's place. Raises `JournalLockedError` while a service has it.
 
-    The journal that is there is replaced only by `force`. Raises `BackupError` for a backup that is
+    The journal that is there is replaced only by `force`. Raises `MendError` for a backup that is
     damaged, `JournalSchemaError` or `OSError`.
     """
     with JournalReader(backup):
@@ -56,14 +53,14 @@ def restore(backup: Path, journal: Path, *, force: bool = False) -> None:
 
 def _refuse_same(source: Path, target: Path) -> None:
     if target.exists() and target.samefile(source):
-        raise BackupError(f"'{target}' is the journal itself: choose another file")
+        raise MendError(f"'{target}' is the journal itself: choose another file")
 
 
 def _refuse_existing(target: Path, force: bool) -> None:
     if target.is_dir():
-        raise BackupError(f"'{target}' is a directory: name a file in it")
+        raise MendError(f"'{target}' is a directory: name a file in it")
     if target.exists() and not force:
-        raise BackupError(f"'{target}' is there already: give --force to replace it")
+        raise MendError(f"'{target}' is there already: give --force to replace it")
 
 
 def _copy(source: Path, target: Path) -> None:
@@ -74,7 +71,7 @@ def _copy(source: Path, target: Path) -> None:
         _copy_pages(source, draft)
         _put_in_place(draft, target)
     except sqlite3.Error as error:
-        raise BackupError(f"'{source}' could not be copied to '{target}': {error}") from error
+        raise MendError(f"'{source}' could not be copied to '{target}': {error}") from error
     finally:
         for left in (draft, *_logs(draft)):
             left.unlink(missing_ok=True)
@@ -90,7 +87,7 @@ def _copy_pages(source: Path, draft: Path) -> None:
         write.execute("PRAGMA journal_mode=DELETE")
         (found,) = write.execute("PRAGMA quick_check(1)").fetchone()
         if found != "ok":
-            raise BackupError(f"'{source}' is damaged ({found}): nothing was replaced")
+            raise MendError(f"'{source}' is damaged ({found}): nothing was replaced")
     with draft.open("rb") as copied:
         os.fsync(copied.fileno())
 
@@ -112,7 +109,7 @@ def _put_in_place(draft: Path, target: Path) -> None:
 def _empty_log(target: Path) -> None:
     """Whatever happens before the new journal is in place, the old one is whole.
 
-    Raises `BackupError` where its log has to stay.
+    Raises `MendError` where its log has to stay.
     """
     try:
         with closing(sqlite3.connect(target, timeout=BUSY_TIMEOUT_S)) as old:
@@ -124,7 +121,7 @@ def _empty_log(target: Path) -> None:
         # It is no journal, or one no longer: there is nothing to keep whole.
         why = None
     if why is not None:
-        raise BackupError(
+        raise MendError(
             f"the log of '{target}' could not be emptied ({why}): nothing was replaced; try again"
         )
 

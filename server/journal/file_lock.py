@@ -4,6 +4,7 @@ import fcntl
 from pathlib import Path
 from typing import IO
 
+from mend.errors import MendError
 from mend.server.journal.file_mode import keep_to_owner
 
 MADE = "made\n"
@@ -16,7 +17,7 @@ that is in use is not opened only to find that out.
 """
 
 
-class JournalLockedError(Exception):
+class JournalLockedError(MendError):
     """Another process has the journal open."""
 
 

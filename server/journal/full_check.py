@@ -7,7 +7,7 @@ from functools import partial
 from pathlib import Path
 from uuid import UUID
 
-from mend.server.errors import ServiceError
+from mend.errors import RefusalError
 from mend.server.journal import events as ev
 from mend.server.journal.chain import SELECT_ROWS, Row, breaks
 from mend.server.journal.journal import JournalReadError
@@ -18,7 +18,7 @@ from mend.server.journal.stored_event import read_event
 
 MOST_PAGE_FINDINGS = 20
 FoldRun = Callable[[UUID, Iterable[ev.Event]], None]
-"""Folds all events of a run. Raises a `ServiceError` where that cannot be done."""
+"""Folds all events of a run. Raises a `RefusalError` where that cannot be done."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -175,7 +175,7 @@ class _Check:
         rows = self._connection.execute(f"{SELECT_ROWS} WHERE run = ? ORDER BY seq", (run,))
         try:
             fold(UUID(run), (read_event(row[0], row[5], row[4]) for row in rows))
-        except (ServiceError, JournalReadError) as error:
+        except (RefusalError, JournalReadError) as error:
             self._find(str(error), [run])
 
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from typing import Any, Protocol
 from uuid import UUID
 
+from mend.errors import MendError
 from mend.server.journal.chain import Break, Seal
 from mend.server.journal.events import Event
 from mend.server.journal.keyed_request import FirstAnswer, KeptRequest, KeyedRequest
@@ -179,25 +180,17 @@ class Journal(Protocol):
     def close(self) -> None: ...
 
 
-class JournalClosedError(Exception):
+class JournalClosedError(MendError):
     """The journal no longer takes entries."""
 
 
-class JournalOpenError(Exception):
-    """The journal's file cannot be opened, or not be written."""
-
-
-class JournalDamagedError(JournalOpenError):
-    """The journal's file is no longer what was written."""
-
-
-class JournalReadError(Exception):
+class JournalReadError(MendError):
     """Something of the journal cannot be read; the message says why."""
 
 
-class JournalWriteError(Exception):
+class JournalWriteError(MendError):
     """An entry could not be made durable; nothing of it was committed or published."""
 
 
-class DuplicateReceiptError(Exception):
+class DuplicateReceiptError(MendError):
     """This report was received before."""

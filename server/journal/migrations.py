@@ -5,6 +5,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import UTC, datetime
 
+from mend.errors import MendError
 from mend.server.journal.indexing import index_events
 
 VERSION_1 = """
@@ -127,7 +128,7 @@ MIGRATIONS = (
 )
 
 
-class JournalSchemaError(Exception):
+class JournalSchemaError(MendError):
     """The file is no journal, or one that this version of Mend cannot read."""
 
 

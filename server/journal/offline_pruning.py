@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any
 from uuid import UUID
 
+from mend.errors import UnavailableError, UnreadableError
 from mend.server.journal.file_lock import FileLock, JournalLockedError
-from mend.server.journal.journal import JournalDamagedError, JournalOpenError
 from mend.server.journal.migrations import MIGRATIONS, migrate
 from mend.server.journal.pruning import Keep, Pruned, prune
 from mend.server.journal.reader import JournalReader
@@ -31,7 +31,7 @@ async def prune_file(
     """Take out of a journal's file what is not kept; `forget` is told of each run that goes.
 
     `compact` gives the room back to the disk, for which no service may have the journal. Raises
-    `FileNotFoundError`, `JournalSchemaError`, `JournalOpenError`, and with `compact`
+    `FileNotFoundError`, `JournalSchemaError`, `UnavailableError`, and with `compact`
     `JournalLockedError`.
     """
     with JournalReader(path):
@@ -45,9 +45,9 @@ async def prune_file(
             if compact:
                 connection.execute("VACUUM")
     except sqlite3.OperationalError as error:
-        raise JournalOpenError(f"the journal '{path}' could not be pruned: {error}") from error
+        raise UnavailableError(f"the journal '{path}' could not be pruned: {error}") from error
     except sqlite3.DatabaseError as error:
-        raise JournalDamagedError(
+        raise UnreadableError(
             f"the journal '{path}' is damaged ({error}): 'mend journal check' tells more"
         ) from error
     finally:
@@ -96,6 +96,6 @@ def _connect(path: Path) -> sqlite3.Connection:
 def _refuse_older(path: Path, connection: sqlite3.Connection) -> None:
     (version,) = connection.execute("SELECT max(version) FROM schema_version").fetchone()
     if version != len(MIGRATIONS):
-        raise JournalOpenError(
+        raise UnavailableError(
             f"the journal '{path}' is in use by another version of Mend: stop that service first"
         )

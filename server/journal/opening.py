@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
+from mend.errors import UnavailableError, UnreadableError
 from mend.server.journal.chain import Break, Chain
 from mend.server.journal.file_lock import FileLock
 from mend.server.journal.file_mode import OWNERS_FOLDER, keep_to_owner
-from mend.server.journal.journal import JournalDamagedError, JournalOpenError
 from mend.server.journal.migrations import migrate
 from mend.server.journal.other_writers import OtherWriters
 from mend.server.journal.quick_check import DamagedPagesError, quick_check
@@ -40,7 +40,7 @@ class OpenJournal:
 def open_journal(path: Path | str, busy_timeout_s: float, check_s: float) -> OpenJournal:
     """Open a journal, or begin one.
 
-    Raises `JournalLockedError`, `JournalSchemaError`, `JournalDamagedError` or `JournalOpenError`.
+    Raises `JournalLockedError`, `JournalSchemaError`, `UnreadableError` or `UnavailableError`.
     """
     if str(path) == IN_MEMORY:
         return _connected(IN_MEMORY, busy_timeout_s, check_s, None, None)
@@ -76,7 +76,7 @@ def _open_file(path: Path, busy_timeout_s: float, check_s: float, lock: FileLock
 def _refuse_emptied(path: Path, lock: FileLock) -> None:
     """A journal that was once made and has no bytes now would look like a new one."""
     if lock.journal_was_made and path.is_file() and path.stat().st_size == 0:
-        raise JournalDamagedError(
+        raise UnreadableError(
             f"the journal '{path}' is empty, though it was not: put a backup in its place with "
             "'mend journal restore', or delete the file to begin a new journal"
         )
@@ -92,12 +92,12 @@ def _refuse_second_name(path: Path) -> None:
         )
 
 
-def _cannot_open(path: Path, why: str) -> JournalOpenError:
-    return JournalOpenError(f"the journal '{path}' cannot be opened: {why}")
+def _cannot_open(path: Path, why: str) -> UnavailableError:
+    return UnavailableError(f"the journal '{path}' cannot be opened: {why}")
 
 
-def _damaged(path: Path, why: str) -> JournalDamagedError:
-    return JournalDamagedError(
+def _damaged(path: Path, why: str) -> UnreadableError:
+    return UnreadableError(
         f"the journal '{path}' is damaged ({why}): 'mend journal check' tells more, and 'mend "
         "journal restore' puts a backup in its place"
     )

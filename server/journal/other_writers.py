@@ -2,9 +2,7 @@
 
 import sqlite3
 
-
-class OtherWriterError(Exception):
-    """What would be written now would not follow on the last event of the journal."""
+from mend.errors import MendError
 
 
 class OtherWriters:
@@ -15,7 +13,7 @@ class OtherWriters:
         self._version = self._data_version()
 
     def refuse(self, next_seq: int) -> None:
-        """Raise `OtherWriterError` if they have written this event, or later ones.
+        """Raise `MendError` if they have written this event, or later ones.
 
         Within the transaction in which it is to be written: there they cannot come in between.
         """
@@ -26,7 +24,7 @@ class OtherWriters:
         if self._connection.execute(
             "SELECT 1 FROM events WHERE seq >= ? LIMIT 1", (next_seq,)
         ).fetchone():
-            raise OtherWriterError(
+            raise MendError(
                 "another program writes to this journal: stop that one, and start the service again"
             )
         self._version = version

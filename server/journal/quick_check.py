@@ -5,6 +5,7 @@ import sqlite3
 import time
 from collections.abc import Callable
 
+from mend.errors import MendError
 from mend.server.journal.chain import Break, breaks
 
 TAIL_BATCHES = 256
@@ -13,7 +14,7 @@ STEPS_BETWEEN_LOOKS = 1000
 """Of SQLite's machine, between two looks at the clock."""
 
 
-class DamagedPagesError(Exception):
+class DamagedPagesError(MendError):
     """SQLite cannot make sense of the file."""
 
 

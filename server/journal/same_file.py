@@ -3,8 +3,10 @@
 import os
 from pathlib import Path
 
+from mend.errors import MendError
 
-class FileGoneError(Exception):
+
+class FileGoneError(MendError):
     """What would be written now would not be in the journal's file."""
 
 

@@ -83,7 +83,7 @@ class SqliteJournal:
 
     Implements `mend.server.journal.journal.Journal`. Raises `JournalLockedError` when another
     process has the file, `JournalSchemaError` when it is no journal that can be read,
-    `JournalDamagedError` when it is one no longer, `JournalOpenError` when the file cannot be
+    `UnreadableError` when it is one no longer, `UnavailableError` when the file cannot be
     opened or written. Only its owner can read the file. Belongs to one event loop at a time.
     `sleep` is what passes between two tries to write where that is not possible; the look at the
     pages on opening takes at most `check_s`. `wall_time_s` says when a receipt was given, in

@@ -6,6 +6,8 @@ from collections.abc import AsyncIterator, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Protocol, Self
 
+from mend.errors import MendError
+
 DEFAULT_CAPACITY = 4096
 REPLAY_PAGE = 500
 
@@ -18,11 +20,11 @@ class Record:
     text: str
 
 
-class SubscriptionOverflowError(Exception):
+class SubscriptionOverflowError(MendError):
     """The subscriber fell too far behind; it may subscribe again after the last `seq` it saw."""
 
 
-class PrunedEventsError(Exception):
+class PrunedEventsError(MendError):
     """Not every event after the last one seen is in the journal any more."""
 
 

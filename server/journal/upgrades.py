@@ -4,6 +4,8 @@ import json
 from collections.abc import Callable, Sequence
 from typing import Any
 
+from mend.errors import MendError
+
 Upgrade = Callable[[dict[str, Any]], dict[str, Any]]
 """Takes an event's JSON object as one version wrote it, returns it as the next version would."""
 
@@ -11,7 +13,7 @@ UPGRADES: tuple[Upgrade, ...] = ()
 """UPGRADES[n - 1] leads from version n to n + 1. Never edited, only appended to."""
 
 
-class UnknownEventVersionError(Exception):
+class UnknownEventVersionError(MendError):
     """An event was written by a newer Mend."""
 
 

@@ -174,7 +174,7 @@ def _fault_card(fault: Fault, transcript: Transcript, pictures: Mapping[UUID, by
 
 
 @dataclass(frozen=True, slots=True)
-class Choice:
+class ShownChoice:
     """One start of a leaf and what it was chosen from; `scale` is the highest potential."""
 
     started: ev.NodeStarted
@@ -183,9 +183,9 @@ class Choice:
     scale: float
 
 
-def _choice(started: ev.NodeStarted) -> Choice:
+def _choice(started: ev.NodeStarted) -> ShownChoice:
     shown = started.candidates[:MAX_CANDIDATES]
-    return Choice(
+    return ShownChoice(
         started=started,
         candidates=shown,
         hidden=len(started.candidates) - len(shown),

@@ -16,7 +16,7 @@ Ending = Literal["done", "put back", "left out", "cut off"]
 
 
 @dataclass(slots=True)
-class Step:
+class AttemptStep:
     """One step of a behavior as it was carried out; times in seconds of the run's clock."""
 
     number: int
@@ -26,13 +26,13 @@ class Step:
 
 
 @dataclass(slots=True)
-class Execution:
+class Attempt:
     """One attempt at a leaf, from its choice until it was done or put back."""
 
     started: ev.NodeStarted
     end_s: float | None = None
     ending: Ending = "cut off"
-    steps: list[Step] = field(default_factory=list)
+    steps: list[AttemptStep] = field(default_factory=list)
 
     def end_step(self, time_s: float) -> None:
         """The step under way, if any, ends here."""
@@ -70,13 +70,13 @@ class RunRecord:
             raise ValueError(f"expected events of run {self.started.run} alone")
         self.events = events
         self.end: RunEnd | None = None
-        self.executions: list[Execution] = []
+        self.executions: list[Attempt] = []
         self.faults: list[Fault] = []
         self.interventions: list[ev.InterventionDone] = []
         self.done: dict[str, ev.NodeDone] = {}
         self.left_out: dict[str, ev.NodeLeftOut] = {}
         self.undone: list[ev.NodeUndone] = []
-        self._current: dict[str, Execution] = {}
+        self._current: dict[str, Attempt] = {}
         self._dialogues: dict[UUID, Fault] = {}
         for event in events:
             self._take(event)
@@ -99,7 +99,7 @@ class RunRecord:
 
     @_take.register
     def _(self, event: ev.NodeStarted) -> None:
-        execution = Execution(event)
+        execution = Attempt(event)
         self.executions.append(execution)
         self._current[event.node] = execution
 
@@ -108,7 +108,7 @@ class RunRecord:
         execution = self._current.get(event.node)
         if execution is not None:
             execution.end_step(event.time)
-            execution.steps.append(Step(event.step, event.step_name, event.time))
+            execution.steps.append(AttemptStep(event.step, event.step_name, event.time))
 
     @_take.register
     def _(self, event: ev.NodeDone) -> None:

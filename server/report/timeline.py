@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass, field
 
-from mend.server.report.record import Execution, Fault, RunRecord
+from mend.server.report.record import Attempt, Fault, RunRecord
 from mend.server.transcript import deed_text
 
 LABELS_PX = 150
@@ -152,7 +152,7 @@ def _leaves(record: RunRecord, scale: _Scale) -> list[Row]:
     return list(rows.values())
 
 
-def _add_execution(row: Row, execution: Execution, scale: _Scale, run_end_s: float) -> None:
+def _add_execution(row: Row, execution: Attempt, scale: _Scale, run_end_s: float) -> None:
     started = execution.started
     end_s = run_end_s if execution.end_s is None else execution.end_s
     tip = f"{started.name}, attempt {started.attempt}: {started.time:.1f} to {end_s:.1f} s"

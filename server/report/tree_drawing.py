@@ -44,7 +44,7 @@ class DrawnNode:
 
 
 @dataclass(frozen=True, slots=True)
-class Edge:
+class DrawnEdge:
     """From a goal node to a child; `order` is the child's number under a THEN."""
 
     kind: NodeKind
@@ -63,7 +63,7 @@ class TreeDrawing:
     width: float
     height: float
     nodes: list[DrawnNode]
-    edges: list[Edge]
+    edges: list[DrawnEdge]
 
 
 def draw_tree(states: Sequence[NodeState]) -> TreeDrawing:
@@ -133,8 +133,8 @@ def _place(
     return {state.path: nodes[state.path] for state, _ in order}, rows
 
 
-def _edge(parent: DrawnNode, child: DrawnNode, order: int) -> Edge:
-    return Edge(
+def _edge(parent: DrawnNode, child: DrawnNode, order: int) -> DrawnEdge:
+    return DrawnEdge(
         kind=parent.state.kind,
         x1=parent.x + parent.width,
         y1=parent.y,

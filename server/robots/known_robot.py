@@ -7,6 +7,7 @@ from collections.abc import Callable, Coroutine
 from typing import Any
 from uuid import uuid4
 
+from mend.errors import ConflictError, MendError, NotFoundError
 from mend.robots.link.jpeg import NotJpegError, read_jpeg
 from mend.robots.link.messages import (
     PROTOCOL_VERSION,
@@ -25,7 +26,6 @@ from mend.robots.link.messages import (
     TakePicture,
     Welcome,
 )
-from mend.server.errors import ConflictError, NotFoundError
 from mend.server.journal.journal import DuplicateReceiptError, Entry, Journal, Receipt
 from mend.server.limits import LimitName
 from mend.server.pace import CHARS_OF_ONE
@@ -56,7 +56,7 @@ MISSED_HEARTBEATS = 2
 """After so many nobody can say that the program of a robot still runs."""
 
 
-class ReplacedError(Exception):
+class ReplacedError(MendError):
     """A newer connection of the same robot has come before this one had its turn."""
 
 

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Protocol
 from uuid import uuid4
 
+from mend.errors import WrongInputError
 from mend.robots.link.channel import Channel, memory_channel
 from mend.robots.link.client import Aside, run_agent
 from mend.robots.link.clock import LoopClock
@@ -23,7 +24,6 @@ from mend.server.descriptors import (
     once_there_are_descriptors,
     until_there_are_descriptors,
 )
-from mend.server.errors import InvalidError
 from mend.server.plain_text import plain
 from mend.server.robots.passes import OwnRobots
 from mend.server.robots.registry import RobotRegistry
@@ -53,7 +53,7 @@ class SimulatedRobot(Protocol):
         ...
 
     async def start(self, setup: WorldSetup) -> None:
-        """Start it, again if need be. Raises `InvalidError` if its world cannot run here."""
+        """Start it, again if need be. Raises `WrongInputError` if its world cannot run here."""
         ...
 
     async def stop(self) -> None:
@@ -78,13 +78,13 @@ async def launch(
     A robot in a process of its own that is silent for `hang_s` is killed; one in this process works
     `aside` of the event loop. `url` is this service's
     `/ws/robot`, as seen from this machine, and `certificate` the service's own, if it speaks TLS;
-    the process gets a credential for its time. Raises `InvalidError` if there is no such world or
-    it cannot run here.
+    the process gets a credential for its time. Raises `WrongInputError` if there is no such world
+    or it cannot run here.
     """
     try:
         adapter = find_world(world_name)
     except (WorldUnavailableError, PluginError) as error:
-        raise InvalidError(str(error)) from error
+        raise WrongInputError(str(error)) from error
     robot: SimulatedRobot
     if adapter.own_process:
         robot = RobotProcess(

@@ -9,9 +9,9 @@ from functools import partial
 
 from pydantic import ValidationError
 
+from mend.errors import ConflictError
 from mend.robots.link.channel import Channel, ChannelClosedError
 from mend.robots.link.messages import PROTOCOL_VERSION, CommandBody, Hello, LinkError
-from mend.server.errors import ConflictError
 from mend.server.journal.journal import Journal, JournalClosedError, JournalReadError
 from mend.server.limits import Limits
 from mend.server.pace import Pace

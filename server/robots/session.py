@@ -8,6 +8,7 @@ from typing import Protocol
 
 from pydantic import ValidationError
 
+from mend.errors import MendError, RefusalError
 from mend.robots.link.channel import Channel, ChannelClosedError
 from mend.robots.link.messages import (
     Ack,
@@ -21,7 +22,6 @@ from mend.robots.link.messages import (
     Taken,
     robot_message,
 )
-from mend.server.errors import ServiceError
 from mend.server.journal.journal import JournalClosedError
 from mend.server.limits import LimitName
 from mend.server.robots.silence import Silence
@@ -36,11 +36,11 @@ WAITING_MESSAGES = 2048
 LAST_WORD_S = 1.0
 
 
-class MissingReportError(Exception):
+class MissingReportError(MendError):
     """A report came without its predecessor; the message says which."""
 
 
-class TooManyReportsError(Exception):
+class TooManyReportsError(MendError):
     """A robot reports without end; the message says how much, `limit` which limit was reached."""
 
     def __init__(self, message: str, limit: LimitName) -> None:
@@ -48,7 +48,7 @@ class TooManyReportsError(Exception):
         self.limit: LimitName = limit
 
 
-class PictureError(Exception):
+class PictureError(MendError):
     """A picture that nobody can use; the message says why."""
 
 
@@ -88,7 +88,7 @@ BEYOND_BOUNDS = frozenset(
 """What pydantic calls a number that no robot means."""
 
 
-class NoSenseError(Exception):
+class NoSenseError(MendError):
     """A message whose number is beyond all bounds: whoever sends it cannot be relied on."""
 
 
@@ -192,7 +192,7 @@ class RobotSession:
             await worker
         except JournalClosedError:
             self._last_word = "the service is shutting down"
-        except ServiceError as error:
+        except RefusalError as error:
             self._last_word = f"the report could not be committed: {error}"
         except Exception:
             log.exception("a robot's report could not be committed")

@@ -5,7 +5,7 @@ A claim is a courtesy with a lease (wall time); it never keeps anybody from answ
 
 from datetime import timedelta
 
-from mend.server.errors import ConflictError
+from mend.errors import ConflictError
 from mend.server.journal.events import Author
 from mend.server.runtime.context import RunContext
 from mend.server.runtime.dialogue_events import DialogueEvents

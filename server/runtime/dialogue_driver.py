@@ -6,6 +6,7 @@ from uuid import UUID, uuid4
 
 from mend.dialogue.outlook import Outlook
 from mend.dialogue.script import Ask, Turn
+from mend.errors import ConflictError, NotFoundError
 from mend.server.dialogues.answers import AnswerSource
 from mend.server.dialogues.escalation import (
     EscalationPolicy,
@@ -16,7 +17,7 @@ from mend.server.dialogues.escalation import (
     first_helper,
     next_rung,
 )
-from mend.server.errors import ConflictError, LostRaceError, NotFoundError
+from mend.server.errors import LostRaceError
 from mend.server.journal import events as ev
 from mend.server.runtime.clock import has_come
 from mend.server.runtime.context import RunContext

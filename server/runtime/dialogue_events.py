@@ -5,8 +5,8 @@ from datetime import datetime
 from typing import Any
 from uuid import UUID, uuid4
 
-from mend.dialogue.evidence import Change, Look
-from mend.dialogue.script import Ask, AwaitHelp, Close, CloseReason, Say, Turn
+from mend.dialogue.evidence import Change, LookOutcome
+from mend.dialogue.script import Ask, AwaitHelp, Close, CloseReason, Remark, Turn
 from mend.server.journal import events as ev
 from mend.tasks.resolution import Resolution
 
@@ -31,7 +31,7 @@ class DialogueEvents:
     def opened(self) -> ev.DialogueOpened:
         return ev.DialogueOpened(**self._fields())
 
-    def say(self, say: Say) -> ev.Prompt:
+    def say(self, say: Remark) -> ev.Prompt:
         return ev.Prompt(**self._fields(), prompt=uuid4(), version=1, kind="say", text=say.text)
 
     def ask(self, ask: Ask, deadline: float, to: str | None, if_silent: str) -> ev.Prompt:
@@ -98,7 +98,7 @@ class DialogueEvents:
     def released(self, helper: str, expired: bool, author: ev.Author | None = None) -> ev.Released:
         return ev.Released(**self._fields(), helper=helper, expired=expired, author=author)
 
-    def first_look(self, look: Look) -> ev.FirstLook:
+    def first_look(self, look: LookOutcome) -> ev.FirstLook:
         return ev.FirstLook(
             **self._fields(),
             fulfilled=sorted(look.fulfilled),
@@ -106,7 +106,7 @@ class DialogueEvents:
             blind=look.blind,
         )
 
-    def looked_anew(self, look: Look) -> ev.LookedAnew:
+    def looked_anew(self, look: LookOutcome) -> ev.LookedAnew:
         return ev.LookedAnew(
             **self._fields(), fulfilled=sorted(look.fulfilled), position=look.position
         )
@@ -152,7 +152,7 @@ class DialogueEvents:
         events: list[ev.Event] = []
         for turn in turns:
             match turn:
-                case Say():
+                case Remark():
                     events.append(self.say(turn))
                 case Ask():
                     effect = f"{if_silent}{turn.timeout_effect}"

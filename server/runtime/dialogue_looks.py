@@ -5,7 +5,7 @@ from uuid import UUID
 
 from mend.dialogue.evidence import (
     Change,
-    Look,
+    LookOutcome,
     Point,
     PutRight,
     change_since,
@@ -188,14 +188,14 @@ class DialogueLooks:
 
     # --- What a look saw ----------------------------------------------------------------------
 
-    def first_look(self, dialogue: DialogueState, side: RobotSide, fulfilled: bool) -> Look:
+    def first_look(self, dialogue: DialogueState, side: RobotSide, fulfilled: bool) -> LookOutcome:
         """What the first look saw: everything later is compared with it."""
         first = self._seen(dialogue, side, self._expected_first(dialogue) if fulfilled else None)
         if side.held is None or side.held != dialogue.raised.object:
             return first
         return replace(first, fulfilled=first.fulfilled | {Expectation.IN_GRIPPER})
 
-    def contradicted(self, dialogue: DialogueState, first: Look) -> PutRight | None:
+    def contradicted(self, dialogue: DialogueState, first: LookOutcome) -> PutRight | None:
         """What the first look saw of that which the issue itself says not to be so."""
         conversation = dialogue.conversation
         return contradiction(conversation.watched_for, conversation.denied, first)
@@ -210,7 +210,9 @@ class DialogueLooks:
         now = self._seen(dialogue, side, self._expected(dialogue) if fulfilled else None)
         return put_right(dialogue.conversation.watched_for, base, now)
 
-    def undone(self, dialogue: DialogueState, side: RobotSide, fulfilled: bool) -> Look | None:
+    def undone(
+        self, dialogue: DialogueState, side: RobotSide, fulfilled: bool
+    ) -> LookOutcome | None:
         """A look that saw what was right to be so no more: now it can be put right again."""
         base = self._base(dialogue)
         now = self._seen(dialogue, side, self._expected(dialogue) if fulfilled else None)
@@ -227,27 +229,29 @@ class DialogueLooks:
         now = self._seen(dialogue, side, EXPECTED[helped_with])
         return change_since(self._earlier(dialogue), now)
 
-    def _base(self, dialogue: DialogueState) -> Look | None:
+    def _base(self, dialogue: DialogueState) -> LookOutcome | None:
         """What a look is compared with to see whether anything is right that was not."""
         return next(reversed(self._earlier(dialogue)), None)
 
-    def _earlier(self, dialogue: DialogueState) -> list[Look]:
+    def _earlier(self, dialogue: DialogueState) -> list[LookOutcome]:
         """The first look, unless it was dark and another saw more, and the latest one anew."""
         first, later = dialogue.first_look, dialogue.looked_anew
         looks = []
         if first is not None and not (first.blind and later is not None):
-            looks.append(Look(frozenset(first.fulfilled), first.position, blind=first.blind))
+            looks.append(LookOutcome(frozenset(first.fulfilled), first.position, blind=first.blind))
         if later is not None:
-            looks.append(Look(frozenset(later.fulfilled), later.position))
+            looks.append(LookOutcome(frozenset(later.fulfilled), later.position))
         return looks
 
-    def _seen(self, dialogue: DialogueState, side: RobotSide, expected: Expectation | None) -> Look:
+    def _seen(
+        self, dialogue: DialogueState, side: RobotSide, expected: Expectation | None
+    ) -> LookOutcome:
         fulfilled = set() if expected is None else {expected}
         if self._is_at_place(dialogue, side):
             fulfilled.add(Expectation.AT_PLACE)
         if side.blind is not None:
-            return Look(frozenset(fulfilled), None, blind=True)
-        return Look(frozenset(fulfilled), seen_at(side, dialogue.raised.object))
+            return LookOutcome(frozenset(fulfilled), None, blind=True)
+        return LookOutcome(frozenset(fulfilled), seen_at(side, dialogue.raised.object))
 
     def _is_at_place(self, dialogue: DialogueState, side: RobotSide) -> bool:
         return any(each in side.there for each in _result_of(dialogue))

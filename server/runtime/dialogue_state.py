@@ -20,7 +20,7 @@ MOST_EXTENSIONS = 10
 
 
 @dataclass(slots=True)
-class Claim:
+class Lease:
     """A helper says that they are on it; wall time."""
 
     helper: str
@@ -40,7 +40,7 @@ class DialogueState:
     prompts: dict[UUID, ev.Prompt] = field(default_factory=dict)
     answers: dict[UUID, ev.Answered] = field(default_factory=dict)
     awaiting: ev.HelpAwaited | None = None
-    claim: Claim | None = None
+    claim: Lease | None = None
     claims: int = 0
     """How often it was claimed so far, renewals included."""
     resolved: ev.Resolved | None = None
@@ -129,7 +129,7 @@ class DialogueState:
 
     @_apply.register
     def _(self, event: ev.Claimed) -> None:
-        self.claim = Claim(event.helper, event.lease_until)
+        self.claim = Lease(event.helper, event.lease_until)
         self.claims += 1
 
     @_apply.register

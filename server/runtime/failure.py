@@ -1,6 +1,6 @@
 """How a run fails: its dialogues are aborted, and it says why."""
 
-from mend.server.errors import ServiceError
+from mend.errors import RefusalError
 from mend.server.journal import events as ev
 from mend.server.runtime.context import RunContext
 from mend.server.runtime.dialogue_events import DialogueEvents
@@ -18,6 +18,6 @@ async def fail_run(context: RunContext, reason: str, node: str | None = None) ->
 
 def why_it_stopped(error: Exception) -> str:
     """The reason of a run that an error has stopped."""
-    if isinstance(error, ServiceError):
+    if isinstance(error, RefusalError):
         return f"it could not go on: {error}"
     return f"a fault in Mend stopped it ({type(error).__name__}: {error}); the log has more"

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from uuid import UUID
 
 from mend.dialogue.script import Script
-from mend.server.errors import UnreadableError
+from mend.errors import UnreadableError
 from mend.server.journal import events as ev
 from mend.server.journal.journal import Journal, JournalReadError
 from mend.server.journal.stored_event import read_event

@@ -5,7 +5,7 @@ import logging
 from collections.abc import Awaitable, Callable
 from dataclasses import dataclass, field
 
-from mend.server.errors import ConflictError
+from mend.errors import ConflictError
 
 log = logging.getLogger(__name__)
 
@@ -58,7 +58,9 @@ class Inbox:
         if not self._items.empty():
             return self._items.get_nowait()
         try:
-            return await asyncio.wait_for(self._items.get(), timeout_s)
+            # Not `wait_for`: in Python 3.11 that swallows a cancellation that comes with an item.
+            async with asyncio.timeout(timeout_s):
+                return await self._items.get()
         except TimeoutError:
             return None
 

@@ -3,7 +3,7 @@
 import logging
 from uuid import uuid4
 
-from mend.server.errors import ConflictError
+from mend.errors import ConflictError
 from mend.server.journal import events as ev
 from mend.server.runtime.context import RunContext
 from mend.server.runtime.robot_side import RobotSide

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from uuid import uuid4
 
-from mend.server.errors import InvalidError
+from mend.errors import WrongInputError
 from mend.server.journal import events as ev
 from mend.server.limits import Limits
 from mend.server.runtime.journaled_tree import read_nodes
@@ -39,14 +39,14 @@ class NewRuns:
         self._limits = limits
 
     async def make(self, request: RunRequest, author: ev.Author | None = None) -> NewRun:
-        """Raises `NotFoundError` or `InvalidError`."""
+        """Raises `NotFoundError` or `WrongInputError`."""
         _refuse_too_much(request, self._limits)
         if request.world == LIVE:
             if request.world_options:
-                raise InvalidError("'world_options' is for simulated worlds; 'live' has none")
+                raise WrongInputError("'world_options' is for simulated worlds; 'live' has none")
         else:
             if request.robots:
-                raise InvalidError(
+                raise WrongInputError(
                     f"'robots' is for the world 'live'; '{request.world}' brings its own"
                 )
             self._worlds.check(request.world, request.world_options)
@@ -72,22 +72,22 @@ class NewRuns:
 
 
 def _refuse_too_much(request: RunRequest, limits: Limits) -> None:
-    """Raises `InvalidError`."""
+    """Raises `WrongInputError`."""
     answers = request.answers if isinstance(request.answers, list) else []
     if len(answers) > limits.answers:
-        raise InvalidError(
+        raise WrongInputError(
             f"'answers' has {len(answers)} entries; at most {limits.answers} are taken",
             limit="answers",
         )
     if len(request.world_options) > limits.world_options:
-        raise InvalidError(
+        raise WrongInputError(
             f"'world_options' has {len(request.world_options)} entries; "
             f"at most {limits.world_options} are taken",
             limit="world_options",
         )
     for name, value in request.world_options.items():
         if max(len(name), len(str(value))) > limits.option_chars:
-            raise InvalidError(
+            raise WrongInputError(
                 f"the world option '{name[:40]}' is too long: its name and its text may have "
                 f"{limits.option_chars} characters each",
                 limit="option_chars",

@@ -33,7 +33,7 @@ class Preparation(Protocol):
     """Where runs come from."""
 
     async def prepare(self, request: RunRequest) -> PreparedRun:
-        """Read and check what a request names. Raises `NotFoundError` or `InvalidError`."""
+        """Read and check what a request names. Raises `NotFoundError` or `WrongInputError`."""
         ...
 
 
@@ -57,7 +57,7 @@ class Worlds(Protocol):
     """The worlds that a run can be in, apart from `live`."""
 
     def check(self, world: str, options: Mapping[str, Any]) -> None:
-        """Raises `InvalidError` where there is no such world, or none with such options here."""
+        """Raises `WrongInputError` where there is no such world, or none with such options here."""
         ...
 
     def open(self, state: RunState, run: Callable[[], Run]) -> Hardware:

@@ -16,7 +16,7 @@ from mend.server.runtime.livelock import MOST_FRUITLESS_COMMANDS
 from mend.server.runtime.pose_sink import PoseSink
 from mend.server.runtime.report_events import ReportEvents
 from mend.server.runtime.robot_side import Doing, RobotSide
-from mend.server.runtime.run_state import Execution
+from mend.server.runtime.run_state import StartedExecution
 
 log = logging.getLogger(__name__)
 
@@ -24,7 +24,7 @@ MAX_RESTARTS = 20
 """So often a simulated robot is started again without having begun a step since."""
 
 
-class Presence:
+class RobotPresence:
     """The presence of one run's robots.
 
     `tell` has something done in the run's turn; `start` sends an execution's start again.
@@ -41,7 +41,7 @@ class Presence:
         poses: PoseSink,
         *,
         tell: Callable[[Task], None],
-        start: Callable[[RobotSide, Execution], None],
+        start: Callable[[RobotSide, StartedExecution], None],
     ) -> None:
         self._context = context
         self._sides = sides
@@ -106,7 +106,7 @@ class Presence:
         elif continues and not rebooted and was_doing is Doing.RETREATING:
             side.doing = Doing.RETREATING
 
-    async def _start_again(self, side: RobotSide, execution: Execution) -> None:
+    async def _start_again(self, side: RobotSide, execution: StartedExecution) -> None:
         """The start may never have arrived; a robot that carried it out ignores it."""
         if side.livelock.lasts:
             await self.give_up_in_livelock(side)

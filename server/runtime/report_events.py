@@ -20,7 +20,7 @@ from mend.server.plain_text import plain
 from mend.server.runtime.context import RunContext
 from mend.server.runtime.dialogue_driver import DialogueDriver
 from mend.server.runtime.robot_side import Doing, RobotSide
-from mend.server.runtime.run_state import Execution
+from mend.server.runtime.run_state import StartedExecution
 from mend.tasks.resolution import Resolution
 
 log = logging.getLogger(__name__)
@@ -72,7 +72,7 @@ class ReportEvents:
             failed_attempt=failed,
         )
 
-    def _current(self, side: RobotSide, execution: str) -> Execution | None:
+    def _current(self, side: RobotSide, execution: str) -> StartedExecution | None:
         """The robot's execution, if the report is about that and not about an earlier one."""
         current = self._context.state.executions.get(side.robot)
         return current if current is not None and str(current.id) == execution else None

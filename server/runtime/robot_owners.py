@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from uuid import UUID
 
-from mend.server.errors import ConflictError, InvalidError, NotFoundError
+from mend.errors import ConflictError, NotFoundError, WrongInputError
 from mend.server.journal.events import RunStarted
 from mend.server.runtime.ports import Robots
 from mend.server.runtime.run import Run
@@ -26,15 +26,17 @@ class RobotOwners:
     def check(self, robots: Sequence[str]) -> None:
         """Look whether a run in the world 'live' can have these robots.
 
-        Raises `InvalidError`, `NotFoundError` or `ConflictError`.
+        Raises `WrongInputError`, `NotFoundError` or `ConflictError`.
         """
         if not robots:
-            raise InvalidError(
+            raise WrongInputError(
                 "a run in the world 'live' needs 'robots': the ids of connected ones"
             )
         twice = next((each for each in robots if robots.count(each) > 1), None)
         if twice is not None:
-            raise InvalidError(f"'robots' names the robot '{twice}' more than once; once is enough")
+            raise WrongInputError(
+                f"'robots' names the robot '{twice}' more than once; once is enough"
+            )
         busy = self._given | self._promised
         for robot in robots:
             if not self._robots.connected(robot):

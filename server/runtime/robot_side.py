@@ -22,7 +22,7 @@ from mend.robots.link.messages import (
     WasDone,
 )
 from mend.server.runtime.livelock import Livelock
-from mend.server.runtime.run_state import Execution
+from mend.server.runtime.run_state import StartedExecution
 from mend.tasks.intervention import Intervention
 from mend.tasks.potential import Point
 
@@ -163,7 +163,7 @@ class RobotSide:
 
     def start(
         self,
-        execution: Execution,
+        execution: StartedExecution,
         node: str,
         behavior: str,
         parameters: dict[str, Any],
@@ -189,7 +189,7 @@ class RobotSide:
             ),
         )
 
-    def resume(self, execution: Execution) -> None:
+    def resume(self, execution: StartedExecution) -> None:
         self.holds_execution = False
         self._tell(Doing.WORKING, str(uuid4()), Resume(execution=str(execution.id)))
 

@@ -12,6 +12,7 @@ from functools import partial
 from typing import Any
 from uuid import uuid4
 
+from mend.errors import ConflictError, RefusalError
 from mend.robots.link.messages import (
     Finished,
     Held,
@@ -28,7 +29,7 @@ from mend.robots.link.messages import (
     StepStarted,
     WasDone,
 )
-from mend.server.errors import BusyError, ConflictError, ServiceError
+from mend.server.errors import BusyError
 from mend.server.journal import events as ev
 from mend.server.journal.journal import DuplicateReceiptError, JournalWriteError, Receipt
 from mend.server.runtime.choosing import choose
@@ -43,17 +44,17 @@ from mend.server.runtime.hardware import Hardware
 from mend.server.runtime.inbox import Inbox, Item, Task, log_failure
 from mend.server.runtime.interventions import Interventions
 from mend.server.runtime.pose_sink import PoseSink
-from mend.server.runtime.presence import Presence
+from mend.server.runtime.presence import RobotPresence
 from mend.server.runtime.report_events import ReportEvents
 from mend.server.runtime.results import Results, missing_parts, results_of, unseen_parts
 from mend.server.runtime.robot_side import JUDGING, Doing, Purpose, RobotSide
-from mend.server.runtime.run_state import Execution
+from mend.server.runtime.run_state import StartedExecution
 from mend.server.runtime.views import RunStatus
 from mend.tasks.intervention import Intervention
 
 log = logging.getLogger(__name__)
 
-REFUSALS = (ServiceError, DuplicateReceiptError, JournalWriteError)
+REFUSALS = (RefusalError, DuplicateReceiptError, JournalWriteError)
 """What a request or a report may be answered with; anything else is a fault of ours."""
 
 
@@ -77,7 +78,7 @@ class Run:
         self._claims = Claims(context)
         self._interventions = Interventions(context)
         self._inbox = Inbox()
-        self._presence = Presence(
+        self._presence = RobotPresence(
             context,
             sides,
             hardware,
@@ -376,7 +377,7 @@ class Run:
             side.look(Purpose.CHOOSE)
             return False
         assert side.hello is not None, "a free robot has said hello"
-        execution = Execution(uuid4(), choice.leaf, side.robot, side.hello.boot)
+        execution = StartedExecution(uuid4(), choice.leaf, side.robot, side.hello.boot)
         started = ev.NodeStarted(
             **self._context.stamp(),
             **self._reports.node(choice.leaf),
@@ -395,7 +396,7 @@ class Run:
         self._start(side, execution)
         return True
 
-    def _start(self, side: RobotSide, execution: Execution) -> None:
+    def _start(self, side: RobotSide, execution: StartedExecution) -> None:
         state = self._context.state
         taken_back = state.taken_back.get(execution.leaf)
         was_done: WasDone | None = None

@@ -24,7 +24,7 @@ from mend.tasks.task_tree import TaskTree
 
 
 @dataclass(slots=True)
-class Execution:
+class StartedExecution:
     """One start of a leaf's behavior on a robot. `held`: the robot waits to be told to go on."""
 
     id: UUID
@@ -59,7 +59,7 @@ class RunState:
         self.status = RunStatus.RUNNING
         self.result: RunResult | None = None
         self.ended: datetime | None = None
-        self.executions: dict[str, Execution] = {}
+        self.executions: dict[str, StartedExecution] = {}
         self.dialogues: dict[UUID, DialogueState] = {}
         self.lost: set[str] = set()
         self.accepted: dict[str, ev.InterventionAccepted] = {}
@@ -118,7 +118,7 @@ class RunState:
     def open_dialogues(self) -> list[DialogueState]:
         return [each for each in self.dialogues.values() if each.closed is None]
 
-    def execution_of(self, leaf: int) -> Execution | None:
+    def execution_of(self, leaf: int) -> StartedExecution | None:
         """The execution of an active leaf."""
         return next((each for each in self.executions.values() if each.leaf == leaf), None)
 
@@ -144,7 +144,9 @@ class RunState:
         self.results = None
         if (handled := self.tree.leaf_definition(leaf).object) is not None:
             self.last_handled[handled] = leaf
-        self.executions[event.robot] = Execution(event.execution, leaf, event.robot, event.boot)
+        self.executions[event.robot] = StartedExecution(
+            event.execution, leaf, event.robot, event.boot
+        )
 
     @_apply.register
     def _(self, event: ev.StepStarted) -> None:

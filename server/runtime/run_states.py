@@ -1,13 +1,12 @@
 """The states of all runs: of those that go on in memory, of others as the journal has them."""
 
-import logging
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from typing import Literal
 from uuid import UUID
 
 from mend.dialogue.script import Script
-from mend.server.errors import NotFoundError, UnreadableError
+from mend.errors import NotFoundError, UnreadableError
 from mend.server.journal.journal import Journal, JournalClosedError, JournalWriteError
 from mend.server.journal.run_index import UNREADABLE, IndexedRun
 from mend.server.runtime.dialogue_state import DialogueState
@@ -15,8 +14,6 @@ from mend.server.runtime.history import History
 from mend.server.runtime.past_dialogues import PastDialogues
 from mend.server.runtime.past_states import PastStates
 from mend.server.runtime.run_state import RunState
-
-log = logging.getLogger(__name__)
 
 
 class RunStates:

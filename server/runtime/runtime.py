@@ -13,16 +13,10 @@ from uuid import UUID
 import numpy as np
 
 from mend.dialogue.script import Script
+from mend.errors import ConflictError, NotFoundError, UnreadableError, WrongInputError
 from mend.server.dialogues.answers import answer_source
 from mend.server.dialogues.escalation import EscalationPolicy
-from mend.server.errors import (
-    BusyError,
-    ConflictError,
-    InvalidError,
-    LostRaceError,
-    NotFoundError,
-    UnreadableError,
-)
+from mend.server.errors import BusyError, LostRaceError
 from mend.server.journal import events as ev
 from mend.server.journal.journal import Entry, Journal
 from mend.server.journal.run_index import UNREADABLE, IndexedRun, RunPage
@@ -145,7 +139,7 @@ class Runtime:
         return await self.run(run)
 
     async def start_run(self, request: RunRequest, author: ev.Author | None = None) -> RunSummary:
-        """Begin a run. Raises `NotFoundError`, `InvalidError` or `ConflictError`."""
+        """Begin a run. Raises `NotFoundError`, `WrongInputError` or `ConflictError`."""
         self._refuse_one_too_many()
         new = await self._new_runs.make(request, author)
         if self._closing:
@@ -466,6 +460,6 @@ def _person_of(state: RunState, scenario: Scenario | None) -> Person:
 
 def _check_intervention(scene: Scene, intervention: Intervention) -> None:
     if intervention.object is not None and intervention.object not in scene.objects:
-        raise InvalidError(f"the scene '{scene.name}' has no object '{intervention.object}'")
+        raise WrongInputError(f"the scene '{scene.name}' has no object '{intervention.object}'")
     if intervention.place is not None and intervention.place not in scene.places:
-        raise InvalidError(f"the scene '{scene.name}' has no place '{intervention.place}'")
+        raise WrongInputError(f"the scene '{scene.name}' has no place '{intervention.place}'")

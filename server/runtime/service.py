@@ -25,7 +25,7 @@ class RunService(Protocol):
     """
 
     async def start_run(self, request: RunRequest, author: Author | None = None) -> RunSummary:
-        """Begin a run. Raises `NotFoundError` (tree, scenario, robot), `InvalidError`."""
+        """Begin a run. Raises `NotFoundError` (tree, scenario, robot), `WrongInputError`."""
         ...
 
     async def runs(self, page: RunPage) -> list[RunSummary]:

@@ -6,7 +6,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from mend.server.errors import InvalidError
+from mend.errors import WrongInputError
 from mend.server.journal.journal import Journal
 from mend.server.runtime.ports import LIVE
 from mend.server.runtime.run import Run
@@ -14,7 +14,7 @@ from mend.server.runtime.run_state import RunState
 from mend.server.runtime.views import WorldView
 from mend.sim.mischief import random_interventions
 from mend.sim.world import WorldAdapter, WorldSetup, WorldUnavailableError
-from mend.sim.world_options import WorldOptionError, read_options
+from mend.sim.world_options import read_options
 from mend.tasks.scenario import ScriptedIntervention
 
 
@@ -71,18 +71,15 @@ class SimulatedWorlds:
         return WorldView(name=name, available=reason is None, reason=reason, options=options)
 
     def check(self, world: str, options: Mapping[str, Any]) -> None:
-        """Raise `InvalidError` where there is no such world, or none with such options here."""
+        """Raise `WrongInputError` where there is no such world, or none with such options here."""
         if world not in self._adapters:
             known = ", ".join(["live", *self._adapters])
-            raise InvalidError(f"there is no world '{world}'; there are {known}")
+            raise WrongInputError(f"there is no world '{world}'; there are {known}")
         try:
             self._adapters[world].check_available()
         except WorldUnavailableError as error:
-            raise InvalidError(str(error)) from error
-        try:
-            read_options(self._adapters[world].options, world, options)
-        except WorldOptionError as error:
-            raise InvalidError(str(error)) from error
+            raise WrongInputError(str(error)) from error
+        read_options(self._adapters[world].options, world, options)
 
     def open(self, state: RunState, run: Callable[[], Run]) -> "SimulatedHardware":
         """The hardware of a run, which starts it; `run` is asked for only then.

@@ -9,6 +9,7 @@ from enum import StrEnum
 
 from mend.server.speech.commands import Command
 from mend.server.speech.phrases import SORRY
+from mend.tasks.transitions import Transitions
 
 PAUSE_S = 0.2
 """Between the end of what the robot says and listening: the room has to fall silent."""
@@ -53,7 +54,7 @@ class Saying(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Say:
+class SayAloud:
     """Say this; `spoken` is to be called at its end."""
 
     what: Saying
@@ -61,7 +62,7 @@ class Say:
 
 
 @dataclass(frozen=True, slots=True)
-class Listen:
+class StartListening:
     """From now on the microphone counts."""
 
 
@@ -83,7 +84,7 @@ class Understood:
 
 
 @dataclass(frozen=True, slots=True)
-class GiveUp:
+class StopTrying:
     """Nothing more is tried by voice."""
 
 
@@ -94,30 +95,35 @@ class End:
     reason: EndReason
 
 
-Act = Say | Listen | Hear | Understood | GiveUp | End
-
-_LEGAL_CALLS = {
-    State.NEW: ("open", "end"),
-    State.SAYING: ("spoken", "end"),
-    State.PAUSING: ("pause_over", "end"),
-    State.LISTENING: ("speech_began", "end"),
-    State.HEARING: ("utterance", "nothing_said", "end"),
-    State.ENDED: (),
-}
+Act = SayAloud | StartListening | Hear | Understood | StopTrying | End
 
 
-class IllegalTransitionError(Exception):
-    """A call came that the conversation's state does not allow; nothing was changed."""
+class SpokenCall(StrEnum):
+    """What comes to a conversation."""
 
-    def __init__(self, state: State, came: str, expected: tuple[str, ...]) -> None:
-        wanted = " or ".join(expected) if expected else "nothing more"
-        super().__init__(f"the spoken conversation is {state}: expected {wanted}, but {came} came")
-        self.state = state
-        self.came = came
-        self.expected = expected
+    OPEN = "open"
+    SPOKEN = "spoken"
+    PAUSE_OVER = "pause_over"
+    SPEECH_BEGAN = "speech_began"
+    UTTERANCE = "utterance"
+    NOTHING_SAID = "nothing_said"
+    END = "end"
 
 
-class Conversation:
+_CALLS = Transitions(
+    "the spoken conversation",
+    {
+        State.NEW: (SpokenCall.OPEN, SpokenCall.END),
+        State.SAYING: (SpokenCall.SPOKEN, SpokenCall.END),
+        State.PAUSING: (SpokenCall.PAUSE_OVER, SpokenCall.END),
+        State.LISTENING: (SpokenCall.SPEECH_BEGAN, SpokenCall.END),
+        State.HEARING: (SpokenCall.UTTERANCE, SpokenCall.NOTHING_SAID, SpokenCall.END),
+        State.ENDED: (),
+    },
+)
+
+
+class SpokenConversation:
     """Asks one question aloud until it has heard a command, or has apologized often enough.
 
     Every call returns what is to be done, in order; one that the state does not allow raises
@@ -153,32 +159,32 @@ class Conversation:
 
     def open(self) -> list[Act]:
         """Begin: ask the question."""
-        self._require("open")
+        _CALLS.require(self._state, SpokenCall.OPEN)
         return self._say(Saying.QUESTION)
 
     def spoken(self) -> list[Act]:
         """What was said has been played to its end."""
-        self._require("spoken")
+        _CALLS.require(self._state, SpokenCall.SPOKEN)
         self._state = State.PAUSING
         self._listens_at_s = self._now_s() + PAUSE_S
         return []
 
     def pause_over(self) -> list[Act]:
         """Listen, if the pause is over; nothing before."""
-        self._require("pause_over")
+        _CALLS.require(self._state, SpokenCall.PAUSE_OVER)
         if self._now_s() < self._listens_at_s:
             return []
         self._state = State.LISTENING
-        return [Listen()]
+        return [StartListening()]
 
     def speech_began(self) -> list[Act]:
-        self._require("speech_began")
+        _CALLS.require(self._state, SpokenCall.SPEECH_BEGAN)
         self._state = State.HEARING
         return [Hear()]
 
     def utterance(self, command: Command | None, phrase: str | None, latency_s: float) -> list[Act]:
         """Somebody has said something; `command` None where it is not a command."""
-        self._require("utterance")
+        _CALLS.require(self._state, SpokenCall.UTTERANCE)
         heard = Understood(command, phrase, latency_s)
         match command:
             case Command.YES | Command.NO | Command.STOP:
@@ -191,28 +197,23 @@ class Conversation:
                 self._apologies_left -= 1
                 return [heard, *self._say(Saying.SORRY)]
             case None:
-                return [heard, GiveUp(), *self._end(EndReason.GAVE_UP)]
+                return [heard, StopTrying(), *self._end(EndReason.GAVE_UP)]
 
     def nothing_said(self) -> list[Act]:
         """What began was no speech after all."""
-        self._require("nothing_said")
+        _CALLS.require(self._state, SpokenCall.NOTHING_SAID)
         self._state = State.LISTENING
-        return [Listen()]
+        return [StartListening()]
 
     def end(self, reason: EndReason) -> list[Act]:
         """End it for a reason outside of it."""
-        self._require("end")
+        _CALLS.require(self._state, SpokenCall.END)
         return self._end(reason)
 
     def _say(self, what: Saying) -> list[Act]:
         self._state = State.SAYING
-        return [Say(what, self._texts[what])]
+        return [SayAloud(what, self._texts[what])]
 
     def _end(self, reason: EndReason) -> list[Act]:
         self._state = State.ENDED
         return [End(reason)]
-
-    def _require(self, call: str) -> None:
-        expected = _LEGAL_CALLS[self._state]
-        if call not in expected:
-            raise IllegalTransitionError(self._state, call, expected)

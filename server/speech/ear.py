@@ -17,7 +17,7 @@ from typing import Literal, Protocol, Self
 
 from pydantic import BaseModel, ConfigDict
 
-from mend.server.errors import ServiceError
+from mend.errors import MendError, UnavailableError
 from mend.server.speech.commands import Command
 
 log = logging.getLogger(__name__)
@@ -38,15 +38,15 @@ AFRESH = 2**32 - 1
 """Instead of a number of bytes: another conversation begins; it is `ready` then."""
 
 
-class EarLostError(Exception):
+class EarLostError(MendError):
     """The ear has failed; the message is one sentence."""
 
 
-class TooManyConversationsError(ServiceError):
+class TooManyConversationsError(UnavailableError):
     """As many conversations as the service can take are going on."""
 
 
-class Report(BaseModel):
+class EarReport(BaseModel):
     """What an ear tells of the sound that it was given.
 
     `words` says whether an utterance had any; `latency_s` counts from its last sound to this.
@@ -74,7 +74,7 @@ class Ear(Protocol):
         """What was heard so far does not belong to what comes next."""
         ...
 
-    async def report(self) -> Report:
+    async def report(self) -> EarReport:
         """Wait for what was heard. Raises `EarLostError`."""
         ...
 
@@ -191,7 +191,7 @@ class ProcessEar:
     def interrupt(self) -> None:
         self._process.send(BREAK)
 
-    async def report(self) -> Report:
+    async def report(self) -> EarReport:
         return await self._process.report()
 
     async def close(self) -> None:
@@ -240,11 +240,11 @@ class RecognizerProcess:
         with suppress(OSError, RuntimeError):
             self._to.write(HEADER.pack(time.monotonic(), size) + pcm)
 
-    async def report(self) -> Report:
+    async def report(self) -> EarReport:
         line = await self._from.readline()
         if not line:
             raise EarLostError("the recognizer has ended")
-        return Report.model_validate_json(line)
+        return EarReport.model_validate_json(line)
 
     async def stop(self) -> None:
         if self._process.returncode is None:

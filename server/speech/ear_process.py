@@ -10,7 +10,7 @@ import time
 from typing import BinaryIO
 
 from mend.server.speech.decoding import SphinxDecoder
-from mend.server.speech.ear import AFRESH, BREAK, HEADER, Report
+from mend.server.speech.ear import AFRESH, BREAK, HEADER, EarReport
 from mend.server.speech.recognizer import Heard, Recognizer, SpeechBegan
 
 
@@ -28,7 +28,7 @@ def main() -> None:
 
 def _converse(recognizer: Recognizer, sound: BinaryIO, reports: BinaryIO) -> bool:
     """Listen to one conversation; whether another begins."""
-    _tell(reports, Report(kind="ready"))
+    _tell(reports, EarReport(kind="ready"))
     interruptions = 0
     while header := sound.read(HEADER.size):
         came_s, size = HEADER.unpack(header)
@@ -43,11 +43,11 @@ def _converse(recognizer: Recognizer, sound: BinaryIO, reports: BinaryIO) -> boo
     return False
 
 
-def report_of(heard: Heard, since_sound_s: float, interruptions: int) -> Report:
+def report_of(heard: Heard, since_sound_s: float, interruptions: int) -> EarReport:
     """What a recognizer heard, `since_sound_s` after the sound that ended it came."""
     if isinstance(heard, SpeechBegan):
-        return Report(kind="began", interruptions=interruptions)
-    return Report(
+        return EarReport(kind="began", interruptions=interruptions)
+    return EarReport(
         kind="utterance",
         command=heard.command,
         phrase=heard.phrase,
@@ -57,7 +57,7 @@ def report_of(heard: Heard, since_sound_s: float, interruptions: int) -> Report:
     )
 
 
-def _tell(reports: BinaryIO, report: Report) -> None:
+def _tell(reports: BinaryIO, report: EarReport) -> None:
     reports.write(report.model_dump_json().encode() + b"\n")
 
 

@@ -3,7 +3,7 @@
 from collections.abc import AsyncIterator
 from uuid import UUID
 
-from mend.server.errors import ConflictError, NotFoundError
+from mend.errors import ConflictError, NotFoundError
 from mend.server.journal.events import (
     Answered,
     DialogueClosed,

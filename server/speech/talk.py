@@ -5,8 +5,8 @@ import logging
 from collections.abc import Awaitable, Callable, Coroutine
 from typing import Any
 
-from mend.server.speech.conversation import Act, Conversation, EndReason, State
-from mend.server.speech.ear import Ear, EarLostError, Ears, Report, TooManyConversationsError
+from mend.server.speech.conversation import Act, EndReason, SpokenConversation, State
+from mend.server.speech.ear import Ear, EarLostError, EarReport, Ears, TooManyConversationsError
 
 log = logging.getLogger(__name__)
 
@@ -22,7 +22,7 @@ class Talk:
 
     def __init__(
         self,
-        conversation: Conversation,
+        conversation: SpokenConversation,
         ears: Ears,
         perform: Perform,
         over: Coroutine[Any, Any, EndReason],
@@ -112,7 +112,7 @@ class Talk:
             log.warning("a spoken conversation was lost: %s", error)
             await self._end(EndReason.LOST)
 
-    async def _take(self, report: Report) -> None:
+    async def _take(self, report: EarReport) -> None:
         """Take a report, unless it is about sound from before the robot spoke."""
         if report.interruptions != self._interruptions:
             return

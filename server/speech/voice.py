@@ -13,12 +13,14 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Literal, Protocol
 
+from mend.errors import MendError
+
 RENDER_TIMEOUT_S = 20.0
 
 VoiceChoice = Literal["auto", "flite", "espeak-ng", "piper", "none"]
 
 
-class VoiceError(Exception):
+class VoiceError(MendError):
     """The voice could not say a text; the message is one sentence."""
 
 

@@ -34,7 +34,7 @@ class TabletopAdapter:
     def lay_out(self, names: Iterable[tuple[str, str | None]], seed: int) -> Scene:
         """Make up a scene for the (object, place) names of a tree.
 
-        Raises `LayoutError` for more than there is room and colours for.
+        Raises `WrongInputError` for more than there is room and colours for.
         """
         return lay_out(names, seed)
 
@@ -49,7 +49,7 @@ class TabletopAdapter:
     def train_colors(self, scene: Scene) -> ColorModel:
         """Learn the colours of a scene's objects from rendered pictures of them.
 
-        Raises `ColorModelError` for an object without a colour of its own.
+        Raises `WrongInputError` for an object without a colour of its own.
         """
         return learn_colors(scene, TabletopOptions())
 

@@ -50,7 +50,7 @@ class StraightPath:
         return len(self.waypoints)
 
 
-class Arm:
+class CartesianArm:
     """Moves the tool along one straight segment at a time."""
 
     def __init__(self, pose: ToolPose) -> None:

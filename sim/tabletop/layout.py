@@ -6,6 +6,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from mend.errors import WrongInputError
 from mend.tasks.scene import Place, Pose, Scene, SceneObject, Table
 
 MOST_OBJECTS = 64
@@ -24,21 +25,17 @@ _ASPECT = 1.5
 """Each half of the table is so much longer away from the robot than it is wide."""
 
 
-class LayoutError(ValueError):
-    """Objects and places cannot be laid out; the message says why."""
-
-
 def lay_out(names: Iterable[tuple[str, str | None]], seed: int) -> Scene:
     """Make up a scene for (object, place) names, objects on the right, places on the left.
 
-    Raises `LayoutError` for more objects or places than the table has room and colours for.
+    Raises `WrongInputError` for more objects or places than the table has room and colours for.
     """
     pairs = list(names)
     objects = list(dict.fromkeys(name for name, _ in pairs))
     places = list(dict.fromkeys(place for _, place in pairs if place is not None))
     for kind, found in (("objects", objects), ("places", places)):
         if len(found) > MOST_OBJECTS:
-            raise LayoutError(
+            raise WrongInputError(
                 f"a tabletop holds at most {MOST_OBJECTS} {kind}, this tree names {len(found)}"
             )
     rng = np.random.default_rng(seed)

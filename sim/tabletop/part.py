@@ -31,7 +31,7 @@ _TRANSITIONS = {
 
 
 @dataclass(frozen=True, slots=True)
-class PartPose:
+class UprightPose:
     """Where the bottom centre of an upright part is, in the base frame."""
 
     x: float
@@ -64,7 +64,7 @@ class GraspBox:
 class TablePart:
     """A part of the scene."""
 
-    def __init__(self, name: str, definition: SceneObject, start: PartPose) -> None:
+    def __init__(self, name: str, definition: SceneObject, start: UprightPose) -> None:
         self.name = name
         self.color = definition.color
         self.size = definition.size
@@ -96,7 +96,7 @@ class TablePart:
         """The ground that it covers."""
         return self.footprint_at(self.pose)
 
-    def footprint_at(self, pose: PartPose) -> Footprint:
+    def footprint_at(self, pose: UprightPose) -> Footprint:
         """The ground that it would cover."""
         return Footprint(pose.x, pose.y, pose.yaw, self.size[0], self.size[1])
 
@@ -118,7 +118,7 @@ class TablePart:
         self._whereabouts = whereabouts
         self.shown = shown
 
-    def rest_at(self, pose: PartPose) -> None:
+    def rest_at(self, pose: UprightPose) -> None:
         """Lie at a pose from now on."""
         self.give_to(Whereabouts.RESTING)
         self.pose = pose

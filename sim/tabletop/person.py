@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 from mend.sim.acts import PULL_M_PER_S, Acts
 from mend.sim.tabletop.arm import GRIPPER
-from mend.sim.tabletop.part import PartPose, TablePart, Whereabouts
+from mend.sim.tabletop.part import TablePart, UprightPose, Whereabouts
 from mend.sim.tabletop.state import CONTROL_PERIOD_S, TabletopState
 from mend.tasks.footprint import Footprint
 from mend.tasks.scene import Pose
@@ -24,21 +24,21 @@ class Pull:
 
 
 @dataclass(slots=True)
-class HandOver:
+class TabletopHandOver:
     """A part that somebody holds out until the clock reads `until_s`."""
 
     part: TablePart
     until_s: float
 
 
-class Person(Acts[TablePart, PartPose]):
+class TabletopPerson(Acts[TablePart, UprightPose]):
     """Everybody who is not the robot."""
 
     def __init__(self, state: TabletopState) -> None:
         super().__init__(state.scene, state.parts)
         self._state = state
         self._pulls: list[Pull] = []
-        self.hand_over: HandOver | None = None
+        self.hand_over: TabletopHandOver | None = None
 
     def act(self) -> None:
         """Go on with what takes longer than one cycle."""
@@ -59,7 +59,7 @@ class Person(Acts[TablePart, PartPose]):
     def hold_out(self, part: TablePart, until_s: float) -> None:
         """Hold a part between the robot's fingers whenever they are open and at rest."""
         part.give_to(Whereabouts.WITH_PERSON, shown=False)
-        self.hand_over = HandOver(part, until_s)
+        self.hand_over = TabletopHandOver(part, until_s)
         self._state.settle()
 
     # --- What a tabletop adds -----------------------------------------------------------------
@@ -103,12 +103,12 @@ class Person(Acts[TablePart, PartPose]):
         if self.hand_over is not None and self.hand_over.part is part:
             self.hand_over = None
 
-    def _start_of(self, part: TablePart) -> PartPose:
+    def _start_of(self, part: TablePart) -> UprightPose:
         return part.start
 
-    def _pose_at(self, pose: Pose) -> PartPose:
+    def _pose_at(self, pose: Pose) -> UprightPose:
         z = self._state.scene.table.height if pose.z is None else pose.z
-        return PartPose(pose.x, pose.y, z, pose.yaw)
+        return UprightPose(pose.x, pose.y, z, pose.yaw)
 
     def _footprint(self, part: TablePart) -> Footprint | None:
         return part.footprint if part.whereabouts is Whereabouts.RESTING else None
@@ -116,7 +116,7 @@ class Person(Acts[TablePart, PartPose]):
     def _top_z(self, part: TablePart) -> float:
         return part.pose.z + part.height
 
-    def _put(self, part: TablePart, at: PartPose, where: str) -> None:  # noqa: ARG002
+    def _put(self, part: TablePart, at: UprightPose, where: str) -> None:  # noqa: ARG002
         """Put a part down, on top of what lies there already."""
         self._take(part)
         # Above all others, so that it comes to rest on them instead of inside them.
@@ -148,7 +148,7 @@ class Person(Acts[TablePart, PartPose]):
             self._pulls.remove(pull)
             pull.part.give_to(Whereabouts.GONE)
 
-    def _go_on_handing_over(self, hand_over: HandOver) -> None:
+    def _go_on_handing_over(self, hand_over: TabletopHandOver) -> None:
         part, state = hand_over.part, self._state
         if part.whereabouts is Whereabouts.HELD:
             self.hand_over = None

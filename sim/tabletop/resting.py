@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
-from mend.sim.tabletop.part import PartPose, TablePart, Whereabouts
+from mend.sim.tabletop.part import TablePart, UprightPose, Whereabouts
 from mend.tasks.scene import Table
 
 FLOOR_M = 0.0
@@ -25,7 +25,7 @@ def settle(parts: Iterable[TablePart], table: Table) -> None:
             part.rest_at(replace(part.pose, z=height))
 
 
-def on_top(part: TablePart, parts: Iterable[TablePart], table: Table) -> PartPose:
+def on_top(part: TablePart, parts: Iterable[TablePart], table: Table) -> UprightPose:
     """Where a part is that is let go: not inside of others, but on top of them."""
     pose = part.pose
     inside = [
@@ -40,7 +40,7 @@ def on_top(part: TablePart, parts: Iterable[TablePart], table: Table) -> PartPos
 
 
 def support_height(
-    part: TablePart, pose: PartPose, others: Sequence[TablePart], table: Table
+    part: TablePart, pose: UprightPose, others: Sequence[TablePart], table: Table
 ) -> float:
     """The height of the highest surface under a part let go at `pose`."""
     covered = part.footprint_at(pose)

@@ -9,12 +9,12 @@ from numpy.typing import NDArray
 
 from mend.robots.body import CameraImage, Matrix4, ToolPose
 from mend.robots.vision.viewpoint import Viewpoint
-from mend.sim.depth_noise import DepthNoise, Pinhole
+from mend.sim.depth_noise import DepthNoise, PinholeOptics
 from mend.sim.lighting import Lighting
 from mend.sim.raster import Light, Mesh, Rasterizer, RenderedImage, box_triangles
 from mend.sim.tabletop.blocker import SIZE_M as BLOCKER_SIZE_M
 from mend.sim.tabletop.gripper_shape import FINGER, PALM, finger_offset_m
-from mend.sim.tabletop.part import PartPose, TablePart
+from mend.sim.tabletop.part import TablePart, UprightPose
 from mend.sim.tabletop.state import CONTROL_PERIOD_S, TabletopState
 from mend.tasks.part_boxes import boxes_of
 from mend.tasks.scene import Table
@@ -35,7 +35,7 @@ BLOCKER_COLOR = (0.30, 0.30, 0.32)
 
 
 @dataclass(frozen=True, slots=True)
-class _Shown:
+class _PictureInputs:
     """All that a picture depends on."""
 
     poses: bytes
@@ -69,8 +69,8 @@ class Scenery:
         count = len(self._parts) + 5
         self._transforms = np.tile(np.eye(4), (count, 1, 1))
         self._visible = np.ones(count, dtype=np.bool_)
-        self._drawn: list[PartPose | None] = [None] * len(self._parts)
-        self._last: dict[tuple[int, int], tuple[_Shown, RenderedImage]] = {}
+        self._drawn: list[UprightPose | None] = [None] * len(self._parts)
+        self._last: dict[tuple[int, int], tuple[_PictureInputs, RenderedImage]] = {}
 
     def render(
         self, camera_pose: Matrix4, size: tuple[int, int], focal_px: float, light: Light
@@ -83,7 +83,7 @@ class Scenery:
         self._place_arm()
         self._place_blocker()
         poses, visible = self._transforms.tobytes(), self._visible.tobytes()
-        shown = _Shown(poses, visible, camera_pose.tobytes(), focal_px, light)
+        shown = _PictureInputs(poses, visible, camera_pose.tobytes(), focal_px, light)
         last = self._last.get(size)
         if last is not None and last[0] == shown:
             return last[1]
@@ -166,7 +166,7 @@ class TabletopCamera:
         center_px = _center_px(self.size)
         depth_m = None
         if self.has_depth:
-            lens = Pinhole(self.focal_px, center_px)
+            lens = PinholeOptics(self.focal_px, center_px)
             depth_m = self._depth_noise.measure(rendered.depth_m, rendered.bgr, lens)
         image = CameraImage(
             bgr=self._lighting.expose(rendered.bgr, time_s),

@@ -2,7 +2,8 @@
 
 from typing import Literal
 
-from mend.sim.tabletop.part import PartPose
+from mend.sim.hand_over import HandOverSnapshot
+from mend.sim.tabletop.part import UprightPose
 from mend.tasks.scene import Metres, Name, StrictModel
 
 _DECIMALS = 6
@@ -10,13 +11,6 @@ _DECIMALS = 6
 
 RestPose = tuple[Metres, Metres, Metres, float]
 """Where the bottom centre of a part rests (x, y, z in the base frame), and its yaw."""
-
-
-class HandOverSnapshot(StrictModel):
-    """Somebody holds a part out until the clock reads `until_s`."""
-
-    object: Name
-    until_s: float
 
 
 class TabletopSnapshot(StrictModel):
@@ -37,7 +31,7 @@ class TabletopSnapshot(StrictModel):
     head_covered: bool = False
 
 
-def to_rest_pose(pose: PartPose) -> RestPose:
+def to_rest_pose(pose: UprightPose) -> RestPose:
     """As it is kept."""
     return (
         round(pose.x, _DECIMALS),

@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mend.robots.body import ToolPose
-from mend.sim.tabletop.arm import GRIPPER, Arm, Gripper
+from mend.sim.tabletop.arm import GRIPPER, CartesianArm, Gripper
 from mend.sim.tabletop.blocker import SIZE_M, Blocker, on_the_way
-from mend.sim.tabletop.part import PartPose, TablePart, Whereabouts
+from mend.sim.tabletop.part import TablePart, UprightPose, Whereabouts
 from mend.sim.tabletop.resting import on_top, settle
 from mend.tasks.scene import Scene
 
@@ -73,7 +73,7 @@ class TabletopState:
         self.scene = scene
         self.time_s = 0.0
         self.home = Home.beside(scene)
-        self.arm = Arm(self.home.neutral)
+        self.arm = CartesianArm(self.home.neutral)
         self.gripper = Gripper()
         self.gripper.opening_m = GRIPPER.max_opening_m
         self.parts: Mapping[str, TablePart] = {
@@ -146,11 +146,11 @@ class TabletopState:
         """Let everything fall that nothing holds up any more."""
         settle(self.parts.values(), self.scene.table)
 
-    def pose_in_fingers(self, held: HeldAt) -> PartPose:
+    def pose_in_fingers(self, held: HeldAt) -> UprightPose:
         """Where a part is that is held so."""
         tool = self.arm.pose
         cos, sin = math.cos(tool.yaw), math.sin(tool.yaw)
-        return PartPose(
+        return UprightPose(
             tool.x + held.along * cos - held.aside * sin,
             tool.y + held.along * sin + held.aside * cos,
             tool.z + held.up,
@@ -214,11 +214,11 @@ class TabletopState:
             self.held.pose = self.pose_in_fingers(self.held_at)
 
 
-def _start_pose(scene: Scene, name: str, rng: np.random.Generator) -> PartPose:
+def _start_pose(scene: Scene, name: str, rng: np.random.Generator) -> UprightPose:
     """Where an object starts: where the scene says, give or take the scene's scatter."""
     pose, scatter = scene.objects[name].pose, scene.scatter
     dx, dy, turn = rng.uniform(-1.0, 1.0, 3)
-    return PartPose(
+    return UprightPose(
         pose.x + float(dx) * scatter.xy,
         pose.y + float(dy) * scatter.xy,
         scene.table.height if pose.z is None else pose.z,

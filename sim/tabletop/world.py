@@ -18,8 +18,8 @@ from mend.sim.raster import Light
 from mend.sim.tabletop.blocker import SIZE_M as BLOCKER_SIZE_M
 from mend.sim.tabletop.blocker import Blocker
 from mend.sim.tabletop.body import TabletopBody
-from mend.sim.tabletop.part import PartPose, TablePart, Whereabouts
-from mend.sim.tabletop.person import Person
+from mend.sim.tabletop.part import TablePart, UprightPose, Whereabouts
+from mend.sim.tabletop.person import TabletopPerson
 from mend.sim.tabletop.scenery import BLOCKER_COLOR, ForearmCamera, HeadCamera, Scenery
 from mend.sim.tabletop.snapshot import TabletopSnapshot, to_rest_pose
 from mend.sim.tabletop.state import TabletopState
@@ -55,7 +55,7 @@ class TabletopWorld:
         chosen = options or TabletopOptions()
         layout_rng, light_rng, depth_rng = np.random.default_rng(seed).spawn(3)
         self._state = TabletopState(scene, layout_rng)
-        self._person = Person(self._state)
+        self._person = TabletopPerson(self._state)
         self._state.person_acts = self._person.act
         scenery = Scenery(self._state)
         lighting = Lighting(Light(), chosen.light, chosen.camera_noise, light_rng)
@@ -132,7 +132,7 @@ class TabletopWorld:
         self._state.reset(saved.time_s, Blocker(*saved.blocker) if saved.blocker else None)
         for name, part in self._state.parts.items():
             rest = saved.moved.get(name)
-            part.rest_at(part.start if rest is None else PartPose(*rest))
+            part.rest_at(part.start if rest is None else UprightPose(*rest))
             if name in saved.gone:
                 part.give_to(Whereabouts.GONE)
         if saved.hand_over is not None:
@@ -144,7 +144,7 @@ class TabletopWorld:
     def close(self) -> None:
         """Nothing to give back."""
 
-    def pose_of(self, name: str) -> PartPose | None:
+    def pose_of(self, name: str) -> UprightPose | None:
         """Where a part really is, None if it is gone; for tests and benchmarks to judge by."""
         part = self._state.parts[name]
         return None if part.whereabouts is Whereabouts.GONE else part.pose

@@ -9,7 +9,6 @@ from mend.robots.robot import Robot
 from mend.robots.vision.color_model import ColorModel
 from mend.robots.vision.lookalikes import find_lookalikes
 from mend.sim.simulated_agent import SimulatedAgent
-from mend.sim.workcell.arm_planner import neutral_arm
 from mend.sim.workcell.options import WorkcellOptions
 from mend.sim.workcell.robot_model import MODEL, check_installed, robot_urdf
 from mend.sim.world import WorldSetup
@@ -72,6 +71,7 @@ class WorkcellAdapter:
     ) -> list[SceneProblem]:
         """What keeps the robot from doing the leaves among `nodes` in a scene."""
         check_installed()
+        from mend.sim.workcell.arm_planner import neutral_arm
         from mend.sim.workcell.cameras import head_viewpoint
         from mend.sim.workcell.colors import learn_colors
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from mend.robots.body import ArmPath, Leg, NoWay
 from mend.robots.gripper import GripperModel
-from mend.robots.motion.collision import CollisionModel, Hand
+from mend.robots.motion.collision import CollisionModel, HandPosture
 from mend.robots.motion.kinematics import Joints, KinematicChain
 from mend.robots.motion.obstacles import PathObstacles
 from mend.robots.motion.planner import JointPath, PathPlanner
@@ -66,7 +66,7 @@ def neutral_arm() -> NeutralArm:
     return NeutralArm()
 
 
-def _hand(leg: Leg) -> Hand:
+def _hand(leg: Leg) -> HandPosture:
     """The gripper's joints on a leg, and what it holds."""
     angle_rad = finger_angle_rad(leg.opening_m)
-    return Hand(dict.fromkeys(FINGER_JOINTS, angle_rad), leg.held)
+    return HandPosture(dict.fromkeys(FINGER_JOINTS, angle_rad), leg.held)

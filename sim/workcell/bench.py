@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator, Mapping
 
 import numpy as np
 
-from mend.sim.workcell.parts import Part, PartPose
+from mend.sim.workcell.parts import PartPose, RigidPart
 from mend.sim.workcell.physics import LEAST_DISTANCE_M, Client
 from mend.sim.workcell.pr2 import Pr2
 from mend.tasks.scene import Scene, Table
@@ -31,8 +31,8 @@ class Bench:
         self._client = client
         self.scene = scene
         self.table_id = _create_table(client, scene.table)
-        self.parts: Mapping[str, Part] = {
-            name: Part(client, name, definition, number)
+        self.parts: Mapping[str, RigidPart] = {
+            name: RigidPart(client, name, definition, number)
             for number, (name, definition) in enumerate(scene.objects.items())
         }
         # Last, as the engine's renderer draws in this order: of the floor, the largest thing in a
@@ -55,7 +55,7 @@ class Bench:
         for part in self.parts.values():
             part.start = part.last_rest = part.pose()
 
-    def intersecting(self, part: Part, apart_m: float = -_OVERLAP_M) -> Iterator[Part]:
+    def intersecting(self, part: RigidPart, apart_m: float = -_OVERLAP_M) -> Iterator[RigidPart]:
         """The other parts that are nearer than `apart_m` to a part; below 0 they intersect."""
         for other in self.parts.values():
             if other is part or other.stolen:
@@ -65,21 +65,21 @@ class Bench:
             if any(point[8] < apart_m for point in points):
                 yield other
 
-    def held(self, pr2: Pr2) -> Part | None:
+    def held(self, pr2: Pr2) -> RigidPart | None:
         """The part that both fingers touch."""
         for part in self.parts.values():
             if all(pr2.touched_by(part.body_id)):
                 return part
         return None
 
-    def remember_rests(self, pr2: Pr2, in_hand: Callable[[Part], bool]) -> None:
+    def remember_rests(self, pr2: Pr2, in_hand: Callable[[RigidPart], bool]) -> None:
         """Where parts lie still, touched by nobody, is where they last rested."""
         touched = pr2.touched()
         for part in self.parts.values():
             if part.body_id not in touched and not part.stolen and not in_hand(part):
                 part.remember_rest()
 
-    def _start_pose(self, part: Part, rng: np.random.Generator | None) -> PartPose:
+    def _start_pose(self, part: RigidPart, rng: np.random.Generator | None) -> PartPose:
         pose, scatter = part.definition.pose, self.scene.scatter
         z = (self.scene.table.height if pose.z is None else pose.z) + _DROP_M
         if rng is None:

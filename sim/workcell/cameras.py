@@ -10,9 +10,9 @@ import numpy as np
 from mend.robots.body import CameraImage, Matrix4
 from mend.robots.motion.kinematics import KinematicChain
 from mend.robots.vision.viewpoint import Viewpoint
-from mend.sim.depth_noise import DepthNoise, Pinhole
+from mend.sim.depth_noise import DepthNoise, PinholeOptics
 from mend.sim.lighting import Lighting
-from mend.sim.workcell.rendering import Renderer, Rendering, View
+from mend.sim.workcell.rendering import CameraOptics, Renderer, Rendering
 from mend.sim.workcell.robot_model import (
     FOREARM_FOV_RAD,
     HEAD_CAMERA_FRAME,
@@ -50,7 +50,7 @@ def head_camera_pose() -> Matrix4:
 def head_viewpoint() -> Viewpoint:
     """What the head camera sees from where it is."""
     optics = head_optics()
-    view = View(head_camera_pose(), optics.size, optics.focal_px, optics.near_m)
+    view = CameraOptics(head_camera_pose(), optics.size, optics.focal_px, optics.near_m)
     return Viewpoint(view.pose, view.size, view.focal_px, view.center_px)
 
 
@@ -101,10 +101,10 @@ class WorkcellCamera:
     def capture_with_bodies(self) -> tuple[CameraImage, Rendering]:
         """A picture and what it was rendered to, for training and for tests to judge by."""
         optics = self._optics
-        view = View(self.pose(), optics.size, optics.focal_px, optics.near_m)
+        view = CameraOptics(self.pose(), optics.size, optics.focal_px, optics.near_m)
         time_s = self._time_s()
         rendering = self._renderer.render(view, self._lighting.light_at(time_s))
-        lens = Pinhole(optics.focal_px, view.center_px)
+        lens = PinholeOptics(optics.focal_px, view.center_px)
         image = CameraImage(
             bgr=self._lighting.expose(rendering.bgr, time_s),
             depth_m=self._depth_noise.measure(rendering.depth_m, rendering.bgr, lens)

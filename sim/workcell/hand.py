@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mend.sim.workcell.parts import Part, PartPose
+from mend.sim.workcell.parts import PartPose, RigidPart
 from mend.sim.workcell.physics import Client, Point
 
 HOLD_FORCE_N = 30.0
@@ -16,13 +16,13 @@ class Hand:
     """Holds one part; whoever takes hold also lets go."""
 
     client: Client
-    part: Part
+    part: RigidPart
     force_n: float
     _pose: PartPose
     _constraint: int
 
     @classmethod
-    def take_hold(cls, client: Client, part: Part, force_n: float) -> "Hand":
+    def take_hold(cls, client: Client, part: RigidPart, force_n: float) -> "Hand":
         """Hold a part where it is."""
         pose = part.pose()
         position, quaternion = part.body_pose(pose)

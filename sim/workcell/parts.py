@@ -57,7 +57,7 @@ class PartPose:
         return cls.upright(pose.x, pose.y, z, pose.yaw)
 
 
-class Part:
+class RigidPart:
     """One part: a rigid body that can be put somewhere or taken away."""
 
     def __init__(self, client: Client, name: str, definition: SceneObject, number: int) -> None:

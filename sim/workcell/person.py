@@ -20,7 +20,7 @@ from mend.sim.workcell.obstacle import (
     centers_below,
     sinks,
 )
-from mend.sim.workcell.parts import Part, PartPose
+from mend.sim.workcell.parts import PartPose, RigidPart
 from mend.sim.workcell.physics import LEAST_DISTANCE_M, Client, Point
 from mend.sim.workcell.pr2 import Pr2
 from mend.tasks.footprint import Footprint
@@ -62,16 +62,16 @@ class _Pull:
 
 
 @dataclass(slots=True)
-class HandOver:
+class WorkcellHandOver:
     """A part that somebody holds out, or waits to, until the clock reads `until_s`."""
 
-    part: Part
+    part: RigidPart
     until_s: float
     hand: Hand | None = None
     gripped_cycles: int = 0
 
 
-class Person(Acts[Part, PartPose]):
+class WorkcellPerson(Acts[RigidPart, PartPose]):
     """Everybody who is not the robot."""
 
     def __init__(self, client: Client, bench: Bench, pr2: Pr2, body: WorkcellBody) -> None:
@@ -81,7 +81,7 @@ class Person(Acts[Part, PartPose]):
         self._pr2 = pr2
         self._body = body
         self._pulls: list[_Pull] = []
-        self.hand_over: HandOver | None = None
+        self.hand_over: WorkcellHandOver | None = None
         self.obstacle = Obstacle(client)
 
     def act(self) -> None:
@@ -91,12 +91,12 @@ class Person(Acts[Part, PartPose]):
         if self.hand_over is not None:
             self._go_on_handing_over(self.hand_over)
 
-    def has_in_hand(self, part: Part) -> bool:
+    def has_in_hand(self, part: RigidPart) -> bool:
         """Whether somebody is just pulling a part away or handing it over."""
         handed = self.hand_over is not None and self.hand_over.part is part
         return handed or self.is_pulling(part)
 
-    def is_pulling(self, part: Part) -> bool:
+    def is_pulling(self, part: RigidPart) -> bool:
         return any(pull.hand.part is part for pull in self._pulls)
 
     def withdraw(self) -> None:
@@ -108,7 +108,7 @@ class Person(Acts[Part, PartPose]):
             self._end_hand_over(self.hand_over)
         self.obstacle.withdraw()
 
-    def hold_out(self, part: Part, until_s: float) -> None:
+    def hold_out(self, part: RigidPart, until_s: float) -> None:
         """Hold a part between the robot's fingers once they are open and at rest.
 
         Raises `Impossible` for a part that they do not fit.
@@ -116,20 +116,20 @@ class Person(Acts[Part, PartPose]):
         if not can_grasp(_as_catalogued(part), self._body.gripper):
             raise Impossible(f"'{part.name}' does not fit between the robot's fingers")
         part.hide()
-        self.hand_over = HandOver(part, until_s)
+        self.hand_over = WorkcellHandOver(part, until_s)
 
     # --- What a workcell adds -----------------------------------------------------------------
 
     def _now_s(self) -> float:
         return self._body.time_s()
 
-    def _is_gone(self, part: Part) -> bool:
+    def _is_gone(self, part: RigidPart) -> bool:
         return part.stolen or self.is_pulling(part)
 
-    def _is_held(self, part: Part) -> bool:
+    def _is_held(self, part: RigidPart) -> bool:
         return self._bench.held(self._pr2) is part
 
-    def _offered(self) -> Part | None:
+    def _offered(self) -> RigidPart | None:
         return None if self.hand_over is None else self.hand_over.part
 
     def _stands_in_the_way(self) -> bool:
@@ -158,7 +158,7 @@ class Person(Acts[Part, PartPose]):
     def _step_aside(self) -> None:
         self.obstacle.withdraw()
 
-    def _take_away(self, part: Part, *, by_force: bool) -> None:
+    def _take_away(self, part: RigidPart, *, by_force: bool) -> None:
         out_of_sight = self._is_waiting_to_hand_over(part)
         self._take(part)
         if out_of_sight or not by_force:
@@ -171,13 +171,13 @@ class Person(Acts[Part, PartPose]):
         else:
             self._pulls.append(_Pull(hand, first=_UP, then=sideways))
 
-    def _start_of(self, part: Part) -> PartPose:
+    def _start_of(self, part: RigidPart) -> PartPose:
         return part.start
 
     def _pose_at(self, pose: Pose) -> PartPose:
         return PartPose.at(pose, self._bench.scene.table.height)
 
-    def _footprint(self, part: Part) -> Footprint | None:
+    def _footprint(self, part: RigidPart) -> Footprint | None:
         if part.stolen or self.has_in_hand(part) or self._is_held(part):
             return None
         pose, size = part.pose(), part.definition.size
@@ -187,17 +187,17 @@ class Person(Acts[Part, PartPose]):
             return Footprint(x, y, 0.0, max(size), max(size))
         return Footprint(x, y, pose.yaw, size[0], size[1])
 
-    def _top_z(self, part: Part) -> float:
+    def _top_z(self, part: RigidPart) -> float:
         _, high = self._client.getAABB(part.body_id)
         return float(high[2])
 
     # --- How ----------------------------------------------------------------------------------
 
-    def _is_waiting_to_hand_over(self, part: Part) -> bool:
+    def _is_waiting_to_hand_over(self, part: RigidPart) -> bool:
         hand_over = self.hand_over
         return hand_over is not None and hand_over.part is part and hand_over.hand is None
 
-    def _take(self, part: Part) -> None:
+    def _take(self, part: RigidPart) -> None:
         """Let go of a part with whichever hand holds it."""
         for pull in [pull for pull in self._pulls if pull.hand.part is part]:
             pull.hand.let_go()
@@ -205,7 +205,7 @@ class Person(Acts[Part, PartPose]):
         if self.hand_over is not None and self.hand_over.part is part:
             self._end_hand_over(self.hand_over)
 
-    def _put(self, part: Part, at: PartPose, where: str) -> None:
+    def _put(self, part: RigidPart, at: PartPose, where: str) -> None:
         """Put a part down, out of the robot's fingers if need be, unless something is there."""
         before, was_stolen = part.pose(), part.stolen
         x, y, z = at.position
@@ -218,7 +218,7 @@ class Person(Acts[Part, PartPose]):
         part.stolen = was_stolen
         raise Impossible(f"{problem} is {where}, so '{part.name}' cannot be put there")
 
-    def _conflict(self, part: Part) -> str | None:
+    def _conflict(self, part: RigidPart) -> str | None:
         other = next(self._bench.intersecting(part), None)
         if other is not None:
             return f"'{other.name}'"
@@ -226,7 +226,7 @@ class Person(Acts[Part, PartPose]):
             return "the robot's arm"
         return None
 
-    def _way_out(self, part: Part) -> Direction:
+    def _way_out(self, part: RigidPart) -> Direction:
         """Level, along the fingers' sides, away from the other parts."""
         tool = self._pr2.tool.pose(self._pr2.arm_joints())
         level = np.array([tool[0, 2], tool[1, 2], 0.0])
@@ -263,7 +263,7 @@ class Person(Acts[Part, PartPose]):
             pull.hand.let_go()
             pull.hand.part.take_away()
 
-    def _go_on_handing_over(self, hand_over: HandOver) -> None:
+    def _go_on_handing_over(self, hand_over: WorkcellHandOver) -> None:
         if self._body.time_s() >= hand_over.until_s:
             self._end_hand_over(hand_over)
             hand_over.part.put(hand_over.part.last_rest)
@@ -279,18 +279,18 @@ class Person(Acts[Part, PartPose]):
         else:
             self._feel_grip(hand_over)
 
-    def _feel_grip(self, hand_over: HandOver) -> None:
+    def _feel_grip(self, hand_over: WorkcellHandOver) -> None:
         gripped = all(self._pr2.touched_by(hand_over.part.body_id))
         hand_over.gripped_cycles = hand_over.gripped_cycles + 1 if gripped else 0
         if hand_over.gripped_cycles >= _GRIPPED_CYCLES:
             self._end_hand_over(hand_over)
 
-    def _end_hand_over(self, hand_over: HandOver) -> None:
+    def _end_hand_over(self, hand_over: WorkcellHandOver) -> None:
         if hand_over.hand is not None:
             hand_over.hand.let_go()
         self.hand_over = None
 
-    def _pose_between_fingers(self, part: Part) -> PartPose:
+    def _pose_between_fingers(self, part: RigidPart) -> PartPose:
         """Upright, with its thin sides to the fingers, grasped where the robot would."""
         grasp = grasp_of(_as_catalogued(part), self._body.gripper)
         tool = self._pr2.tool.pose(self._pr2.arm_joints())
@@ -299,6 +299,6 @@ class Person(Acts[Part, PartPose]):
         return PartPose.upright(x, y, z - grasp.height_m, yaw)
 
 
-def _as_catalogued(part: Part) -> CataloguePart:
+def _as_catalogued(part: RigidPart) -> CataloguePart:
     """As the robot knows the part."""
     return CataloguePart(part.name, part.definition.size, part.definition.knob)

@@ -18,7 +18,7 @@ _LIGHT_DISTANCE_M = 5.0
 
 
 @dataclass(frozen=True, slots=True)
-class View:
+class CameraOptics:
     """A camera's optics: `pose` of the optical frame, picture `size` (width, height)."""
 
     pose: Matrix4
@@ -44,7 +44,7 @@ class Rendering:
 class Renderer(Protocol):
     """Draws what a camera sees now."""
 
-    def render(self, view: View, light: Light) -> Rendering: ...
+    def render(self, view: CameraOptics, light: Light) -> Rendering: ...
 
 
 class BulletRenderer:
@@ -53,7 +53,7 @@ class BulletRenderer:
     def __init__(self, client: Client) -> None:
         self._client = client
 
-    def render(self, view: View, light: Light) -> Rendering:
+    def render(self, view: CameraOptics, light: Light) -> Rendering:
         width, height = view.size
         client = self._client
         eye, forward, up = view.pose[:3, 3], view.pose[:3, 2], -view.pose[:3, 1]
@@ -101,7 +101,7 @@ class FastRenderer:
         }
         self._centers = {body: self._center_of_mass(body) for body in self._links}
 
-    def render(self, view: View, light: Light) -> Rendering:
+    def render(self, view: CameraOptics, light: Light) -> Rendering:
         rendered = self._rasterizer.render(
             self._transforms(),
             view.pose,

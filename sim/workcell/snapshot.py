@@ -2,6 +2,7 @@
 
 from typing import Literal
 
+from mend.sim.hand_over import HandOverSnapshot
 from mend.sim.workcell.parts import PartPose
 from mend.tasks.scene import Name, StrictModel
 
@@ -28,13 +29,6 @@ class PartSnapshot(StrictModel):
     rest: PoseSnapshot
     start: PoseSnapshot
     stolen: bool
-
-
-class HandOverSnapshot(StrictModel):
-    """Somebody holds a part out until the clock reads `until_s`."""
-
-    object: Name
-    until_s: float
 
 
 class WorkcellSnapshot(StrictModel):

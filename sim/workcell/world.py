@@ -11,6 +11,7 @@ from mend.robots.body import Matrix4
 from mend.robots.link.messages import ShownObject, ShownPose
 from mend.sim.camera_cover import CoverableCamera
 from mend.sim.depth_noise import DepthNoise
+from mend.sim.hand_over import HandOverSnapshot
 from mend.sim.lighting import Lighting
 from mend.sim.raster import Light
 from mend.sim.workcell.bench import Bench
@@ -23,17 +24,12 @@ from mend.sim.workcell.cameras import (
     head_optics,
 )
 from mend.sim.workcell.options import WorkcellOptions
-from mend.sim.workcell.parts import Part
-from mend.sim.workcell.person import Person
+from mend.sim.workcell.parts import RigidPart
+from mend.sim.workcell.person import WorkcellPerson
 from mend.sim.workcell.physics import arrangement, connect
 from mend.sim.workcell.pr2 import Pr2
 from mend.sim.workcell.rendering import BulletRenderer, FastRenderer, Renderer
-from mend.sim.workcell.snapshot import (
-    HandOverSnapshot,
-    PartSnapshot,
-    PoseSnapshot,
-    WorkcellSnapshot,
-)
+from mend.sim.workcell.snapshot import PartSnapshot, PoseSnapshot, WorkcellSnapshot
 from mend.tasks.intervention import Intervention
 from mend.tasks.scene import Scene
 
@@ -85,7 +81,7 @@ class WorkcellWorld:
         self._bench = Bench(client, self._scene)
         self._pr2 = Pr2(client)
         self._body = WorkcellBody(self._pr2, self._rng, self._sensor_rng, self._step)
-        self._person = Person(client, self._bench, self._pr2, self._body)
+        self._person = WorkcellPerson(client, self._bench, self._pr2, self._body)
         self._renderer: Renderer = (
             BulletRenderer(client) if options.renderer == "bullet" else FastRenderer(client)
         )
@@ -135,7 +131,7 @@ class WorkcellWorld:
         parts = [self._shown_pose(each, held) for each in self.parts.values()]
         return [*parts, self._person.obstacle.shown_pose()]
 
-    def _shown_pose(self, part: Part, held: Part | None) -> ShownPose:
+    def _shown_pose(self, part: RigidPart, held: RigidPart | None) -> ShownPose:
         pose = part.pose()
         return ShownPose(
             pose=(*pose.position, *pose.quaternion),
@@ -187,7 +183,7 @@ class WorkcellWorld:
         self._client.disconnect()
 
     @property
-    def parts(self) -> Mapping[str, Part]:
+    def parts(self) -> Mapping[str, RigidPart]:
         """The parts as they really are; for tests and benchmarks to judge by."""
         return self._bench.parts
 
@@ -221,7 +217,7 @@ class WorkcellWorld:
             self._body.advance_cycle()
         self._body.cycle = 0
 
-    def _snapshot_of(self, part: Part, held: Part | None) -> PartSnapshot:
+    def _snapshot_of(self, part: RigidPart, held: RigidPart | None) -> PartSnapshot:
         in_the_air = part is held or self._person.has_in_hand(part)
         rest = part.last_rest if in_the_air or part.stolen else part.pose()
         return PartSnapshot(
@@ -230,7 +226,7 @@ class WorkcellWorld:
             stolen=part.stolen or self._person.is_pulling(part),
         )
 
-    def _restore_part(self, part: Part, saved: PartSnapshot) -> None:
+    def _restore_part(self, part: RigidPart, saved: PartSnapshot) -> None:
         part.start = saved.start.to_pose()
         part.last_rest = saved.rest.to_pose()
         if saved.stolen:

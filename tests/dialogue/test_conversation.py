@@ -6,20 +6,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mend.dialogue.conversation import Conversation, IllegalTransitionError, Phase
+from mend.dialogue.conversation import Conversation, ConversationPhase
 from mend.dialogue.evidence import Change, PutRight
 from mend.dialogue.outlook import Next, Outlook, Sequel
 from mend.dialogue.registry import load_scripts
-from mend.dialogue.script import (
-    Ask,
-    AwaitHelp,
-    Close,
-    CloseReason,
-    Expectation,
-    Help,
-    Say,
-    Turn,
-)
+from mend.dialogue.script import Ask, AwaitHelp, Close, CloseReason, Expectation, Help, Remark, Turn
+from mend.errors import IllegalTransitionError
 from mend.tasks.issue import Issue, Sensed
 from mend.tasks.resolution import Resolution
 
@@ -205,7 +197,7 @@ def test_a_question_says_what_the_robot_sensed() -> None:
 
 def last_word(turns: list[Turn]) -> str:
     said = turns[-2]
-    assert isinstance(said, Say)
+    assert isinstance(said, Remark)
     return said.text
 
 
@@ -273,7 +265,7 @@ def test_a_robot_that_failed_too_often_offers_no_other_try() -> None:
 
 
 def test_the_first_time_nobody_is_asked_to_leave_it_out() -> None:
-    assert shape(walk("missed", "no", "no")) == "Ask Ask Say Close"
+    assert shape(walk("missed", "no", "no")) == "Ask Ask Remark Close"
     assert shape(walk("missed", "no", "no", outlook=AGAIN)) == "Ask Ask Ask"
 
 
@@ -312,7 +304,7 @@ def test_help_after_too_many_helped_tries_is_a_failed_attempt_that_says_so() -> 
 
 def test_help_that_is_not_seen_is_asked_about_again_and_awaited_again() -> None:
     turns = walk("dropped", "no", "yes", "not seen", "yes", "seen")
-    assert shape(turns) == "Ask Ask Say AwaitHelp Ask AwaitHelp Say Close"
+    assert shape(turns) == "Ask Ask Remark AwaitHelp Ask AwaitHelp Remark Close"
     asked_again = turns[4]
     assert isinstance(asked_again, Ask)
     assert asked_again.text == (
@@ -351,7 +343,7 @@ def test_what_the_script_does_not_watch_for_puts_nothing_right() -> None:
     conversation.open()
     with pytest.raises(ValueError, match="way_clear"):
         conversation.put_right(PutRight(Expectation.WAY_CLEAR, Change.CLEARED))
-    assert conversation.phase is Phase.ASKING
+    assert conversation.phase is ConversationPhase.ASKING
 
 
 def test_the_robot_watches_for_an_issue_put_right_only_while_it_asks() -> None:
@@ -361,7 +353,7 @@ def test_the_robot_watches_for_an_issue_put_right_only_while_it_asks() -> None:
     assert conversation.watched_for == (Expectation.AT_PLACE, Expectation.IN_REACH)
     conversation.answer("yes")
     assert not conversation.watched_for
-    assert conversation.phase is Phase.AWAITING_HELP
+    assert conversation.phase is ConversationPhase.AWAITING_HELP
 
 
 @given(
@@ -390,7 +382,7 @@ def test_whatever_comes_legal_calls_are_told_apart_and_replay_gives_the_same(
     again = conversation_about(kind, outlook, felt=felt)
     assert [turn for call in taken for turn in CALLS[call](again)] == turns
     closes = [turn for turn in turns if isinstance(turn, Close)]
-    assert len(closes) == (conversation.phase is Phase.CLOSED)
+    assert len(closes) == (conversation.phase is ConversationPhase.CLOSED)
 
 
 @given(
@@ -405,14 +397,14 @@ def test_every_conversation_closes_within_a_bounded_number_of_asks(
     conversation = conversation_about(kind, outlook)
     turns = conversation.open()
     legal = {
-        Phase.ASKING: ["yes", "no"],
-        Phase.AWAITING_HELP: ["seen", "seen as before", "not seen"],
+        ConversationPhase.ASKING: ["yes", "no"],
+        ConversationPhase.AWAITING_HELP: ["seen", "seen as before", "not seen"],
     }
-    while conversation.phase is not Phase.CLOSED:
+    while conversation.phase is not ConversationPhase.CLOSED:
         call = data.draw(st.sampled_from(legal[conversation.phase]))
         turns += CALLS[call](conversation)
         # Two offers of help, each asked about twice again, and whether to leave it out.
         assert sum(isinstance(turn, Ask) for turn in turns) <= 7
     assert sum(isinstance(turn, Close) for turn in turns) == 1
     assert isinstance(turns[-1], Close)
-    assert isinstance(turns[-2], Say)
+    assert isinstance(turns[-2], Remark)

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from mend.dialogue.evidence import (
     MOVED_M,
     Change,
-    Look,
+    LookOutcome,
     PutRight,
     change_between,
     change_since,
@@ -22,8 +22,8 @@ LOST = (Expectation.AT_PLACE, Expectation.IN_REACH)
 HERE, THERE = (0.5, 0.1, 0.7), (0.5, 0.3, 0.7)
 
 
-def look(*fulfilled: Expectation, at: tuple[float, float, float] | None = HERE) -> Look:
-    return Look(frozenset(fulfilled), at)
+def look(*fulfilled: Expectation, at: tuple[float, float, float] | None = HERE) -> LookOutcome:
+    return LookOutcome(frozenset(fulfilled), at)
 
 
 def test_a_part_that_never_left_puts_nothing_right() -> None:
@@ -41,7 +41,7 @@ def test_a_part_that_moved_since_the_question_has_though_not_since_the_last_look
 
 
 def test_what_is_seen_after_the_dark_was_perhaps_there_all_the_time() -> None:
-    dark, now = Look(frozenset(), None, blind=True), look(Expectation.AT_PLACE)
+    dark, now = LookOutcome(frozenset(), None, blind=True), look(Expectation.AT_PLACE)
     assert change_between(dark, now) is Change.UNKNOWN
     assert put_right(LOST, dark, now) == PutRight(Expectation.AT_PLACE, Change.UNKNOWN)
     assert change_between(dark, look(Expectation.VIEW_CLEAR)) is Change.CLEARED
@@ -93,22 +93,22 @@ def test_where_nobody_looked_before_nothing_can_have_changed() -> None:
 
 
 positions = st.none() | st.tuples(*[st.floats(-1.0, 1.0)] * 3)
-looks = st.builds(Look, st.frozensets(st.sampled_from(Expectation)), positions)
+looks = st.builds(LookOutcome, st.frozensets(st.sampled_from(Expectation)), positions)
 watched_for = st.lists(st.sampled_from(Expectation), unique=True)
 
 
 @given(watched=watched_for, seen=looks, shift=st.floats(0.0, MOVED_M / 2))
 def test_a_state_that_was_already_so_never_counts(
-    watched: Sequence[Expectation], seen: Look, shift: float
+    watched: Sequence[Expectation], seen: LookOutcome, shift: float
 ) -> None:
     at = seen.position
-    shaken = Look(seen.fulfilled, at and (at[0] + shift, at[1], at[2]))
+    shaken = LookOutcome(seen.fulfilled, at and (at[0] + shift, at[1], at[2]))
     assert put_right(watched, seen, shaken) is None
 
 
 @given(watched=watched_for, first=looks, now=looks)
 def test_what_puts_it_right_is_so_now_and_is_new(
-    watched: Sequence[Expectation], first: Look, now: Look
+    watched: Sequence[Expectation], first: LookOutcome, now: LookOutcome
 ) -> None:
     found = put_right(watched, first, now)
     if found is not None:
@@ -119,8 +119,8 @@ def test_what_puts_it_right_is_so_now_and_is_new(
 
 def test_a_camera_that_sees_again_thanks_nobody_who_has_not_promised_it() -> None:
     dark, light = (
-        Look(frozenset(), None),
-        Look(frozenset({Expectation.VIEW_CLEAR}), (0.4, 0.0, 0.7)),
+        LookOutcome(frozenset(), None),
+        LookOutcome(frozenset({Expectation.VIEW_CLEAR}), (0.4, 0.0, 0.7)),
     )
     found = put_right([Expectation.VIEW_CLEAR], dark, light)
     assert found == PutRight(Expectation.VIEW_CLEAR, Change.NONE)

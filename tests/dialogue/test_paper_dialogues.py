@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from mend.dialogue.conversation import Conversation, Phase
+from mend.dialogue.conversation import Conversation, ConversationPhase
 from mend.dialogue.evidence import Change
 from mend.dialogue.outlook import Outlook
 from mend.dialogue.registry import load_scripts
@@ -26,8 +26,8 @@ def resolution_of(kind: str, handled: str, answers: Iterator[str]) -> Resolution
     issue = Issue(kind, "pr2", "/0", handled, handled, None, 5)
     conversation = Conversation(load_scripts()[kind], issue, Outlook())
     turns = conversation.open()
-    while conversation.phase is not Phase.CLOSED:
-        if conversation.phase is Phase.AWAITING_HELP:
+    while conversation.phase is not ConversationPhase.CLOSED:
+        if conversation.phase is ConversationPhase.AWAITING_HELP:
             turns += conversation.help_seen(Change.APPEARED)
         else:
             turns += conversation.answer("yes" if next(answers) == "yes" else "no")

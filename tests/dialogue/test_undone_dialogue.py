@@ -2,11 +2,11 @@
 
 import pytest
 
-from mend.dialogue.conversation import Conversation, Phase
+from mend.dialogue.conversation import Conversation, ConversationPhase
 from mend.dialogue.evidence import Change
 from mend.dialogue.outlook import Next, Outlook, Sequel
 from mend.dialogue.registry import load_scripts
-from mend.dialogue.script import Ask, Close, CloseReason, Expectation, Say, Turn
+from mend.dialogue.script import Ask, Close, CloseReason, Expectation, Remark, Turn
 from mend.tasks.issue import Issue, Sensed
 from mend.tasks.resolution import Resolution
 
@@ -62,7 +62,7 @@ def test_what_is_seen_nowhere_somebody_is_asked_to_bring_back() -> None:
         "You put the pink bar on the table where I can reach it; I place it again (attempt 1 of 3)."
     )
     [asked, _] = conversation.answer("yes")
-    assert asked == Say("Please put the pink bar on the table where I can reach it.")
+    assert asked == Remark("Please put the pink bar on the table where I can reach it.")
     close = closing(conversation.help_seen(Change.APPEARED))
     assert (close.resolution, close.helped) == (Resolution.ROBOT_FINISH, True)
 
@@ -98,8 +98,8 @@ def test_a_helper_may_have_it_left_out() -> None:
 def test_where_the_robot_goes_on_by_itself_it_only_says_so(outlook: Outlook) -> None:
     conversation = about(interrupts=False, outlook=outlook)
     said, close = conversation.open()
-    assert isinstance(said, Say)
+    assert isinstance(said, Remark)
     assert said.text.startswith("The pink bar is not at its place. I place it again.")
     assert isinstance(close, Close)
     assert (close.resolution, close.helped) == (Resolution.ROBOT_FINISH, False)
-    assert conversation.phase is Phase.CLOSED
+    assert conversation.phase is ConversationPhase.CLOSED

@@ -11,7 +11,8 @@ from uuid import UUID
 from pretend_service import PretendService, pretend_service
 from task_documents import definition_of
 
-from mend.server.errors import ConflictError, LostRaceError
+from mend.errors import ConflictError
+from mend.server.errors import LostRaceError
 from mend.server.journal import events as ev
 from mend.server.runtime.requests import RunRequest
 

@@ -4,7 +4,7 @@ from collections.abc import Hashable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TypeVar
 
-from mend.dialogue.conversation import Conversation, Phase
+from mend.dialogue.conversation import Conversation, ConversationPhase
 from mend.dialogue.outlook import Outlook
 from mend.dialogue.script import Ask, Script, Turn
 from mend.server.runtime.dialogue_state import converse
@@ -12,7 +12,10 @@ from mend.tasks.issue import Issue
 
 Path = tuple[str, ...]
 
-CALLS = {Phase.ASKING: ("yes", "no"), Phase.AWAITING_HELP: ("seen:moved", "not_seen")}
+CALLS = {
+    ConversationPhase.ASKING: ("yes", "no"),
+    ConversationPhase.AWAITING_HELP: ("seen:moved", "not_seen"),
+}
 
 
 @dataclass(frozen=True)
@@ -58,7 +61,7 @@ def _kind(branch: Branch) -> Hashable:
     asked = branch.said[-1]
     assert isinstance(asked, Ask)
     final = asked.yes_final if branch.call == "yes" else asked.no_final
-    came = "answer" if branch.before in CALLS[Phase.ASKING] else branch.before
+    came = "answer" if branch.before in CALLS[ConversationPhase.ASKING] else branch.before
     return came, branch.call, final, type(branch.then[-1])
 
 

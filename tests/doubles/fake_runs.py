@@ -7,8 +7,9 @@ from typing import Any, Literal
 from uuid import UUID, uuid4
 
 from mend.dialogue.script import CloseReason
+from mend.errors import ConflictError, NotFoundError, WrongInputError
 from mend.server.documents import CheckedDocument, DocumentMistake, Uploaded, WrongDocumentError
-from mend.server.errors import ConflictError, InvalidError, LostRaceError, NotFoundError
+from mend.server.errors import LostRaceError
 from mend.server.journal import events as ev
 from mend.server.journal.journal import Entry, Journal
 from mend.server.journal.run_index import RunPage
@@ -67,7 +68,7 @@ class FakeRuns:
         if request.tree not in TREES:
             raise NotFoundError(f"there is no tree '{request.tree}'")
         if request.world not in ("workcell", "tabletop"):
-            raise InvalidError(f"there is no world '{request.world}'")
+            raise WrongInputError(f"there is no world '{request.world}'")
         if request.scenario not in (None, "eket_paper"):
             raise NotFoundError(f"there is no scenario '{request.scenario}'")
         run = uuid4()

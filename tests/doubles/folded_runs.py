@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from random_task import random_task
 from recorded_service import recorded_events
 
 from mend.dialogue.registry import load_scripts
@@ -27,7 +28,6 @@ from mend.server.runtime.requests import RunRequest
 from mend.server.runtime.run_state import RunState
 from mend.server.runtime.run_views import RunViewing, dialogue_view
 from mend.server.settings import Settings
-from mend.tasks.random_task import random_task
 from mend.tasks.scenario import Person
 
 LEAVES = 12

@@ -14,8 +14,9 @@ from mend.dialogue.evidence import Change
 from mend.dialogue.outlook import Outlook
 from mend.dialogue.registry import load_scripts
 from mend.dialogue.script import Ask
+from mend.errors import ConflictError
 from mend.robots.link.messages import Detection
-from mend.server.errors import ConflictError, LostRaceError
+from mend.server.errors import LostRaceError
 from mend.server.journal import events as ev
 from mend.server.journal.journal import Entry, Journal
 from mend.server.runtime.dialogue_events import DialogueEvents

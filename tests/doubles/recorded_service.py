@@ -9,7 +9,7 @@ from types import SimpleNamespace
 from typing import Any
 from uuid import UUID, uuid4
 
-from mend.server.errors import NotFoundError
+from mend.errors import NotFoundError
 from mend.server.fixed_documents import GivenFiles
 from mend.server.journal import events as ev
 from mend.server.journal.journal import Entry

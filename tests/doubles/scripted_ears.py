@@ -6,7 +6,7 @@ import wave
 from dataclasses import dataclass, field
 
 from mend.server.speech.commands import Command
-from mend.server.speech.ear import Ear, EarLostError, Report, TooManyConversationsError
+from mend.server.speech.ear import Ear, EarLostError, EarReport, TooManyConversationsError
 from mend.server.speech.voice import VoiceError
 
 
@@ -18,7 +18,7 @@ class ScriptedEar:
 
     def __init__(self, hears: list[str | None]) -> None:
         self._hears = hears
-        self._reports: asyncio.Queue[Report | EarLostError] = asyncio.Queue()
+        self._reports: asyncio.Queue[EarReport | EarLostError] = asyncio.Queue()
         self._interruptions = 0
         self.heard = b""
         self.closed = False
@@ -26,7 +26,7 @@ class ScriptedEar:
     def hear(self, pcm: bytes) -> None:
         self.heard += pcm
         if pcm[0] == 1:
-            self._tell(Report(kind="began", interruptions=self._interruptions))
+            self._tell(EarReport(kind="began", interruptions=self._interruptions))
         elif pcm[0] == 2:
             self._tell(self._utterance(self._hears.pop(0)))
 
@@ -37,7 +37,7 @@ class ScriptedEar:
         """Fail."""
         self._reports.put_nowait(EarLostError("the recognizer has ended"))
 
-    async def report(self) -> Report:
+    async def report(self) -> EarReport:
         report = await self._reports.get()
         if isinstance(report, EarLostError):
             raise report
@@ -46,11 +46,11 @@ class ScriptedEar:
     async def close(self) -> None:
         self.closed = True
 
-    def _tell(self, report: Report) -> None:
+    def _tell(self, report: EarReport) -> None:
         self._reports.put_nowait(report)
 
-    def _utterance(self, phrase: str | None) -> Report:
-        return Report(
+    def _utterance(self, phrase: str | None) -> EarReport:
+        return EarReport(
             kind="utterance",
             command=None if phrase in (None, "") else Command(phrase),
             phrase=phrase or None,
@@ -126,7 +126,7 @@ class MishearingEar(ScriptedEar):
         self.heard += pcm
         self._frames += 1
         if self._frames % FRAMES_AN_UTTERANCE == 0:
-            self._tell(Report(kind="began", interruptions=self._interruptions))
+            self._tell(EarReport(kind="began", interruptions=self._interruptions))
             self._tell(self._utterance(None))
 
 

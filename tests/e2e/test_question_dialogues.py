@@ -12,7 +12,7 @@ from playwright.async_api import Page, expect
 from mend.dialogue.conversation import Conversation
 from mend.dialogue.outlook import Outlook
 from mend.dialogue.registry import load_scripts
-from mend.dialogue.script import Ask, AwaitHelp, Close, Say, Turn
+from mend.dialogue.script import Ask, AwaitHelp, Close, Remark, Turn
 from mend.server.runtime.dialogue_state import converse
 from mend.tasks.issue import Issue
 
@@ -102,7 +102,7 @@ async def expect_shown(page: Page, turns: list[Turn]) -> None:
                 await expect(page.get_by_role("heading", name=text)).to_be_visible()
                 await expect(page.locator(".answer.yes")).to_contain_text(yes)
                 await expect(page.locator(".answer.no")).to_contain_text(no)
-            case Say(text=text):
+            case Remark(text=text):
                 await expect(page.get_by_text(text).first).to_be_visible()
             case AwaitHelp():
                 await expect(page.get_by_text("There is nothing to press")).to_be_visible()

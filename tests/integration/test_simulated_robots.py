@@ -16,9 +16,9 @@ from loopback import served
 from recording_sink import RecordingSink
 from ticking_clock import TickingClock
 
+from mend.errors import WrongInputError
 from mend.robots.link.messages import Interrupt, Shutdown, Start
 from mend.server.access.access import Access
-from mend.server.errors import InvalidError
 from mend.server.journal.sqlite import SqliteJournal
 from mend.server.robots.passes import OwnRobots
 from mend.server.robots.process import RobotProcess, launch
@@ -177,7 +177,7 @@ async def test_a_world_that_cannot_run_here_is_refused_with_its_reason(
 ) -> None:
     registry = RobotRegistry(journal, time.monotonic)
     ended: asyncio.Queue[str] = asyncio.Queue()
-    with pytest.raises(InvalidError, match="needs a package that is not installed"):
+    with pytest.raises(WrongInputError, match="needs a package that is not installed"):
         await launched(
             "absent",
             SETUP,
@@ -186,7 +186,7 @@ async def test_a_world_that_cannot_run_here_is_refused_with_its_reason(
             own_robots=OwnRobots(),
             url="ws://unused",
         )
-    with pytest.raises(InvalidError, match="there is no world 'nowhere'"):
+    with pytest.raises(WrongInputError, match="there is no world 'nowhere'"):
         await launched(
             "nowhere",
             SETUP,

@@ -5,7 +5,7 @@ import pytest
 
 from mend.localization.enml.change import changed, seen_through
 from mend.localization.enml.familiarity import seen_before
-from mend.localization.enml.lost import Evidence
+from mend.localization.enml.lost import MapFit
 from mend.localization.enml.motion_model import Travel
 from mend.localization.enml.parameters import EnmlParameters
 from mend.localization.enml.pose_node import PoseNode
@@ -80,15 +80,15 @@ def test_nothing_seen_is_nothing_changed() -> None:
 
 @pytest.mark.parametrize("before", [0.0, 50.0, 500.0])
 def test_what_the_map_does_not_show_contradicts_no_place(before: float) -> None:
-    assert Evidence(on_map=50.0, before=before).contradiction == 0.0
+    assert MapFit(on_map=50.0, before=before).contradiction == 0.0
 
 
 def test_returns_from_behind_walls_contradict_a_place() -> None:
-    few, many = (Evidence(on_map=50.0, behind=behind, before=50.0) for behind in (2.0, 30.0))
+    few, many = (MapFit(on_map=50.0, behind=behind, before=50.0) for behind in (2.0, 30.0))
     assert few.contradiction < 0.1
     assert many.contradiction > 0.75
 
 
 def test_no_return_neither_speaks_for_nor_against() -> None:
-    assert Evidence().contradiction == 0.0
-    assert Evidence().lost == 1.0
+    assert MapFit().contradiction == 0.0
+    assert MapFit().lost == 1.0

@@ -3,9 +3,9 @@
 from dataclasses import replace
 
 import numpy as np
+import plain_normal_equations
 import pytest
 
-from mend.localization.enml import plain_normal_equations
 from mend.localization.enml.localizer import EnmlLocalizer
 from mend.localization.enml.parameters import EnmlParameters
 from mend.localization.localizer import Estimate, PointClass

@@ -3,18 +3,21 @@
 from dataclasses import replace
 
 import numpy as np
+import plain_normal_equations
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mend.localization.enml import normal_equations, plain_normal_equations
+from mend.localization.enml import normal_equations
 from mend.localization.enml.prior import prior_on_last, whitening_of
-from mend.localization.enml.problem import Floats, LtfConstraints, Problem, StfConstraints
+from mend.localization.enml.problem import Floats, LtfConstraints, PoseGraph, StfConstraints
 from mend.localization.enml.solver import solve
 from mend.localization.pose import compose, relative
 
 
-def problem_of(seed: int, *, poses: int, ltf: int, pairs: int, stf: int) -> tuple[Problem, Floats]:
+def problem_of(
+    seed: int, *, poses: int, ltf: int, pairs: int, stf: int
+) -> tuple[PoseGraph, Floats]:
     """A problem with everything in it, and poses that solve none of it."""
     generator = np.random.default_rng(seed)
     truth = np.cumsum(generator.normal([0.3, 0.0, 0.05], [0.05, 0.05, 0.1], (poses, 3)), axis=0)
@@ -22,7 +25,7 @@ def problem_of(seed: int, *, poses: int, ltf: int, pairs: int, stf: int) -> tupl
     first = generator.integers(0, max(poses - 1, 1), pairs)
     second = np.minimum(first + 1 + generator.integers(0, 3, pairs), poses - 1)
     angles = generator.uniform(0.0, 2.0 * np.pi, (2, pairs * stf))
-    built = Problem(
+    built = PoseGraph(
         prior=truth[0] + generator.normal(0.0, 0.02, 3),
         prior_whitening=whitening_of(np.diag([0.01, 0.02, 0.005])),
         odometry=relative(truth[:-1], truth[1:]) + generator.normal(0.0, 0.02, (poses - 1, 3)),

@@ -6,10 +6,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from localization_data import DATA
+from written_csv import write_csv
 
+from mend.errors import WrongInputError
 from mend.localization.logs.carmen import read_carmen
-from mend.localization.logs.csv_log import read_csv, write_csv
-from mend.localization.logs.log import Log, LogError, LogStep
+from mend.localization.logs.csv_log import read_csv
+from mend.localization.logs.log import Log, LogStep
 from mend.localization.logs.reading import read_log
 from mend.localization.logs.wean import read_wean
 from mend.localization.pose import compose
@@ -122,19 +124,19 @@ def test_the_largest_range_is_no_return(tmp_path: Path) -> None:
 
 
 def test_a_log_without_scans_says_so(tmp_path: Path) -> None:
-    with pytest.raises(LogError, match="there is no scan"):
+    with pytest.raises(WrongInputError, match="there is no scan"):
         read_log(_written(tmp_path, "PARAM robot_use_laser on"))
 
 
 def test_what_is_no_log_says_what_would_be(tmp_path: Path) -> None:
-    with pytest.raises(LogError, match="neither a CARMEN log"):
+    with pytest.raises(WrongInputError, match="neither a CARMEN log"):
         read_log(_written(tmp_path, "Dear diary"))
 
 
 def test_a_damaged_archive_says_so(tmp_path: Path) -> None:
     path = tmp_path / "drive.log.gz"
     path.write_bytes(gzip.compress(b"ODOM 0 0 0 0 0 0 1 host 1\n" * 1000)[:40])
-    with pytest.raises(LogError, match="damaged"):
+    with pytest.raises(WrongInputError, match="damaged"):
         read_log(path)
 
 
@@ -187,7 +189,7 @@ def test_mistakes_in_csv_are_told_with_their_line(tmp_path: Path, row: str, said
         "# angle_min=0\n# angle_increment=0.1\n# max_range=8\ntime_s,odom_x,odom_y,odom_theta,a,b"
     )
     path.write_text(f"{head}\n0.1,0,0,0,1,2\n{row}\n")
-    with pytest.raises(LogError) as caught:
+    with pytest.raises(WrongInputError) as caught:
         read_csv(path)
     assert said in str(caught.value)
 
@@ -195,7 +197,9 @@ def test_mistakes_in_csv_are_told_with_their_line(tmp_path: Path, row: str, said
 def test_csv_without_its_laser_says_what_is_missing(tmp_path: Path) -> None:
     path = tmp_path / "drive.csv"
     path.write_text("time_s,odom_x,odom_y,r0,r1\n")
-    with pytest.raises(LogError, match="angle_min, angle_increment, max_range, odom_theta missing"):
+    with pytest.raises(
+        WrongInputError, match="angle_min, angle_increment, max_range, odom_theta missing"
+    ):
         read_csv(path)
 
 

@@ -5,14 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from made_up_floor import FLOOR
+from synthetic.settings import SceneSettings
+from synthetic.world import scene
 
 from mend.localization.distance_field import distance_field
 from mend.localization.logs.log import Log
 from mend.localization.mapping import map_of
 from mend.localization.pose import compose, relative
 from mend.localization.scan_matching import matched_poses
-from mend.localization.synthetic.settings import SceneSettings
-from mend.localization.synthetic.world import scene
 from mend.maps.vector_map import VectorMap
 
 

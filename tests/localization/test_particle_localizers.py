@@ -6,16 +6,17 @@ from functools import cache
 import numpy as np
 import pytest
 from made_up_floor import FLOOR
+from synthetic.settings import SceneSettings
+from synthetic.world import Scene, scene
 
+from mend.errors import WrongInputError
 from mend.localization.cgr.localizer import CgrLocalizer
 from mend.localization.distance_field import distance_field
 from mend.localization.evaluation import Trace, follow, summarize
 from mend.localization.localizer import Localizer, PointClass
 from mend.localization.mcl.localizer import MclLocalizer
 from mend.localization.scan import InvalidScanError, Scan
-from mend.localization.synthetic.settings import SceneSettings
-from mend.localization.synthetic.world import Scene, scene
-from mend.maps.vector_map import VectorMap, VectorMapError
+from mend.maps.vector_map import VectorMap
 
 Make = Callable[[VectorMap, int], Localizer]
 
@@ -140,5 +141,5 @@ def test_the_distance_field_is_the_distance() -> None:
 
 
 def test_a_map_too_large_for_a_field_says_so() -> None:
-    with pytest.raises(VectorMapError, match="too large for a likelihood field"):
+    with pytest.raises(WrongInputError, match="too large for a likelihood field"):
         MclLocalizer(VectorMap.of([[0, 0, 9e3, 9e3]]))

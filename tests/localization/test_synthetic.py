@@ -3,12 +3,13 @@
 import numpy as np
 import pytest
 from made_up_floor import FLOOR
+from synthetic.settings import OdometrySettings, SceneSettings
+from synthetic.world import scene
 
+from mend.errors import WrongInputError
 from mend.localization.pose import compose
-from mend.localization.synthetic.settings import OdometrySettings, SceneSettings
-from mend.localization.synthetic.world import scene
 from mend.maps.ray_cast import cast
-from mend.maps.vector_map import VectorMap, VectorMapError
+from mend.maps.vector_map import VectorMap
 
 SHORT = SceneSettings(length_m=6.0)
 
@@ -81,5 +82,5 @@ def test_a_dial_off_its_scale_is_refused(wrong: dict[str, float]) -> None:
 
 @pytest.mark.parametrize("rows", [[], [[0, 0, 5, 0]]])
 def test_a_map_with_no_room_is_refused(rows: list[list[float]]) -> None:
-    with pytest.raises(VectorMapError, match="no closed area"):
+    with pytest.raises(WrongInputError, match="no closed area"):
         scene(VectorMap.of(rows), SHORT, seed=1)

@@ -12,8 +12,8 @@ from numba.core.dispatcher import Dispatcher
 from mend.maps.vector_map import VectorMap
 from mend.localization.enml.localizer import EnmlLocalizer
 from mend.localization.methods import warm_up
-from mend.localization.synthetic.settings import SceneSettings
-from mend.localization.synthetic.world import scene
+from synthetic.settings import SceneSettings
+from synthetic.world import scene
 
 def compiled():
     return {

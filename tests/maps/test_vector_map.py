@@ -8,7 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from localization_data import DATA
 
-from mend.maps.vector_map import VectorMap, VectorMapError
+from mend.errors import WrongInputError
+from mend.maps.vector_map import VectorMap
 from mend.maps.vector_map_file import read_vector_map, write_vector_map
 
 
@@ -37,7 +38,7 @@ def test_its_segments_cannot_be_changed() -> None:
     ],
 )
 def test_it_refuses_what_is_no_segment(rows: np.ndarray, said: str) -> None:
-    with pytest.raises(VectorMapError, match=said):
+    with pytest.raises(WrongInputError, match=said):
         VectorMap(rows)
 
 
@@ -76,7 +77,7 @@ def test_mistakes_of_a_file_are_told_with_their_place(
 ) -> None:
     path = tmp_path / name
     path.write_text(text)
-    with pytest.raises(VectorMapError) as caught:
+    with pytest.raises(WrongInputError) as caught:
         read_vector_map(path)
     assert said in str(caught.value)
 
@@ -84,7 +85,7 @@ def test_mistakes_of_a_file_are_told_with_their_place(
 def test_a_file_of_bytes_is_no_map(tmp_path: Path) -> None:
     path = tmp_path / "a.txt"
     path.write_bytes(b"\xff\xfe\x00\x80")
-    with pytest.raises(VectorMapError, match="not a text file"):
+    with pytest.raises(WrongInputError, match="not a text file"):
         read_vector_map(path)
 
 
@@ -99,5 +100,5 @@ def test_both_published_formats_hold_the_same_map() -> None:
 def test_a_number_that_is_too_long_is_told(tmp_path: Path) -> None:
     path = tmp_path / "map.json"
     path.write_text('[{"p0": {"x": ' + "9" * 5000 + ', "y": 0}, "p1": {"x": 1, "y": 0}}]')
-    with pytest.raises(VectorMapError, match="a number in it is too long"):
+    with pytest.raises(WrongInputError, match="a number in it is too long"):
         read_vector_map(path)

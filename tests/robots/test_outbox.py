@@ -7,9 +7,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from pydantic import BaseModel
 
+from mend.errors import UnavailableError
 from mend.robots.link import messages
 from mend.robots.link.messages import Held, Holding, Report, robot_message
-from mend.robots.link.outbox import IN_MEMORY, Outbox, OutboxError, OutboxFullError
+from mend.robots.link.outbox import IN_MEMORY, Outbox
 
 
 def held(n: int) -> Held:
@@ -86,7 +87,7 @@ def test_a_full_outbox_refuses_and_takes_again_after_an_acknowledgement() -> Non
     for n in range(3):
         outbox.add(held(n), 0.0, None)
     assert outbox.crowded
-    with pytest.raises(OutboxFullError, match="4 reports are undelivered"):
+    with pytest.raises(UnavailableError, match="4 reports are undelivered"):
         outbox.add(held(5), 0.0, None)
     outbox.acknowledge("b1", 1)
     assert outbox.add(held(5), 0.0, None).seq == 5
@@ -95,7 +96,7 @@ def test_a_full_outbox_refuses_and_takes_again_after_an_acknowledgement() -> Non
 
 def test_a_second_program_cannot_open_the_same_outbox(tmp_path: Path) -> None:
     first = Outbox(tmp_path / "outbox.db", "arm", "b1")
-    with pytest.raises(OutboxError, match="cannot be used"):
+    with pytest.raises(UnavailableError, match="cannot be used"):
         Outbox(tmp_path / "outbox.db", "arm", "b2")
     first.close()
 
@@ -103,7 +104,7 @@ def test_a_second_program_cannot_open_the_same_outbox(tmp_path: Path) -> None:
 def test_a_file_that_is_no_outbox_is_refused_in_a_sentence(tmp_path: Path) -> None:
     path = tmp_path / "notes.txt"
     path.write_text("not a database, but long enough to be mistaken for one " * 50)
-    with pytest.raises(OutboxError, match=r"notes\.txt"):
+    with pytest.raises(UnavailableError, match=r"notes\.txt"):
         Outbox(path, "arm", "b1")
 
 

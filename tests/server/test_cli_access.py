@@ -13,7 +13,7 @@ import pytest
 from mend.server.access.known_principals import KnownPrincipals
 from mend.server.access.roles import Role
 from mend.server.cli import main
-from mend.server.cli.output import print_rows
+from mend.server.cli.rows import print_rows
 from mend.server.journal import events as ev
 from mend.server.journal.journal import Entry
 from mend.server.journal.sqlite import SqliteJournal

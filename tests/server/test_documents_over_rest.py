@@ -9,8 +9,8 @@ import pytest
 from noon import at_noon
 from service_under_test import build
 
+from mend.errors import ConflictError
 from mend.server.documents import MOST_MISTAKES, DocumentKind
-from mend.server.errors import ConflictError
 from mend.server.fixed_documents import GivenFiles, fixed_documents
 from mend.server.journal.journal import Document, Entry
 from mend.server.journal.sqlite import SqliteJournal

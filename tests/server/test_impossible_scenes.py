@@ -6,8 +6,8 @@ from typing import Any
 
 import pytest
 
+from mend.errors import WrongInputError
 from mend.server.behaviors import behavior_parameters
-from mend.server.errors import InvalidError
 from mend.server.scene_checks import load_world_checks
 from mend.tasks.library import SCENES
 from mend.tasks.problem import InvalidFileError
@@ -270,6 +270,6 @@ def test_every_scene_of_the_library_is_possible_by_itself(name: str) -> None:
 
 def test_a_world_that_there_is_not_is_told() -> None:
     with pytest.raises(
-        InvalidError, match="there is no world 'mars'; there are tabletop, workcell"
+        WrongInputError, match="there is no world 'mars'; there are tabletop, workcell"
     ):
         load_world_checks().only("mars")

@@ -59,7 +59,7 @@ def test_a_tree_is_checked_against_the_scene_of_the_folder(folder: Path) -> None
     for text, where, what in ((TREE.replace("cup", "pot"), folder, "pot"), (TREE, None, "bench")):
         with pytest.raises(WrongDocumentError) as caught:
             check(text, where)
-        assert any(what in problem for problem in caught.value.problems)
+        assert any(what in problem for problem in caught.value.sentences)
 
 
 def test_every_mistake_of_a_tree_says_where_it_is(folder: Path) -> None:
@@ -67,7 +67,7 @@ def test_every_mistake_of_a_tree_says_where_it_is(folder: Path) -> None:
     with pytest.raises(WrongDocumentError) as wrong:
         check(text, folder)
     lines = text.splitlines()
-    assert len(wrong.value.mistakes) == len(wrong.value.problems) == 2
+    assert len(wrong.value.mistakes) == len(wrong.value.sentences) == 2
     for mistake in wrong.value.mistakes:
         assert mistake.line is not None
         assert mistake.column == 1

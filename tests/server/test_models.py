@@ -8,7 +8,7 @@ import httpx
 import pytest
 from service_under_test import build
 
-from mend.server.errors import NotFoundError
+from mend.errors import NotFoundError
 from mend.server.models import RobotModels
 from mend.sim.world import WorldUnavailableError
 

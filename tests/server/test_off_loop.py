@@ -43,7 +43,7 @@ async def test_little_work_stays_in_the_process_and_much_does_not(off_loop: OffL
 async def test_a_refusal_comes_back_as_it_was_made(off_loop: OffLoop) -> None:
     with pytest.raises(WrongDocumentError, match="the task file has a mistake") as wrong:
         await off_loop.run(MUCH_CHARS, fail)
-    assert wrong.value.problems == ["line:3: /0: it is wrong"]
+    assert wrong.value.sentences == ["line:3: /0: it is wrong"]
     assert [each.node for each in wrong.value.mistakes] == ["/0"]
 
 

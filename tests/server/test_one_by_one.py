@@ -6,9 +6,10 @@ from contextvars import copy_context
 import pytest
 from service_under_test import TOKEN, build
 
+from mend.errors import NotFoundError
 from mend.server.access.principal import TOKEN_NAME
 from mend.server.asking import asker
-from mend.server.errors import BusyError, NotFoundError
+from mend.server.errors import BusyError
 from mend.server.one_by_one import OneByOne
 
 

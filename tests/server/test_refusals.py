@@ -11,7 +11,7 @@ import pytest
 from service_under_test import TOKEN, build, serving
 from websockets.asyncio.client import connect
 
-from mend.server.errors import ConflictError
+from mend.errors import ConflictError
 from mend.server.limits import FixedLimitName, LimitName, Limits, SetLimitName
 from mend.server.refusals import Refusals
 

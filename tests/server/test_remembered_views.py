@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 from noon import at_noon
 
+from mend.errors import WrongInputError
 from mend.server import remembered_views
-from mend.server.errors import InvalidError
 from mend.server.fixed_documents import GivenFiles, fixed_documents
 from mend.server.journal.sqlite import SqliteJournal
 from mend.server.library import Library, build_library
@@ -80,7 +80,7 @@ async def test_a_tree_that_changes_is_checked_anew(shelf: Shelf) -> None:
 async def test_a_file_that_a_tree_names_and_that_changes_is_looked_at_again(shelf: Shelf) -> None:
     await shelf.tree()
     shelf.scene.write_text(BENCH.replace("cup:", "mug:"))
-    with pytest.raises(InvalidError, match="mistake"):
+    with pytest.raises(WrongInputError, match="mistake"):
         await shelf.tree()
     shelf.scene.write_text(BENCH)
     assert await shelf.checks_of("serve") == 0

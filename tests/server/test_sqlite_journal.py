@@ -9,13 +9,13 @@ import pytest
 from full_disk import FailingConnection, Passing, failing
 from sample_events import RUN, paused, started
 
+from mend.errors import UnavailableError
 from mend.server.journal.file_lock import JournalLockedError
 from mend.server.journal.journal import (
     Document,
     DuplicateReceiptError,
     Entry,
     JournalClosedError,
-    JournalOpenError,
     JournalWriteError,
     Receipt,
 )
@@ -208,7 +208,7 @@ def test_only_its_owner_can_read_a_journal(tmp_path: Path) -> None:
 
 
 def test_a_journal_that_is_a_folder_is_refused_with_a_sentence(tmp_path: Path) -> None:
-    with pytest.raises(JournalOpenError, match="cannot be opened: Is a directory"):
+    with pytest.raises(UnavailableError, match="cannot be opened: Is a directory"):
         SqliteJournal(tmp_path)
 
 
@@ -219,7 +219,7 @@ def test_a_disk_that_fails_as_a_journal_is_opened_is_told(
         raise sqlite3.OperationalError("disk I/O error")
 
     monkeypatch.setattr("mend.server.journal.opening.migrate", fail)
-    with pytest.raises(JournalOpenError, match=r"journal\.db' cannot be opened: disk I/O error"):
+    with pytest.raises(UnavailableError, match=r"journal\.db' cannot be opened: disk I/O error"):
         SqliteJournal(tmp_path / "journal.db")
 
 

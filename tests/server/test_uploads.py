@@ -8,8 +8,9 @@ import pytest
 from noon import at_noon
 from service_under_test import build
 
+from mend.errors import ConflictError
 from mend.server.documents import DocumentKind
-from mend.server.errors import BusyError, ConflictError
+from mend.server.errors import BusyError
 from mend.server.fixed_documents import GivenFiles, fixed_documents
 from mend.server.journal.journal import Document, Entry
 from mend.server.journal.sqlite import SqliteJournal

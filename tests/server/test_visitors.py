@@ -6,7 +6,7 @@ import pytest
 
 from mend.server.limits import Limits
 from mend.server.refusals import Refusals
-from mend.server.visitors import Beyond, Phase, Visitor, Visitors
+from mend.server.visitors import Beyond, ConnectionPhase, Visitor, Visitors
 
 LIMITS = Limits(connections=4, strangers=3, strangers_per_address=2, head_s=10, body_s=60)
 
@@ -142,7 +142,7 @@ def test_a_head_has_its_time_from_the_connection_on() -> None:
     house = House()
     visitor = house.come("10.0.0.1")
     assert house.after(9.9) == []
-    visitor.enter(Phase.HEAD)
+    visitor.enter(ConnectionPhase.HEAD)
     assert house.after(0.1) == [(visitor, "head_s")]
     assert house.after(100.0) == []
 
@@ -151,7 +151,7 @@ def test_a_body_has_its_time_from_the_head_on() -> None:
     house = House()
     visitor = house.come("10.0.0.1")
     house.after(5.0)
-    visitor.enter(Phase.BODY)
+    visitor.enter(ConnectionPhase.BODY)
     assert house.after(59.9) == []
     assert house.after(0.1) == [(visitor, "body_s")]
 
@@ -159,9 +159,9 @@ def test_a_body_has_its_time_from_the_head_on() -> None:
 def test_the_service_takes_the_time_that_it_needs() -> None:
     house = House()
     visitor = house.come("10.0.0.1")
-    visitor.enter(Phase.SERVICE)
+    visitor.enter(ConnectionPhase.SERVICE)
     assert house.after(1e6) == []
-    visitor.enter(Phase.HEAD)
+    visitor.enter(ConnectionPhase.HEAD)
     assert house.after(9.9) == []
     assert house.after(0.1) == [(visitor, "head_s")]
 
@@ -170,7 +170,7 @@ def test_a_client_that_reads_nothing_is_ended_also_when_it_was_admitted() -> Non
     house = House()
     visitor, connection = house.come("10.0.0.1"), Waiting()
     visitor.connected(connection, visitor.end)
-    visitor.enter(Phase.SERVICE)
+    visitor.enter(ConnectionPhase.SERVICE)
     visitor.admit()
     assert house.after(100.0) == []
     connection.unread = 1000
@@ -182,7 +182,7 @@ def test_a_client_that_reads_slowly_stays() -> None:
     house = House()
     visitor, connection = house.come("10.0.0.1"), Waiting(1000)
     visitor.connected(connection, visitor.end)
-    visitor.enter(Phase.SERVICE)
+    visitor.enter(ConnectionPhase.SERVICE)
     for _ in range(10):
         assert house.after(29.0) == []
         connection.unread -= 1

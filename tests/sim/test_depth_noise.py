@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from mend.sim.depth_noise import DepthNoise, Pinhole
+from mend.sim.depth_noise import DepthNoise, PinholeOptics
 
-OPTICS = Pinhole(460.0, (159.5, 119.5))
+OPTICS = PinholeOptics(460.0, (159.5, 119.5))
 GREY = np.full((240, 320, 3), 128, np.uint8)
 
 

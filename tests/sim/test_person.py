@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mend.sim.free_pose import PLACE_RADIUS_M, free_pose, radius_m
-from mend.sim.person import Deed, Promise, deed
+from mend.sim.person import KeptPromise, Promise, deed
 from mend.tasks.intervention import Act, Intervention
 from mend.tasks.scenario import Person
 from mend.tasks.scene import Place, Pose, Scene, SceneObject, Table
@@ -29,7 +29,7 @@ def promise(promised: str) -> Promise:
     return Promise(promised, "red_cup", "left")
 
 
-def kept(promised: Promise, person: Person, seed: int = 1) -> Deed | None:
+def kept(promised: Promise, person: Person, seed: int = 1) -> KeptPromise | None:
     return deed(promised, person, SCENE, ["blue_cup"], np.random.default_rng(seed))
 
 
@@ -46,7 +46,7 @@ def kept(promised: Promise, person: Person, seed: int = 1) -> Deed | None:
 def test_a_reliable_person_does_what_was_promised(
     promised: str, intervention: Intervention
 ) -> None:
-    assert kept(promise(promised), Person(delay_s=4.0)) == Deed(intervention, 4.0)
+    assert kept(promise(promised), Person(delay_s=4.0)) == KeptPromise(intervention, 4.0)
 
 
 @pytest.mark.parametrize("person", [Person(acts=False), Person(never=1.0)])
@@ -62,13 +62,13 @@ def test_a_late_person_takes_longer() -> None:
 
 def test_a_confused_person_takes_another_object() -> None:
     confused = kept(promise("put_back"), Person(wrong_object=1.0))
-    assert confused == Deed(Intervention(act=Act.PUT_BACK, object="blue_cup"), 3.0)
+    assert confused == KeptPromise(Intervention(act=Act.PUT_BACK, object="blue_cup"), 3.0)
 
 
 def test_a_person_who_has_nothing_to_confuse_it_with_takes_the_right_object() -> None:
     rng = np.random.default_rng(1)
     sure = deed(promise("put_back"), Person(wrong_object=1.0), SCENE, [], rng)
-    assert sure == Deed(Intervention(act=Act.PUT_BACK, object="red_cup"), 3.0)
+    assert sure == KeptPromise(Intervention(act=Act.PUT_BACK, object="red_cup"), 3.0)
 
 
 @pytest.mark.parametrize("promised", ["place", "put_back", "hand_over"])
@@ -85,12 +85,12 @@ def test_a_clumsy_person_lays_it_down_at_a_free_spot(promised: str, seed: int) -
 
 def test_a_person_gets_out_of_the_way_even_without_an_object() -> None:
     done = kept(Promise("clear_way", None, None), Person())
-    assert done == Deed(Intervention(act=Act.RELEASE), 3.0)
+    assert done == KeptPromise(Intervention(act=Act.RELEASE), 3.0)
 
 
 def test_a_part_in_the_way_is_what_is_put_aside() -> None:
     done = kept(Promise("clear_way", "red_cup", "left", in_the_way="blue_cup"), Person())
-    assert done == Deed(Intervention(act=Act.RELEASE, object="blue_cup"), 3.0)
+    assert done == KeptPromise(Intervention(act=Act.RELEASE, object="blue_cup"), 3.0)
 
 
 def test_nothing_can_be_placed_where_no_object_was_spoken_of() -> None:

@@ -6,9 +6,10 @@ import pytest
 from counting_world import NoOptions
 from pydantic import BaseModel
 
+from mend.errors import WrongInputError
 from mend.sim.tabletop.world import TabletopOptions
 from mend.sim.workcell.options import WorkcellOptions
-from mend.sim.world_options import WorldOptionError, read_options
+from mend.sim.world_options import read_options
 
 
 @pytest.mark.parametrize(
@@ -45,7 +46,7 @@ from mend.sim.world_options import WorldOptionError, read_options
 def test_a_wrong_option_is_told_with_what_would_be_right(
     model: type[BaseModel], given: dict[str, Any], sentence: str
 ) -> None:
-    with pytest.raises(WorldOptionError) as error:
+    with pytest.raises(WrongInputError) as error:
         read_options(model, "cell", given)
     assert str(error.value) == sentence
 

@@ -6,7 +6,8 @@ import pytest
 import yaml
 from trees import BEHAVIORS
 
-from mend.tasks.task_file import TaskFileError, check_task_text
+from mend.tasks.problem import InvalidFileError
+from mend.tasks.task_file import check_task_text
 from mend.tasks.task_tree import TaskTree
 
 Nodes = dict[str, dict[str, Any]]
@@ -39,7 +40,7 @@ def write(nodes: Nodes) -> str:
 
 
 def messages(text: str) -> list[str]:
-    with pytest.raises(TaskFileError) as caught:
+    with pytest.raises(InvalidFileError) as caught:
         check_task_text(text, BEHAVIORS)
     return [each.message for each in caught.value.problems]
 

@@ -8,13 +8,13 @@ import pytest
 from mend.tasks.definition import BehaviorNode, TaskTreeDefinition
 from mend.tasks.intervention import Act
 from mend.tasks.library import SCENARIOS, NotInLibraryError
+from mend.tasks.problem import InvalidFileError
 from mend.tasks.scenario import Scenario, Trigger
 from mend.tasks.scenario_file import (
-    ScenarioFileError,
     built_in_scenario,
-    check_scenario_file,
     check_scenario_text,
     find_misfits,
+    read_scenario_file,
     read_scenario_text,
 )
 from mend.tasks.scene import Place, Pose, Scene, SceneObject
@@ -40,7 +40,7 @@ TREE = TaskTreeDefinition(name="eket", nodes=[LEAF])
 
 
 def problems_of(text: str) -> list[str]:
-    with pytest.raises(ScenarioFileError) as caught:
+    with pytest.raises(InvalidFileError) as caught:
         check_scenario_text(text, source="mine.yaml")
     return [each.describe("mine.yaml") for each in caught.value.problems]
 
@@ -67,7 +67,7 @@ def test_a_scenario_may_be_written_in_json() -> None:
 def test_a_scenario_is_read_from_a_file_of_anybodys(tmp_path: Path) -> None:
     path = tmp_path / "mine.yaml"
     path.write_text(GOOD)
-    assert check_scenario_file(path) == check_scenario_text(GOOD, source="mine.yaml")
+    assert read_scenario_file(path).scenario == check_scenario_text(GOOD, source="mine.yaml")
 
 
 def test_an_unknown_scenario_is_told_with_those_that_there_are() -> None:
@@ -83,15 +83,15 @@ def test_a_name_never_leads_to_another_file(tmp_path: Path) -> None:
 
 
 def test_a_file_that_is_not_there_is_told(tmp_path: Path) -> None:
-    with pytest.raises(ScenarioFileError, match="cannot be read"):
-        check_scenario_file(tmp_path / "mine.yaml")
+    with pytest.raises(InvalidFileError, match="cannot be read"):
+        read_scenario_file(tmp_path / "mine.yaml")
 
 
 def test_a_file_that_is_no_text_is_told(tmp_path: Path) -> None:
     path = tmp_path / "mine.yaml"
     path.write_bytes(b"\xff\xfe\x00")
-    with pytest.raises(ScenarioFileError, match=r"mine\.yaml"):
-        check_scenario_file(path)
+    with pytest.raises(InvalidFileError, match=r"mine\.yaml"):
+        read_scenario_file(path)
 
 
 def test_every_mistake_is_told_with_its_line() -> None:

@@ -10,8 +10,8 @@ from trees import BEHAVIORS
 from mend.tasks.document import read_document
 from mend.tasks.json_schema import scenario_schema, scene_schema, task_schema
 from mend.tasks.library import SCENES, TREES, NotInLibraryError
+from mend.tasks.problem import InvalidFileError
 from mend.tasks.scene_file import (
-    SceneFileError,
     built_in_scene,
     check_scene_file,
     check_scene_text,
@@ -31,7 +31,7 @@ places:
 
 
 def told(text: str) -> list[str]:
-    with pytest.raises(SceneFileError) as caught:
+    with pytest.raises(InvalidFileError) as caught:
         check_scene_text(text, source="s")
     return str(caught.value).splitlines()
 
@@ -68,7 +68,7 @@ def test_what_is_no_scene_is_told_so(text: str, message: str) -> None:
 
 
 def test_a_scene_file_that_is_not_there_is_told_so(tmp_path: Path) -> None:
-    with pytest.raises(SceneFileError, match="cannot be read"):
+    with pytest.raises(InvalidFileError, match="cannot be read"):
         check_scene_file(tmp_path / "none.yaml")
 
 

@@ -3,7 +3,8 @@
 import pytest
 from trees import Written, and_, eligible_names, node_called, or_, running_tree, then
 
-from mend.tasks.task_tree import IllegalTransitionError, TaskTree
+from mend.errors import IllegalTransitionError
+from mend.tasks.task_tree import TaskTree
 
 
 def after(written: Written, *done: str, active: str | None = None) -> TaskTree:

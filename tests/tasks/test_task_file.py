@@ -10,14 +10,9 @@ from trees import BEHAVIORS
 
 from mend.tasks.draft import MAX_NODE_DEPTH
 from mend.tasks.library import SCENES, TREES, NotInLibraryError, Shelf
+from mend.tasks.problem import InvalidFileError
 from mend.tasks.scene_file import built_in_scene
-from mend.tasks.task_file import (
-    CheckedTask,
-    TaskFileError,
-    check_built_in_task,
-    check_task_file,
-    check_task_text,
-)
+from mend.tasks.task_file import CheckedTask, check_built_in_task, check_task_file, check_task_text
 from mend.tasks.task_tree import TaskTree
 
 LEAF = "{behavior: pick_and_place, object: a, place: b}"
@@ -28,7 +23,7 @@ def check(text: str) -> CheckedTask:
 
 
 def problems(text: str) -> list[tuple[int | None, str | None, str]]:
-    with pytest.raises(TaskFileError) as caught:
+    with pytest.raises(InvalidFileError) as caught:
         check(text)
     return [(each.line, each.node_path, each.message) for each in caught.value.problems]
 
@@ -156,16 +151,16 @@ def test_a_file_without_a_tree_is_told_so(text: str, message: str) -> None:
 def test_an_error_reads_as_file_line_node_and_sentence(tmp_path: Path) -> None:
     path = tmp_path / "bad.yaml"
     path.write_text("name: t\ntree:\n  and:\n    - or: []\n")
-    with pytest.raises(TaskFileError) as caught:
+    with pytest.raises(InvalidFileError) as caught:
         check_task_file(path, BEHAVIORS)
     assert str(caught.value) == f"{path}:4: /0: 'or' is empty; a goal node needs a child"
 
 
 def test_a_file_that_cannot_be_read_is_told_so(tmp_path: Path) -> None:
-    with pytest.raises(TaskFileError, match="cannot be read: No such file"):
+    with pytest.raises(InvalidFileError, match="cannot be read: No such file"):
         check_task_file(tmp_path / "none.yaml", BEHAVIORS)
     (tmp_path / "binary.yaml").write_bytes(b"name: \xff")
-    with pytest.raises(TaskFileError, match="not UTF-8 text \\(byte 6\\)"):
+    with pytest.raises(InvalidFileError, match="not UTF-8 text \\(byte 6\\)"):
         check_task_file(tmp_path / "binary.yaml", BEHAVIORS)
 
 
@@ -174,17 +169,17 @@ def test_a_scene_beside_the_file_comes_before_the_library(tmp_path: Path) -> Non
     scene = "name: eket\nobjects: {}\nplaces: {}\n"
     (tmp_path / "scenes" / "eket.yaml").write_text(scene)
     (tmp_path / "t.yaml").write_text(TREES.read("eket"))
-    with pytest.raises(TaskFileError, match="the scene 'eket' has no object 'green_leg'"):
+    with pytest.raises(InvalidFileError, match="the scene 'eket' has no object 'green_leg'"):
         check_task_file(tmp_path / "t.yaml", BEHAVIORS)
     (tmp_path / "scenes" / "eket.yaml").write_text("name: 5\nobjects: {}\nplaces: {}\n")
-    with pytest.raises(TaskFileError, match="the scene 'eket' has mistakes, the first one"):
+    with pytest.raises(InvalidFileError, match="the scene 'eket' has mistakes, the first one"):
         check_task_file(tmp_path / "t.yaml", BEHAVIORS)
 
 
 def test_of_a_scene_that_is_nowhere_it_is_told_which_file_was_looked_for(tmp_path: Path) -> None:
     path = tmp_path / "t.yaml"
     path.write_text(f"name: t\nscene: moon\ntree: {LEAF}")
-    with pytest.raises(TaskFileError) as caught:
+    with pytest.raises(InvalidFileError) as caught:
         check_task_file(path, BEHAVIORS)
     [problem] = caught.value.problems
     assert problem.line == 2
@@ -220,7 +215,7 @@ def test_a_hundred_thousand_nodes_are_read_and_beyond_the_limit_refused() -> Non
 @settings(max_examples=100, deadline=None)
 @given(st.text(alphabet="abnt:-[]{}\n ,&*!|>'\"#%@`?0.~", max_size=60))
 def test_no_text_ever_breaks_the_reader(text: str) -> None:
-    with pytest.raises(TaskFileError):
+    with pytest.raises(InvalidFileError):
         check(text)
 
 

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from trees import and_, eligible_names, node_called, or_, running_tree, then
 
+from mend.errors import IllegalTransitionError, NotFoundError
 from mend.tasks.definition import BehaviorNode, GoalNode, TaskTreeDefinition
 from mend.tasks.resolution import Resolution
-from mend.tasks.task_tree import IllegalTransitionError, TaskTree
-from mend.tasks.tree_shape import UnknownNodeError
+from mend.tasks.task_tree import TaskTree
 
 
 def test_then_opens_its_children_in_order() -> None:
@@ -144,12 +144,15 @@ def test_giving_up_fails_the_run_without_another_alternative() -> None:
     [
         (
             lambda tree: tree.finish(1),
-            r"cannot finish 'a' \(/0\): it must be active, but it is an idle",
+            r"'a' \(/0\) is an idle behavior node: expected it to be active, but 'finish' came",
         ),
-        (lambda tree: tree.put_back(1, failed=True), "it must be active"),
-        (lambda tree: tree.start(2, "pr2"), "it must be eligible, but it is idle with level 0"),
-        (lambda tree: tree.abandon(1), "it must be an alternative of an OR"),
-        (lambda tree: tree.resolve(1, Resolution.HUMAN_FINISH, helped=True), "must be active"),
+        (lambda tree: tree.put_back(1, failed=True), "expected it to be active"),
+        (lambda tree: tree.start(2, "pr2"), "is idle with level 0: expected it to be eligible"),
+        (lambda tree: tree.abandon(1), "expected it to be an alternative of an OR"),
+        (
+            lambda tree: tree.resolve(1, Resolution.HUMAN_FINISH, helped=True),
+            "expected it to be active",
+        ),
     ],
 )
 def test_illegal_transitions_say_what_was_expected_and_what_came(transition, message) -> None:
@@ -163,7 +166,7 @@ def test_a_leaf_cannot_be_started_twice_nor_after_it_is_done() -> None:
     with pytest.raises(IllegalTransitionError, match="active \\(held by pr2\\)"):
         tree.start(1, "baxter")
     tree.finish(1)
-    with pytest.raises(IllegalTransitionError, match="but it is done"):
+    with pytest.raises(IllegalTransitionError, match="is done: expected"):
         tree.start(1, "pr2")
 
 
@@ -189,7 +192,7 @@ def test_paths_lead_to_nodes_and_back() -> None:
 
 @pytest.mark.parametrize("path", ["", "0", "/2", "/0/0", "/x", "/-1", "/01", "//", "/1/"])
 def test_a_path_to_nowhere_is_refused(path: str) -> None:
-    with pytest.raises(UnknownNodeError):
+    with pytest.raises(NotFoundError):
         running_tree(then("a", or_("b", "c"))).index_of(path)
 
 

@@ -11,9 +11,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, precondition, rule
 
+from mend.errors import IllegalTransitionError
 from mend.tasks import eligible
 from mend.tasks.resolution import Resolution
-from mend.tasks.task_tree import IllegalTransitionError, TaskTree
+from mend.tasks.task_tree import TaskTree
 
 
 class TreeAgainstFullEvaluation(RuleBasedStateMachine):

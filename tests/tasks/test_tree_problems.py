@@ -5,11 +5,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from random_task import random_task
 from trees import BEHAVIORS
 
-from mend.tasks.random_task import random_ordered_nesting, random_task
+from mend.sim.random_nesting import random_ordered_nesting
+from mend.tasks.problem import InvalidFileError
 from mend.tasks.scene import Place, Pose, Scene, SceneObject
-from mend.tasks.task_file import TaskFileError, check_task_text
+from mend.tasks.task_file import check_task_text
 
 SLAB = (0.10, 0.10, 0.05)
 
@@ -53,7 +55,7 @@ def told(tree: dict[str, Any], of: Scene = APART) -> list[str]:
     text = json.dumps({"name": "t", "tree": tree})
     try:
         check_task_text(text, BEHAVIORS, scene=of)
-    except TaskFileError as error:
+    except InvalidFileError as error:
         return [each.message for each in error.problems]
     return []
 
@@ -116,7 +118,7 @@ tree:
       object: b
       place: spot
 """
-    with pytest.raises(TaskFileError, match=r"t:7: /1: the place 'spot' is filled twice"):
+    with pytest.raises(InvalidFileError, match=r"t:7: /1: the place 'spot' is filled twice"):
         check_task_text(text, BEHAVIORS, source="t")
 
 

@@ -2,8 +2,9 @@
 
 import pytest
 
+from mend.tasks.problem import InvalidFileError
 from mend.tasks.scene import Name, Place, Pose, Scene, SceneObject, StrictModel, Table
-from mend.tasks.scene_file import SceneFileError, check_scene_text
+from mend.tasks.scene_file import check_scene_text
 from mend.tasks.unit import unit_at, unit_of_name
 
 
@@ -40,7 +41,7 @@ def test_a_measure_beyond_its_limit_is_told_with_its_unit_and_line() -> None:
     cup = SceneObject(color=(1.0, 0.0, 0.0), size=(0.1, 0.1, 0.1), pose=Pose(x=0.5, y=0.0))
     scene = Scene(name="tea", objects={"cup": cup}, places={"tray": Place(pose=cup.pose)})
     wrong = scene.model_dump_json(indent=1).replace('"yaw": 0.0', '"yaw": 90', 1)
-    with pytest.raises(SceneFileError) as caught:
+    with pytest.raises(InvalidFileError) as caught:
         check_scene_text(wrong)
     [problem] = caught.value.problems
     assert problem.message == (

@@ -6,7 +6,7 @@ from typing import Annotated
 from fastapi import APIRouter, Header
 from starlette.responses import FileResponse, HTMLResponse, Response
 
-from mend.server.errors import NotFoundError
+from mend.errors import NotFoundError
 
 router = APIRouter(include_in_schema=False)
 

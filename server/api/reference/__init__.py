@@ -6,7 +6,7 @@ from pathlib import Path
 from fastapi import APIRouter
 from starlette.responses import FileResponse, Response
 
-from mend.server.errors import NotFoundError
+from mend.errors import NotFoundError
 
 router = APIRouter(include_in_schema=False)
 

@@ -4,11 +4,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from mend.errors import IllegalTransitionError
 from mend.robots.behaviors.execution_state import (
+    EXECUTION,
     ExecutionState,
-    ExecutionTransitionError,
-    follow,
-    is_over,
 )
 
 S = ExecutionState
@@ -42,13 +41,13 @@ ALLOWED = {
 @given(state=st.sampled_from(S), wanted=st.sampled_from(S))
 def test_what_is_not_in_the_table_raises(state: S, wanted: S) -> None:
     if (state, wanted) in ALLOWED:
-        assert follow(state, wanted) is wanted
+        assert EXECUTION.require(state, wanted) is wanted
     else:
-        with pytest.raises(ExecutionTransitionError, match=f"that is {state} can become"):
-            follow(state, wanted)
+        with pytest.raises(IllegalTransitionError, match=f"the execution is {state}: expected"):
+            EXECUTION.require(state, wanted)
 
 
 def test_nothing_follows_an_end() -> None:
-    assert {each for each in S if is_over(each)} == {S.FINISHED, S.ENDED}
-    with pytest.raises(ExecutionTransitionError, match="can become nothing more, not running"):
-        follow(S.FINISHED, S.RUNNING)
+    assert {each for each in S if EXECUTION.is_last(each)} == {S.FINISHED, S.ENDED}
+    with pytest.raises(IllegalTransitionError, match="expected nothing more, but running came"):
+        EXECUTION.require(S.FINISHED, S.RUNNING)

@@ -3,8 +3,9 @@
 import pytest
 from drawn_scene import DrawnScene
 
+from mend.errors import IllegalTransitionError
 from mend.robots.behaviors.behavior import Move, SetGripper, Step
-from mend.robots.behaviors.execution_state import ExecutionState, ExecutionTransitionError
+from mend.robots.behaviors.execution_state import ExecutionState
 from mend.robots.behaviors.findings import Outcome
 from mend.robots.behaviors.phase import Phase
 from mend.robots.behaviors.planning import Plan
@@ -38,7 +39,7 @@ def test_before_the_first_step_it_prepares_and_after_the_last_it_confirms() -> N
 
 
 def test_only_what_may_follow_follows() -> None:
-    with pytest.raises(ExecutionTransitionError, match=r"running .* not preparing"):
+    with pytest.raises(IllegalTransitionError, match=r"is running: .* but preparing came"):
         under_way(1).move_to(ExecutionState.PREPARING)
 
 
@@ -60,5 +61,5 @@ def test_to_start_again_is_to_have_no_plan() -> None:
     progress = under_way(2)
     progress.start_again()
     assert (progress.step, progress.way, progress.phase) == (0, [], Phase.PREPARE)
-    with pytest.raises(ExecutionTransitionError, match="expected a plan while it is running"):
+    with pytest.raises(IllegalTransitionError, match="is running: expected a plan, but none came"):
         _ = progress.planned

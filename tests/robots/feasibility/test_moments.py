@@ -5,13 +5,13 @@ import json
 import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from random_task import random_nesting
 
 from mend.robots.feasibility.moments import Job, Moment, Moments
 from mend.robots.feasibility.standing import Standing, at_place, starts
 from mend.server.behaviors import behavior_parameters
 from mend.tasks.definition import BehaviorNode
 from mend.tasks.leaf_order import LeafOrder
-from mend.tasks.random_task import random_nesting
 from mend.tasks.scene import Place, Pose, Scene, SceneObject
 from mend.tasks.task_file import check_task_text
 from mend.tasks.task_tree import TaskTree

@@ -12,7 +12,7 @@ from scripted_body import GRIPPER, forearm_pose, part_in_tool, tool_matrix, trai
 from mend.robots.body import ToolPose
 from mend.robots.grasp import grasp_of
 from mend.robots.grip.reading import GripReading, GripState
-from mend.robots.grip.watch import GripWatch, Hand
+from mend.robots.grip.watch import GripWatch, HandSnapshot
 from mend.robots.vision.seen_box import SeenBox
 
 MODEL = trained_model()
@@ -39,7 +39,7 @@ class ScriptedHand:
         hidden: bool = False,
         pushed: bool = False,
         size: tuple[int, int, float] = (160, 120, 80.0),
-    ) -> Hand:
+    ) -> HandSnapshot:
         """The hand with what it `shows`: the part itself, another by name, or None."""
         self.read_so_far += 1
         name = self.part.name if shows == "itself" else shows
@@ -58,7 +58,7 @@ class ScriptedHand:
             time=self.read_so_far * self.period_s,
             with_depth=False,
         )
-        return Hand(
+        return HandSnapshot(
             image=image,
             tool=self.tool,
             contact_n=20.0 if pushed else 0.0,

@@ -8,7 +8,7 @@ from scipy.spatial import ConvexHull
 
 from mend.robots.behaviors.legs import table_box
 from mend.robots.body import HeldBox, NoWay, ToolPose
-from mend.robots.motion.collision import CollisionModel, Hand, Margins
+from mend.robots.motion.collision import CollisionModel, HandPosture, Margins
 from mend.robots.motion.kinematics import Joints, KinematicChain
 from mend.robots.motion.obstacles import PathObstacles, samples
 from mend.robots.motion.planner import JointPath, PathPlanner
@@ -39,8 +39,8 @@ def arm() -> CollisionModel:
     return CollisionModel(robot_urdf(), ARM_JOINTS, TOOL_FRAME)
 
 
-def hand(opening_m: float, *held: HeldBox) -> Hand:
-    return Hand(dict.fromkeys(FINGER_JOINTS, finger_angle_rad(opening_m)), held)
+def hand(opening_m: float, *held: HeldBox) -> HandPosture:
+    return HandPosture(dict.fromkeys(FINGER_JOINTS, finger_angle_rad(opening_m)), held)
 
 
 def box(x: float, y: float, size: tuple[float, float, float], name: str = "box") -> SeenBox:

@@ -9,7 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from small_arm import JOINTS, small_arm
 
-from mend.robots.motion.kinematics import KinematicChain, UrdfError, rotation_from_rpy
+from mend.errors import WrongInputError
+from mend.robots.motion.kinematics import KinematicChain, rotation_from_rpy
 
 angles = st.lists(st.floats(-1.5, 1.5), min_size=6, max_size=6).map(np.array)
 
@@ -81,5 +82,5 @@ def test_what_is_out_of_reach_is_not_found(chain: KinematicChain) -> None:
 def test_a_joint_that_does_not_lead_to_the_tip_is_an_error(tmp_path: Path) -> None:
     urdf = tmp_path / "arm.urdf"
     small_arm(tmp_path)
-    with pytest.raises(UrdfError, match=r"that lead to 'l2' in arm\.urdf are j1, j2;"):
+    with pytest.raises(WrongInputError, match=r"that lead to 'l2' in arm\.urdf are j1, j2;"):
         KinematicChain(urdf, "l2", JOINTS)

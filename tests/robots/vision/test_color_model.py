@@ -7,8 +7,9 @@ import pytest
 from drawn_scene import PARTS, DrawnScene, Resting
 from scripted_body import trained_model
 
+from mend.errors import WrongInputError
 from mend.robots.vision.blob import find_blob
-from mend.robots.vision.color_model import ColorModel, ColorModelError, ColorSettings, Sample
+from mend.robots.vision.color_model import ColorModel, ColorSettings, Sample
 
 
 def patch(bgr: tuple[float, float, float], size: int = 40) -> np.ndarray:
@@ -90,7 +91,7 @@ def test_a_saved_model_sees_the_same(tmp_path) -> None:
 
 def test_an_object_it_was_not_trained_for_is_named() -> None:
     model = ColorModel.train({"a": [sample((20, 200, 30))]})
-    with pytest.raises(ColorModelError, match="does not know 'b'; it knows a"):
+    with pytest.raises(WrongInputError, match="does not know 'b'; it knows a"):
         model.segment(patch((0, 0, 0))).mask("b")
 
 
@@ -138,7 +139,7 @@ def test_tints_tell_colors_apart_as_far_as_they_are_measured(one, other, alike: 
 
 
 def test_a_mask_of_another_size_is_refused() -> None:
-    with pytest.raises(ColorModelError, match="a mask of 'a'"):
+    with pytest.raises(WrongInputError, match="a mask of 'a'"):
         ColorModel.train({"a": [Sample(patch((0, 200, 0)), np.ones((3, 3), np.uint8))]})
 
 
@@ -146,17 +147,17 @@ def test_a_mask_of_another_size_is_refused() -> None:
 def test_what_is_no_model_is_refused_in_one_sentence(tmp_path, content: bytes) -> None:
     path = tmp_path / "colors.npz"
     path.write_bytes(content)
-    with pytest.raises(ColorModelError, match="is not a colour model"):
+    with pytest.raises(WrongInputError, match="is not a colour model"):
         ColorModel.load(path)
 
 
 def test_a_missing_file_and_another_version_are_told(tmp_path) -> None:
     path = tmp_path / "colors.npz"
-    with pytest.raises(ColorModelError, match="there is no colour model at"):
+    with pytest.raises(WrongInputError, match="there is no colour model at"):
         ColorModel.load(path)
     np.savez(path, version=np.array(99))
-    with pytest.raises(ColorModelError, match="of version 99; this reads 3"):
+    with pytest.raises(WrongInputError, match="of version 99; this reads 3"):
         ColorModel.load(path)
     np.savez(path, names=np.array(["a"]))
-    with pytest.raises(ColorModelError, match="is not a colour model"):
+    with pytest.raises(WrongInputError, match="is not a colour model"):
         ColorModel.load(path)

@@ -4,7 +4,8 @@ import cv2
 import numpy as np
 import pytest
 
-from mend.robots.vision.color_model import ColorModel, ColorModelError
+from mend.errors import WrongInputError
+from mend.robots.vision.color_model import ColorModel
 from mend.robots.vision.training import load_samples
 
 
@@ -45,5 +46,5 @@ def test_what_is_wrong_is_named(tmp_path, name: str, message: str) -> None:
     write_picture(tmp_path / "maskless" / "green" / "one.png")
     (tmp_path / "broken" / "green").mkdir(parents=True)
     (tmp_path / "broken" / "green" / "one.png").write_bytes(b"no picture")
-    with pytest.raises(ColorModelError, match=message):
+    with pytest.raises(WrongInputError, match=message):
         load_samples(tmp_path / name)

@@ -12,7 +12,7 @@ import pytest
 from mend.server.access.changes import PrincipalsEditor
 from mend.server.access.deed_log import DeedLog
 from mend.server.access.principal import Caller, Principal
-from mend.server.access.principals_file import KEPT_CHANGES, Change, read_principals
+from mend.server.access.principals_file import KEPT_CHANGES, PrincipalChange, read_principals
 from mend.server.access.roles import Role
 from mend.server.access.sessions import Sessions
 from mend.server.journal import events as ev
@@ -81,7 +81,7 @@ async def test_a_change_of_the_file_is_journaled_once_also_after_a_restart(
     journal: SqliteJournal,
 ) -> None:
     clock = Clock()
-    change = Change(
+    change = PrincipalChange(
         id=uuid4(), when=clock.now, by="root", what="revoked", name="anna", role=Role.HELPER
     )
     for _ in range(2):
@@ -95,8 +95,8 @@ async def test_a_change_of_the_file_is_journaled_once_also_after_a_restart(
     assert (event.what, event.principal, event.author.principal) == ("revoked", "anna", "root")
 
 
-def revoked(clock: Clock) -> Change:
-    return Change(
+def revoked(clock: Clock) -> PrincipalChange:
+    return PrincipalChange(
         id=uuid4(), when=clock.now, by="root", what="revoked", name="anna", role=Role.HELPER
     )
 

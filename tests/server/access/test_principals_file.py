@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
+from mend.errors import ConflictError, NotFoundError, WrongInputError
 from mend.server.access.changes import EnrolmentRefusedError, PrincipalsEditor
 from mend.server.access.principals_file import PrincipalsFileError, principals_of, read_principals
 from mend.server.access.roles import Role
-from mend.server.errors import ConflictError, InvalidError, NotFoundError
 
 NOW = datetime(2026, 5, 4, 12, tzinfo=UTC)
 
@@ -61,7 +61,7 @@ def test_a_name_is_given_once(editor: PrincipalsEditor) -> None:
 
 @pytest.mark.parametrize("name", ["", "a" * 65, "a\nb", "token", "anybody"])
 def test_a_name_that_cannot_be_one_is_refused(editor: PrincipalsEditor, name: str) -> None:
-    with pytest.raises(InvalidError):
+    with pytest.raises(WrongInputError):
         editor.add(name, Role.HELPER, NOW)
     assert read_principals(editor.path).principals == []
 
@@ -197,7 +197,7 @@ def test_a_name_that_reads_as_another_or_names_no_address_is_refused(
     name: str, tmp_path: Path
 ) -> None:
     editor = PrincipalsEditor(tmp_path / "principals.yaml", by="root")
-    with pytest.raises(InvalidError):
+    with pytest.raises(WrongInputError):
         editor.add(name, Role.VIEWER, datetime.now(UTC))
 
 
@@ -206,6 +206,6 @@ def test_a_name_that_reads_as_another_or_names_no_address_is_refused(
 )
 def test_a_name_that_could_be_taken_for_another_is_refused(name: str, tmp_path: Path) -> None:
     file = tmp_path / "principals.yaml"
-    with pytest.raises(InvalidError, match="characters that can be seen"):
+    with pytest.raises(WrongInputError, match="characters that can be seen"):
         PrincipalsEditor(file, by="root").add(name, Role.HELPER, datetime.now(UTC))
     assert not file.exists()

@@ -14,10 +14,11 @@ from sample_events import paused
 from service_process import service_process
 from typer.testing import CliRunner
 
+from mend.errors import MendError
 from mend.server.cli import app
 from mend.server.client import MendClient
 from mend.server.client_stream import EventStream
-from mend.server.journal.backup import BackupError, back_up, restore
+from mend.server.journal.backup import back_up, restore
 from mend.server.journal.events import Event
 from mend.server.journal.file_lock import JournalLockedError
 from mend.server.journal.journal import Entry
@@ -93,15 +94,15 @@ def test_a_file_that_is_there_is_replaced_only_by_force(tmp_path: Path) -> None:
     path, target = tmp_path / "journal.db", tmp_path / "copy.db"
     write_history(path, 1)
     target.write_text("precious")
-    with pytest.raises(BackupError, match="is there already: give --force"):
+    with pytest.raises(MendError, match="is there already: give --force"):
         back_up(path, target)
     assert target.read_text() == "precious"
     back_up(path, target, force=True)
-    with pytest.raises(BackupError, match="is there already"):
+    with pytest.raises(MendError, match="is there already"):
         restore(target, path)
-    with pytest.raises(BackupError, match="is the journal itself"):
+    with pytest.raises(MendError, match="is the journal itself"):
         back_up(path, path, force=True)
-    with pytest.raises(BackupError, match="is a directory"):
+    with pytest.raises(MendError, match="is a directory"):
         back_up(path, tmp_path)
 
 
@@ -111,7 +112,7 @@ def test_a_damaged_backup_replaces_nothing(tmp_path: Path) -> None:
     back_up(path, target)
     before = contents(path)
     truncated(target)
-    with pytest.raises((BackupError, JournalSchemaError)):
+    with pytest.raises((MendError, JournalSchemaError)):
         restore(target, path, force=True)
     assert contents(path) == before
 
@@ -152,7 +153,7 @@ async def test_a_journal_whose_log_cannot_be_emptied_is_not_replaced(
         journal = SqliteJournal(path)
         await journal.append(Entry(events=[paused(7.0)]))
         journal.close()
-        with pytest.raises(BackupError, match=r"log of .* could not be emptied"):
+        with pytest.raises(MendError, match=r"log of .* could not be emptied"):
             put(source, path, force=True)
         reader.execute("ROLLBACK")
         (last,) = reader.execute("SELECT max(time) FROM events WHERE type = 'run_paused'")

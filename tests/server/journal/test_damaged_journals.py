@@ -17,16 +17,11 @@ from pretend_service import pretend_service
 from task_documents import definition_of
 from typer.testing import CliRunner
 
+from mend.errors import NotFoundError, RefusalError, UnreadableError
 from mend.server.cli import app
-from mend.server.errors import NotFoundError, UnreadableError
 from mend.server.journal import events as ev
 from mend.server.journal.file_lock import JournalLockedError
-from mend.server.journal.journal import (
-    Entry,
-    JournalDamagedError,
-    JournalOpenError,
-    JournalReadError,
-)
+from mend.server.journal.journal import Entry, JournalReadError
 from mend.server.journal.migrations import JournalSchemaError
 from mend.server.journal.reader import JournalReader
 from mend.server.journal.run_index import RunPage
@@ -39,7 +34,7 @@ ONE_PART = definition_of(
     {"then": [{"behavior": "pick_and_place", "object": "part_1", "place": "spot_1"}]}
 )
 
-KNOWN = (JournalOpenError, JournalReadError, JournalSchemaError, JournalLockedError)
+KNOWN = (RefusalError, JournalReadError, JournalSchemaError, JournalLockedError)
 
 
 @pytest.fixture(scope="module")
@@ -257,7 +252,7 @@ def test_a_service_on_flipped_bits_starts_or_says_why_not(
 
 def test_a_damaged_file_tells_what_to_do(journal: Path) -> None:
     truncated(journal)
-    with pytest.raises(JournalDamagedError, match=r"'mend journal check' tells more"):
+    with pytest.raises(UnreadableError, match=r"'mend journal check' tells more"):
         SqliteJournal(journal)
 
 

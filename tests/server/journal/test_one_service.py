@@ -11,8 +11,9 @@ import pytest
 from full_disk import Never
 from sample_events import paused
 
+from mend.errors import UnavailableError
 from mend.server.journal.file_lock import JournalLockedError
-from mend.server.journal.journal import Entry, JournalOpenError, JournalWriteError
+from mend.server.journal.journal import Entry, JournalWriteError
 from mend.server.journal.sqlite import SqliteJournal
 
 OPENS = """
@@ -117,7 +118,7 @@ def test_a_file_with_two_names_is_not_opened_by_either(tmp_path: Path) -> None:
     other.parent.mkdir()
     other.hardlink_to(path)
     for name in (path, other):
-        with pytest.raises(JournalOpenError, match="has another name, too"):
+        with pytest.raises(UnavailableError, match="has another name, too"):
             SqliteJournal(name)
     other.unlink()
     SqliteJournal(path).close()

@@ -12,6 +12,7 @@ from full_disk import FailingConnection
 from recording_sink import RecordingSink
 from ticking_clock import TickingClock
 
+from mend.errors import ConflictError, NotFoundError
 from mend.robots.link.channel import Channel, ChannelClosedError, memory_channel
 from mend.robots.link.messages import (
     Ack,
@@ -34,7 +35,6 @@ from mend.robots.link.messages import (
     Welcome,
     service_message,
 )
-from mend.server.errors import ConflictError, NotFoundError
 from mend.server.journal.journal import JournalReadError, Receipt
 from mend.server.journal.sqlite import SqliteJournal
 from mend.server.limits import Limits

@@ -9,8 +9,8 @@ from pretend_robots import PretendRobots
 from pretend_service import PretendService, pretend_service
 from task_documents import definition_of
 
+from mend.errors import ConflictError
 from mend.robots.link.messages import Intervene
-from mend.server.errors import ConflictError
 from mend.server.journal import events as ev
 from mend.server.runtime.interventions import MOST_WAITING
 from mend.server.runtime.requests import RunRequest

@@ -10,9 +10,9 @@ from answer_races import ONE_PART, race
 from pretend_robots import FIRST_JPEG, SECOND_JPEG
 from pretend_service import PretendService, pretend_service
 
+from mend.errors import ConflictError, NotFoundError
 from mend.robots.link.messages import ClipPicture, ClipTaken
 from mend.server.dialogues.escalation import EscalationPolicy
-from mend.server.errors import ConflictError, NotFoundError
 from mend.server.journal import events as ev
 from mend.server.runtime.requests import RunRequest
 from mend.server.runtime.views import DialogueView, PromptView

@@ -13,7 +13,7 @@ from made_up_history import run_id, write_history
 from pretend_service import PretendService, pretend_service
 from task_documents import definition_of
 
-from mend.server.errors import ConflictError, NotFoundError, UnreadableError
+from mend.errors import ConflictError, NotFoundError, UnreadableError
 from mend.server.journal import events as ev
 from mend.server.journal.pruning import Keep
 from mend.server.journal.run_index import RunPage

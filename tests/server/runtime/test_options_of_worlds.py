@@ -4,7 +4,7 @@ from typing import Any
 
 import pytest
 
-from mend.server.errors import InvalidError
+from mend.errors import WrongInputError
 from mend.server.journal.sqlite import SqliteJournal
 from mend.server.robots.passes import OwnRobots
 from mend.server.runtime.worlds import SimulatedWorlds
@@ -30,6 +30,6 @@ def test_options_are_checked_beforehand(world: str, options: dict[str, Any], sen
     journal = SqliteJournal(":memory:")
     worlds = SimulatedWorlds(load_plugins("mend.worlds"), journal, _launch, OwnRobots())
     worlds.check(world, {"depth_noise": 0.5})
-    with pytest.raises(InvalidError, match=sentence):
+    with pytest.raises(WrongInputError, match=sentence):
         worlds.check(world, options)
     journal.close()

@@ -9,7 +9,8 @@ from made_up_history import run_id, write_history
 from pretend_service import PretendService, pretend_service
 from task_documents import definition_of
 
-from mend.server.errors import ConflictError, LostRaceError, NotFoundError
+from mend.errors import ConflictError, NotFoundError
+from mend.server.errors import LostRaceError
 from mend.server.journal import events as ev
 from mend.server.runtime.dialogue_state import DialogueState
 from mend.server.runtime.history import MOST_KEPT

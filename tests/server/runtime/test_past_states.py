@@ -8,7 +8,7 @@ import pytest
 from pretend_service import pretend_service
 from task_documents import definition_of
 
-from mend.server.errors import UnreadableError
+from mend.errors import UnreadableError
 from mend.server.runtime.history import History
 from mend.server.runtime.past_states import KEPT_S, PastStates
 from mend.server.runtime.requests import RunRequest

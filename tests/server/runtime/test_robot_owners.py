@@ -8,7 +8,8 @@ from pretend_robots import PretendRobot, Sink
 from pretend_service import PretendService, pretend_service
 from task_documents import definition_of
 
-from mend.server.errors import BusyError, ConflictError, InvalidError
+from mend.errors import ConflictError, WrongInputError
+from mend.server.errors import BusyError
 from mend.server.journal.run_index import RunPage
 from mend.server.runtime.ports import RealRobots
 from mend.server.runtime.requests import RunRequest
@@ -71,7 +72,7 @@ async def test_a_run_that_cannot_be_journaled_leaves_its_robot_free(
 async def test_a_robot_is_named_once() -> None:
     async with pretend_service(ONE_PART) as service:
         connect(service, "duo")
-        with pytest.raises(InvalidError, match="'duo' more than once"):
+        with pytest.raises(WrongInputError, match="'duo' more than once"):
             await service.runtime.start_run(request_of("duo", "duo"))
         assert service.journal.head == 0
 

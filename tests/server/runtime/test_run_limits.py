@@ -7,7 +7,7 @@ import pytest
 from pretend_service import pretend_service
 from task_documents import definition_of
 
-from mend.server.errors import ConflictError, InvalidError
+from mend.errors import ConflictError, WrongInputError
 from mend.server.journal.run_index import RunPage
 from mend.server.limits import Limits
 from mend.server.runtime.context import RunSettings
@@ -33,7 +33,7 @@ async def test_a_request_that_holds_too_much_is_refused(
     settings = RunSettings(limits=LIMITS)
     request = {"tree": "tree", "world": "tabletop", **fields}
     async with pretend_service(ONE_PART, settings=settings) as service:
-        with pytest.raises(InvalidError, match=sentence):
+        with pytest.raises(WrongInputError, match=sentence):
             await service.runtime.start_run(RunRequest.model_validate(request))
         assert service.journal.head == 0
 

@@ -10,16 +10,12 @@ from broken_constraints import broken_constraints
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from pretend_service import NoHardware, PretendService, PretendWorlds, pretend_service
+from random_task import random_task
 from task_documents import definition_of
 
+from mend.errors import ConflictError, NotFoundError, UnreadableError, WrongInputError
 from mend.server.dialogues.escalation import EscalationPolicy
-from mend.server.errors import (
-    ConflictError,
-    InvalidError,
-    LostRaceError,
-    NotFoundError,
-    UnreadableError,
-)
+from mend.server.errors import LostRaceError
 from mend.server.journal import events as ev
 from mend.server.journal.journal import Entry
 from mend.server.journal.run_index import RunPage
@@ -28,7 +24,6 @@ from mend.server.runtime.requests import RunRequest
 from mend.server.runtime.run_state import RunState
 from mend.server.runtime.views import DialogueView, RunStatus, RunView
 from mend.sim.tabletop.layout import lay_out
-from mend.tasks.random_task import random_task
 from mend.tasks.resolution import Resolution
 from mend.tasks.scenario import Person
 
@@ -281,7 +276,7 @@ async def test_a_run_can_be_paused_resumed_and_aborted() -> None:
 async def test_live_robots_have_to_be_named_and_connected() -> None:
     async with pretend_service(TWO_PARTS) as service:
         request = RunRequest(tree="tree", world="live")
-        with pytest.raises(InvalidError, match="robots"):
+        with pytest.raises(WrongInputError, match="robots"):
             await service.runtime.start_run(request)
         with pytest.raises(NotFoundError, match="r2"):
             await service.runtime.start_run(request.model_copy(update={"robots": ["r2"]}))
@@ -330,7 +325,7 @@ async def test_a_robot_that_cannot_be_started_again_fails_the_run(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     async def refuse(*_: object) -> None:
-        raise InvalidError("the world cannot run here")
+        raise WrongInputError("the world cannot run here")
 
     async with pretend_service(TWO_PARTS, HELD, deaf=True) as service:
         request = RunRequest(tree="tree", world="tabletop", speed="max")
@@ -369,7 +364,7 @@ async def test_a_run_that_cannot_be_taken_up_fails_and_the_others_go_on(
 
     def refuse(worlds: PretendWorlds, state: RunState, run: Any) -> Any:
         if state.id == stuck.id:
-            raise InvalidError("the world is no longer there")
+            raise WrongInputError("the world is no longer there")
         return opened(worlds, state, run)
 
     monkeypatch.setattr(PretendWorlds, "open", refuse)

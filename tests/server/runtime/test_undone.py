@@ -10,6 +10,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from pretend_robots import PretendRobot
 from pretend_service import pretend_service
+from random_task import random_task
 from task_documents import definition_of
 
 from mend.dialogue.registry import load_scripts
@@ -19,7 +20,6 @@ from mend.server.runtime.run_state import RunState
 from mend.server.runtime.views import RunStatus, RunView
 from mend.sim.tabletop.layout import lay_out
 from mend.tasks.definition import TaskTreeDefinition
-from mend.tasks.random_task import random_task
 from mend.tasks.task_tree import TaskTree
 
 NAMES = [(f"part_{i}", f"spot_{i}") for i in range(1, 6)]

@@ -4,21 +4,21 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from mend.errors import IllegalTransitionError
 from mend.server.speech.commands import Command
 from mend.server.speech.conversation import (
     MAX_APOLOGIES,
     PAUSE_S,
     Act,
-    Conversation,
     End,
     EndReason,
-    GiveUp,
     Hear,
-    IllegalTransitionError,
-    Listen,
-    Say,
+    SayAloud,
     Saying,
+    SpokenConversation,
+    StartListening,
     State,
+    StopTrying,
     Understood,
 )
 from mend.server.speech.phrases import SORRY
@@ -43,19 +43,22 @@ def clock() -> Clock:
 
 
 @pytest.fixture
-def conversation(clock: Clock) -> Conversation:
-    return Conversation(QUESTION, HELP, clock)
+def conversation(clock: Clock) -> SpokenConversation:
+    return SpokenConversation(QUESTION, HELP, clock)
 
 
-def listen(conversation: Conversation, clock: Clock) -> None:
+def listen(conversation: SpokenConversation, clock: Clock) -> None:
     """Have what is being said come to its end, and the pause after it."""
     conversation.spoken()
     clock.now_s += PAUSE_S
-    assert conversation.pause_over() == [Listen()]
+    assert conversation.pause_over() == [StartListening()]
 
 
 def say(
-    conversation: Conversation, clock: Clock, command: Command | None, phrase: str | None = None
+    conversation: SpokenConversation,
+    clock: Clock,
+    command: Command | None,
+    phrase: str | None = None,
 ) -> list[Act]:
     """Have somebody say something after the robot has spoken."""
     listen(conversation, clock)
@@ -63,12 +66,12 @@ def say(
     return conversation.utterance(command, phrase, 0.3)
 
 
-def test_it_begins_with_the_question(conversation: Conversation) -> None:
-    assert conversation.open() == [Say(Saying.QUESTION, QUESTION)]
+def test_it_begins_with_the_question(conversation: SpokenConversation) -> None:
+    assert conversation.open() == [SayAloud(Saying.QUESTION, QUESTION)]
 
 
 def test_nothing_is_listened_to_while_the_robot_speaks_and_a_moment_longer(
-    conversation: Conversation, clock: Clock
+    conversation: SpokenConversation, clock: Clock
 ) -> None:
     conversation.open()
     assert not conversation.listens
@@ -78,13 +81,15 @@ def test_nothing_is_listened_to_while_the_robot_speaks_and_a_moment_longer(
     assert not conversation.listens
     assert conversation.pause_left_s == pytest.approx(PAUSE_S / 2)
     clock.now_s += PAUSE_S
-    assert conversation.pause_over() == [Listen()]
+    assert conversation.pause_over() == [StartListening()]
     assert conversation.listens
     assert conversation.pause_left_s is None
 
 
 @pytest.mark.parametrize("command", [Command.YES, Command.NO, Command.STOP])
-def test_yes_no_and_stop_end_it(conversation: Conversation, clock: Clock, command: Command) -> None:
+def test_yes_no_and_stop_end_it(
+    conversation: SpokenConversation, clock: Clock, command: Command
+) -> None:
     conversation.open()
     heard = say(conversation, clock, command, "as it was said")
     assert heard == [Understood(command, "as it was said", 0.3), End(EndReason.HEARD)]
@@ -92,35 +97,42 @@ def test_yes_no_and_stop_end_it(conversation: Conversation, clock: Clock, comman
 
 @pytest.mark.parametrize(
     ("command", "said"),
-    [(Command.REPEAT, Say(Saying.QUESTION, QUESTION)), (Command.HELP, Say(Saying.HELP, HELP))],
+    [
+        (Command.REPEAT, SayAloud(Saying.QUESTION, QUESTION)),
+        (Command.HELP, SayAloud(Saying.HELP, HELP)),
+    ],
 )
 def test_repeat_and_help_speak_again_and_never_count_as_failures(
-    conversation: Conversation, clock: Clock, command: Command, said: Say
+    conversation: SpokenConversation, clock: Clock, command: Command, said: SayAloud
 ) -> None:
     conversation.open()
     for _ in range(3 * MAX_APOLOGIES):
         assert say(conversation, clock, command)[1:] == [said]
-    assert say(conversation, clock, None)[1:] == [Say(Saying.SORRY, SORRY)]
+    assert say(conversation, clock, None)[1:] == [SayAloud(Saying.SORRY, SORRY)]
 
 
-def test_it_apologizes_twice_and_then_gives_up(conversation: Conversation, clock: Clock) -> None:
+def test_it_apologizes_twice_and_then_gives_up(
+    conversation: SpokenConversation, clock: Clock
+) -> None:
     conversation.open()
     for _ in range(MAX_APOLOGIES):
-        assert say(conversation, clock, None)[1:] == [Say(Saying.SORRY, SORRY)]
-    assert say(conversation, clock, None)[1:] == [GiveUp(), End(EndReason.GAVE_UP)]
+        assert say(conversation, clock, None)[1:] == [SayAloud(Saying.SORRY, SORRY)]
+    assert say(conversation, clock, None)[1:] == [StopTrying(), End(EndReason.GAVE_UP)]
 
 
-def test_noise_without_words_is_no_utterance(conversation: Conversation, clock: Clock) -> None:
+def test_noise_without_words_is_no_utterance(
+    conversation: SpokenConversation, clock: Clock
+) -> None:
     conversation.open()
     for _ in range(3 * MAX_APOLOGIES):
         if conversation.state is not State.LISTENING:
             listen(conversation, clock)
         conversation.speech_began()
-        assert conversation.nothing_said() == [Listen()]
+        assert conversation.nothing_said() == [StartListening()]
 
 
 def test_an_illegal_call_says_what_was_expected_and_changes_nothing(
-    conversation: Conversation,
+    conversation: SpokenConversation,
 ) -> None:
     with pytest.raises(IllegalTransitionError, match="is new: expected open or end, but spoken"):
         conversation.spoken()
@@ -139,7 +151,7 @@ CALLS = st.sampled_from(
 @given(st.lists(CALLS, max_size=60))
 def test_whatever_comes_it_ends_once_and_never_listens_while_it_speaks(calls: list[str]) -> None:
     clock = Clock()
-    conversation = Conversation(QUESTION, HELP, clock)
+    conversation = SpokenConversation(QUESTION, HELP, clock)
     does = {
         "open": conversation.open,
         "spoken": conversation.spoken,
@@ -163,10 +175,10 @@ def test_whatever_comes_it_ends_once_and_never_listens_while_it_speaks(calls: li
             continue
         if call == "spoken":
             silent_since_s = clock.now_s
-        if Listen() in done and call == "pause_over":
+        if StartListening() in done and call == "pause_over":
             assert clock.now_s - silent_since_s >= PAUSE_S - 1e-9
         acts.extend(done)
     ends = [act for act in acts if isinstance(act, End)]
     assert len(ends) == (conversation.state is State.ENDED)
     assert not ends or acts[-1] is ends[0]
-    assert sum(act == Say(Saying.SORRY, SORRY) for act in acts) <= MAX_APOLOGIES
+    assert sum(act == SayAloud(Saying.SORRY, SORRY) for act in acts) <= MAX_APOLOGIES

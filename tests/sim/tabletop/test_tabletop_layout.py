@@ -6,9 +6,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from mend.errors import WrongInputError
 from mend.robots.body import ToolPose
 from mend.sim.tabletop.adapter import adapter
-from mend.sim.tabletop.layout import MOST_OBJECTS, LayoutError, distinct_colors, lay_out
+from mend.sim.tabletop.layout import MOST_OBJECTS, distinct_colors, lay_out
 from mend.sim.tabletop.world import TabletopWorld
 from mend.tasks.definition import BehaviorNode
 
@@ -52,7 +53,7 @@ def test_more_than_fits_is_refused_in_a_sentence(kind: str) -> None:
     names = [
         (f"o{i}", "p") if kind == "objects" else ("o", f"p{i}") for i in range(MOST_OBJECTS + 1)
     ]
-    with pytest.raises(LayoutError, match=f"at most {MOST_OBJECTS} {kind}, this tree names 65"):
+    with pytest.raises(WrongInputError, match=f"at most {MOST_OBJECTS} {kind}, this tree names 65"):
         lay_out(names, 0)
 
 

@@ -10,7 +10,7 @@ from workcell_hands import Hands
 from mend.robots.body import CameraImage
 from mend.robots.vision.projection import project, unproject
 from mend.sim.workcell.options import WorkcellOptions
-from mend.sim.workcell.parts import Part
+from mend.sim.workcell.parts import RigidPart
 from mend.sim.workcell.physics import to_matrix
 from mend.sim.workcell.rendering import Rendering
 from mend.sim.workcell.world import WorkcellWorld
@@ -40,7 +40,7 @@ def capture(
     return chosen.capture_with_bodies()
 
 
-def mask_of(rendering: Rendering, part: Part) -> NDArray[np.bool_]:
+def mask_of(rendering: Rendering, part: RigidPart) -> NDArray[np.bool_]:
     return np.asarray(rendering.bodies == part.body_id)
 
 

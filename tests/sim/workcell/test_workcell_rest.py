@@ -8,7 +8,7 @@ from workcell_hands import TABLE_M
 
 from mend.sim.workcell.bench import Bench
 from mend.sim.workcell.hand import HOLD_FORCE_N, PULL_FORCE_N, Hand
-from mend.sim.workcell.parts import Part, PartPose
+from mend.sim.workcell.parts import PartPose, RigidPart
 from mend.sim.workcell.physics import CONTROL_HZ, Client, connect
 from mend.tasks.scene import Pose, Scene, SceneObject
 
@@ -31,7 +31,7 @@ def box(z_m: float) -> SceneObject:
 
 
 @pytest.fixture
-def stack(client: Client) -> tuple[Part, Part]:
+def stack(client: Client) -> tuple[RigidPart, RigidPart]:
     """A lower and an upper part that have lain for long."""
     scene = Scene(name="stack", objects={"lower": box(0.0), "upper": box(LOW_M)}, places={})
     bench = Bench(client, scene)
@@ -48,7 +48,7 @@ def pass_time(client: Client, duration_s: float) -> None:
         client.stepSimulation()
 
 
-def height_m(part: Part) -> float:
+def height_m(part: RigidPart) -> float:
     """Of its bottom above the table."""
     return part.pose().position[2] - TABLE_M
 

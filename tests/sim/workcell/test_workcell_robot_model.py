@@ -9,7 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mend.robots.motion.kinematics import KinematicChain, UrdfError
+from mend.errors import WrongInputError
+from mend.robots.motion.kinematics import KinematicChain
 from mend.sim.workcell import robot_model
 from mend.sim.workcell.mesh_repair import read_stl, repair_stl
 from mend.sim.workcell.physics import Client, connect, to_matrix
@@ -57,9 +58,9 @@ def test_kinematics_agree_with_the_physics_engine(
 
 
 def test_a_chain_that_is_not_there_is_named() -> None:
-    with pytest.raises(UrdfError, match="no link 'tail'"):
+    with pytest.raises(WrongInputError, match="no link 'tail'"):
         KinematicChain(robot_urdf(), "tail", ARM_JOINTS)
-    with pytest.raises(UrdfError, match="expected r_wrist_roll_joint"):
+    with pytest.raises(WrongInputError, match="expected r_wrist_roll_joint"):
         KinematicChain(robot_urdf(), FOREARM_CAMERA_FRAME, ("r_wrist_roll_joint",))
 
 

@@ -8,17 +8,17 @@ from numpy.typing import NDArray
 from mend.localization.logs.log import Log, LogStep
 from mend.localization.pose import Poses, relative, wrap
 from mend.localization.scan import Scan
-from mend.localization.synthetic.free_space import free_space
-from mend.localization.synthetic.furniture import boxes
-from mend.localization.synthetic.path import drive
-from mend.localization.synthetic.people import people
-from mend.localization.synthetic.settings import (
+from mend.maps.ray_cast import cast
+from mend.maps.vector_map import VectorMap
+from synthetic.free_space import free_space
+from synthetic.furniture import boxes
+from synthetic.path import drive
+from synthetic.people import people
+from synthetic.settings import (
     LaserSettings,
     OdometrySettings,
     SceneSettings,
 )
-from mend.maps.ray_cast import cast
-from mend.maps.vector_map import VectorMap
 
 Matrix = NDArray[np.float64]
 
@@ -42,7 +42,7 @@ class Scene:
 
 
 def scene(vector_map: VectorMap, settings: SceneSettings, seed: int) -> Scene:
-    """Drive over a map. The same seed gives the same drive. Raises `VectorMapError`."""
+    """Drive over a map. The same seed gives the same drive. Raises `WrongInputError`."""
     generator = np.random.default_rng(seed)
     space = free_space(vector_map, settings.clearance_m)
     way = drive(space, settings.length_m, settings.step_m, generator)

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from mend.localization.enml.problem import Floats, Problem
+from mend.localization.enml.problem import Floats, PoseGraph
 
 
-def linearize(problem: Problem, poses: Floats) -> tuple[float, Floats, Floats]:
+def linearize(problem: PoseGraph, poses: Floats) -> tuple[float, Floats, Floats]:
     """The cost at some poses (n, 3), its gradient (3n) and its Gauss-Newton matrix (3n, 3n)."""
     size = 3 * len(poses)
     gradient = np.zeros(size)
@@ -26,14 +26,14 @@ def linearize(problem: Problem, poses: Floats) -> tuple[float, Floats, Floats]:
 _Term = tuple[Floats, Floats, list[int], Floats, float]
 
 
-def _prior(problem: Problem, poses: Floats) -> _Term:
+def _prior(problem: PoseGraph, poses: Floats) -> _Term:
     error = poses[0] - problem.prior
     error[2] = _wrapped(error[2])
     residuals = problem.prior_whitening @ error
     return residuals, problem.prior_whitening, [0, 1, 2], np.ones(3), _half_square(residuals)
 
 
-def _odometry(problem: Problem, poses: Floats) -> list[_Term]:
+def _odometry(problem: PoseGraph, poses: Floats) -> list[_Term]:
     terms = []
     for i, (measured, whitening) in enumerate(
         zip(problem.odometry, problem.odometry_whitening, strict=True)
@@ -56,7 +56,7 @@ def _odometry(problem: Problem, poses: Floats) -> list[_Term]:
     return terms
 
 
-def _ltf(problem: Problem, poses: Floats) -> list[_Term]:
+def _ltf(problem: PoseGraph, poses: Floats) -> list[_Term]:
     ltf = problem.ltf
     terms = []
     for i, pose in enumerate(poses):
@@ -70,7 +70,7 @@ def _ltf(problem: Problem, poses: Floats) -> list[_Term]:
     return terms
 
 
-def _stf(problem: Problem, poses: Floats) -> list[_Term]:
+def _stf(problem: PoseGraph, poses: Floats) -> list[_Term]:
     stf = problem.stf
     terms = []
     for pair, (a, b) in enumerate(stf.pairs):

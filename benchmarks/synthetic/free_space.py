@@ -8,8 +8,9 @@ from scipy.ndimage import distance_transform_edt, label
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import dijkstra
 
+from mend.errors import WrongInputError
 from mend.maps.ray_cast import cast
-from mend.maps.vector_map import VectorMap, VectorMapError
+from mend.maps.vector_map import VectorMap
 
 CELL_M = 0.15
 _MARGIN_M = 1.0
@@ -46,7 +47,7 @@ class FreeSpace:
 
 
 def free_space(vector_map: VectorMap, clearance_m: float) -> FreeSpace:
-    """Raises `VectorMapError` where no room is left on the map."""
+    """Raises `WrongInputError` where no room is left on the map."""
     distance, origin = distance_grid(vector_map, CELL_M)
     free = (distance > clearance_m) & (distance < _FARTHEST_WALL_M)
     free &= _indoors(vector_map, free, origin)
@@ -54,7 +55,7 @@ def free_space(vector_map: VectorMap, clearance_m: float) -> FreeSpace:
     sizes = np.bincount(areas.ravel())
     sizes[0] = 0
     if not sizes.max():
-        raise VectorMapError(
+        raise WrongInputError(
             f"the vector map has no closed area with {clearance_m:g} m of clearance to drive in"
         )
     inside = areas == sizes.argmax()

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mend.localization.pose import Poses, wrap
-from mend.localization.synthetic.free_space import FreeSpace
+from synthetic.free_space import FreeSpace
 
 _SMOOTHING = 9
 """Cells over which the way is smoothed."""

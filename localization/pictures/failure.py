@@ -1,5 +1,0 @@
-"""What goes wrong with a picture."""
-
-
-class PictureError(Exception):
-    """A picture that cannot be written; one sentence."""

@@ -1,0 +1,56 @@
+"""The commands by name: a command's module is imported when it is called, not to list it."""
+
+from importlib import import_module
+from typing import Any
+
+import typer
+from typer.core import TyperGroup
+
+SUMMARIES = {
+    "run": "Run a task tree and print what happens.",
+    "serve": "Serve the API, the helper console, the robots.",
+    "talk": "Answer a robot by voice, from a terminal.",
+    "check": "Find the mistakes of a file.",
+    "trees": "List the task trees that there are.",
+    "scenes": "List the scenes that there are.",
+    "scenarios": "List the scenarios that there are.",
+    "schema": "Print a schema as JSON.",
+    "schedule": "Plan deliveries for several robots.",
+    "localize": "Follow a robot through a recorded drive.",
+    "replay": "Tell a run again from its journal.",
+    "train-colors": "Learn the colours of objects.",
+    "access": "Say who may do what, and see who did what.",
+    "map": "Build and clean up vector maps.",
+    "journal": "Check, prune, back up and restore a journal.",
+    "scene": "Make up scenes.",
+}
+"""Each `some-name` is the group `app` of its module `some_name`, or its function `some_name`."""
+
+
+class LazyGroup(TyperGroup):
+    """Lists its commands by their summaries alone, and imports the one that is called."""
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> tuple[str | None, Any, list[str]]:
+        name, listed, rest = super().resolve_command(ctx, args)
+        return name, None if listed is None else _imported(listed.name or ""), rest
+
+
+def add_commands(app: typer.Typer) -> None:
+    """Have an app, whose class is `LazyGroup`, list every command."""
+    for name, summary in SUMMARIES.items():
+        app.command(name, short_help=summary)(_not_imported)
+
+
+def _not_imported() -> None:
+    raise NotImplementedError
+
+
+def _imported(name: str) -> Any:
+    attribute = name.replace("-", "_")
+    module = import_module(f"mend.server.cli.{attribute}")
+    alone = typer.Typer(rich_markup_mode=None)
+    if hasattr(module, "app"):
+        alone.add_typer(module.app, name=name)
+    else:
+        alone.command(name)(getattr(module, attribute))
+    return typer.main.get_group(alone).commands[name]

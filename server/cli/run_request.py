@@ -1,0 +1,83 @@
+"""What `mend run` asks of the service of its own, from the options."""
+
+import secrets
+from json import loads
+from pathlib import Path
+from typing import Any
+
+from pydantic import SecretStr, ValidationError
+from pydantic_core import ErrorDetails
+
+from mend.server.cli.answers import Answers, read_answers
+from mend.server.cli.failures import CommandLineError
+from mend.server.cli.journals import new_run_journal
+from mend.server.cli.run_files import RunFiles
+from mend.server.runtime.requests import RunRequest
+from mend.server.settings import Settings, load_settings
+from mend.tasks.scenario import Scenario
+from mend.tasks.validation import what_is_right
+
+
+def settings_of_its_own(journal: Path | None, files: RunFiles) -> Settings:
+    """A service that only this process can use: loopback, a free port, a token of its own."""
+    own = load_settings(
+        host="127.0.0.1",
+        port=0,
+        token=SecretStr(secrets.token_urlsafe(32)),
+        log_level="warning",
+    )
+    chosen = journal or new_run_journal(own, files.tree)
+    return own.model_copy(update={"journal": chosen, "scenes": files.scenes or own.scenes})
+
+
+def answers_given(text: str | None, scenario: Scenario | None) -> Answers | None:
+    """The scripted answers of the command line, else of the scenario, else None."""
+    if text is not None:
+        return read_answers(text)
+    return list(scenario.answers) or None if scenario is not None else None
+
+
+def read_speed(text: str) -> Any:
+    if text == "max":
+        return text
+    try:
+        return float(text)
+    except ValueError:
+        raise CommandLineError(f"--speed is '{text}'; it has to be a number or max") from None
+
+
+def read_options(given: list[str]) -> dict[str, Any]:
+    options: dict[str, Any] = {}
+    for each in given:
+        name, equals, text = each.partition("=")
+        if not (name and equals):
+            raise CommandLineError(f"--option is '{each}'; it has to be NAME=VALUE")
+        if name in options:
+            raise CommandLineError(f"--option '{name}' is given twice")
+        options[name] = _read_value(text)
+    return options
+
+
+def _read_value(text: str) -> Any:
+    """A number, true or false; anything else is text."""
+    try:
+        value = loads(text)
+    except ValueError:
+        return text
+    return value if isinstance(value, (bool, int, float)) else text
+
+
+def read_request(**fields: Any) -> RunRequest:
+    try:
+        return RunRequest(**fields)
+    except ValidationError as error:
+        wrong: dict[str, list[ErrorDetails]] = {}
+        for each in error.errors():
+            wrong.setdefault(str(each["loc"][0]), []).append(each)
+        raise CommandLineError(
+            "\n".join(
+                f"{'TREE' if name == 'tree' else '--' + name.replace('_', '-')} "
+                f"{what_is_right(mistakes, None)}"
+                for name, mistakes in wrong.items()
+            )
+        ) from error
