@@ -63,7 +63,7 @@ def sell(
             bid = bids.get(item) or growing.bid(item, transfers=transfers)
             if bid is None:
                 # Whoever has no place now will have none when there is more to do.
-                unsold[item] = growing.nearest or growing.explain(item)
+                unsold[item] = growing.explain(item)
                 left.remove(item)
             else:
                 bids[item] = bid

@@ -107,17 +107,24 @@ def copy_plan(origin: Plan, copy: Plan) -> None:
 
 
 @compiled
-def plan_value(problem: ProblemArrays, plan: Plan) -> float:
-    """What the plan costs, with what the items cost that are in the bank."""
+def routes_cost(problem: ProblemArrays, plan: Plan) -> float:
+    """What the routes of the plan cost."""
     value, last_s = 0.0, 0.0
     for row in range(plan.rows.size - 1):
         value += plan.rows[row].cost
         if plan.rows[row].length > 2:
             last_s = max(last_s, plan.stops[row, plan.rows[row].length - 1].begin_s)
+    return value + problem.weight_makespan * last_s
+
+
+@compiled
+def plan_value(problem: ProblemArrays, plan: Plan) -> float:
+    """What the plan costs, with what the items cost that are in the bank."""
+    value = routes_cost(problem, plan)
     for item in range(plan.transfers.size):
         if plan.transfers[item] == BANKED:
             value += problem.penalty
-    return value + problem.weight_makespan * last_s
+    return value
 
 
 @compiled

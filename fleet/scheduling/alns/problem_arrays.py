@@ -42,8 +42,8 @@ class ProblemArrays(NamedTuple):
     many of its first tasks nothing may be put; `twin`: the robot before it that can do exactly the
     same, or `NOBODY`."""
     nodes: Records
-    """`place`, `kind`, `item_of`, `earliest_s`, `latest_s`, `due_s`, `service_s`; `load`: what the load
-    of the robot changes by."""
+    """`place`, `kind`, `item_of`, `earliest_s`, `latest_s`, `due_s`, `service_s`; `load`: what the
+    load of the robot changes by."""
     items: Records
     """`load`; `max_on_board_s`; `carrier`: the robot that has it already, or is about to
     pick it up, or `NOBODY`."""
@@ -190,8 +190,9 @@ def _by_epoch(matrices: list[Floats]) -> Floats:
 def _twins(problem: Problem) -> Integers:
     seen: dict[object, int] = {}
     twins = np.full(len(problem.robots), NOBODY, np.int64)
+    laden = {item.aboard for item in problem.items}
     for number, robot in enumerate(problem.robots):
-        same = replace(robot, name="")
+        same = number if number in laden else replace(robot, name="")
         twins[number] = seen.get(same, NOBODY)
         seen[same] = number
     return twins

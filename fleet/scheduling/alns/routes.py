@@ -1,6 +1,6 @@
 """From a plan of the search to routes of the problem, and back."""
 
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Sequence
 from itertools import chain, pairwise
 
@@ -16,6 +16,15 @@ from mend.fleet.scheduling.alns.problem_arrays import (
 from mend.fleet.scheduling.itinerary import itineraries
 from mend.fleet.scheduling.problem import Problem
 from mend.fleet.scheduling.schedule import Action, Route, Task
+
+CHAIN = 3
+"""The most transfers of one item, unless routes have more already."""
+
+
+def longest_chain(routes: Sequence[Route]) -> int:
+    """How often one item may change robots in a search that begins with these routes."""
+    given = Counter(task.item for task in chain.from_iterable(routes) if task.action is Action.GIVE)
+    return max((CHAIN, *given.values()))
 
 
 def routes_in(problem: ProblemArrays, plan: Plan) -> tuple[Route, ...]:

@@ -6,10 +6,9 @@ from functools import cache
 from math import inf
 
 from mend.fleet.scheduling.alns.problem_arrays import problem_arrays
-from mend.fleet.scheduling.alns.routes import plan_of, routes_in
+from mend.fleet.scheduling.alns.routes import CHAIN, longest_chain, plan_of, routes_in
 from mend.fleet.scheduling.alns.search import ALONE, SHARED, Search
 from mend.fleet.scheduling.checker import require_valid
-from mend.fleet.scheduling.itinerary import itineraries
 from mend.fleet.scheduling.objective import cost
 from mend.fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit, Weights
 from mend.fleet.scheduling.schedule import Schedule
@@ -17,8 +16,6 @@ from mend.fleet.scheduling.solution import Progress, Solution, Status
 from mend.fleet.scheduling.timing import Untimeable, earliest_schedule
 from mend.fleet.scheduling.travel import Travel
 
-CHAIN = 3
-"""The most transfers of one item, unless the start already has more."""
 ALONE_SHARE = 0.2
 """The share of the time for the plan without transfers."""
 
@@ -48,7 +45,7 @@ def solve_alns(
         if on_progress is not None:
             on_progress(Progress(value, None, clock() - begun_s))
 
-    arrays = problem_arrays(problem, CHAIN if start is None else _longest_chain(problem, start))
+    arrays = problem_arrays(problem, CHAIN if start is None else longest_chain(start.routes))
     search = Search(arrays, seed, clock, tell)
     shared = transfers and len(problem.robots) > 1 and bool(problem.transfers.places)
     given = None if start is None else plan_of(arrays, problem, start.routes)
@@ -77,11 +74,6 @@ def prepare() -> None:
     search.free_robots(inf)
     search.take_steps(2, 0, ALONE, (0.0, 1.0))
     search.take_steps(2, CHAIN, SHARED, (0.0, 1.0))
-
-
-def _longest_chain(problem: Problem, schedule: Schedule) -> int:
-    found = itineraries(problem, schedule.routes)
-    return max((CHAIN, *(len(legs) - 1 for legs in found.values())))
 
 
 def _solution(problem: Problem, search: Search, start: Schedule | None, seconds: float) -> Solution:
