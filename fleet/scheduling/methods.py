@@ -134,12 +134,20 @@ METHODS: Mapping[str, Method] = {
         _exact_after_heuristics, False, True, "optimal, or with a proved bound", _prepare_exact
     ),
     "alns": Method(solve_alns, True, False, "adaptive large neighbourhoods", prepare_alns),
-    "auction": Method(solve_by_auction, True, False, "robots bid for each item"),
-    "insertion": Method(solve_by_insertion, True, False, "each item where it costs least"),
-    "greedy": Method(solve_by_nearest_next, True, False, "each robot what it reaches first"),
+    "auction": Method(solve_by_auction, True, False, "robots bid for each item", prepare_alns),
+    "insertion": Method(
+        solve_by_insertion, True, False, "each item where it costs least", prepare_alns
+    ),
+    "greedy": Method(
+        solve_by_nearest_next, True, False, "each robot what it reaches first", prepare_alns
+    ),
     "one_task": Method(solve_one_task_each, True, False, "one item at a time to who is done first"),
     "one_destination": Method(
-        solve_to_one_destination, False, True, "at most twice the optimum, to one destination"
+        solve_to_one_destination,
+        False,
+        True,
+        "at most twice the optimum, to one destination",
+        prepare_alns,
     ),
 }
 

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
+from itertools import count
 from math import inf
 
 from mend.fleet.scheduling.alns.problem_arrays import problem_arrays
@@ -69,9 +70,10 @@ def prepare() -> None:
     small = Problem(
         "warm-up", ("a", "b"), travel, robots, items, Transfers((0, 1)), Weights(robots=0.5)
     )
-    search = Search(problem_arrays(small, CHAIN), 0, lambda: 0.0)
+    ticks = count()
+    search = Search(problem_arrays(small, CHAIN), 0, lambda: float(next(ticks)))
     search.place(inf)
-    search.free_robots(inf)
+    search.free_robots(3.0)
     search.take_steps(2, 0, ALONE, (0.0, 1.0))
     search.take_steps(2, CHAIN, SHARED, (0.0, 1.0))
 
