@@ -56,7 +56,7 @@ class TabletopAdapter:
     def create_agent(self, setup: WorldSetup) -> SimulatedAgent:
         """Build the world and the robot in it.
 
-        Raises `ValueError` for options or a snapshot that do not fit.
+        Raises `WrongInputError` for options and `ValueError` for a snapshot that do not fit.
         """
         options = read_options(TabletopOptions, "tabletop", setup.options)
         world = TabletopWorld(setup.scene, setup.seed, options)

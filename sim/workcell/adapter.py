@@ -39,7 +39,8 @@ class WorkcellAdapter:
     def create_agent(self, setup: WorldSetup) -> SimulatedAgent:
         """Build the world and the robot in it.
 
-        Raises `WorldUnavailableError`, and `ValueError` for options or a snapshot that do not fit.
+        Raises `WorldUnavailableError`, `WrongInputError` for options and `ValueError` for a
+        snapshot that do not fit.
         """
         check_installed()
         # Only here, so that the world can be listed where the physics engine is not installed.

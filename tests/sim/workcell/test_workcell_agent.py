@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from workcell_hands import TABLE_M, distance_m
 
+from mend.errors import WrongInputError
 from mend.robots.link.messages import (
     Finished,
     Intervene,
@@ -185,7 +186,7 @@ def test_the_robot_declares_the_range_that_it_grasps_in(scene: Scene) -> None:
 def test_a_wrong_option_stops_the_robot_from_being_made(scene: Scene) -> None:
     setup = WorldSetup(robot="r1", scene=scene, seed=0, speed=None, options={"renderer": "laser"})
     with pytest.raises(
-        ValueError, match="an option of the world 'workcell' is wrong: 'renderer' must"
+        WrongInputError, match="an option of the world 'workcell' is wrong: 'renderer' must"
     ):
         adapter.create_agent(setup)
 
