@@ -55,12 +55,12 @@ def able_mask(state: RunState, side: RobotSide, leaves: NDArray[np.int64]) -> ND
     return able
 
 
-def choose(state: RunState, side: RobotSide, team: Team) -> Choice | None:
+def choose(state: RunState, side: RobotSide) -> Choice | None:
     """The leaf that a robot takes next; None if there is none that it can do, or do now."""
     leaves = state.tree.eligible_leaves()
     able = able_mask(state, side, leaves)
-    if team.shares:
-        able &= _free_mask(state, side, team, leaves, able)
+    if side.team is not None and side.team.shares:
+        able &= _free_mask(state, side, side.team, leaves, able)
     if not able.any():
         return None
     potentials = potentials_for(state, side, leaves)

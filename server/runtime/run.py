@@ -383,7 +383,7 @@ class Run:
 
     async def _start_something(self, side: RobotSide) -> bool:
         state = self._context.state
-        choice = choose(state, side, self._team)
+        choice = choose(state, side)
         if choice is None:
             if side.area is not None:
                 # Nothing that it could do is free: it is not to be in the way of others meanwhile.

@@ -44,7 +44,7 @@ class Team:
     def leaves_to_others(self, side: "RobotSide", leaf: "BehaviorNode") -> bool:
         """Whether a leaf is not for this robot, as it is out of its reach or in another's home.
 
-        What is out of everybody's reach is: the robot that tries it asks people.
+        What is out of everybody's reach is left to nobody: the robot that tries it asks people.
         """
         if not self.shares:
             return False
