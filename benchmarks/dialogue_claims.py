@@ -201,7 +201,8 @@ def _ends(record: RunRecord, index: int, event: ev.Prompt, _: re.Match[str]) -> 
 def _goes_on(record: RunRecord, index: int, event: ev.Prompt, _: re.Match[str]) -> str | None:
     for each in record.following(index):
         if isinstance(each, ev.NodeReset) and each.node == event.node:
-            return "it was put back"
+            # Nothing is built on what is seen gone, whatever was about to go on.
+            return None if "no longer done" in each.reason else "it was put back"
         if isinstance(each, ev.RobotResumed | ev.RobotLost):
             return None
         if isinstance(each, ev.NodeDone | ev.IssueRaised) and each.node == event.node:

@@ -44,7 +44,7 @@ class Moment:
     """
 
     resting: Mapping[str, Rest | None]
-    held: str | None
+    held: frozenset[str]
     blocked: bool
     dark: bool = False
 
@@ -103,12 +103,12 @@ class RunRecord:
 
     def holds(self, moment: Moment, name: str | None) -> bool:
         """Whether the fingers hold a part."""
-        return moment.held is not None and moment.held in self.equals(name)
+        return not moment.held.isdisjoint(self.equals(name))
 
     def _lying(self, index: int, name: str | None) -> list[Rest]:
         """Where a part, and each that is just like it, lies."""
         moment = self._moments[index]
-        lying = (moment.resting.get(each) for each in self.equals(name) if each != moment.held)
+        lying = (moment.resting.get(each) for each in self.equals(name) if each not in moment.held)
         return [each for each in lying if each is not None]
 
     def moment(self, index: int) -> Moment:
@@ -169,7 +169,7 @@ class RunRecord:
     def lay_for_s(self, index: int, name: str | None) -> float:
         """For how long a part has lain where it lies, upright; 0 if it does not."""
         rest = self._moments[index].resting.get(name or "")
-        if rest is None or rest.lean_rad > LEANS_RAD or self._moments[index].held == name:
+        if rest is None or rest.lean_rad > LEANS_RAD or name in self._moments[index].held:
             return 0.0
         since = index
         while since > 0 and self._moments[since - 1].resting.get(name or "") == rest:
@@ -177,7 +177,12 @@ class RunRecord:
         return self.events[index].time - self.events[since].time
 
     def is_surely_in_reach(self, index: int, name: str | None) -> bool:
-        """Whether a part lies where the scene has a start or a place: the robot reaches those."""
+        """Whether a part lies where the scene has a start or a place: a robot alone reaches those.
+
+        Of several robots one reaches some, another others.
+        """
+        if len(self._scene.robots) > 1:
+            return False
         rest = self._moments[index].resting.get(name or "")
         spots = [each.pose for each in self._scene.objects.values()]
         spots += [each.pose for each in self._scene.places.values()]

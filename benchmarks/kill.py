@@ -14,7 +14,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "doubles"))
 
-from kills import Findings, Ordeal
+from kills import Findings, Ordeal, doubled_starts
 from service_process import service_process
 
 from mend.server.runtime.requests import RunRequest
@@ -41,6 +41,16 @@ async def measure(victim: str, world: str, kills: int, seed: int) -> Findings:
                 return await Ordeal(service, [scenario], seed).kill_robots(kills)
             requests = [scenario, willing(world, seed)]
             return await Ordeal(service, requests, seed).kill_service(kills)
+
+
+async def measure_starts(kills: int) -> list[str]:
+    """Kill the service while runs are asked for; half of them are in the journal by then."""
+    wrong: list[str] = []
+    for committed in (True, False):
+        with tempfile.TemporaryDirectory() as folder:
+            async with service_process(Path(folder)) as service:
+                wrong += await doubled_starts(service, kills // 2 or 1, committed=committed)
+    return wrong
 
 
 def row(victim: str, world: str, found: Findings) -> str:
@@ -71,6 +81,10 @@ def main() -> None:
             found = asyncio.run(measure(victim, world, kills, arguments.seed))
             print(row(victim, world, found), flush=True)
             faults += found.faults
+    if arguments.victim in (None, "service"):
+        doubled = asyncio.run(measure_starts(kills))
+        print(f"asked for a run and killed, {kills} times: {len(doubled)} not started once")
+        faults += doubled
     print("\n".join(faults))
     sys.exit(1 if faults else 0)
 

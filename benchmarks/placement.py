@@ -23,7 +23,7 @@ import numpy as np
 from mend.robots.catalogue import Catalogue
 from mend.robots.link.messages import IssueDetected, Look, Looked, ReportBody, Start
 from mend.robots.robot import Robot
-from mend.sim.simulated_agent import SimulatedAgent
+from mend.sim.shared_world import SharedWorld
 from mend.sim.workcell.colors import learn_colors
 from mend.sim.workcell.options import WorkcellOptions
 from mend.sim.workcell.parts import PartPose
@@ -80,12 +80,12 @@ def build(scene: Scene, seed: int, options: dict[str, Any], tally: Tally) -> Non
         load_plugins("mend.behaviors"),
         load_plugins("mend.monitors"),
     )
-    agent = SimulatedAgent(robot, world, speed=None)
+    group = SharedWorld(world, [robot], speed=None)
     reports: list[ReportBody] = []
-    agent.attach(lambda body, _time, _world: reports.append(body), lambda _picture: None)
+    group.agents[0].attach(lambda body, _time, _world: reports.append(body), lambda _picture: None)
     for name in order_of(Random(seed)):
-        agent.handle(f"look for {name}", Look())
-        while agent.advance(1.0):
+        group.agents[0].handle(f"look for {name}", Look())
+        while group.advance(1.0):
             pass
         looked = reports[-1]
         if isinstance(looked, Looked) and name in looked.objects:
@@ -94,8 +94,8 @@ def build(scene: Scene, seed: int, options: dict[str, Any], tally: Tally) -> Non
             tally.picked_mm.setdefault(name, []).append(error)
         parameters = {"object": name, "place": name}
         start = Start(execution=name, node="/", behavior="pick_and_place", parameters=parameters)
-        agent.handle(name, start)
-        while agent.advance(1.0):
+        group.agents[0].handle(name, start)
+        while group.advance(1.0):
             pass
         issues = [each for each in reports if isinstance(each, IssueDetected)]
         if issues:
@@ -104,7 +104,7 @@ def build(scene: Scene, seed: int, options: dict[str, Any], tally: Tally) -> Non
             break
     else:
         judge(scene, seed, world, tally)
-    tally.simulated_s += agent.time_s()
+    tally.simulated_s += group.time_s()
     world.close()
 
 

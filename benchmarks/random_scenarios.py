@@ -1,7 +1,7 @@
 """Random scenarios: does every run end, and is what it says at the end true?
 
     python benchmarks/random_scenarios.py [--runs 1000] [--world tabletop|workcell] [--seed 0]
-        [--jobs 2] [--quick] [--replay SEED]
+        [--robots 2] [--jobs 2] [--quick] [--replay SEED]
 
 Half of the runs are random trees over random scenes, the others random trees with OR over made-up
 scenes (tabletop) or over the EKET base (workcell); with random interventions, and helpers that
@@ -9,8 +9,9 @@ answer at random, never, or always yes. Every run's events are audited; its end 
 of its dialogues are compared with its events and with where the simulated world's parts really are.
 The exit code is 1 if any run broke a constraint, hung or told an untruth, or if one with a willing
 helper did not finish.
-`--replay` prints one run's events. Tables of up to 60 parts are worked off here only; the tests
-take six runs of up to 12.
+With `--robots 2` every run is about a random scene with a second robot across the table: then no
+two robots may ever touch, be it with what they hold. `--replay` prints one run's events. Tables of
+up to 60 parts are worked off here only; the tests take six runs of up to 12.
 """
 
 # ruff: noqa: T201
@@ -39,6 +40,7 @@ import numpy as np
 from broken_constraints import broken_constraints
 from dialogue_judge import DialogueJudge
 from random_task import random_nesting, random_task
+from touching_robots import touching_robots
 from untruths import Rest, find_untruths, kinds_of
 from watched_world import WatchedWorld, where_parts_rest
 
@@ -47,8 +49,10 @@ from mend.server.journal.sqlite import IN_MEMORY
 from mend.server.runtime.requests import RunRequest
 from mend.server.runtime.views import RunStatus, RunView
 from mend.server.settings import Settings
-from mend.tasks.definition import BehaviorNode
+from mend.tasks.definition import BehaviorNode, GoalNode
 from mend.tasks.scenario import Person
+from mend.tasks.scene import Base, Scene
+from mend.tasks.scene_problem import SceneProblem
 
 if TYPE_CHECKING:
     from mend.server.composition import Service
@@ -111,30 +115,44 @@ class Drawn:
     scene: str | None = None
 
 
-def draw(world: str, seed: int, most_leaves: int) -> Drawn:
+def draw(world: str, seed: int, most_leaves: int, robots: int = 1) -> Drawn:
     """What the run of a seed is about."""
     rng = np.random.default_rng(seed)
-    if seed // len(KINDS) % 2:
-        return _random_scene(world, seed, min(most_leaves, MOST_PARTS[world]))
+    if robots > 1 or seed // len(KINDS) % 2:
+        return _random_scene(world, seed, min(most_leaves, MOST_PARTS[world]), robots)
     if world == "workcell":
         return _possible_base(rng)
     leaves = int(rng.integers(1, most_leaves + 1))
     return Drawn(json.dumps(random_task(rng, leaves)), leaves)
 
 
-def _random_scene(world: str, seed: int, most_parts: int) -> Drawn:
+def _random_scene(world: str, seed: int, most_parts: int, robots: int) -> Drawn:
     """A scene that the world's robot can do, and a tree that places all its parts."""
     from mend.sim.random_scene import random_scene, scene_document
     from mend.sim.world import SceneChecker
     from mend.tasks.plugins import load_plugins
 
     adapter = load_plugins("mend.worlds")[world]
-    check = adapter.check_scene if isinstance(adapter, SceneChecker) else None
+    assert isinstance(adapter, SceneChecker)
+
+    def check(scene: Scene, nodes: Sequence[GoalNode | BehaviorNode]) -> list[SceneProblem]:
+        return adapter.check_scene(_shared(scene) if robots > 1 else scene, nodes)
+
     parts = int(np.random.default_rng(seed).integers(1, most_parts + 1))
     drawn = random_scene(seed, parts, check)
     tree = {**drawn.tree, "name": "random", "scene": "random"}
     scene = {**scene_document(drawn.scene), "name": "random"}
+    if robots > 1:
+        bases = _shared(drawn.scene).robots
+        scene["robots"] = {name: base.model_dump() for name, base in bases.items()}
     return Drawn(json.dumps(tree), parts, json.dumps(scene))
+
+
+def _shared(scene: Scene) -> Scene:
+    """The scene with a second robot, which faces the first across the table."""
+    x, y = scene.table.center
+    across = Base(x=2 * x, y=2 * y, yaw=np.pi)
+    return scene.model_copy(update={"robots": {"here": Base(x=0.0, y=0.0), "across": across}})
 
 
 def _possible_base(rng: np.random.Generator) -> Drawn:
@@ -195,26 +213,27 @@ def request(world: str, seed: int, answers: Answers) -> RunRequest:
 
 
 async def run_once(
-    world: str, seed: int, *, most_leaves: int | None = None, show: bool = False
+    world: str, seed: int, *, robots: int = 1, most_leaves: int | None = None, show: bool = False
 ) -> Outcome:
     """One random scenario on a service of its own, judged."""
     # Only here, so that a worker's limits on threads come before the libraries that heed them.
     from mend.server.composition import open_service
 
     answers = KINDS[seed % len(KINDS)]
-    drawn = draw(world, seed, most_leaves or MOST_LEAVES[world])
+    drawn = draw(world, seed, most_leaves or MOST_LEAVES[world], robots)
     settings = Settings(port=0, journal=Path(IN_MEMORY), log_level="error", speech_voice="none")
     began = time.perf_counter()
-    async with open_service(settings) as service:
-        if drawn.scene is not None:
-            await service.library.scenes.save("random", drawn.scene)
-        await service.library.trees.save("random", drawn.tree)
-        watched = WatchedWorld(service.journal)
-        run = (await service.runtime.start_run(request(world, seed, answers))).id
-        view = await _ended_or_hung(service, run, QUIET_S[world])
-        wall_s = time.perf_counter() - began
-        events = await service.journal.read(0, 1_000_000, run)
-        snapshot = await service.journal.world(run)
+    with touching_robots() as touched:
+        async with open_service(settings) as service:
+            if drawn.scene is not None:
+                await service.library.scenes.save("random", drawn.scene)
+            await service.library.trees.save("random", drawn.tree)
+            watched = WatchedWorld(service.journal)
+            run = (await service.runtime.start_run(request(world, seed, answers))).id
+            view = await _ended_or_hung(service, run, QUIET_S[world])
+            wall_s = time.perf_counter() - began
+            events = await service.journal.read(0, 1_000_000, run)
+            snapshot = await service.journal.world(run)
     if show:
         _print_events(events)
     started = events[0]
@@ -228,7 +247,7 @@ async def run_once(
         wall_s=wall_s,
         simulated_s=view.time,
         missing=len(view.result.missing) if view.result else 0,
-        violations=broken_constraints(events, kinds_of(started)),
+        violations=[*broken_constraints(events, kinds_of(started)), *touched[:3]],
         untruths=_untruths(events, watched, where_parts_rest(started, snapshot))
         if view.status.ended
         else [],
@@ -273,12 +292,12 @@ async def _ended_or_hung(service: "Service", run: UUID, quiet_s: float) -> RunVi
     return await service.runtime.run(run)
 
 
-def _work(world: str, seed: int) -> Outcome:
+def _work(world: str, seed: int, robots: int) -> Outcome:
     """One run in a worker; a run that blocks its process for good takes the process with it."""
     logging.basicConfig(level=logging.ERROR)
     faulthandler.dump_traceback_later(20 * QUIET_S[world], exit=True)
     try:
-        return asyncio.run(run_once(world, seed))
+        return asyncio.run(run_once(world, seed, robots=robots))
     except Exception as error:
         # Not every error can be sent to the process that waits; one that cannot breaks the pool.
         raise RuntimeError(f"seed {seed}: {type(error).__name__}: {error}") from None
@@ -286,12 +305,12 @@ def _work(world: str, seed: int) -> Outcome:
         faulthandler.cancel_dump_traceback_later()
 
 
-def run_all(world: str, seeds: list[int], jobs: int) -> Iterator[Outcome]:
+def run_all(world: str, seeds: list[int], jobs: int, robots: int = 1) -> Iterator[Outcome]:
     """The outcomes of all runs as they come in."""
     for name in THREAD_LIMITS:
         os.environ[name] = "1"
     with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
-        futures = {pool.submit(_work, world, seed): seed for seed in seeds}
+        futures = {pool.submit(_work, world, seed, robots): seed for seed in seeds}
         for future in as_completed(futures):
             try:
                 yield future.result()
@@ -337,12 +356,15 @@ def main() -> int:
     parser.add_argument("--runs", type=int, help="how many (1,000 in tabletop, 50 in workcell)")
     parser.add_argument("--world", choices=sorted(MOST_LEAVES), default="tabletop")
     parser.add_argument("--seed", type=int, default=0, help="the first run's seed")
+    parser.add_argument("--robots", type=int, choices=(1, 2), default=1, help="2: in tabletop only")
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--quick", action="store_true", help="a few runs, as a smoke test")
     parser.add_argument("--replay", type=int, metavar="SEED", help="print one run's events")
     arguments = parser.parse_args()
     if arguments.replay is not None:
-        outcome = asyncio.run(run_once(arguments.world, arguments.replay, show=True))
+        outcome = asyncio.run(
+            run_once(arguments.world, arguments.replay, robots=arguments.robots, show=True)
+        )
         print(outcome)
         return 1 if outcome.wrong else 0
     runs = arguments.runs or (1000 if arguments.world == "tabletop" else 50)
@@ -350,9 +372,8 @@ def main() -> int:
         runs = 8 if arguments.world == "tabletop" else 2
     began = time.perf_counter()
     outcomes: list[Outcome] = []
-    for outcome in run_all(
-        arguments.world, list(range(arguments.seed, arguments.seed + runs)), arguments.jobs
-    ):
+    seeds = list(range(arguments.seed, arguments.seed + runs))
+    for outcome in run_all(arguments.world, seeds, arguments.jobs, arguments.robots):
         outcomes.append(outcome)
         for sentence in outcome.wrong:
             print(f"seed {outcome.seed} ({outcome.answers}): {sentence}", flush=True)

@@ -48,7 +48,7 @@ from mend.tasks.scene_problem import SceneProblem
 from mend.tasks.task_tree import TaskTree
 
 if TYPE_CHECKING:
-    from mend.sim.simulated_agent import SimulatedAgent
+    from mend.sim.shared_world import SharedWorld
 
 NOISY = {"camera_noise": 3.0, "light": 1.0, "depth_noise": 1.0}
 ATTEMPTS = 3
@@ -95,14 +95,14 @@ class Cell:
         from mend.sim.workcell.adapter import adapter
         from mend.sim.world import WorldSetup
 
-        setup = WorldSetup(robot="r1", scene=scene, seed=seed, speed=None, options=options)
+        setup = WorldSetup(robots=["r1"], scene=scene, seed=seed, speed=None, options=options)
         self.scene = scene
-        self.agent: SimulatedAgent = adapter.create_agent(setup)
-        self.world: Any = self.agent.world
+        self.group: SharedWorld = adapter.create_agents(setup)
+        self.world: Any = self.group.world
         self.reports: list[ReportBody] = []
         self.borne_out: list[tuple[IssueDetected, bool]] = []
         self.task = ("", "")
-        self.agent.attach(self._take, lambda _: None)
+        self.group.agents[0].attach(self._take, lambda _: None)
         self._commands = 0
         self._alike = {
             name: frozenset(other for other, each in scene.objects.items() if _alike(part, each))
@@ -120,9 +120,9 @@ class Cell:
         self._commands += 1
         self.reports.clear()
         self.borne_out.clear()
-        self.agent.handle(f"c{self._commands}", body)
-        end_s = self.agent.time_s() + LONGEST_ATTEMPT_S
-        while self.agent.advance(1.0) and self.agent.time_s() < end_s:
+        self.group.agents[0].handle(f"c{self._commands}", body)
+        end_s = self.group.time_s() + LONGEST_ATTEMPT_S
+        while self.group.advance(1.0) and self.group.time_s() < end_s:
             pass
         return list(self.reports)
 
@@ -192,7 +192,7 @@ def play(scene: Scene, definition: TaskTreeDefinition, seed: int, *, show: bool 
     while (leaf := _next_leaf(tree, cell, failed)) is not None:
         attempt(tree, leaf, cell, outcome, failed, show=show)
     judge(tree, cell, outcome)
-    outcome.simulated_s = cell.agent.time_s()
+    outcome.simulated_s = cell.group.time_s()
     cell.world.close()
     outcome.cpu_s = time.process_time() - begin
     return outcome
@@ -234,14 +234,14 @@ def attempt(
         alarm = Alarm(outcome.seed, name, issue.issue, issue.step, explanation, true)
         outcome.alarms.append(alarm)
         if show:
-            print(f"{cell.agent.time_s():7.1f} {alarm}")
+            print(f"{cell.group.time_s():7.1f} {alarm}")
     if not issues and any(isinstance(each, Finished) for each in reports):
         outcome.first_try += tree.attempts(leaf) == 0
         tree.finish(leaf)
         if show:
             where = cell.standing_at(name, place)
             print(
-                f"{cell.agent.time_s():7.1f} {name}: {1e3 * cell.distance_m(where, place):.2f} mm"
+                f"{cell.group.time_s():7.1f} {name}: {1e3 * cell.distance_m(where, place):.2f} mm"
             )
         return
     refused = [each.reason for each in reports if isinstance(each, Rejected)]

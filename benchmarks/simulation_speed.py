@@ -18,7 +18,7 @@ from typing import Any
 import yaml
 
 import mend.tasks
-from mend.robots.agent import AgentCore
+from mend.robots.agent import AgentGroup
 from mend.robots.link.messages import Finished, IssueDetected, ReportBody, Start
 from mend.sim.world import WorldAdapter, WorldSetup
 from mend.tasks.plugins import load_plugins
@@ -57,11 +57,11 @@ def load_scene() -> Scene:
     return Scene.model_validate_json(json.dumps(yaml.safe_load(text)))
 
 
-def build(agent: AgentCore) -> Timing:
+def build(group: AgentGroup) -> Timing:
     """Let the robot place all parts, one after the other."""
     reports: list[ReportBody] = []
-    agent.attach(lambda body, _time, _world: reports.append(body), lambda _picture: None)
-    begin_s, begin_cpu_s = agent.time_s(), time.process_time()
+    group.agents[0].attach(lambda body, _time, _world: reports.append(body), lambda _picture: None)
+    begin_s, begin_cpu_s = group.time_s(), time.process_time()
     for name, place in BUILD:
         start = Start(
             execution=name,
@@ -69,11 +69,11 @@ def build(agent: AgentCore) -> Timing:
             behavior="pick_and_place",
             parameters={"object": name, "place": place},
         )
-        agent.handle(name, start)
-        while agent.advance(1.0):
+        group.agents[0].handle(name, start)
+        while group.advance(1.0):
             pass
     return Timing(
-        agent.time_s() - begin_s,
+        group.time_s() - begin_s,
         time.process_time() - begin_cpu_s,
         sum(isinstance(each, Finished) for each in reports),
         sum(isinstance(each, IssueDetected) for each in reports),
@@ -84,8 +84,10 @@ def measure(adapter: WorldAdapter, options: dict[str, Any], builds: int) -> list
     """Several builds with seeds of their own; one before them warms up compilers and caches."""
     timings = []
     for seed in range(builds + 1):
-        setup = WorldSetup(robot="r1", scene=load_scene(), seed=seed, speed=None, options=options)
-        timings.append(build(adapter.create_agent(setup)))
+        setup = WorldSetup(
+            robots=["r1"], scene=load_scene(), seed=seed, speed=None, options=options
+        )
+        timings.append(build(adapter.create_agents(setup)))
     return timings[1:]
 
 

@@ -48,10 +48,15 @@ def _moment(started: ev.RunStarted, state: dict[str, Any] | None) -> Moment:
     blocker = world.get("blocker_at") or world.get("obstacle") or world.get("blocker")
     return Moment(
         where_parts_rest(started, state),
-        world.get("held"),
+        _held(world),
         blocker is not None,
         bool(world.get("head_covered")),
     )
+
+
+def _held(world: dict[str, Any]) -> frozenset[str]:
+    held = [world.get("held"), *world.get("also_held", ())]
+    return frozenset(each for each in held if each is not None)
 
 
 def where_parts_rest(

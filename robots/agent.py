@@ -1,10 +1,10 @@
-"""The agent core: what drives one robot, seen from its end of the link.
+"""The agent core: what drives a robot, or several in one world, seen from their end of the link.
 
 It is synchronous and knows no network: the link hands it commands, lets it advance, and takes its
 reports. Simulated and real robots, and tests, drive the same core.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, Protocol, runtime_checkable
 
 from mend.robots.link.messages import CommandBody, Hello, Picture, PoseLayout, Poses, ReportBody
@@ -15,8 +15,8 @@ Emit = Callable[[ReportBody, float, dict[str, Any] | None], None]
 EmitPicture = Callable[[Picture], None]
 
 
-class AgentCore(Protocol):
-    """One robot, without its link."""
+class Agent(Protocol):
+    """One robot, without its link and its clock."""
 
     def hello(self, boot: str) -> Hello:
         """What the robot is, and what it is doing now."""
@@ -30,8 +30,12 @@ class AgentCore(Protocol):
         """Take a command. One that cannot be carried out is answered by a `Rejected` report."""
         ...
 
+
+class Clockwork(Protocol):
+    """Lets time pass for all robots that share a clock."""
+
     def advance(self, duration_s: float) -> bool:
-        """Let up to `duration_s` of the robot's clock pass; False when there is nothing to do.
+        """Let up to `duration_s` of the robots' clock pass; False when there is nothing to do.
 
         Emits what happens. Returns early when a report was emitted that the service must see
         before more time passes (an issue, a finished behavior, a look's answer).
@@ -49,6 +53,17 @@ class AgentCore(Protocol):
     def shut_down(self) -> bool:
         """Whether a `shutdown` command came."""
         ...
+
+
+class AgentCore(Agent, Clockwork, Protocol):
+    """One robot with a clock of its own."""
+
+
+class AgentGroup(Clockwork, Protocol):
+    """Robots that are in one world."""
+
+    @property
+    def agents(self) -> Sequence[Agent]: ...
 
 
 @runtime_checkable

@@ -77,6 +77,19 @@ class Reach:
     max_m: float
 
 
+@dataclass(frozen=True, slots=True)
+class ArmRoom:
+    """The room that an arm takes in the plane (base frame, metres).
+
+    All of it is within `around_m` of the convex hull of `resting` (the corners of what it covers at
+    rest) and of where its tool is to go; `hand_over`: where it takes what people hold out.
+    """
+
+    resting: Sequence[tuple[float, float]]
+    hand_over: tuple[float, float]
+    around_m: float
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class HeldBox:
     """A box that the gripper holds: its full extents, and its middle's pose in the tool frame."""
@@ -130,6 +143,9 @@ class Body(Protocol):
 
     @property
     def reach(self) -> Reach: ...
+
+    @property
+    def room(self) -> ArmRoom: ...
 
     def time_s(self) -> float:
         """The world's clock."""

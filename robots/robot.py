@@ -33,6 +33,7 @@ from mend.robots.link.messages import (
     Rejected,
     ReportBody,
     Resume,
+    RoomLimits,
     Shutdown,
     SlowDown,
     Start,
@@ -117,7 +118,7 @@ class Robot:
 
     def hello(self, boot: str) -> Hello:
         """What the robot is, and what it is doing now."""
-        reach = self._body.reach
+        reach, room = self._body.reach, self._body.room
         return Hello(
             protocol=PROTOCOL_VERSION,
             robot=self._name,
@@ -129,6 +130,9 @@ class Robot:
             ),
             executing=self._active_execution(),
             time=self.time_s(),
+            room=RoomLimits(
+                resting=list(room.resting), hand_over=room.hand_over, around_m=room.around_m
+            ),
         )
 
     @property
@@ -178,19 +182,43 @@ class Robot:
     def advance(self, duration_s: float) -> bool:
         """Let up to `duration_s` pass; False when nothing is under way (no time passes then)."""
         end_s = self.time_s() + duration_s
+        self.begin_slice()
+        self.decide()
+        while self.active and not self._reported and self.time_s() < end_s - 1e-9:
+            self._body.advance_cycle()
+            self.end_cycle()
+            self.decide()
+        return self.busy
+
+    def begin_slice(self) -> None:
+        """Some time is about to pass, of which the service has heard all that came before."""
         self._reported = False
         self._hand_in_clip()
+
+    def decide(self) -> None:
+        """Decide, once, on what the next control cycle is to do."""
         while self._activity is not None and not self._reported:
-            if self._decided is not self._activity:
-                self._decide(self._activity)
-            elif self.time_s() < end_s - 1e-9:
-                self._body.advance_cycle()
-                self._decided = None
-                if self._films and self._walking:
-                    self._senses.hand.film()
-            else:
-                break
-        return self.busy
+            if self._decided is self._activity:
+                return
+            self._decide(self._activity)
+
+    def end_cycle(self) -> None:
+        """A control cycle has passed."""
+        if self._activity is None:
+            return
+        self._decided = None
+        if self._films and self._walking:
+            self._senses.hand.film()
+
+    @property
+    def active(self) -> bool:
+        """Whether it needs time to pass."""
+        return self._activity is not None
+
+    @property
+    def attempts(self) -> Mapping[str, int]:
+        """How often it was told to handle each object."""
+        return self._attempts
 
     def _hand_in_clip(self) -> None:
         """Report what was seen before the last issue, which people have heard of by now."""

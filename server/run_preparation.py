@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from mend.errors import NotFoundError, WrongInputError
+from mend.robots.feasibility.transfers import plan_transfers
 from mend.server.behaviors import behavior_step_counts
 from mend.server.document_checks import Finder
 from mend.server.documents import SPOKEN, DocumentKind, FixedDocuments, Uploaded
@@ -11,6 +12,7 @@ from mend.server.errors import ImpossibleError
 from mend.server.runtime.ports import LIVE, PreparedRun
 from mend.server.runtime.requests import RunRequest
 from mend.server.scene_checks import WorldChecks
+from mend.sim.world import KnownReach
 from mend.tasks.definition import BehaviorNode, TaskTreeDefinition
 from mend.tasks.library import NotInLibraryError
 from mend.tasks.problem import InvalidFileError
@@ -35,6 +37,7 @@ class RunPreparer:
             scene = scene or Scene(name="live", objects={}, places={})
         else:
             scene = scene or self._lay_out(request, tree)
+            tree, scene = self._with_transfers(request.world, tree, scene)
             # Before the scenario has its way: out of reach is what it may put things to.
             self._refuse_impossible(request.world, scene, tree)
         if scenario is not None:
@@ -68,6 +71,16 @@ class RunPreparer:
             return adapter.lay_out(names, request.seed)
         except WrongInputError as error:
             raise WrongInputError(f"tree '{tree.name}' cannot be laid out: {error}") from error
+
+    def _with_transfers(
+        self, world: str, tree: TaskTreeDefinition, scene: Scene
+    ) -> tuple[TaskTreeDefinition, Scene]:
+        """What one robot alone fetches and another alone places, as two leaves."""
+        adapter = self.worlds.adapter(world)
+        if not isinstance(adapter, KnownReach):
+            return tree, scene
+        planned = plan_transfers(tree, scene, adapter.reach(scene))
+        return planned.tree, planned.scene
 
     def _refuse_impossible(self, world: str, scene: Scene, tree: TaskTreeDefinition) -> None:
         """Raise `ImpossibleError` where the world's robot cannot do the tree in the scene."""

@@ -1,4 +1,4 @@
-"""A simulated robot's process: `python -P -m mend.sim.robot_process`, with its setup on stdin.
+"""A simulated world's process: `python -P -m mend.sim.robot_process`, with its setup on stdin.
 
 The first line of stdin is a `RobotProcessSetup` in JSON; stdin then stays open for as long as the
 parent lives. Exits with 0 after a `shutdown` command or when the parent is gone, with 2 and one
@@ -19,9 +19,9 @@ from uuid import uuid4
 
 from pydantic import ValidationError
 
-from mend.robots.agent import AgentCore
+from mend.robots.agent import AgentGroup
 from mend.robots.link.channel import LinkRefusedError
-from mend.robots.link.client import run_agent
+from mend.robots.link.client import LinkedAgent, run_agents
 from mend.robots.link.clock import LoopClock
 from mend.robots.link.outbox import IN_MEMORY, Outbox
 from mend.robots.link.pinned_tls import pinned_tls
@@ -35,15 +35,16 @@ PR_SET_PDEATHSIG = 1
 
 
 class RobotProcessSetup(StrictModel):
-    """What the process is told: which world, which robot in it, and where the service is.
+    """What the process is told: which world, which robots in it, and where the service is.
 
-    `certificate` is the file of the service's own, where it speaks TLS.
+    `tokens` are those of the robots, in their order. `certificate` is the file of the service's
+    own, where it speaks TLS.
     """
 
     world: str
     setup: WorldSetup
     url: str
-    token: str | None = None
+    tokens: list[str]
     certificate: str | None = None
 
 
@@ -62,15 +63,15 @@ def find_world(name: str) -> WorldAdapter:
 
 
 def main() -> int:
-    """Run one simulated robot. Returns the exit code."""
+    """Run one simulated world. Returns the exit code."""
     logging.basicConfig(level=logging.WARNING, format="%(name)s: %(message)s")
     _die_with_parent()
     try:
         told = RobotProcessSetup.model_validate_json(sys.stdin.buffer.readline())
         # Before the world is built: an orphan that came to connect would displace its successor.
         threading.Thread(target=_end_with_stdin, daemon=True).start()
-        agent = find_world(told.world).create_agent(told.setup)
-        asyncio.run(_run(agent, told))
+        group = find_world(told.world).create_agents(told.setup)
+        asyncio.run(_run(group, told))
     except ValidationError as error:
         first = error.errors(include_url=False, include_input=False)[0]
         where = ".".join(str(each) for each in first["loc"]) or "stdin"
@@ -80,17 +81,19 @@ def main() -> int:
     return 0
 
 
-async def _run(agent: AgentCore, told: RobotProcessSetup) -> None:
+async def _run(group: AgentGroup, told: RobotProcessSetup) -> None:
     tls = None if told.certificate is None else pinned_tls(Path(told.certificate))
-    await run_agent(
-        agent,
-        # Its parent is the service: it may stand still for as long as it likes, and be gone only by
-        # closing stdin.
-        partial(websocket_channel, told.url, told.token, tls, ping_s=None),
-        Outbox(IN_MEMORY, told.setup.robot, uuid4().hex),
-        LoopClock(),
-        random.Random(told.setup.seed),
-    )
+    linked = [
+        LinkedAgent(
+            agent,
+            # Its parent is the service: it may stand still for as long as it likes, and be gone
+            # only by closing stdin.
+            partial(websocket_channel, told.url, token, tls, ping_s=None),
+            Outbox(IN_MEMORY, robot, uuid4().hex),
+        )
+        for agent, robot, token in zip(group.agents, told.setup.robots, told.tokens, strict=True)
+    ]
+    await run_agents(group, linked, LoopClock(), random.Random(told.setup.seed))
 
 
 def _end_with_stdin() -> None:

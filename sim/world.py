@@ -7,8 +7,8 @@ from typing import Any, Protocol, runtime_checkable
 from pydantic import BaseModel
 
 from mend.errors import UnavailableError
-from mend.robots.agent import AgentCore
-from mend.robots.body import Body
+from mend.robots.agent import AgentGroup
+from mend.robots.body import Reach
 from mend.robots.link.messages import ShownObject, ShownPose
 from mend.robots.vision.color_model import ColorModel
 from mend.tasks.definition import BehaviorNode, GoalNode
@@ -19,13 +19,14 @@ from mend.tasks.scene_problem import SceneProblem
 
 
 class WorldSetup(StrictModel):
-    """Everything a simulated robot's process is told at its start.
+    """Everything a simulated world's process is told at its start.
 
-    `speed` is simulated seconds per second, None as fast as possible. `interventions` are a
-    scenario's, triggered by task progress. `snapshot` rebuilds an earlier world.
+    `robots` are in the order of the scene's `robots`. `speed` is simulated seconds per second,
+    None as fast as possible. `interventions` are a scenario's, triggered by task progress.
+    `snapshot` rebuilds an earlier world.
     """
 
-    robot: str
+    robots: list[str]
     scene: Scene
     seed: int
     speed: float | None
@@ -35,14 +36,18 @@ class WorldSetup(StrictModel):
 
 
 class World(Protocol):
-    """A simulated world with one robot.
+    """A simulated world with robots, which know it by their bodies alone.
 
-    Only `body` may be used by behaviors, monitors and looks; the rest belongs to the person and
-    to the journal.
+    What is here belongs to the clock, to the person and to the journal.
     """
 
-    @property
-    def body(self) -> Body: ...
+    def time_s(self) -> float:
+        """The world's clock."""
+        ...
+
+    def advance_cycle(self) -> None:
+        """Let one control cycle pass, for all bodies at once."""
+        ...
 
     def intervene(self, intervention: Intervention) -> str:
         """Do what a person does, now (a pull or a hand-over goes on over the next cycles).
@@ -112,8 +117,17 @@ class WorldAdapter(Protocol):
         """
         ...
 
-    def create_agent(self, setup: WorldSetup) -> AgentCore:
-        """Build the world and the robot in it."""
+    def create_agents(self, setup: WorldSetup) -> AgentGroup:
+        """Build the world and the robots in it."""
+        ...
+
+
+@runtime_checkable
+class KnownReach(Protocol):
+    """A world adapter that tells, before anything moves, how far each of its robots reaches."""
+
+    def reach(self, scene: Scene) -> Reach:
+        """In the robots' own base frames."""
         ...
 
 

@@ -1,11 +1,13 @@
-"""Scenes: the objects and places that a task file speaks of.
+"""Scenes: the objects and places that a task file speaks of, and where the robots stand.
 
-All lengths are metres, angles radians, poses in the robot's base frame (x forward, y left, z up).
+All lengths are metres, angles radians, poses in the scene's frame (z up), which is that of a robot
+that stands alone: x forward, y left of it.
 """
 
+import math
 from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
 from mend.tasks.spellings import NAME
 from mend.tasks.unit import Unit
@@ -15,6 +17,20 @@ Length = Annotated[float, Field(gt=1e-6, le=10.0, allow_inf_nan=False), Unit("me
 Radians = Annotated[float, Field(ge=-6.2832, le=6.2832, allow_inf_nan=False), Unit("radians")]
 Name = Annotated[str, Field(pattern=NAME)]
 Channel = Annotated[float, Field(ge=0.0, le=1.0, allow_inf_nan=False)]
+
+QUARTER = math.pi / 2
+_OFF_QUARTER_RAD = 0.01
+
+
+def _quarter_turns(yaw: float) -> float:
+    """A table has to stay an upright box in every robot's frame."""
+    turns = round(yaw / QUARTER)
+    if abs(yaw - turns * QUARTER) > _OFF_QUARTER_RAD:
+        raise ValueError("must be a multiple of a quarter of a turn (1.5708)")
+    return turns * QUARTER
+
+
+QuarterTurns = Annotated[Radians, AfterValidator(_quarter_turns)]
 
 RESTS_M = 0.006
 """What is so near to a surface rests on it."""
@@ -72,6 +88,14 @@ class Table(StrictModel):
         )
 
 
+class Base(StrictModel):
+    """Where a robot stands: its base frame (x forward, y left) in the scene's."""
+
+    x: Metres
+    y: Metres
+    yaw: QuarterTurns = 0.0
+
+
 class Scatter(StrictModel):
     """How far a world may move an object's start pose, uniformly, by its seed."""
 
@@ -80,10 +104,11 @@ class Scatter(StrictModel):
 
 
 class Scene(StrictModel):
-    """Everything that a task's leaves may name."""
+    """Everything that a task's leaves may name. Without `robots` one stands in the middle."""
 
     name: Name
     table: Table = Table()
     objects: dict[Name, SceneObject]
     places: dict[Name, Place]
     scatter: Scatter = Scatter()
+    robots: Annotated[dict[Name, Base], Field(max_length=8)] = {}

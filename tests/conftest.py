@@ -1,12 +1,17 @@
 """What all tests share: the order in which processes take them, and patience with busy machines."""
 
 import os
+import sys
 from collections.abc import Iterator
 
 import httpx
 import pytest
 import trustme
 from hypothesis import settings
+
+# Each process, also those that the tests start, would compile all modules once more.
+sys.dont_write_bytecode = False
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
 # No property fails for how long it takes, and no request within a minute.
 settings.register_profile("busy", deadline=None)
@@ -18,13 +23,14 @@ for client in (httpx.AsyncClient, httpx.Client):
 
 @pytest.hookimpl(trylast=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Each of several processes begins with slow tests, so that none is left with them at the end.
+    """Each of several processes begins with the longest tests, so that none is left at the end.
 
+    Of the slow ones that say nothing else, which take about a second, the order stays random.
     pytest-xdist gives each of them so many tests that follow one another, to begin with.
     """
     workers = int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1"))
-    slow = [item for item in items if item.get_closest_marker("slow")]
-    quick = [item for item in items if not item.get_closest_marker("slow")]
+    slow = sorted(filter(_seconds, items), key=_seconds, reverse=True)
+    quick = [item for item in items if not _seconds(item)]
     dealt: list[pytest.Item] = []
     for worker in range(workers):
         share = (len(items) - len(dealt)) // (workers - worker)
@@ -34,6 +40,12 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         del quick[:rest]
     if len(dealt) == len(items):
         items[:] = dealt
+
+
+def _seconds(item: pytest.Item) -> float:
+    """What its nearest marker `slow` says; 0 for a quick one."""
+    marker = item.get_closest_marker("slow")
+    return 0.0 if marker is None else float(marker.args[0]) if marker.args else 1.0
 
 
 @pytest.fixture(autouse=True, scope="session")

@@ -95,6 +95,18 @@ class ReachLimits(Message):
     max_m: Coordinate
 
 
+class RoomLimits(Message):
+    """The room that an arm takes in the plane, in metres.
+
+    All of it is within `around_m` of the convex hull of `resting` (the corners of what it covers at
+    rest) and of where its tool is to go; `hand_over`: where it takes what people hold out.
+    """
+
+    resting: Annotated[list[tuple[Coordinate, Coordinate]], Field(min_length=1, max_length=16)]
+    hand_over: tuple[Coordinate, Coordinate]
+    around_m: Annotated[Coordinate, Field(ge=0)]
+
+
 class Detection(Message):
     """What a monitor saw: blob centre and expected centre in pixels (u, v), blob area in px.
 
@@ -437,7 +449,7 @@ class Hello(Message):
 
     `boot` is new at every start of the robot's program. `suitability`: per behavior, in (0, 1].
     `executing`: what it is doing, if anything. `shows`: what its `poses` hold; None if it sends
-    none.
+    none. `room`: without it a robot keeps out of the way of others by itself.
     """
 
     type: Literal["hello"] = "hello"
@@ -452,6 +464,7 @@ class Hello(Message):
     time: Time
     simulated: bool = False
     shows: PoseLayout | None = None
+    room: RoomLimits | None = None
 
 
 class Report(Message):

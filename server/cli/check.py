@@ -53,10 +53,10 @@ def check(
 def kind_of_file(text: str) -> str:
     """Tell the kinds of file apart, even where they are full of mistakes."""
     keys, tree_by_name = _top_level(text)
-    if keys & DELIVERY_KEYS:
-        return "delivery"
     if keys & SCENE_KEYS:
         return "scene"
+    if keys & DELIVERY_KEYS:
+        return "delivery"
     return "scenario" if keys & SCENARIO_KEYS or tree_by_name else "task"
 
 

@@ -1,4 +1,4 @@
-"""Simulated robots: each in a process of its own that is watched, or within this one."""
+"""Simulated worlds: each in a process of its own that is watched, or within this one."""
 
 import asyncio
 import logging
@@ -8,7 +8,7 @@ import signal
 import sys
 import time
 from asyncio.subprocess import DEVNULL, PIPE, Process
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Protocol
@@ -16,7 +16,7 @@ from uuid import uuid4
 
 from mend.errors import WrongInputError
 from mend.robots.link.channel import Channel, memory_channel
-from mend.robots.link.client import Aside, run_agent
+from mend.robots.link.client import Aside, LinkedAgent, run_agents
 from mend.robots.link.clock import LoopClock
 from mend.robots.link.outbox import IN_MEMORY, Outbox
 from mend.server.descriptors import (
@@ -41,11 +41,11 @@ ONE_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_
 
 
 Ended = Callable[[str], None]
-"""Told why, once, when a simulated robot has ended without being stopped."""
+"""Told why, once, when a simulated world has ended without being stopped."""
 
 
-class SimulatedRobot(Protocol):
-    """A simulated robot that this service runs."""
+class SimulatedWorld(Protocol):
+    """A simulated world with its robots that this service runs."""
 
     @property
     def pid(self) -> int | None:
@@ -72,10 +72,10 @@ async def launch(
     aside: Aside,
     certificate: Path | None = None,
     hang_s: float = 6.0,
-) -> SimulatedRobot:
-    """Start a simulated robot in a world of the entry points.
+) -> SimulatedWorld:
+    """Start a world of the entry points, with its robots.
 
-    A robot in a process of its own that is silent for `hang_s` is killed; one in this process works
+    A world in a process of its own that is silent for `hang_s` is killed; one in this process works
     `aside` of the event loop. `url` is this service's
     `/ws/robot`, as seen from this machine, and `certificate` the service's own, if it speaks TLS;
     the process gets a credential for its time. Raises `WrongInputError` if there is no such world
@@ -85,19 +85,19 @@ async def launch(
         adapter = find_world(world_name)
     except (WorldUnavailableError, PluginError) as error:
         raise WrongInputError(str(error)) from error
-    robot: SimulatedRobot
+    world: SimulatedWorld
     if adapter.own_process:
-        robot = RobotProcess(
+        world = WorldProcess(
             world_name, ended, registry, own_robots, url, certificate=certificate, hang_s=hang_s
         )
     else:
-        robot = InProcessRobot(adapter, ended, registry, own_robots, aside)
-    await robot.start(setup)
-    return robot
+        world = InProcessWorld(adapter, ended, registry, own_robots, aside)
+    await world.start(setup)
+    return world
 
 
-class RobotProcess:
-    """A robot in a child process; one that is silent for `hang_s` is killed.
+class WorldProcess:
+    """A world in a child process; one that is silent for `hang_s` is killed.
 
     Until it has connected for the first time it has `start_s` to load its world. It is looked at
     every `check_s`; `clock` is any monotonic clock. While this process itself is stopped, or has no
@@ -124,7 +124,7 @@ class RobotProcess:
         self._registry = registry
         self._url = url
         self._own_robots = own_robots
-        self._token: str | None = None
+        self._tokens: list[str] = []
         self._certificate = None if certificate is None else str(certificate.resolve())
         self._hang_s = hang_s
         self._start_s = start_s
@@ -142,7 +142,7 @@ class RobotProcess:
     async def start(self, setup: WorldSetup) -> None:
         """Start the process, after ending the one there may be."""
         await self.stop()
-        self._token = self._own_robots.issue(setup.robot)
+        self._tokens = [self._own_robots.issue(each) for each in setup.robots]
         process = await once_there_are_descriptors(
             lambda: asyncio.create_subprocess_exec(
                 sys.executable,
@@ -156,12 +156,12 @@ class RobotProcess:
             )
         )
         self._process = process
-        self._watcher = asyncio.create_task(self._watch(process, setup.robot))
+        self._watcher = asyncio.create_task(self._watch(process, setup.robots))
         told = RobotProcessSetup(
             world=self._world_name,
             setup=setup,
             url=self._url,
-            token=self._token,
+            tokens=self._tokens,
             certificate=self._certificate,
         )
         assert process.stdin is not None, "stdin is a pipe"
@@ -174,9 +174,8 @@ class RobotProcess:
         """End the process, by force if closing its stdin does not do it in time."""
         process, watcher = self._process, self._watcher
         self._process = self._watcher = None
-        if self._token is not None:
-            self._own_robots.withdraw(self._token)
-            self._token = None
+        while self._tokens:
+            self._own_robots.withdraw(self._tokens.pop())
         if process is None or watcher is None:
             return
         if watcher is not asyncio.current_task():
@@ -191,21 +190,22 @@ class RobotProcess:
             _kill(process)
             await process.wait()
 
-    async def _watch(self, process: Process, robot: str) -> None:
+    async def _watch(self, process: Process, robots: Sequence[str]) -> None:
         complaints = asyncio.create_task(_last_line(process))
         ended = asyncio.create_task(process.wait())
         try:
-            hung = await self._wait_for_the_end(process, ended, robot)
+            hung = await self._wait_for_the_end(process, ended, robots)
             reason = hung or _how_it_ended(process.returncode, await complaints)
         finally:
             complaints.cancel()
             ended.cancel()
-        log.warning("the process of robot %s is gone: %s", robot, plain(reason))
-        await self._registry.end_connection(robot, reason)
+        log.warning("the process of %s is gone: %s", _named(robots), plain(reason))
+        for robot in robots:
+            await self._registry.end_connection(robot, reason)
         self._ended(reason)
 
     async def _wait_for_the_end(
-        self, process: Process, ended: asyncio.Task[int], robot: str
+        self, process: Process, ended: asyncio.Task[int], robots: Sequence[str]
     ) -> str | None:
         """Wait until the process has ended; says so if that was because it hung."""
         silence, patience_s = Silence(self._clock, self._check_s), self._start_s
@@ -213,7 +213,8 @@ class RobotProcess:
         hung: str | None = None
         while not ended.done():
             await asyncio.wait([ended], timeout=self._check_s)
-            heard = self._registry.last_heard(robot)
+            times = [self._registry.last_heard(each) for each in robots]
+            heard = max((each for each in times if each is not None), default=None)
             if heard is not None and heard != last_heard:
                 last_heard, patience_s = heard, self._hang_s
                 silence.hear()
@@ -224,8 +225,8 @@ class RobotProcess:
         return hung
 
 
-class InProcessRobot:
-    """A robot in the service's own process; for worlds that neither block for long nor crash."""
+class InProcessWorld:
+    """A world in the service's own process; for worlds that neither block for long nor crash."""
 
     def __init__(
         self,
@@ -240,7 +241,7 @@ class InProcessRobot:
         self._ended = ended
         self._registry = registry
         self._own_robots = own_robots
-        self._token: str | None = None
+        self._tokens: list[str] = []
         self._task: asyncio.Task[None] | None = None
         self._served: set[asyncio.Task[None]] = set()
 
@@ -252,42 +253,46 @@ class InProcessRobot:
         """Build the world and let the robot connect, after ending the one there may be."""
         await self.stop()
         # It needs none to come in, but nobody else is to come in under its name.
-        self._token = self._own_robots.issue(setup.robot)
-        self._task = asyncio.create_task(self._run(setup), name=f"robot {setup.robot}")
+        self._tokens = [self._own_robots.issue(each) for each in setup.robots]
+        self._task = asyncio.create_task(self._run(setup), name=_named(setup.robots))
 
     async def stop(self) -> None:
         task, self._task = self._task, None
-        if self._token is not None:
-            self._own_robots.withdraw(self._token)
-            self._token = None
+        while self._tokens:
+            self._own_robots.withdraw(self._tokens.pop())
         if task is not None and task is not asyncio.current_task():
             task.cancel()
             await asyncio.gather(task, return_exceptions=True)
 
     async def _run(self, setup: WorldSetup) -> None:
-        outbox = Outbox(IN_MEMORY, setup.robot, uuid4().hex)
+        outboxes = [Outbox(IN_MEMORY, each, uuid4().hex) for each in setup.robots]
         reason = "it was shut down"
         try:
             # A world takes a while to build, for which nobody else should have to wait.
-            agent = await once_there_are_descriptors(
-                lambda: asyncio.to_thread(self._adapter.create_agent, setup)
+            group = await once_there_are_descriptors(
+                lambda: asyncio.to_thread(self._adapter.create_agents, setup)
             )
-            await run_agent(
-                agent, self._connect, outbox, LoopClock(), random.Random(setup.seed),
-                aside=self._aside,
-            )  # fmt: skip
+            linked = [
+                LinkedAgent(agent, self._connect, outbox)
+                for agent, outbox in zip(group.agents, outboxes, strict=True)
+            ]
+            await run_agents(
+                group, linked, LoopClock(), random.Random(setup.seed), aside=self._aside
+            )
         except Exception as error:
             reason = f"its program failed: {error}"
             if is_for_want_of_descriptors(error):
-                log.warning("the simulated robot %s begins anew: %s", setup.robot, error)
+                log.warning("the simulated %s begins anew: %s", _named(setup.robots), error)
                 # Else it would only fail again, and that often is not tried.
                 await until_there_are_descriptors()
             else:
-                log.exception("the simulated robot %s failed", setup.robot)
+                log.exception("the simulated %s failed", _named(setup.robots))
         finally:
-            outbox.close()
+            for outbox in outboxes:
+                outbox.close()
         self._task = None
-        await self._registry.end_connection(setup.robot, reason)
+        for robot in setup.robots:
+            await self._registry.end_connection(robot, reason)
         self._ended(reason)
 
     async def _connect(self) -> Channel:
@@ -306,6 +311,10 @@ async def _last_line(process: Process) -> str:
         tail = (tail + chunk)[-4096:]
     lines = tail.decode(errors="replace").strip().splitlines()
     return lines[-1] if lines else ""
+
+
+def _named(robots: Sequence[str]) -> str:
+    return f"robot{'s' * (len(robots) > 1)} {', '.join(robots)}"
 
 
 def _how_it_ended(code: int | None, complaint: str) -> str:

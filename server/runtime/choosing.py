@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from mend.server.journal.events import Candidate
 from mend.server.runtime.robot_side import RobotSide
 from mend.server.runtime.run_state import RunState
+from mend.server.runtime.team import Team
 from mend.tasks.potential import leaf_potentials
 
 MAX_RECORDED_CANDIDATES = 100
@@ -28,7 +29,13 @@ def suitabilities(
     """How well a robot can do each leaf; 0 where it cannot."""
     nodes = state.tree.nodes
     by_code = np.array([side.suitability(each) for each in nodes.behaviors], dtype=np.float64)
-    return by_code[nodes.behavior_codes[leaves]]
+    suitable = by_code[nodes.behavior_codes[leaves]]
+    team = side.team
+    if team is not None and team.shares:
+        for number in np.flatnonzero(suitable).tolist():
+            if team.leaves_to_others(side, state.tree.leaf_definition(int(leaves[number]))):
+                suitable[number] = 0.0
+    return suitable
 
 
 def potentials_for(
@@ -49,9 +56,11 @@ def able_mask(state: RunState, side: RobotSide, leaves: NDArray[np.int64]) -> ND
 
 
 def choose(state: RunState, side: RobotSide) -> Choice | None:
-    """The leaf that a robot takes next; None if there is none that it can do."""
+    """The leaf that a robot takes next; None if there is none that it can do, or do now."""
     leaves = state.tree.eligible_leaves()
     able = able_mask(state, side, leaves)
+    if side.team is not None and side.team.shares:
+        able &= _free_mask(state, side, side.team, leaves, able)
     if not able.any():
         return None
     potentials = potentials_for(state, side, leaves)
@@ -59,6 +68,23 @@ def choose(state: RunState, side: RobotSide) -> Choice | None:
     if leaf is None:
         return None
     return Choice(leaf, _candidates(state, leaves[able], potentials[able]))
+
+
+def _free_mask(
+    state: RunState,
+    side: RobotSide,
+    team: Team,
+    leaves: NDArray[np.int64],
+    able: NDArray[np.bool_],
+) -> NDArray[np.bool_]:
+    """Which of the leaves need no part, no place and no space that another robot has now."""
+    theirs = [state.tree.leaf_definition(each.leaf) for each in state.executions.values()]
+    used = {name for each in theirs for name in (each.object, each.place) if name is not None}
+    free = np.zeros(leaves.size, dtype=np.bool_)
+    for number in np.flatnonzero(able).tolist():
+        leaf = state.tree.leaf_definition(int(leaves[number]))
+        free[number] = used.isdisjoint({leaf.object, leaf.place}) and team.may_begin(side, leaf)
+    return free
 
 
 def _candidates(

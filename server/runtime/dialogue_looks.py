@@ -68,6 +68,9 @@ class DialogueLooks:
             if side.free:
                 self._hold(side, begin)
             return
+        if awaiting.help is Help.HAND_OVER and not self._may_stretch_out(dialogue, side):
+            self._hold(side, self._context.clock.now() + WATCH_PERIOD_S)
+            return
         side.look(
             Purpose.HELP,
             object=dialogue.raised.object,
@@ -77,6 +80,17 @@ class DialogueLooks:
             rate=self._rate,
             finished=_result_of(dialogue),
         )
+
+    def _may_stretch_out(self, dialogue: DialogueState, side: RobotSide) -> bool:
+        """Whether no other robot is where it takes the object and places it; then that is its."""
+        if side.team is None:
+            return True
+        tree = self._context.state.tree
+        leaf = tree.leaf_definition(tree.index_of(dialogue.raised.node))
+        if not side.team.may_begin(side, leaf, handed_over=True):
+            return False
+        side.team.take(side, leaf, handed_over=True)
+        return True
 
     def help_looked_for_from(self, dialogue: DialogueState, awaiting: ev.HelpAwaited) -> float:
         """From when (run's clock) promised help is looked for.

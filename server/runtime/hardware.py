@@ -13,6 +13,10 @@ class Hardware(Protocol):
         """Start a simulated robot (again), with its world as the journal has it."""
         ...
 
+    def came(self, robot: str) -> None:
+        """A robot has connected."""
+        ...
+
     async def release(self) -> None:
         """The run has ended: stop simulated robots, let go of real ones."""
         ...

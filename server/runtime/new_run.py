@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import datetime
-from uuid import uuid4
+from uuid import UUID, uuid4
 
 from mend.errors import WrongInputError
 from mend.server.journal import events as ev
@@ -11,7 +11,9 @@ from mend.server.limits import Limits
 from mend.server.runtime.journaled_tree import read_nodes
 from mend.server.runtime.ports import LIVE, Preparation, Worlds
 from mend.server.runtime.requests import RunRequest
+from mend.tasks.frames import frames_of
 from mend.tasks.node_table import NodeTable
+from mend.tasks.scene import Scene
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +62,7 @@ class NewRuns:
             tree={},
             scene=prepared.scene.model_dump(mode="json"),
             world=request.world,
-            robots=request.robots if request.world == LIVE else [f"pr2-{str(run)[:8]}"],
+            robots=request.robots if request.world == LIVE else _names(prepared.scene, run),
             seed=request.seed,
             speed=request.speed,
             scenario=request.scenario,
@@ -69,6 +71,11 @@ class NewRuns:
             author=author,
         )
         return NewRun(started, prepared.tree, await read_nodes(prepared.tree))
+
+
+def _names(scene: Scene, run: UUID) -> list[str]:
+    """What the robots of a simulated world are called, in the scene's order."""
+    return [f"{each}-{str(run)[:8]}" for each in frames_of(scene)]
 
 
 def _refuse_too_much(request: RunRequest, limits: Limits) -> None:

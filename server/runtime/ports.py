@@ -81,5 +81,8 @@ class RealRobots:
     async def restart(self, robot: str) -> None:
         """A real robot comes back by itself."""
 
+    def came(self, robot: str) -> None:
+        """Nothing to do, as for `restart`."""
+
     async def release(self) -> None:
         """The runtime unassigns them."""

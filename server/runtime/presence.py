@@ -76,10 +76,13 @@ class RobotPresence:
             timer.cancel()
         rebooted = side.hello is None or side.hello.boot != hello.boot
         if rebooted:
-            self._context.clock.align(hello.time)
+            # Robots of one world have one clock, which went on once the first of them was there.
+            if all(each.doing is Doing.ABSENT for each in self._sides.values()):
+                self._context.clock.align(hello.time)
             self._dialogues.robot_rebooted()
         was_doing = side.doing
         side.connect(hello)
+        self._hardware.came(robot)
         self._poses.robot_connected(hello)
         execution = state.executions.get(robot)
         continues = execution is not None and execution.boot == hello.boot

@@ -1,9 +1,12 @@
 """One robot of a run, as the run sees it: what it was last told, and what it last saw."""
 
+import math
 from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Any, Protocol
 from uuid import uuid4
+
+from shapely.geometry.base import BaseGeometry
 
 from mend.robots.link.messages import (
     CommandBody,
@@ -23,6 +26,8 @@ from mend.robots.link.messages import (
 )
 from mend.server.runtime.livelock import Livelock
 from mend.server.runtime.run_state import StartedExecution
+from mend.server.runtime.team import Team
+from mend.tasks.frames import Frame
 from mend.tasks.intervention import Intervention
 from mend.tasks.potential import Point
 
@@ -68,10 +73,18 @@ class CommandSender(Protocol):
 
 @dataclass(slots=True)
 class RobotSide:
-    """A robot's activity; nothing here is durable, all of it follows from its next reports."""
+    """A robot's activity; nothing here is durable, all of it follows from its next reports.
+
+    What it sees and where it is told to place is in its own base frame on the link, and in the
+    scene's here.
+    """
 
     robot: str
     link: CommandSender
+    frame: Frame = field(default_factory=Frame)
+    team: Team | None = None
+    area: BaseGeometry | None = None
+    """What space it has beyond where its arm rests; `Team` says when it may have it."""
     doing: Doing = Doing.ABSENT
     hello: Hello | None = None
     gone_for_good: bool = False
@@ -83,6 +96,8 @@ class RobotSide:
     purpose: Purpose | None = None
     holds_execution: bool = False
     seen: dict[str, Sighting] = field(default_factory=dict)
+    seen_at: float = -math.inf
+    """When it last saw anything (the run's clock)."""
     gripper: Point = (0.0, 0.0, 0.0)
     held: str | None = None
     looked_at: float | None = None
@@ -125,6 +140,8 @@ class RobotSide:
         self.command = self.purpose = None
         executing = hello.executing
         self.holds_execution = executing is not None and executing.state == "holding"
+        if executing is None:
+            self.area = None
         if executing is None or self.holds_execution:
             self.doing = Doing.IDLE
         elif executing.state == "retreating":
@@ -135,8 +152,15 @@ class RobotSide:
     def hold_execution(self, holding: Holding) -> None:
         """It has stopped; away from neutral it keeps what it was executing."""
         self.holds_execution = holding.execution is not None and holding.at != "neutral"
+        if holding.at == "neutral":
+            self.area = None
         if self.doing in (Doing.WORKING, Doing.RETREATING):
             self.doing = Doing.IDLE
+
+    def finish(self) -> None:
+        """It is through with what it was executing, and its arm rests."""
+        self.doing = Doing.IDLE
+        self.area = None
 
     def disconnect(self) -> None:
         self.doing = Doing.ABSENT
@@ -183,7 +207,7 @@ class RobotSide:
                 behavior=behavior,
                 parameters=parameters,
                 size=size,
-                target=target,
+                target=None if target is None else _in_base(self.frame, target),
                 was_done=was_done,
                 finished=finished,
             ),
@@ -210,13 +234,27 @@ class RobotSide:
         """Note what a look saw; returns its purpose if it is the look that was last asked for."""
         self.blind = looked.blind
         if looked.blind is None:
-            self.seen = dict(looked.objects)
+            self.seen = {name: _in_scene(self.frame, each) for name, each in looked.objects.items()}
+            self.seen_at = time
         self.held = looked.held
         self.there = frozenset(looked.there)
-        self.gripper = (looked.gripper.x, looked.gripper.y, looked.gripper.z)
+        self.gripper = (
+            *self.frame.to_scene(looked.gripper.x, looked.gripper.y),
+            looked.gripper.z,
+        )
         if looked.command != self.command or self.doing is not Doing.LOOKING:
             return None
         self.doing = Doing.IDLE
         if self.purpose in JUDGING:
             self.looked_at = time
         return self.purpose
+
+
+def _in_scene(frame: Frame, seen: Sighting) -> Sighting:
+    x, y = frame.to_scene(seen.x, seen.y)
+    return seen.model_copy(update={"x": x, "y": y, "yaw": seen.yaw + frame.yaw})
+
+
+def _in_base(frame: Frame, target: Location) -> Location:
+    x, y = frame.to_robot(target.x, target.y)
+    return target.model_copy(update={"x": x, "y": y, "yaw": target.yaw - frame.yaw})

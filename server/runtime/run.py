@@ -49,6 +49,7 @@ from mend.server.runtime.report_events import ReportEvents
 from mend.server.runtime.results import Results, missing_parts, results_of, unseen_parts
 from mend.server.runtime.robot_side import JUDGING, Doing, Purpose, RobotSide
 from mend.server.runtime.run_state import StartedExecution
+from mend.server.runtime.team import Team
 from mend.server.runtime.views import RunStatus
 from mend.tasks.intervention import Intervention
 
@@ -71,6 +72,8 @@ class Run:
     ) -> None:
         self._context = context
         self._sides = sides
+        self._team = Team(context.state.scene)
+        self._team.join(sides)
         self._dialogues = dialogues
         self._hardware = hardware
         self._poses = poses
@@ -265,7 +268,7 @@ class Run:
             case Holding():
                 side.hold_execution(body)
             case Finished():
-                side.doing = Doing.IDLE
+                side.finish()
             case Resumed():
                 side.doing = Doing.WORKING
             case Held(command=command) if command == side.command:
@@ -354,9 +357,9 @@ class Run:
         state = self._context.state
         execution = state.executions.get(side.robot)
         if execution is not None:
-            if execution.held and side.looked_just_now(self._context.clock.now()):
+            if execution.held and self._may_resume(side, execution):
                 side.resume(execution)
-            elif execution.held:
+            elif execution.held and not side.looked_just_now(self._context.clock.now()):
                 side.look(Purpose.RESUME)
             return False
         if side.holds_execution:
@@ -368,10 +371,23 @@ class Run:
             return False
         return await self._start_something(side)
 
+    def _may_resume(self, side: RobotSide, execution: StartedExecution) -> bool:
+        """Whether it has just looked, and has the space or can have it."""
+        if not side.looked_just_now(self._context.clock.now()):
+            return False
+        leaf = self._context.state.tree.leaf_definition(execution.leaf)
+        if not self._team.may_begin(side, leaf):
+            return False
+        self._team.take(side, leaf)
+        return True
+
     async def _start_something(self, side: RobotSide) -> bool:
         state = self._context.state
         choice = choose(state, side)
         if choice is None:
+            if side.area is not None:
+                # Nothing that it could do is free: it is not to be in the way of others meanwhile.
+                side.retreat()
             return False
         if not side.looked_just_now(self._context.clock.now()):
             side.look(Purpose.CHOOSE)
@@ -404,6 +420,7 @@ class Run:
             gone = taken_back.because_of is None and not taken_back.unseen
             was_done = "gone" if gone else "there"
         tree, scene = state.tree, state.scene
+        self._team.take(side, tree.leaf_definition(execution.leaf))
         part = scene.objects.get(tree.leaf_definition(execution.leaf).object or "")
         place = scene.places.get(tree.leaf_definition(execution.leaf).place or "")
         side.start(
@@ -428,7 +445,8 @@ class Run:
             await self._results.doubt_last(side, side.blind)
         if not state.tree.done(0):
             return
-        missing, unseen = missing_parts(state), unseen_parts(state, side.there)
+        there = {each for other in self._sides.values() for each in other.there}
+        missing, unseen = missing_parts(state), unseen_parts(state, there)
         finished = ev.RunFinished(**self._context.stamp(), missing=missing, unseen=unseen)
         await self._context.commit([finished])
 

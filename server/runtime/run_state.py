@@ -15,6 +15,7 @@ from mend.server.runtime.requests import RunRequest
 from mend.server.runtime.run_result import Ending, result_of
 from mend.server.runtime.views import RunResult, RunStatus
 from mend.tasks.definition import TaskTreeDefinition
+from mend.tasks.frames import Frame, frames_of
 from mend.tasks.node_table import NodeTable
 from mend.tasks.resolution import Resolution
 from mend.tasks.scenario import Scenario
@@ -113,6 +114,15 @@ class RunState:
         if self.started.script is not None:
             return Scenario.model_validate(self.started.script, strict=False)
         return built_in_scenario(self.started.scenario) if self.started.scenario else None
+
+    @property
+    def frames(self) -> dict[str, Frame]:
+        """The base frame of each robot: as the scene has its name, else in the scene's order."""
+        robots, known = self.started.robots, frames_of(self.scene)
+        in_order = list(known.values()) if len(known) == len(robots) else [Frame()] * len(robots)
+        return {
+            robot: known.get(robot, frame) for robot, frame in zip(robots, in_order, strict=True)
+        }
 
     @property
     def open_dialogues(self) -> list[DialogueState]:

@@ -205,7 +205,9 @@ class Runtime:
 
     def _take_up(self, context: RunContext, *, live: bool) -> None:
         state = context.state
-        sides = {robot: RobotSide(robot, self._robots) for robot in state.started.robots}
+        sides = {
+            robot: RobotSide(robot, self._robots, frame) for robot, frame in state.frames.items()
+        }
         scenario = state.scenario
         dialogues = DialogueDriver(
             context,

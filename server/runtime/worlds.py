@@ -18,14 +18,14 @@ from mend.sim.world_options import read_options
 from mend.tasks.scenario import ScriptedIntervention
 
 
-class RobotHandle(Protocol):
-    """A simulated robot that runs, in its own process or in this one."""
+class WorldHandle(Protocol):
+    """A simulated world that runs, in its own process or in this one."""
 
     async def stop(self) -> None: ...
 
 
-Launch = Callable[[str, WorldSetup, Callable[[str], None]], Awaitable[RobotHandle]]
-"""Starts a world's robot: the world's name, its setup, and what to call (a reason) if it ends."""
+Launch = Callable[[str, WorldSetup, Callable[[str], None]], Awaitable[WorldHandle]]
+"""Starts a world: its name, its setup, and what to call (with a reason) if it ends."""
 
 
 class RobotNames(Protocol):
@@ -101,7 +101,7 @@ class SimulatedWorlds:
             rng = np.random.default_rng([started.seed, len(objects)])
             interventions += random_interventions(objects, state.scene, rng)
         return WorldSetup(
-            robot=started.robots[0],
+            robots=list(started.robots),
             scene=state.scene,
             seed=started.seed,
             speed=None if started.speed == "max" else started.speed,
@@ -111,7 +111,7 @@ class SimulatedWorlds:
 
 
 class SimulatedHardware:
-    """The simulated robot of one run; implements `mend.server.runtime.hardware.Hardware`."""
+    """The simulated world of one run; implements `mend.server.runtime.hardware.Hardware`."""
 
     simulated = True
 
@@ -130,22 +130,36 @@ class SimulatedHardware:
         self._setup = setup
         self._state = state
         self._run = run
-        self._handle: RobotHandle | None = None
+        self._handle: WorldHandle | None = None
         self._life = 0
+        self._started_with: set[str] = set()
 
     async def restart(self, robot: str) -> None:
-        """Start the robot, its world as the journal has it if it has one."""
+        """Start the world, as the journal has it if it has it, and all robots in it.
+
+        It is started once for all of them: no robot needs that again before it has come.
+        """
+        if robot in self._started_with:
+            self._started_with.discard(robot)
+            return
         await self._stop()
         self._life += 1
         snapshot = await self._journal.world(self._state.id)
-        setup = self._setup.model_copy(update={"robot": robot, "snapshot": snapshot})
-        ended = partial(self._ended, self._life, robot)
+        setup = self._setup.model_copy(update={"snapshot": snapshot})
+        ended = partial(self._ended, self._life)
+        self._started_with = {each for each in setup.robots if each != robot}
         self._handle = await self._launch(self._state.started.world, setup, ended)
 
-    def _ended(self, life: int, robot: str, reason: str) -> None:
-        # The end of a robot that was already replaced is no news.
+    def came(self, robot: str) -> None:
+        """A robot is there."""
+        self._started_with.discard(robot)
+
+    def _ended(self, life: int, reason: str) -> None:
+        # The end of a world that was already replaced is no news.
         if life == self._life:
-            self._run().tell_lost(robot, reason)
+            self._started_with.clear()
+            for robot in self._setup.robots:
+                self._run().tell_lost(robot, reason)
 
     async def release(self) -> None:
         """Stop the robot, whose name is then free."""

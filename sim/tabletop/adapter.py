@@ -2,20 +2,24 @@
 
 from collections.abc import Iterable, Sequence
 
+from mend.robots.body import Reach
 from mend.robots.catalogue import Catalogue
 from mend.robots.feasibility.check import check_scene
+from mend.robots.feasibility.robots import check_for_each_robot
 from mend.robots.robot import Robot
 from mend.robots.vision.color_model import ColorModel
 from mend.robots.vision.lookalikes import find_lookalikes
-from mend.sim.simulated_agent import SimulatedAgent
+from mend.sim.shared_world import SharedWorld
 from mend.sim.tabletop.body import StraightPlanner
 from mend.sim.tabletop.colors import learn_colors
 from mend.sim.tabletop.layout import lay_out
+from mend.sim.tabletop.manipulator import resting_together
 from mend.sim.tabletop.scenery import head_viewpoint
 from mend.sim.tabletop.world import TabletopOptions, TabletopWorld, reach_for
 from mend.sim.world import WorldSetup
 from mend.sim.world_options import read_options
 from mend.tasks.definition import BehaviorNode, GoalNode
+from mend.tasks.frames import frames_of
 from mend.tasks.plugins import load_plugins
 from mend.tasks.scene import Scene
 from mend.tasks.scene_problem import SceneProblem
@@ -38,13 +42,22 @@ class TabletopAdapter:
         """
         return lay_out(names, seed)
 
+    def reach(self, scene: Scene) -> Reach:
+        """How far each robot reaches."""
+        return reach_for(scene, None)
+
     def check_scene(
         self, scene: Scene, nodes: Sequence[GoalNode | BehaviorNode]
     ) -> list[SceneProblem]:
-        """What keeps the robot from doing the leaves among `nodes` in a scene."""
-        planner = StraightPlanner(reach_for(scene, None), scene.table)
+        """What keeps all robots from doing the leaves among `nodes` in a scene."""
+
+        def check(own: Scene) -> list[SceneProblem]:
+            planner = StraightPlanner(reach, own.table)
+            return check_scene(own, nodes, planner, head_viewpoint(own.table))
+
+        reach = self.reach(scene)
         lookalikes = find_lookalikes(scene, nodes, learn_colors(scene, TabletopOptions()))
-        return [*check_scene(scene, nodes, planner, head_viewpoint(scene.table)), *lookalikes]
+        return [*resting_together(scene), *check_for_each_robot(scene, nodes, check), *lookalikes]
 
     def train_colors(self, scene: Scene) -> ColorModel:
         """Learn the colours of a scene's objects from rendered pictures of them.
@@ -53,26 +66,31 @@ class TabletopAdapter:
         """
         return learn_colors(scene, TabletopOptions())
 
-    def create_agent(self, setup: WorldSetup) -> SimulatedAgent:
-        """Build the world and the robot in it.
+    def create_agents(self, setup: WorldSetup) -> SharedWorld:
+        """Build the world and the robots in it.
 
-        Raises `ValueError` for options or a snapshot that do not fit.
+        Raises `WrongInputError` for options and `ValueError` for a snapshot that do not fit.
         """
         options = read_options(TabletopOptions, "tabletop", setup.options)
         world = TabletopWorld(setup.scene, setup.seed, options)
-        robot = Robot(
-            setup.robot,
-            world.body,
-            learn_colors(setup.scene, options),
-            Catalogue.from_scene(setup.scene),
-            load_plugins("mend.behaviors"),
-            load_plugins("mend.monitors"),
-            # As fast as possible, nobody watches: a picture that no monitor needs costs only time.
-            films=setup.speed is not None,
-        )
-        return SimulatedAgent(
-            robot,
+        colors = learn_colors(setup.scene, options)
+        frames = frames_of(setup.scene).values()
+        robots = [
+            Robot(
+                name,
+                body,
+                colors,
+                Catalogue.from_scene(frame.scene_to_robot(setup.scene)),
+                load_plugins("mend.behaviors"),
+                load_plugins("mend.monitors"),
+                # As fast as possible, nobody watches: what no monitor needs costs only time.
+                films=setup.speed is not None,
+            )
+            for name, frame, body in zip(setup.robots, frames, world.bodies, strict=True)
+        ]
+        return SharedWorld(
             world,
+            robots,
             speed=setup.speed,
             interventions=setup.interventions,
             snapshot=setup.snapshot,

@@ -7,16 +7,22 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
-from mend.robots.body import ArmPath, Camera, Leg, Matrix4, NoWay, Reach, ToolPose
+from mend.robots.body import ArmPath, ArmRoom, Camera, Leg, Matrix4, NoWay, Reach, ToolPose
 from mend.robots.gripper import GripperModel
 from mend.robots.vision.seen_box import SeenBox
+from mend.sim.base_frame import tool_in_base, tool_in_scene
 from mend.sim.tabletop.arm import GRIPPER, StraightPath
 from mend.sim.tabletop.gripper_shape import finger_hulls
+from mend.sim.tabletop.manipulator import Manipulator
 from mend.sim.tabletop.state import CONTROL_PERIOD_S, TabletopState
 from mend.tasks.scene import Table
 
 _HIGHEST_M = 1.2
 """How far above the table the tool can go."""
+
+
+_AROUND_M = 0.10
+"""So far from the tool point the gripper reaches in the plane, with some room to spare."""
 
 
 class StraightPlanner:
@@ -47,13 +53,20 @@ class StraightPlanner:
 
 
 class TabletopBody:
-    """What behaviors, monitors and looks may ask of the robot."""
+    """What behaviors, monitors and looks may ask of a robot, all of it in its base frame."""
 
-    def __init__(self, state: TabletopState, cameras: Mapping[str, Camera], reach: Reach) -> None:
+    def __init__(
+        self,
+        state: TabletopState,
+        manipulator: Manipulator,
+        cameras: Mapping[str, Camera],
+        reach: Reach,
+    ) -> None:
         self._state = state
+        self._manipulator = manipulator
         self._cameras = MappingProxyType(dict(cameras))
         self._reach = reach
-        self._planner = StraightPlanner(reach, state.scene.table)
+        self._planner = StraightPlanner(reach, manipulator.frame.table_to_robot(state.scene.table))
 
     @property
     def control_period_s(self) -> float:
@@ -66,6 +79,12 @@ class TabletopBody:
     @property
     def reach(self) -> Reach:
         return self._reach
+
+    @property
+    def room(self) -> ArmRoom:
+        home = self._manipulator.home
+        neutral, hand_over = home.neutral, home.hand_over
+        return ArmRoom([(neutral.x, neutral.y)], (hand_over.x, hand_over.y), _AROUND_M)
 
     def time_s(self) -> float:
         return self._state.time_s
@@ -82,44 +101,46 @@ class TabletopBody:
         return self._planner.plan_among(legs, boxes)
 
     def plan_neutral(self) -> StraightPath:
-        return StraightPath((self._state.home.neutral,), homeward=True)
+        return StraightPath((self._manipulator.home.neutral,), homeward=True)
 
     def plan_hand_over(self) -> StraightPath:
-        return StraightPath((self._state.home.hand_over,))
+        return StraightPath((self._manipulator.home.hand_over,))
 
     def follow(self, path: ArmPath, segment: int, speed: float) -> None:
         """Raises `TypeError` for a path that this body did not plan."""
         if not isinstance(path, StraightPath):
             raise TypeError(f"expected a path planned by this body, got {type(path).__name__}")
-        self._state.arm.follow(path, segment, speed)
+        frame = self._manipulator.frame
+        in_scene = tuple(tool_in_scene(frame, each) for each in path.waypoints)
+        self._manipulator.arm.follow(StraightPath(in_scene, path.homeward), segment, speed)
 
     def set_speed(self, speed: float) -> None:
-        self._state.arm.speed = speed
+        self._manipulator.arm.speed = speed
 
     def stop(self) -> None:
-        self._state.arm.stop()
+        self._manipulator.arm.stop()
 
     @property
     def gripper(self) -> GripperModel:
         return GRIPPER
 
     def open_gripper(self, opening_m: float | None = None) -> None:
-        self._state.gripper.open(GRIPPER.max_opening_m if opening_m is None else opening_m)
+        self._manipulator.gripper.open(GRIPPER.max_opening_m if opening_m is None else opening_m)
 
     def close_gripper(self) -> None:
-        self._state.gripper.close()
+        self._manipulator.gripper.close()
 
     @property
     def moving(self) -> bool:
-        return self._state.arm.moving or self._state.gripper.moving
+        return self._manipulator.arm.moving or self._manipulator.gripper.moving
 
     @property
     def progress(self) -> float:
-        arm, gripper = self._state.arm, self._state.gripper
+        arm, gripper = self._manipulator.arm, self._manipulator.gripper
         return arm.progress if arm.moving else gripper.progress
 
     def tool_pose(self) -> Matrix4:
-        tool = self._state.arm.pose
+        tool = tool_in_base(self._manipulator.frame, self._manipulator.arm.pose)
         cos, sin = math.cos(tool.yaw), math.sin(tool.yaw)
         return np.array(
             [
@@ -131,16 +152,16 @@ class TabletopBody:
         )
 
     def gripper_opening_m(self) -> float:
-        return self._state.gripper.opening_m
+        return self._manipulator.gripper.opening_m
 
     def gripper_effort_n(self) -> float:
-        return GRIPPER.grip_force_n if self._state.held is not None else 0.0
+        return GRIPPER.grip_force_n if self._manipulator.held is not None else 0.0
 
     def finger_hulls(self) -> Sequence[NDArray[np.float64]]:
-        return finger_hulls(self._state.gripper.opening_m)
+        return finger_hulls(self._manipulator.gripper.opening_m)
 
     def contact_force(self) -> NDArray[np.float64]:
-        return self._state.contact_force()
+        return self._manipulator.contact_force()
 
     def contact_force_n(self) -> float:
         return float(np.linalg.norm(self.contact_force()))

@@ -4,7 +4,6 @@ import math
 from dataclasses import dataclass, replace
 
 from mend.sim.acts import PULL_M_PER_S, Acts
-from mend.sim.tabletop.arm import GRIPPER
 from mend.sim.tabletop.part import TablePart, UprightPose, Whereabouts
 from mend.sim.tabletop.state import CONTROL_PERIOD_S, TabletopState
 from mend.tasks.footprint import Footprint
@@ -12,6 +11,9 @@ from mend.tasks.scene import Pose
 
 _PULLED_OUT_M = 0.30
 """So far from where it was, a pulled part is out of sight."""
+
+_STRETCHED_OUT_M = 0.01
+"""So near to its hand-over pose an arm is stretched out to somebody."""
 
 
 @dataclass(slots=True)
@@ -71,7 +73,7 @@ class TabletopPerson(Acts[TablePart, UprightPose]):
         return part.whereabouts is Whereabouts.GONE or self.is_pulling(part)
 
     def _is_held(self, part: TablePart) -> bool:
-        return self._state.held is part
+        return self._state.holder_of(part) is not None
 
     def _offered(self) -> TablePart | None:
         return None if self.hand_over is None else self.hand_over.part
@@ -83,25 +85,31 @@ class TabletopPerson(Acts[TablePart, UprightPose]):
         self._state.block_way()
 
     def _step_aside(self) -> None:
-        self._state.blocker = None
-        self._state.touching = False
+        self._state.step_aside()
 
     def _take_away(self, part: TablePart, *, by_force: bool) -> None:
+        pulled_from = self._state.holder_of(part) or self._state.manipulators[0]
         self._take(part)
         if by_force:
             part.give_to(Whereabouts.WITH_PERSON)
-            self._pulls.append(Pull(part, self._state.arm.pose.yaw - math.pi / 2))
+            self._pulls.append(Pull(part, pulled_from.arm.pose.yaw - math.pi / 2))
         else:
             part.give_to(Whereabouts.GONE)
         self._state.settle()
 
     def _take(self, part: TablePart) -> None:
         """Take a part into the hand, out of the robot's fingers if need be."""
-        if self._state.held is part:
-            self._state.take_from_robot()
+        self._take_from_robot(part)
         self._pulls = [pull for pull in self._pulls if pull.part is not part]
         if self.hand_over is not None and self.hand_over.part is part:
             self.hand_over = None
+
+    def _take_from_robot(self, part: TablePart) -> bool:
+        """Take a part from whoever holds it; False if nobody does."""
+        holder = self._state.holder_of(part)
+        if holder is not None:
+            holder.lose_held()
+        return holder is not None
 
     def _start_of(self, part: TablePart) -> UprightPose:
         return part.start
@@ -132,9 +140,8 @@ class TabletopPerson(Acts[TablePart, UprightPose]):
         self._state.settle()
 
     def _go_on_pulling(self, pull: Pull) -> None:
-        if self._is_held(pull.part):
+        if self._take_from_robot(pull.part):
             # The fingers closed on it only after the hand had.
-            self._state.take_from_robot()
             pull.part.give_to(Whereabouts.WITH_PERSON)
         step_m = PULL_M_PER_S * CONTROL_PERIOD_S
         pull.pulled_m += step_m
@@ -160,15 +167,15 @@ class TabletopPerson(Acts[TablePart, UprightPose]):
             self._follow_fingers(part)
 
     def _follow_fingers(self, part: TablePart) -> None:
-        """Hold a part between fingers that are open (or just closing) on an arm at rest."""
-        state = self._state
-        at = state.centred_in_fingers(part)
-        width = 2 * part.grasp_box.half_width(-at.yaw)
-        held_out = (
-            not state.arm.moving
-            and state.held is None
-            and width <= state.gripper.opening_m <= GRIPPER.max_opening_m
-        )
-        part.give_to(Whereabouts.WITH_PERSON, shown=held_out)
-        if held_out:
-            part.pose = state.pose_in_fingers(at)
+        """Hold a part between fingers that are open (or just closing) on an arm at rest.
+
+        Of several arms, that of the robot which stretches it out to take something.
+        """
+        arms = self._state.manipulators
+        if len(arms) > 1:
+            arms = [each for each in arms if each.off_hand_over_m() < _STRETCHED_OUT_M]
+        found = (each.held_out_to_it(part) for each in arms)
+        pose = next((each for each in found if each is not None), None)
+        part.give_to(Whereabouts.WITH_PERSON, shown=pose is not None)
+        if pose is not None:
+            part.pose = pose

@@ -4,16 +4,19 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from mend.robots.body import CameraImage, Matrix4, ToolPose
 from mend.robots.vision.viewpoint import Viewpoint
+from mend.sim.base_frame import base_in_scene, tool_in_base
 from mend.sim.depth_noise import DepthNoise, PinholeOptics
 from mend.sim.lighting import Lighting
 from mend.sim.raster import Light, Mesh, Rasterizer, RenderedImage, box_triangles
 from mend.sim.tabletop.blocker import SIZE_M as BLOCKER_SIZE_M
 from mend.sim.tabletop.gripper_shape import FINGER, PALM, finger_offset_m
+from mend.sim.tabletop.manipulator import Manipulator
 from mend.sim.tabletop.part import TablePart, UprightPose
 from mend.sim.tabletop.state import CONTROL_PERIOD_S, TabletopState
 from mend.tasks.part_boxes import boxes_of
@@ -32,6 +35,9 @@ _FLOOR_BGR = (96, 96, 96)
 _GREY = (0.45, 0.45, 0.45)
 TABLE_COLOR = (0.72, 0.70, 0.68)
 BLOCKER_COLOR = (0.30, 0.30, 0.32)
+_GRIPPER = (FINGER, FINGER, np.concatenate(PALM))
+_AROUND_PX = 9
+"""So wide around each pixel of another robot its depth is not believed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,32 +65,38 @@ class Scenery:
         self._rasterizer = Rasterizer(
             [
                 *(Mesh(_triangles_of(part), part.color) for part in self._parts),
-                Mesh(FINGER, _GREY),
-                Mesh(FINGER, _GREY),
-                Mesh(np.concatenate(PALM), _GREY),
+                *(Mesh(each, _GREY) for _ in state.manipulators for each in _GRIPPER),
                 Mesh(box_triangles(BLOCKER_SIZE_M), BLOCKER_COLOR),
                 Mesh(top, TABLE_COLOR),
             ]
         )
-        count = len(self._parts) + 5
+        self._blocker_index = len(self._parts) + len(_GRIPPER) * len(state.manipulators)
+        count = self._blocker_index + 2
         self._transforms = np.tile(np.eye(4), (count, 1, 1))
         self._visible = np.ones(count, dtype=np.bool_)
         self._drawn: list[UprightPose | None] = [None] * len(self._parts)
-        self._last: dict[tuple[int, int], tuple[_PictureInputs, RenderedImage]] = {}
+        self._last: dict[object, tuple[_PictureInputs, RenderedImage]] = {}
 
     def render(
-        self, camera_pose: Matrix4, size: tuple[int, int], focal_px: float, light: Light
+        self,
+        camera: object,
+        camera_pose: Matrix4,
+        size: tuple[int, int],
+        focal_px: float,
+        light: Light,
     ) -> RenderedImage:
-        """What a camera at `camera_pose` sees now; ids are the parts' indices in the scene.
+        """What a camera at `camera_pose` (scene's frame) sees now.
 
-        While nothing changes it is the very same, read-only picture.
+        Ids are the parts' indices in the scene, then those of the grippers. While nothing changes
+        it is, for each `camera`, the very same, read-only picture.
         """
         self._place_parts()
-        self._place_arm()
+        for number, manipulator in enumerate(self._state.manipulators):
+            self._place_gripper(number, manipulator)
         self._place_blocker()
         poses, visible = self._transforms.tobytes(), self._visible.tobytes()
         shown = _PictureInputs(poses, visible, camera_pose.tobytes(), focal_px, light)
-        last = self._last.get(size)
+        last = self._last.get(camera)
         if last is not None and last[0] == shown:
             return last[1]
         rendered = self._rasterizer.render(
@@ -98,8 +110,26 @@ class Scenery:
         )
         for each in (rendered.bgr, rendered.depth_m, rendered.ids):
             each.flags.writeable = False
-        self._last[size] = shown, rendered
+        self._last[camera] = shown, rendered
         return rendered
+
+    def other_bodies(self, manipulator: Manipulator) -> list[int]:
+        """The ids of the other robots' grippers and of what they hold."""
+        others = [
+            (number, each)
+            for number, each in enumerate(self._state.manipulators)
+            if each is not manipulator
+        ]
+        first = len(self._parts)
+        grippers = [
+            first + len(_GRIPPER) * number + piece
+            for number, _ in others
+            for piece in range(len(_GRIPPER))
+        ]
+        return [
+            *grippers,
+            *(self._parts.index(each.held) for _, each in others if each.held is not None),
+        ]
 
     def _place_parts(self) -> None:
         for index, part in enumerate(self._parts):
@@ -109,17 +139,17 @@ class Scenery:
                 _set_upright(self._transforms[index], pose.x, pose.y, pose.z, pose.yaw)
                 self._drawn[index] = pose
 
-    def _place_arm(self) -> None:
-        tool = self._state.arm.pose
-        half = finger_offset_m(self._state.gripper.opening_m)
+    def _place_gripper(self, number: int, manipulator: Manipulator) -> None:
+        tool = manipulator.arm.pose
+        half = finger_offset_m(manipulator.gripper.opening_m)
         dx, dy = half * math.cos(tool.yaw), half * math.sin(tool.yaw)
-        first = len(self._parts)
+        first = len(self._parts) + len(_GRIPPER) * number
         _set_upright(self._transforms[first], tool.x + dx, tool.y + dy, tool.z, tool.yaw)
         _set_upright(self._transforms[first + 1], tool.x - dx, tool.y - dy, tool.z, tool.yaw)
         _set_upright(self._transforms[first + 2], tool.x, tool.y, tool.z, tool.yaw)
 
     def _place_blocker(self) -> None:
-        index = len(self._parts) + 3
+        index = self._blocker_index
         blocker = self._state.blocker
         self._visible[index] = blocker is not None
         if blocker is not None:
@@ -137,11 +167,14 @@ class TabletopCamera:
     def __init__(
         self,
         state: TabletopState,
+        manipulator: Manipulator,
         scenery: Scenery,
         lighting: Lighting,
         depth_noise: DepthNoise,
     ) -> None:
         self._state = state
+        self._manipulator = manipulator
+        self._base = base_in_scene(manipulator.frame)
         self._scenery = scenery
         self._lighting = lighting
         self._depth_noise = depth_noise
@@ -162,12 +195,13 @@ class TabletopCamera:
         """A picture, and which of the scene's objects each pixel shows (for training only)."""
         pose, time_s = self.pose(), self._state.time_s
         light = self._lighting.light_at(time_s)
-        rendered = self._scenery.render(pose, self.size, self.focal_px, light)
+        rendered = self._scenery.render(self, self._base @ pose, self.size, self.focal_px, light)
         center_px = _center_px(self.size)
         depth_m = None
         if self.has_depth:
             lens = PinholeOptics(self.focal_px, center_px)
             depth_m = self._depth_noise.measure(rendered.depth_m, rendered.bgr, lens)
+            depth_m = self._without_other_robots(depth_m, rendered.ids)
         image = CameraImage(
             bgr=self._lighting.expose(rendered.bgr, time_s),
             depth_m=depth_m,
@@ -177,6 +211,17 @@ class TabletopCamera:
             time=time_s,
         )
         return image, rendered.ids
+
+    def _without_other_robots(
+        self, depth_m: NDArray[np.float32], ids: NDArray[np.int32]
+    ) -> NDArray[np.float32]:
+        """Depth with nothing measured where robots are that say where they are."""
+        others = self._scenery.other_bodies(self._manipulator)
+        if not others:
+            return depth_m
+        there = np.isin(ids, others).astype(np.uint8)
+        around = cv2.dilate(there, np.ones((_AROUND_PX, _AROUND_PX), np.uint8))
+        return np.where(around > 0, np.float32(np.nan), depth_m)
 
 
 class HeadCamera(TabletopCamera):
@@ -189,12 +234,13 @@ class HeadCamera(TabletopCamera):
     def __init__(
         self,
         state: TabletopState,
+        manipulator: Manipulator,
         scenery: Scenery,
         lighting: Lighting,
         depth_noise: DepthNoise,
     ) -> None:
-        super().__init__(state, scenery, lighting, depth_noise)
-        self._pose = look_at_table(state.scene.table)
+        super().__init__(state, manipulator, scenery, lighting, depth_noise)
+        self._pose = look_at_table(manipulator.frame.table_to_robot(state.scene.table))
 
     def pose(self) -> Matrix4:
         return self._pose
@@ -208,7 +254,7 @@ class ForearmCamera(TabletopCamera):
     has_depth = False
 
     def pose(self) -> Matrix4:
-        return _forearm_pose(self._state.arm.pose)
+        return _forearm_pose(tool_in_base(self._manipulator.frame, self._manipulator.arm.pose))
 
 
 def _forearm_pose(tool: ToolPose) -> Matrix4:

@@ -17,7 +17,8 @@ class TabletopSnapshot(StrictModel):
     """The state of a tabletop world between two control cycles.
 
     `moved`: where those parts last rested that are not where they started. `gone`: those that
-    somebody took away. `held` is for readers of the journal: a rebuilt robot holds nothing.
+    somebody took away. `held` is for readers of the journal (`also_held` what other robots hold): a
+    rebuilt robot holds nothing.
     `blocker`: where somebody stands in the way, and up to what height (x, y, top).
     """
 
@@ -26,6 +27,7 @@ class TabletopSnapshot(StrictModel):
     moved: dict[Name, RestPose]
     gone: list[Name]
     held: Name | None
+    also_held: list[Name] = []
     blocker: tuple[float, float, float] | None
     hand_over: HandOverSnapshot | None
     head_covered: bool = False

@@ -3,7 +3,7 @@
 import json
 import math
 from collections.abc import Sequence
-from dataclasses import astuple
+from dataclasses import astuple, dataclass
 from typing import Annotated, Any
 
 import numpy as np
@@ -47,6 +47,14 @@ class TabletopOptions(StrictModel):
     """How far from its base the robot can grasp, in metres; null: at least to every place."""
 
 
+@dataclass(frozen=True, slots=True)
+class RobotCameras:
+    """The cameras of one robot."""
+
+    head: HeadCamera
+    forearm: ForearmCamera
+
+
 class TabletopWorld:
     """A world in which every motion is a straight line and everything let go falls at once."""
 
@@ -60,20 +68,39 @@ class TabletopWorld:
         scenery = Scenery(self._state)
         lighting = Lighting(Light(), chosen.light, chosen.camera_noise, light_rng)
         depth_noise = DepthNoise(chosen.depth_noise, depth_rng)
-        self.head = HeadCamera(self._state, scenery, lighting, depth_noise)
-        self.forearm = ForearmCamera(self._state, scenery, lighting, depth_noise)
-        self._body = TabletopBody(
-            self._state,
-            {
-                "head": CoverableCamera(self.head, self._person.head_cover),
-                "forearm": self.forearm,
-            },
-            reach_for(scene, chosen.reach_m),
-        )
+        self.cameras = [
+            RobotCameras(
+                HeadCamera(self._state, each, scenery, lighting, depth_noise),
+                ForearmCamera(self._state, each, scenery, lighting, depth_noise),
+            )
+            for each in self._state.manipulators
+        ]
+        reach = reach_for(scene, chosen.reach_m)
+        self.bodies = [
+            TabletopBody(
+                self._state,
+                manipulator,
+                {
+                    "head": CoverableCamera(cameras.head, self._person.head_cover),
+                    "forearm": cameras.forearm,
+                },
+                reach,
+            )
+            for manipulator, cameras in zip(self._state.manipulators, self.cameras, strict=True)
+        ]
 
     @property
     def body(self) -> TabletopBody:
-        return self._body
+        """That of the only robot, or of the first."""
+        return self.bodies[0]
+
+    def time_s(self) -> float:
+        """The world's clock."""
+        return self._state.time_s
+
+    def advance_cycle(self) -> None:
+        """Let one control cycle pass."""
+        self._state.advance_cycle()
 
     def intervene(self, intervention: Intervention) -> str:
         """Do what a person does; an empty string, or one sentence that says why it cannot be."""
@@ -102,6 +129,7 @@ class TabletopWorld:
     def snapshot(self) -> dict[str, Any]:
         """The state from which `restore` can rebuild the world; JSON-compatible."""
         state, hand_over = self._state, self._person.hand_over
+        held = self._all_held()
         return {
             "version": 2,
             "time_s": state.time_s,
@@ -111,7 +139,8 @@ class TabletopWorld:
                 if part.last_rest is not part.start
             },
             "gone": [name for name, part in state.parts.items() if self._is_lost(part)],
-            "held": state.held.name if state.held else None,
+            "held": held[0] if held else None,
+            "also_held": held[1:],
             "blocker": list(astuple(state.blocker)) if state.blocker else None,
             "hand_over": {"object": hand_over.part.name, "until_s": hand_over.until_s}
             if hand_over
@@ -151,8 +180,12 @@ class TabletopWorld:
 
     @property
     def held(self) -> str | None:
-        """What the fingers really hold; for tests and benchmarks to judge by."""
-        return self._state.held.name if self._state.held else None
+        """What any fingers really hold; for tests and benchmarks to judge by."""
+        held = self._all_held()
+        return held[0] if held else None
+
+    def _all_held(self) -> list[str]:
+        return [each.held.name for each in self._state.manipulators if each.held is not None]
 
     def _is_lost(self, part: TablePart) -> bool:
         return part.whereabouts is Whereabouts.GONE or self._person.is_pulling(part)
@@ -169,7 +202,9 @@ def _shown_pose(part: TablePart) -> ShownPose:
 
 
 def reach_for(scene: Scene, reach_m: float | None) -> Reach:
-    """How far the arm reaches; without `reach_m`, at least to every place of the scene."""
+    """How far an arm reaches; one that is alone without `reach_m`, at least to every place."""
+    if scene.robots:
+        return Reach(REACH_ORIGIN, REACH_MIN_M, reach_m or REACH_MAX_M)
     farthest = max(
         (math.dist(REACH_ORIGIN, (each.pose.x, each.pose.y)) for each in scene.places.values()),
         default=0.0,

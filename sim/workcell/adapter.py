@@ -8,15 +8,20 @@ from mend.robots.feasibility.check import check_scene
 from mend.robots.robot import Robot
 from mend.robots.vision.color_model import ColorModel
 from mend.robots.vision.lookalikes import find_lookalikes
-from mend.sim.simulated_agent import SimulatedAgent
+from mend.sim.shared_world import SharedWorld
 from mend.sim.workcell.options import WorkcellOptions
 from mend.sim.workcell.robot_model import MODEL, check_installed, robot_urdf
 from mend.sim.world import WorldSetup
 from mend.sim.world_options import read_options
 from mend.tasks.definition import BehaviorNode, GoalNode
+from mend.tasks.frames import Frame, frames_of
 from mend.tasks.plugins import load_plugins
 from mend.tasks.scene import Scene
 from mend.tasks.scene_problem import SceneProblem
+
+ONE_ROBOT = (
+    "the workcell has one robot, at (0, 0): leave out 'robots', or run the task in the tabletop"
+)
 
 
 class WorkcellAdapter:
@@ -36,10 +41,11 @@ class WorkcellAdapter:
         """Raise `WorldUnavailableError` where PyBullet or the robot's description is missing."""
         check_installed()
 
-    def create_agent(self, setup: WorldSetup) -> SimulatedAgent:
+    def create_agents(self, setup: WorldSetup) -> SharedWorld:
         """Build the world and the robot in it.
 
-        Raises `WorldUnavailableError`, and `ValueError` for options or a snapshot that do not fit.
+        Raises `WorldUnavailableError`, `WrongInputError` for options and `ValueError` for a
+        snapshot that do not fit.
         """
         check_installed()
         # Only here, so that the world can be listed where the physics engine is not installed.
@@ -48,8 +54,9 @@ class WorkcellAdapter:
 
         options = read_options(WorkcellOptions, "workcell", setup.options)
         world = WorkcellWorld(setup.scene, setup.seed, options)
+        (name,) = setup.robots
         robot = Robot(
-            setup.robot,
+            name,
             world.body,
             learn_colors(setup.scene, options.camera_noise),
             Catalogue.from_scene(setup.scene),
@@ -58,9 +65,9 @@ class WorkcellAdapter:
             # As fast as possible, nobody watches: a picture that no monitor needs costs only time.
             films=setup.speed is not None,
         )
-        return SimulatedAgent(
-            robot,
+        return SharedWorld(
             world,
+            [robot],
             speed=setup.speed,
             interventions=setup.interventions,
             snapshot=setup.snapshot,
@@ -71,6 +78,8 @@ class WorkcellAdapter:
     ) -> list[SceneProblem]:
         """What keeps the robot from doing the leaves among `nodes` in a scene."""
         check_installed()
+        if list(frames_of(scene).values()) != [Frame()]:
+            return [SceneProblem(("robots",), ONE_ROBOT)]
         from mend.sim.workcell.arm_planner import neutral_arm
         from mend.sim.workcell.cameras import head_viewpoint
         from mend.sim.workcell.colors import learn_colors

@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from mend.robots.body import ArmPath, Camera, Leg, Matrix4, NoWay, Reach, ToolPose
+from mend.robots.body import ArmPath, ArmRoom, Camera, Leg, Matrix4, NoWay, Reach, ToolPose
 from mend.robots.gripper import GripperModel
 from mend.robots.motion.curve import JointCurve
 from mend.robots.motion.kinematics import Joints
@@ -53,6 +53,10 @@ HAND_OVER_POSE = ToolPose(0.50, -0.30, 0.98, 0.0)
 REACH_MIN_M = 0.30
 REACH_MAX_M = 0.81
 """Nothing is grasped outside this range, wherever and however high it is; within, plans decide."""
+
+
+_AROUND_M = 0.30
+"""Elbow, forearm and gripper are within this of the lines between shoulder and tool."""
 
 
 class WorkcellBody:
@@ -105,6 +109,13 @@ class WorkcellBody:
     @property
     def reach(self) -> Reach:
         return Reach(self._pr2.shoulder, REACH_MIN_M, REACH_MAX_M)
+
+    @property
+    def room(self) -> ArmRoom:
+        x, y = (float(each) for each in self._pr2.tool.pose(np.array(NEUTRAL_RAD))[:2, 3])
+        return ArmRoom(
+            [self._pr2.shoulder, (x, y)], (HAND_OVER_POSE.x, HAND_OVER_POSE.y), _AROUND_M
+        )
 
     def time_s(self) -> float:
         return self.cycle * PERIOD_S

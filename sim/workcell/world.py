@@ -112,6 +112,14 @@ class WorkcellWorld:
     def body(self) -> WorkcellBody:
         return self._body
 
+    def time_s(self) -> float:
+        """The world's clock."""
+        return self._body.time_s()
+
+    def advance_cycle(self) -> None:
+        """Let one control cycle pass."""
+        self._body.advance_cycle()
+
     def intervene(self, intervention: Intervention) -> str:
         """Do what a person does; an empty string, or one sentence that says why it cannot be."""
         return self._person.intervene(intervention)

@@ -34,11 +34,11 @@ def place_of(part: str) -> Rest:
     return Rest(pose.x, pose.y, SCENE.table.height if pose.z is None else pose.z)
 
 
-STARTS = Moment({part: start_of(part) for part, _ in NAMES}, None, blocked=False)
+STARTS = Moment({part: start_of(part) for part, _ in NAMES}, frozenset(), blocked=False)
 GONE = replace(STARTS, resting={**STARTS.resting, "part_1": None})
 PLACED = replace(STARTS, resting={**STARTS.resting, "part_1": place_of("part_1")})
 FAR = replace(STARTS, resting={**STARTS.resting, "part_1": Rest(5.0, 5.0, SCENE.table.height)})
-HELD = replace(STARTS, held="part_1")
+HELD = replace(STARTS, held=frozenset({"part_1"}))
 BLOCKED = replace(STARTS, blocked=True)
 TOPPLED = replace(
     STARTS, resting={**STARTS.resting, "part_1": replace(start_of("part_1"), lean_rad=1.57)}

@@ -1,10 +1,10 @@
-"""Drives an agent core as the service does, and keeps what it reports."""
+"""Drives the first robot of a world as the service does, and keeps what it reports."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
-from mend.robots.agent import AgentCore
+from mend.robots.agent import Agent, AgentGroup
 from mend.robots.link.messages import CommandBody, IssueDetected, Picture, ReportBody, Start
 
 
@@ -21,7 +21,7 @@ class Reported:
 class Driver:
     """Sends commands, lets time pass, collects reports."""
 
-    agent: AgentCore
+    group: AgentGroup
     reports: list[Reported] = field(default_factory=list)
     pictures: list[Picture] = field(default_factory=list)
     commands: int = 0
@@ -31,6 +31,10 @@ class Driver:
             lambda body, time_s, world: self.reports.append(Reported(body, time_s, world)),
             self.pictures.append,
         )
+
+    @property
+    def agent(self) -> Agent:
+        return self.group.agents[0]
 
     def send(self, body: CommandBody) -> str:
         self.commands += 1
@@ -52,11 +56,11 @@ class Driver:
         self, until: Callable[[], bool] | None = None, chunk_s: float = 1.0, limit_s: float = 300.0
     ) -> None:
         """Let time pass until nothing is left to do, or until it is so."""
-        end_s = self.agent.time_s() + limit_s
-        while self.agent.time_s() < end_s:
+        end_s = self.group.time_s() + limit_s
+        while self.group.time_s() < end_s:
             if until is not None and until():
                 return
-            if not self.agent.advance(chunk_s):
+            if not self.group.advance(chunk_s):
                 return
         raise AssertionError(
             f"still busy after {limit_s} s: {[each.body for each in self.reports]}"

@@ -31,7 +31,10 @@ JPEG = base64.b64encode(b"\xff\xd8\xff picture \xff\xd9").decode()
 
 
 class CountingAgent:
-    """Implements `mend.robots.agent.AgentCore`; notes every command that it is handed."""
+    """Implements `mend.robots.agent.AgentCore`, and a group of this one robot.
+
+    Notes every command that it is handed.
+    """
 
     def __init__(
         self,
@@ -53,6 +56,10 @@ class CountingAgent:
         self._step = 0
         self._execution: str | None = None
         self._looks: deque[str] = deque()
+
+    @property
+    def agents(self) -> "list[CountingAgent]":
+        return [self]
 
     def hello(self, boot: str) -> Hello:
         executing = (

@@ -38,14 +38,14 @@ class CountingWorld:
         if not self._available:
             raise WorldUnavailableError("the world 'absent' needs a package that is not installed")
 
-    def create_agent(self, setup: WorldSetup) -> CountingAgent:
-        return HangingAgent(setup.robot, steps=50, pace=setup.speed)
+    def create_agents(self, setup: WorldSetup) -> CountingAgent:
+        return HangingAgent(setup.robots[0], steps=50, pace=setup.speed)
 
 
 class EndlessWorld(CountingWorld):
     """Building it never comes to an end."""
 
-    def create_agent(self, setup: WorldSetup) -> CountingAgent:  # noqa: ARG002
+    def create_agents(self, setup: WorldSetup) -> CountingAgent:  # noqa: ARG002
         sys.stderr.write("building for ever\n")
         sys.stderr.flush()
         while True:

@@ -8,6 +8,7 @@ from itertools import pairwise
 from typing import Any
 from uuid import UUID
 
+import httpx
 import numpy as np
 from broken_constraints import broken_constraints
 from service_process import ServiceProcess
@@ -230,3 +231,36 @@ class Ordeal:
         else:
             reason = view.result.reason if view.result else "it has not ended"
             findings.unfinished.append(f"run {run}: {view.status}: {reason}")
+
+
+async def doubled_starts(service: ServiceProcess, kills: int, *, committed: bool) -> list[str]:
+    """Lose the answer to a run that is asked for under a key, then ask twice more, so many times.
+
+    The service is killed as soon as the run is in the journal, or as soon as the request was sent.
+    Returns what is not as it should be, one run for each key.
+    """
+    request = RunRequest(tree="eket", world="tabletop", answers="none").model_dump(mode="json")
+    wrong: list[str] = []
+    for number in range(1, kills + 1):
+        sent: Any = {"json": request, "headers": {"Idempotency-Key": f'"{number}"'}}
+        async with httpx.AsyncClient(base_url=service.url, timeout=PATIENCE_S) as client:
+            lost = asyncio.create_task(client.post("/api/runs", **sent))
+            if committed:
+                await service.has_runs(number)
+            else:
+                await asyncio.sleep(0)
+            await service.kill()
+            await asyncio.gather(lost, return_exceptions=True)
+            await service.start()
+            answers = [await client.post("/api/runs", **sent) for _ in range(2)]
+            runs = [each["id"] for each in (await client.get("/api/runs")).json()]
+            codes = [each.status_code for each in answers]
+            if codes != [201, 201]:
+                wrong.append(f"key {number}: asked again, the service answers {codes}")
+                continue
+            told = {each.json()["id"] for each in answers}
+            if told != set(runs[:1]) or len(runs) != number:
+                wrong.append(f"key {number}: the answers tell of {told}, of all runs {runs}")
+            # So that the next life does not go on with all of them.
+            await client.post(f"/api/runs/{runs[0]}/abort")
+    return wrong

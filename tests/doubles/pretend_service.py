@@ -41,6 +41,9 @@ class NoHardware:
     async def restart(self, robot: str) -> None:
         self._restarted.append(robot)
 
+    def came(self, robot: str) -> None:
+        pass
+
     async def release(self) -> None: ...
 
 

@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 from drawn_scene import HEAD_POSE, PARTS, TABLE_Z, DrawnScene, Resting
 
-from mend.robots.body import CameraImage, NoWay, Reach, ToolPose
+from mend.robots.body import ArmRoom, CameraImage, NoWay, Reach, ToolPose
 from mend.robots.catalogue import Catalogue, Part
 from mend.robots.grasp import grasp_of
 from mend.robots.gripper import GripperModel
@@ -180,6 +180,10 @@ class ScriptedBody:
     @property
     def reach(self) -> Reach:
         return Reach((0.0, -0.2), 0.35, 0.80)
+
+    @property
+    def room(self) -> ArmRoom:
+        return ArmRoom([(NEUTRAL.x, NEUTRAL.y)], (HAND_OVER.x, HAND_OVER.y), 0.1)
 
     def time_s(self) -> float:
         return self.cycles * CYCLE_S

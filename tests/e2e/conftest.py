@@ -40,7 +40,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         if HERE not in item.path.parents:
             continue
         item.add_marker(pytest.mark.browser)
-        item.add_marker(pytest.mark.slow)
+        item.add_marker(pytest.mark.slow(5))
         if missing is not None:
             item.add_marker(pytest.mark.skip(reason=missing))
 

@@ -14,5 +14,12 @@ async def test_a_random_scenario_ends_and_what_it_says_is_true(seed: int) -> Non
     assert outcome.wrong == []
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [203, 206])
+async def test_two_robots_share_a_random_scene_and_never_touch(seed: int) -> None:
+    outcome = await run_once("tabletop", seed, robots=2, most_leaves=8)
+    assert outcome.wrong == []
+
+
 def test_the_sample_has_every_kind_of_helper() -> None:
     assert {KINDS[seed % len(KINDS)] for seed in range(40, 46)} == set(KINDS)

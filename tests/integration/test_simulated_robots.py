@@ -21,7 +21,7 @@ from mend.robots.link.messages import Interrupt, Shutdown, Start
 from mend.server.access.access import Access
 from mend.server.journal.sqlite import SqliteJournal
 from mend.server.robots.passes import OwnRobots
-from mend.server.robots.process import RobotProcess, launch
+from mend.server.robots.process import WorldProcess, launch
 from mend.server.robots.registry import RobotRegistry
 from mend.server.robots.simulation_thread import SimulationThread
 from mend.sim.world import WorldSetup
@@ -30,7 +30,7 @@ from mend.tasks.scene import Scene
 
 DOUBLES = Path(counting_world.__file__).parent
 SETUP = WorldSetup(
-    robot="counter", scene=Scene(name="empty", objects={}, places={}), seed=1, speed=None
+    robots=["counter"], scene=Scene(name="empty", objects={}, places={}), seed=1, speed=None
 )
 launched = partial(launch, aside=SimulationThread())
 START = Start(execution="e1", node="/0", behavior="count", parameters={})
@@ -97,7 +97,7 @@ async def test_a_process_that_hangs_is_killed(journal: SqliteJournal) -> None:
     sink = RecordingSink(journal)
     registry.assign("counter", sink)
     async with served(registry) as url:
-        robot = RobotProcess("counting", ended.put_nowait, registry, OwnRobots(), url, hang_s=1.5)
+        robot = WorldProcess("counting", ended.put_nowait, registry, OwnRobots(), url, hang_s=1.5)
         await robot.start(SETUP)
         await sink.wait_until(lambda: len(sink.hellos) == 1)
         registry.send("counter", "c1", Interrupt(retreat=False))
@@ -115,7 +115,7 @@ async def test_only_a_process_that_stands_still_itself_is_killed(journal: Sqlite
     sink = RecordingSink(journal)
     registry.assign("counter", sink)
     async with served(registry) as url:
-        robot = RobotProcess(
+        robot = WorldProcess(
             "counting", ended.put_nowait, registry, OwnRobots(), url, check_s=0.01, clock=clock
         )
         await robot.start(SETUP)
@@ -200,7 +200,12 @@ async def test_a_world_that_cannot_run_here_is_refused_with_its_reason(
 @pytest.mark.slow
 @pytest.mark.usefixtures("_worlds")
 async def test_a_process_whose_parent_died_ends_while_it_builds_its_world() -> None:
-    told = {"world": "endless", "url": "ws://unused", "setup": SETUP.model_dump(mode="json")}
+    told = {
+        "world": "endless",
+        "url": "ws://unused",
+        "setup": SETUP.model_dump(mode="json"),
+        "tokens": ["t"],
+    }
     process = await asyncio.create_subprocess_exec(
         sys.executable, "-P", "-m", "mend.sim.robot_process",
         stdin=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.PIPE,
@@ -230,7 +235,12 @@ async def run_process(told: bytes) -> tuple[int | None, str]:
 @pytest.mark.slow
 @pytest.mark.usefixtures("_worlds")
 async def test_a_process_that_cannot_run_says_so_in_one_sentence() -> None:
-    told = {"world": "absent", "url": "ws://unused", "setup": SETUP.model_dump(mode="json")}
+    told = {
+        "world": "absent",
+        "url": "ws://unused",
+        "setup": SETUP.model_dump(mode="json"),
+        "tokens": ["t"],
+    }
     code, complaint = await run_process(json.dumps(told).encode() + b"\n")
     assert code == 2
     assert complaint == "the world 'absent' needs a package that is not installed\n"

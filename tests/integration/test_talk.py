@@ -80,9 +80,14 @@ async def test_a_spoken_stop_pauses_the_run(service: ServiceUnderTest, voice: Co
 
 
 async def test_a_service_without_speech_is_read_instead() -> None:
-    device = WavDevice(await ToneVoice().render("-"))
+    device, told = WavDevice(await ToneVoice().render("-")), asyncio.Event()
+
+    def tell(line: str) -> None:
+        device.tell(line)
+        told.set()
+
     async with serving() as service, MendClient(service.url) as client, asyncio.timeout(60):
-        helping = asyncio.create_task(SpokenHelper(client, "anna", device, device.tell).run())
+        helping = asyncio.create_task(SpokenHelper(client, "anna", device, tell).run())
         run = await service.runs.start_run(REQUEST)
         view = await service.runs.raise_issue(run.id)
         assert view.prompt is not None
@@ -91,6 +96,7 @@ async def test_a_service_without_speech_is_read_instead() -> None:
             async for event in events:
                 if isinstance(event, DialogueClosed):
                     break
+        await told.wait()
         helping.cancel()
         await asyncio.gather(helping, return_exceptions=True)
     assert device.told[0].startswith("The service has no voice")

@@ -1,12 +1,11 @@
 """Whatever is sent to the REST API: no 5xx, and only what the OpenAPI says."""
 
-from collections.abc import Iterator
-
 import pytest
 import schemathesis
 from hypothesis import HealthCheck, settings
 from plain_problems import told_plainly
 from schemathesis.checks import not_a_server_error
+from schemathesis.pytest.lazy import get_all_tests
 from schemathesis.specs.openapi.checks import (
     content_type_conformance,
     response_schema_conformance,
@@ -14,21 +13,35 @@ from schemathesis.specs.openapi.checks import (
 )
 from service_under_test import build
 
-SERVICE = build(allowed_hosts=["testserver"])
-SCHEMA = schemathesis.openapi.from_asgi("/openapi.json", SERVICE.app)
+SETTINGS = settings(max_examples=10, deadline=None, suppress_health_check=list(HealthCheck))
 
 
-@pytest.fixture(autouse=True, scope="session")
-def _close() -> Iterator[None]:
-    """At the very end: a worker may come back to this file after others."""
-    yield
-    SERVICE.journal.close()
+@pytest.mark.slow(10)
+def test_rest(subtests: pytest.Subtests) -> None:
+    """Each operation in turn.
+
+    With `parametrize`, each process that collects the tests would draw all requests.
+    """
+    service = build(allowed_hosts=["testserver"])
+    schema = schemathesis.openapi.from_asgi("/openapi.json", service.app)
+    tests = [
+        each.ok()
+        for each in get_all_tests(
+            schema=schema, test_func=check, settings=SETTINGS, given_kwargs={}
+        )
+    ]
+    assert {operation.label for operation, _ in tests} == {
+        f"{method.upper()} {path}"
+        for path, methods in schema.raw_schema["paths"].items()
+        for method in methods
+    }
+    for operation, test in tests:
+        with subtests.test(operation.label):
+            test()
+    service.journal.close()
 
 
-@pytest.mark.slow
-@SCHEMA.parametrize()
-@settings(max_examples=10, deadline=None, suppress_health_check=list(HealthCheck))
-def test_rest(case: schemathesis.Case) -> None:
+def check(case: schemathesis.Case) -> None:
     case.call_and_validate(
         checks=[
             not_a_server_error,

@@ -18,7 +18,7 @@ PACKAGES = ("tasks", "maps", "dialogue", "localization", "robots", "fleet", "sim
 ASSET = re.compile(r'"/(assets/[^"]+)"')
 IMPORT = re.compile(r"""(?:\bfrom|\bimport)\s*\(?\s*["']\./([\w.-]+)["']""")
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.slow(18)
 
 
 @pytest.fixture(scope="module")

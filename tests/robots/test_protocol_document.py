@@ -24,6 +24,7 @@ PARTS: dict[str, type[BaseModel]] = {
     "detection": m.Detection,
     "finished_result": m.FinishedResult,
     "sighting": m.Sighting,
+    "room": m.RoomLimits,
     "clip_picture": m.ClipPicture,
     "shows": m.PoseLayout,
     "shown": m.ShownObject,

@@ -20,7 +20,7 @@ from mend.server.descriptors import (
 )
 from mend.server.journal.sqlite import SqliteJournal
 from mend.server.robots.passes import OwnRobots
-from mend.server.robots.process import InProcessRobot, RobotProcess
+from mend.server.robots.process import InProcessWorld, WorldProcess
 from mend.server.robots.registry import RobotRegistry
 from mend.server.robots.simulation_thread import SimulationThread
 from mend.sim.tabletop.adapter import adapter
@@ -67,11 +67,11 @@ class ShortOfDescriptors:
     def __init__(self) -> None:
         self.failures = 2
 
-    def create_agent(self, setup: WorldSetup) -> Any:
+    def create_agents(self, setup: WorldSetup) -> Any:
         if self.failures:
             self.failures -= 1
             raise OSError(errno.EMFILE, "Too many open files")
-        return adapter.create_agent(setup)
+        return adapter.create_agents(setup)
 
 
 async def test_a_robot_within_the_service_starts_once_there_are_descriptors(
@@ -83,9 +83,9 @@ async def test_a_robot_within_the_service_starts_once_there_are_descriptors(
     registry.assign("arm", sink)
     world = ShortOfDescriptors()
     ended: list[str] = []
-    robot = InProcessRobot(world, ended.append, registry, OwnRobots(), SimulationThread())  # type: ignore[arg-type]
+    robot = InProcessWorld(world, ended.append, registry, OwnRobots(), SimulationThread())  # type: ignore[arg-type]
     scene = lay_out([("part", "spot")], 1)
-    await robot.start(WorldSetup(robot="arm", scene=scene, seed=1, speed=None))
+    await robot.start(WorldSetup(robots=["arm"], scene=scene, seed=1, speed=None))
     async with asyncio.timeout(60):
         await sink.wait_until(lambda: len(sink.hellos) == 1)
     assert (world.failures, ended) == (0, [])
@@ -108,9 +108,9 @@ async def test_a_process_of_a_robot_starts_once_there_are_descriptors(
     monkeypatch.setattr(asyncio, "create_subprocess_exec", start)
     registry = RobotRegistry(journal, time.monotonic)
     ended: asyncio.Queue[str] = asyncio.Queue()
-    robot = RobotProcess("tabletop", ended.put_nowait, registry, OwnRobots(), "ws://localhost")
+    robot = WorldProcess("tabletop", ended.put_nowait, registry, OwnRobots(), "ws://localhost")
     scene = lay_out([("part", "spot")], 1)
-    await robot.start(WorldSetup(robot="arm", scene=scene, seed=1, speed=None))
+    await robot.start(WorldSetup(robots=["arm"], scene=scene, seed=1, speed=None))
     async with asyncio.timeout(60):
         assert await ended.get() == "its process ended with code 0"
     await robot.stop()
@@ -122,8 +122,8 @@ class FailsOnTheWay:
 
     own_process = False
 
-    def create_agent(self, setup: WorldSetup) -> Any:
-        agent = adapter.create_agent(setup)
+    def create_agents(self, setup: WorldSetup) -> Any:
+        agent = adapter.create_agents(setup)
 
         def advance(*_: Any) -> Any:
             raise OSError(errno.EMFILE, "Too many open files")
@@ -150,9 +150,9 @@ async def test_a_robot_that_fails_for_that_says_so_without_a_traceback(
         ended.append(reason)
         news.set()
 
-    robot = InProcessRobot(FailsOnTheWay(), end, registry, OwnRobots(), SimulationThread())  # type: ignore[arg-type]
+    robot = InProcessWorld(FailsOnTheWay(), end, registry, OwnRobots(), SimulationThread())  # type: ignore[arg-type]
     scene = lay_out([("part", "spot")], 1)
-    await robot.start(WorldSetup(robot="arm", scene=scene, seed=1, speed=None))
+    await robot.start(WorldSetup(robots=["arm"], scene=scene, seed=1, speed=None))
     registry.send("arm", "c1", Look())
     async with asyncio.timeout(60):
         await news.wait()

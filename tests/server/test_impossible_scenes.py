@@ -52,6 +52,7 @@ def leaf(name: str, place: str | None = None) -> dict[str, Any]:
 
 CUP, BOX, LID = leaf("cup"), leaf("box"), leaf("lid")
 ALL = {"and": [CUP, BOX, LID]}
+# A tree of the cup alone does where only it is impossible: a plan that fails is sought for long.
 
 
 def changed(**changes: Any) -> dict[str, Any]:
@@ -94,9 +95,9 @@ IMPOSSIBLE = [
     ("knob too wide", changed(lid__knob=[0.085, 0.09, 0.03]), ALL, "the knob of lid"),
     ("knob too narrow", changed(lid__knob=[0.005, 0.007, 0.03]), ALL, "the knob of lid"),
     # What the arm cannot reach.
-    ("starts too far", changed(cup__pose__x=0.95), ALL, "does not reach (0.950, -0.500"),
-    ("starts too far aside", changed(cup__pose={"x": 0.75, "y": -0.70}), ALL, None),
-    ("goes too far", changed(at_cup__pose__x=1.0), ALL, None),
+    ("starts too far", changed(cup__pose__x=0.95), CUP, "does not reach (0.950, -0.500"),
+    ("starts too far aside", changed(cup__pose={"x": 0.75, "y": -0.70}), CUP, None),
+    ("goes too far", changed(at_cup__pose__x=1.0), CUP, None),
     ("goes too high", changed(at_cup__pose__z=1.5), ALL, "is in the air"),
     # What would not stand.
     ("starts beyond the table", changed(cup__pose__x=1.2), ALL, "is beyond the table"),
@@ -119,7 +120,7 @@ IMPOSSIBLE = [
         {"then": [BOX, CUP, LID]},
         "would tip off box",
     ),
-    ("as high as a bottle rack", changed(cup__size=(0.06, 0.06, 0.28)), ALL, "is 280 mm high"),
+    ("as high as a bottle rack", changed(cup__size=(0.06, 0.06, 0.28)), CUP, "is 280 mm high"),
     ("a needle on end", changed(cup__size=(0.014, 0.014, 0.11)), ALL, "would tip over as soon as"),
     # No room.
     ("one spot", changed(cup__pose={"x": 0.58, "y": -0.35}), ALL, "start in one spot"),
@@ -195,7 +196,7 @@ UNSEEN = [
             cup__size=[0.03, 0.03, 0.03],
             screen=equal("cup", 0.41, -0.40, size=[0.04, 0.16, 0.28]),
         ),
-        ALL,
+        CUP,
         "screen hides cup from the head camera",
     ),
     ("too dark", changed(cup__color=[0.02, 0.02, 0.02]), ALL, "too dark"),

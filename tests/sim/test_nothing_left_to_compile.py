@@ -24,13 +24,14 @@ def compiled():
     }
 
 scene = built_in_scene("eket")
-setup = WorldSetup(robot="r", scene=scene, seed=1, speed=None)
-agent = find_world(sys.argv[1]).create_agent(setup)
+setup = WorldSetup(robots=["r"], scene=scene, seed=1, speed=None)
+group = find_world(sys.argv[1]).create_agents(setup)
+agent = group.agents[0]
 before = compiled()
 kinds = []
 agent.attach(lambda body, *_: kinds.append(body.type), lambda _: None)
 agent.handle("look", Look())
-while agent.advance(1.0):
+while group.advance(1.0):
     pass
 for name in ("green_leg", "blue_leg"):
     thing = scene.objects[name]
@@ -40,7 +41,7 @@ for name in ("green_leg", "blue_leg"):
         parameters={"object": name, "place": name}, size=thing.size,
         target={"x": at.x, "y": at.y, "z": at.z, "yaw": at.yaw},
     ))
-    while agent.advance(1.0):
+    while group.advance(1.0):
         pass
 assert before
 assert kinds.count("looked") == 1 and kinds.count("finished") == 2, kinds

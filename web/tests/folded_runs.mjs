@@ -6,7 +6,7 @@ export function foldedRuns(seeds) {
   const root = new URL("../../", import.meta.url).pathname;
   const lines = execFileSync("python", ["tests/doubles/folded_runs.py", ...seeds], {
     cwd: root,
-    env: { ...process.env, PYTHONPATH: `${root}:${root}tests/doubles` },
+    env: { ...process.env, PYTHONPATH: `${root}tests/doubles:${root}benchmarks` },
     encoding: "utf8",
     maxBuffer: 1 << 30,
   });

@@ -23,6 +23,8 @@ class Handle:
 
 
 class Setup:
+    robots = ("r",)
+
     def model_copy(self, update: Any) -> "Setup":  # noqa: ARG002
         return self
 

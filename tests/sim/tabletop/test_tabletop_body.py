@@ -195,7 +195,7 @@ def test_a_part_beyond_the_edge_falls_to_the_floor(scene: Scene) -> None:
 
 
 def test_neutral_hides_nothing_from_the_head_camera(world: TabletopWorld) -> None:
-    with_arm = world.head.capture_with_ids()[1]
+    with_arm = world.cameras[0].head.capture_with_ids()[1]
     for name in world.scene.objects:
         index = list(world.scene.objects).index(name)
         rows, columns = np.nonzero(with_arm == index)

@@ -20,7 +20,7 @@ def project(image: CameraImage, point: tuple[float, float, float]) -> tuple[floa
 def test_a_pixel_of_the_head_camera_unprojects_onto_the_part_that_it_shows(
     world: TabletopWorld,
 ) -> None:
-    image, ids = world.head.capture_with_ids()
+    image, ids = world.cameras[0].head.capture_with_ids()
     assert image.depth_m is not None
     rows, columns = np.nonzero(ids == 0)
     depth = image.depth_m[rows, columns].astype(float)
@@ -45,7 +45,7 @@ def test_the_forearm_camera_sees_the_held_part_around_the_tool_point(hands: Hand
     hands.pick("red")
     for yaw in (-1.0, 0.0, 0.7):
         hands.go(0.6, 0.0, 1.0, yaw)
-        image, ids = hands.world.forearm.capture_with_ids()
+        image, ids = hands.world.cameras[0].forearm.capture_with_ids()
         rows, columns = np.nonzero(ids == 0)
         u, v = project(image, hands.tool())
         assert len(rows) > 100
@@ -64,9 +64,9 @@ def test_pictures_carry_the_time_at_which_they_were_taken(hands: Hands) -> None:
 
 
 def test_camera_noise_is_as_strong_as_asked_and_the_same_for_a_seed(scene: Scene) -> None:
-    clean = TabletopWorld(scene, seed=1).head.capture().bgr.astype(float)
+    clean = TabletopWorld(scene, seed=1).cameras[0].head.capture().bgr.astype(float)
     noisy = [
-        TabletopWorld(scene, seed, TabletopOptions(camera_noise=4.0)).head.capture().bgr
+        TabletopWorld(scene, seed, TabletopOptions(camera_noise=4.0)).cameras[0].head.capture().bgr
         for seed in (1, 1, 2)
     ]
     assert (noisy[0].astype(float) - clean).std() == pytest.approx(4.0, rel=0.15)

@@ -20,14 +20,14 @@ def make_driver(
     scene: Scene = LAID_OUT, *interventions: ScriptedIntervention, **options: float
 ) -> Driver:
     setup = WorldSetup(
-        robot="r1",
+        robots=["r1"],
         scene=scene,
         seed=3,
         speed=None,
         interventions=list(interventions),
         options=dict(options),
     )
-    return Driver(TabletopAdapter().create_agent(setup))
+    return Driver(TabletopAdapter().create_agents(setup))
 
 
 def during(step: int, fraction: float, do: Intervention) -> ScriptedIntervention:

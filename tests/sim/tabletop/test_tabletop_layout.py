@@ -71,7 +71,7 @@ def test_colors_stay_apart_in_hue_and_saturation_when_shaded(count: int) -> None
 def test_every_object_is_seen_by_the_head_camera_even_in_the_fullest_scene() -> None:
     names = [(f"o{i}", f"p{i}") for i in range(MOST_OBJECTS)]
     world = TabletopWorld(lay_out(names, 4), seed=0)
-    _, ids = world.head.capture_with_ids()
+    _, ids = world.cameras[0].head.capture_with_ids()
     counts = np.bincount(ids[(ids >= 0) & (ids < MOST_OBJECTS)], minlength=MOST_OBJECTS)
     assert counts.min() >= 30
 

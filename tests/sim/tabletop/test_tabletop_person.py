@@ -26,7 +26,7 @@ def position(world: TabletopWorld, name: str) -> tuple[float, float, float]:
 def test_a_stolen_part_is_gone_from_the_table(world: TabletopWorld) -> None:
     assert do(world, Act.STEAL, "red") == ""
     assert world.pose_of("red") is None
-    assert not (world.head.capture_with_ids()[1] == 0).any()
+    assert not (world.cameras[0].head.capture_with_ids()[1] == 0).any()
 
 
 def test_a_part_vanishes_from_between_the_fingers(hands: Hands) -> None:
@@ -34,7 +34,7 @@ def test_a_part_vanishes_from_between_the_fingers(hands: Hands) -> None:
     assert do(hands.world, Act.STEAL, "red") == ""
     assert hands.world.held is None
     assert hands.body.gripper_opening_m() == 0.0
-    assert not (hands.world.forearm.capture_with_ids()[1] == 0).any()
+    assert not (hands.world.cameras[0].forearm.capture_with_ids()[1] == 0).any()
 
 
 def test_a_pulled_part_is_seen_sliding_out_before_it_is_gone(hands: Hands) -> None:
@@ -132,10 +132,10 @@ def test_a_part_is_held_out_between_open_fingers_at_rest_and_can_be_gripped(
     hands.body.follow(hands.body.plan_hand_over(), 0, 1.0)
     assert do(hands.world, Act.HAND_OVER, "far") == ""
     hands.body.advance_cycle()
-    assert not (hands.world.forearm.capture_with_ids()[1] == 3).any()
+    assert not (hands.world.cameras[0].forearm.capture_with_ids()[1] == 3).any()
     hands.settle()
     hands.wait(0.2)
-    assert (hands.world.forearm.capture_with_ids()[1] == 3).sum() > 50
+    assert (hands.world.cameras[0].forearm.capture_with_ids()[1] == 3).sum() > 50
     hands.close()
     assert hands.world.held == "far"
     hands.wait(HAND_OVER_S + 1)
@@ -146,7 +146,7 @@ def test_nobody_offers_a_part_to_closed_fingers(hands: Hands) -> None:
     hands.close()
     do(hands.world, Act.HAND_OVER, "far")
     hands.wait(1.0)
-    assert not (hands.world.forearm.capture_with_ids()[1] == 3).any()
+    assert not (hands.world.cameras[0].forearm.capture_with_ids()[1] == 3).any()
 
 
 def test_a_part_that_nobody_takes_is_put_back_down(hands: Hands) -> None:
@@ -154,7 +154,7 @@ def test_a_part_that_nobody_takes_is_put_back_down(hands: Hands) -> None:
     do(hands.world, Act.HAND_OVER, "far")
     hands.wait(HAND_OVER_S + 0.5)
     assert position(hands.world, "far") == pytest.approx(start)
-    assert (hands.world.head.capture_with_ids()[1] == 3).any()
+    assert (hands.world.cameras[0].head.capture_with_ids()[1] == 3).any()
 
 
 def test_one_part_is_handed_over_at_a_time(world: TabletopWorld) -> None:
@@ -208,9 +208,9 @@ def test_an_arm_that_is_held_up_gives_the_motion_up(hands: Hands) -> None:
 
 
 def test_somebody_in_the_way_is_seen_by_the_head_camera(world: TabletopWorld) -> None:
-    before = world.head.capture().depth_m
+    before = world.cameras[0].head.capture().depth_m
     do(world, Act.BLOCK)
-    after = world.head.capture().depth_m
+    after = world.cameras[0].head.capture().depth_m
     assert before is not None
     assert after is not None
     assert ((before - after) > 0.05).sum() > 100

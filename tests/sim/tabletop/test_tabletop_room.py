@@ -33,8 +33,8 @@ SCENE = Scene(
 
 def driver_with(*beside: str) -> Driver:
     """Some posts stand close to the spot."""
-    setup = WorldSetup(robot="r1", scene=SCENE, seed=3, speed=None, interventions=[], options={})
-    driver = Driver(TabletopAdapter().create_agent(setup))
+    setup = WorldSetup(robots=["r1"], scene=SCENE, seed=3, speed=None, interventions=[], options={})
+    driver = Driver(TabletopAdapter().create_agents(setup))
     for name in beside:
         person(driver, Act.MOVE, object=name, to=BESIDE[name])
     return driver

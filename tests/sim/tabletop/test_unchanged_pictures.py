@@ -16,16 +16,16 @@ def world(**options: float) -> TabletopWorld:
 
 def test_nothing_is_drawn_again_while_nothing_changes() -> None:
     quiet = world()
-    first = quiet.head.capture()
+    first = quiet.cameras[0].head.capture()
     quiet.body.advance_cycle()
-    later = quiet.head.capture()
+    later = quiet.cameras[0].head.capture()
     assert later.time > first.time
     assert later.bgr is first.bgr
     assert later.depth_m is first.depth_m
 
 
 def test_nobody_can_draw_into_a_picture_that_is_given_again() -> None:
-    picture = world().head.capture()
+    picture = world().cameras[0].head.capture()
     with pytest.raises(ValueError, match="read-only"):
         picture.bgr[0, 0] = 0
 
@@ -40,27 +40,27 @@ def test_nobody_can_draw_into_a_picture_that_is_given_again() -> None:
 )
 def test_what_somebody_changes_is_seen(deed: Intervention) -> None:
     quiet = world()
-    before = quiet.head.capture()
+    before = quiet.cameras[0].head.capture()
     assert quiet.intervene(deed) == ""
     quiet.body.advance_cycle()
-    after = quiet.head.capture()
+    after = quiet.cameras[0].head.capture()
     assert not np.array_equal(before.bgr, after.bgr)
-    fresh, _ = world().head.capture_with_ids()
+    fresh, _ = world().cameras[0].head.capture_with_ids()
     assert np.array_equal(before.bgr, fresh.bgr)
 
 
 def test_each_camera_has_its_own_picture() -> None:
     quiet = world()
-    head, forearm = quiet.head.capture(), quiet.forearm.capture()
-    assert quiet.head.capture().bgr is head.bgr
-    assert quiet.forearm.capture().bgr is forearm.bgr
+    head, forearm = quiet.cameras[0].head.capture(), quiet.cameras[0].forearm.capture()
+    assert quiet.cameras[0].head.capture().bgr is head.bgr
+    assert quiet.cameras[0].forearm.capture().bgr is forearm.bgr
 
 
 @pytest.mark.parametrize("option", ["light", "depth_noise", "camera_noise"])
 def test_noise_is_new_in_every_picture(option: str) -> None:
     noisy = world(**{option: 1.0})
-    first = noisy.head.capture()
+    first = noisy.cameras[0].head.capture()
     noisy.body.advance_cycle()
-    later = noisy.head.capture()
+    later = noisy.cameras[0].head.capture()
     same = first.bgr is later.bgr and first.depth_m is later.depth_m
     assert not same

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from workcell_hands import TABLE_M, distance_m
 
+from mend.errors import WrongInputError
 from mend.robots.link.messages import (
     Finished,
     Intervene,
@@ -18,7 +19,7 @@ from mend.robots.link.messages import (
     Resume,
     Start,
 )
-from mend.sim.simulated_agent import SimulatedAgent
+from mend.sim.shared_world import SharedWorld
 from mend.sim.workcell.adapter import adapter
 from mend.sim.workcell.body import PERIOD_S
 from mend.sim.workcell.parts import PartPose
@@ -39,37 +40,35 @@ def place_bar(
     options: dict[str, object],
     interventions: Sequence[ScriptedIntervention] = (),
     beforehand: Sequence[Intervention] = (),
-) -> tuple[SimulatedAgent, list[ReportBody]]:
+) -> tuple[SharedWorld, list[ReportBody]]:
     """Let a robot place the bar, after what people did `beforehand`; what it reported."""
     setup = WorldSetup(
-        robot="r1",
+        robots=["r1"],
         scene=scene,
         seed=2,
         speed=None,
         options=options,
         interventions=list(interventions),
     )
-    agent = adapter.create_agent(setup)
-    return agent, do(agent, "bar", beforehand)
+    group = adapter.create_agents(setup)
+    return group, do(group, "bar", beforehand)
 
 
-def do(
-    agent: SimulatedAgent, name: str, beforehand: Sequence[Intervention] = ()
-) -> list[ReportBody]:
+def do(group: SharedWorld, name: str, beforehand: Sequence[Intervention] = ()) -> list[ReportBody]:
     """Let a robot place a part; what it reports, then and later."""
     reports: list[ReportBody] = []
-    agent.attach(lambda body, _time, _world: reports.append(body), lambda _picture: None)
+    group.agents[0].attach(lambda body, _time, _world: reports.append(body), lambda _picture: None)
     for number, each in enumerate(beforehand):
-        agent.handle(f"before {number}", Intervene(intervention=each, by="ann"))
-    start(agent, name, Location(x=0.55, y=0.0))
-    while agent.advance(1.0):
+        group.agents[0].handle(f"before {number}", Intervene(intervention=each, by="ann"))
+    start(group, name, Location(x=0.55, y=0.0))
+    while group.advance(1.0):
         pass
     return reports
 
 
-def start(agent: SimulatedAgent, name: str, target: Location) -> None:
+def start(group: SharedWorld, name: str, target: Location) -> None:
     """Have a robot bring a part to where `left` is, or somewhere else."""
-    agent.handle(
+    group.agents[0].handle(
         "1",
         Start(
             execution="e",
@@ -90,11 +89,11 @@ def test_a_heavy_part_does_not_swing_between_the_fingers() -> None:
     )
     target = Location(x=0.492, y=-0.1365, yaw=-2.05)
     scene = Scene(name="one", objects={"part": part}, places={"left": Place(pose=Pose(x=0, y=0))})
-    agent = adapter.create_agent(WorldSetup(robot="r1", scene=scene, seed=1, speed=None))
-    agent.attach(lambda _body, _time, _world: None, lambda _picture: None)
-    start(agent, "part", target)
-    world, positions_m = world_of(agent), []
-    while agent.advance(PERIOD_S):
+    group = adapter.create_agents(WorldSetup(robots=["r1"], scene=scene, seed=1, speed=None))
+    group.agents[0].attach(lambda _body, _time, _world: None, lambda _picture: None)
+    start(group, "part", target)
+    world, positions_m = world_of(group), []
+    while group.advance(PERIOD_S):
         positions_m.append(world.parts["part"].pose().position)
     carried = np.array([each for each in positions_m if each[2] > TABLE_M + 0.03])
     jerks_m = np.diff(carried[:, :2], 2, axis=0)
@@ -103,8 +102,8 @@ def test_a_heavy_part_does_not_swing_between_the_fingers() -> None:
     assert math.sqrt((jerks_m**2).mean()) < 3e-5
 
 
-def world_of(agent: SimulatedAgent) -> WorkcellWorld:
-    world = agent._world
+def world_of(group: SharedWorld) -> WorkcellWorld:
+    world = group.world
     assert isinstance(world, WorkcellWorld)
     return world
 
@@ -120,10 +119,10 @@ def world_of(agent: SimulatedAgent) -> WorkcellWorld:
 def test_a_part_found_by_camera_is_placed_within_3_mm(
     scene: Scene, options: dict[str, object]
 ) -> None:
-    agent, reports = place_bar(scene, options)
+    group, reports = place_bar(scene, options)
     assert not [each for each in reports if isinstance(each, IssueDetected)]
     assert isinstance(reports[-1], Finished)
-    assert distance_m(world_of(agent).parts["bar"].pose(), PLACE) < 0.003
+    assert distance_m(world_of(group).parts["bar"].pose(), PLACE) < 0.003
 
 
 @pytest.mark.parametrize(
@@ -150,19 +149,19 @@ def test_a_place_that_is_taken_is_seen_cleared_and_then_filled(
     scene: Scene, options: dict[str, object]
 ) -> None:
     taken = Intervention(act=Act.PLACE, object="leg", place="left")
-    agent, reports = place_bar(scene, options, beforehand=[taken])
+    group, reports = place_bar(scene, options, beforehand=[taken])
     issues = [each for each in reports if isinstance(each, IssueDetected)]
     assert [each.issue for each in issues] == ["blocked"]
     assert "leg is where bar belongs" in issues[0].detection.explanation
     freed = Intervention(act=Act.RELEASE, object="bar", place="left")
     look = Look(object="bar", place="left", expect="way_clear", within_s=1.0)
     for command in (look, Intervene(intervention=freed, by="ann"), look, Resume(execution="e")):
-        agent.handle("next", command)
-        while agent.advance(1.0):
+        group.agents[0].handle("next", command)
+        while group.advance(1.0):
             pass
     assert [each.fulfilled for each in reports if isinstance(each, Looked)] == [False, True]
     assert isinstance(reports[-1], Finished)
-    assert distance_m(world_of(agent).parts["bar"].pose(), PLACE) < 0.003
+    assert distance_m(world_of(group).parts["bar"].pose(), PLACE) < 0.003
 
 
 @pytest.mark.parametrize("fraction", [0.2, 0.7, 0.9])
@@ -170,24 +169,26 @@ def test_somebody_in_the_way_is_met_however_late_they_come(scene: Scene, fractio
     blocked = ScriptedIntervention(
         when=Trigger(object="bar", step=5, fraction=fraction), do=Intervention(act=Act.BLOCK)
     )
-    agent, reports = place_bar(scene, {}, [blocked])
+    group, reports = place_bar(scene, {}, [blocked])
     assert [each.issue for each in reports if isinstance(each, IssueDetected)] == ["blocked"]
-    assert world_of(agent).held == "bar"
+    assert world_of(group).held == "bar"
 
 
 def test_the_robot_declares_the_range_that_it_grasps_in(scene: Scene) -> None:
-    agent = adapter.create_agent(WorldSetup(robot="r1", scene=scene, seed=0, speed=None))
-    reach = agent.hello("boot").reach
+    group = adapter.create_agents(WorldSetup(robots=["r1"], scene=scene, seed=0, speed=None))
+    reach = group.agents[0].hello("boot").reach
     assert math.dist((reach.x, reach.y), (-0.05, -0.188)) < 1e-6
     assert (reach.min_m, reach.max_m) == (0.30, 0.81)
 
 
 def test_a_wrong_option_stops_the_robot_from_being_made(scene: Scene) -> None:
-    setup = WorldSetup(robot="r1", scene=scene, seed=0, speed=None, options={"renderer": "laser"})
+    setup = WorldSetup(
+        robots=["r1"], scene=scene, seed=0, speed=None, options={"renderer": "laser"}
+    )
     with pytest.raises(
-        ValueError, match="an option of the world 'workcell' is wrong: 'renderer' must"
+        WrongInputError, match="an option of the world 'workcell' is wrong: 'renderer' must"
     ):
-        adapter.create_agent(setup)
+        adapter.create_agents(setup)
 
 
 def test_the_workcell_is_offered_to_runs() -> None:
@@ -218,13 +219,13 @@ def test_fingers_that_close_beside_a_part_leave_it_where_it_is() -> None:
         },
         places={"left": Place(pose=Pose(x=0.55, y=0.0))},
     )
-    setup = WorldSetup(robot="r1", scene=made, seed=2, speed=None)
+    setup = WorldSetup(robots=["r1"], scene=made, seed=2, speed=None)
     assert isinstance(adapter, SceneChecker)
     assert adapter.check_scene(made, []) == []
-    agent = adapter.create_agent(setup)
-    parts = world_of(agent).parts
+    group = adapter.create_agents(setup)
+    parts = world_of(group).parts
     before = {name: parts[name].pose() for name in ("base", "top")}
-    reports = do(agent, "peg")
+    reports = do(group, "peg")
     assert isinstance(reports[-1], Finished)
     for name, pose in before.items():
         assert distance_m(parts[name].pose(), pose) < 0.0005

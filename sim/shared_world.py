@@ -1,0 +1,105 @@
+"""A simulated world with robots in it: time passes for all of them at once."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from mend.robots.robot import Robot
+from mend.sim.simulated_agent import SimulatedAgent
+from mend.sim.surroundings import Surroundings
+from mend.sim.world import World
+from mend.tasks.scenario import ScriptedIntervention
+
+_EPSILON_S = 1e-9
+
+
+class SharedWorld:
+    """An `AgentGroup`: robots in one world, and the people around them.
+
+    A control cycle passes for all robots at a time, while any of them is busy.
+    """
+
+    def __init__(
+        self,
+        world: World,
+        robots: Sequence[Robot],
+        *,
+        speed: float | None,
+        interventions: Sequence[ScriptedIntervention] = (),
+        snapshot: dict[str, Any] | None = None,
+    ) -> None:
+        """`speed`: simulated seconds per second, None as fast as possible.
+
+        Raises `ValueError` for a snapshot that does not fit the world.
+        """
+        self._robots = list(robots)
+        self._surroundings = Surroundings(world, self._robots, interventions)
+        self._agents = [SimulatedAgent(each, self._surroundings) for each in self._robots]
+        # What people do is told once.
+        self._surroundings.tell = self._agents[0].report
+        self._speed = speed
+        if snapshot is not None:
+            self._surroundings.restore(snapshot)
+
+    @property
+    def world(self) -> World:
+        """The world as it really is; for tests and benchmarks to judge by."""
+        return self._surroundings.world
+
+    @property
+    def agents(self) -> Sequence[SimulatedAgent]:
+        return self._agents
+
+    @property
+    def pace(self) -> float | None:
+        """Simulated seconds per wall second wanted now: of the slowest that any robot wants."""
+        wanted = [each.pace(self._speed) for each in self._agents if each.busy] or [self._speed]
+        return min((each for each in wanted if each is not None), default=None)
+
+    def time_s(self) -> float:
+        """The world's clock."""
+        return self._surroundings.time_s()
+
+    @property
+    def shut_down(self) -> bool:
+        """Whether a `shutdown` command came."""
+        return self._surroundings.shut_down
+
+    def snapshot(self) -> dict[str, Any]:
+        """The state from which robots in the same scene can be rebuilt; JSON-compatible."""
+        return self._surroundings.snapshot()
+
+    def advance(self, duration_s: float) -> bool:
+        """Let up to `duration_s` of the clock pass; False when there is nothing to do."""
+        end_s = self.time_s() + duration_s
+        self._surroundings.told_at_once = False
+        while not self._surroundings.told_at_once and not self.shut_down:
+            self._let_people_act()
+            ended = [each.end_hold() for each in self._agents]
+            if any(ended):
+                break
+            if not self._busy or self.time_s() >= end_s - _EPSILON_S:
+                break
+            self._let_cycle_pass()
+        return self._busy
+
+    @property
+    def _busy(self) -> bool:
+        return not self.shut_down and any(each.busy for each in self._agents)
+
+    def _let_people_act(self) -> None:
+        if self._surroundings.somebody_waits:
+            self._surroundings.let_people_act([each.note_progress() for each in self._agents])
+
+    def _let_cycle_pass(self) -> None:
+        """One control cycle at most, so that people act in the very cycle that is theirs."""
+        for robot in self._robots:
+            robot.begin_slice()
+            robot.decide()
+        waits = any(each.holds for each in self._agents)
+        active = any(each.active for each in self._robots)
+        if self._surroundings.told_at_once or not (waits or active):
+            return
+        self._surroundings.world.advance_cycle()
+        for robot in self._robots:
+            robot.end_cycle()
+            robot.decide()

@@ -1,0 +1,41 @@
+"""Every view at every width, light and dark: what axe finds, what overlaps, what sticks out.
+
+Each is played once, and all is looked at in it.
+"""
+
+import pytest
+from console_in_browser import OpenPage, settle
+from console_situations import SITUATIONS, Situation
+from playwright.async_api import Page, ViewportSize
+from test_accessibility import PHONE, RULES, load_axe, violations
+from test_layout import TALL, WIDTHS, overlaps
+
+from mend.server.composition import Service
+
+# One event loop for all tests of the console, and so one browser.
+pytestmark = pytest.mark.asyncio(loop_scope="session")
+
+# Tall: all of a page is looked at, and not only what the chance of scrolling shows of it.
+SIZES = [ViewportSize(width=width, height=TALL) for width in WIDTHS]
+
+
+@pytest.mark.parametrize("situation", SITUATIONS.values(), ids=SITUATIONS)
+async def test_nothing_is_wrong_with_it(
+    service: Service, open_page: OpenPage, situation: Situation
+) -> None:
+    async def opened(path: str) -> Page:
+        return await open_page(path, viewport=PHONE, color_scheme="light")
+
+    page = await situation(service, opened)
+    await load_axe(page)
+    for size in (PHONE, *SIZES):
+        await page.set_viewport_size(size)
+        for theme, rules in RULES.items():
+            await page.emulate_media(color_scheme=theme)
+            await settle(page)
+            where = f"{size}, {theme}"
+            assert await violations(page, rules) == [], where
+            if size is not PHONE:
+                assert await overlaps(page) == [], where
+        beyond = await page.evaluate("document.documentElement.scrollWidth - innerWidth")
+        assert beyond <= 0, f"{beyond} px too wide at {size}"

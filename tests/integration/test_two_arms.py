@@ -1,0 +1,123 @@
+"""Two arms that share a table and a task, as the examples have it."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import pytest
+from broken_constraints import broken_constraints
+from touching_robots import touching_robots
+from untruths import kinds_of
+from watched_world import where_parts_rest
+
+from mend.server.composition import open_service
+from mend.server.errors import ImpossibleError
+from mend.server.journal import events as ev
+from mend.server.journal.sqlite import IN_MEMORY
+from mend.server.journal.stored_event import read_event
+from mend.server.runtime.requests import RunRequest
+from mend.server.settings import Settings
+from mend.sim.workcell.adapter import ONE_ROBOT
+
+EXAMPLES = Path(__file__).parents[2] / "examples" / "two_arms"
+THERE_M = 0.005
+CARRYING = 5
+"""The step in which a part is on its way."""
+
+
+def settings(journal: str | Path = IN_MEMORY) -> Settings:
+    return Settings(port=0, journal=Path(journal), log_level="error", speech_voice="none")
+
+
+def request(tree: str, scene: str, world: str = "tabletop") -> RunRequest:
+    return RunRequest(tree=tree, scene=scene, world=world, speed="max", seed=3, answers="none")
+
+
+async def done_in(tree: str, scene: str | None) -> Sequence[ev.Event]:
+    """The events of a run that nobody helps, in which every part comes to its place."""
+    async with open_service(settings()) as service:
+        if scene is not None:
+            await service.library.scenes.save(scene, (EXAMPLES / f"{scene}.yaml").read_text())
+        if (EXAMPLES / f"{tree}.yaml").exists():
+            await service.library.trees.save(tree, (EXAMPLES / f"{tree}.yaml").read_text())
+        run = await service.runtime.start_run(request(tree, scene or tree))
+        await service.runtime.wait_for_end(run.id)
+        events = await service.journal.read(0, 100_000, run.id)
+        snapshot = await service.journal.world(run.id)
+    started = events[0]
+    assert isinstance(started, ev.RunStarted)
+    assert isinstance(events[-1], ev.RunFinished)
+    assert broken_constraints(events, kinds_of(started)) == []
+    resting = where_parts_rest(started, snapshot)
+    for name, rest in resting.items():
+        pose = started.scene["places"][name]["pose"]
+        assert rest is not None
+        assert (rest.x, rest.y) == pytest.approx((pose["x"], pose["y"]), abs=THERE_M)
+    return events
+
+
+def by_robot(events: Sequence[ev.Event]) -> dict[str, list[str]]:
+    """The leaves that each robot has begun, by the name that the scene gives it."""
+    begun: dict[str, list[str]] = {}
+    for each in events:
+        if isinstance(each, ev.NodeStarted):
+            begun.setdefault(each.robot.rpartition("-")[0], []).append(each.name)
+    return begun
+
+
+@pytest.mark.slow
+async def test_a_kit_is_done_more_than_1_6_times_faster_than_by_one() -> None:
+    alone = await done_in("kit", None)
+    with touching_robots() as touched:
+        together = await done_in("kit", "kit_for_two")
+    assert touched == []
+    begun = by_robot(together)
+    assert {name: len(leaves) for name, leaves in begun.items()} == {"left": 11, "right": 9}
+    assert not [each for each in together if isinstance(each, ev.IssueRaised)]
+    # Simulated time: the same on every machine.
+    assert alone[-1].time / together[-1].time > 1.6
+
+
+@pytest.mark.slow
+async def test_parts_that_cross_the_table_are_passed_on_without_asking_anybody() -> None:
+    with touching_robots() as touched:
+        events = await done_in("swap", "across")
+    assert touched == []
+    assert by_robot(events) == {
+        "left": ["cup_to_transfer", "jar_from_transfer"],
+        "right": ["jar_to_transfer", "cup_from_transfer"],
+    }
+    assert not [each for each in events if isinstance(each, ev.Prompt)]
+
+
+@pytest.mark.slow
+async def test_two_arms_go_on_where_a_stopped_service_left_them(tmp_path: Path) -> None:
+    journal = tmp_path / "journal.db"
+    with touching_robots() as touched:
+        async with open_service(settings(journal)) as service:
+            scene = (EXAMPLES / "kit_for_two.yaml").read_text()
+            await service.library.scenes.save("kit_for_two", scene)
+            run = (await service.runtime.start_run(request("kit", "kit_for_two"))).id
+            with service.journal.subscribe(0) as records:
+                async for record in records:
+                    event = read_event(record.seq, record.text)
+                    if isinstance(event, ev.StepStarted) and event.step == CARRYING:
+                        break
+        async with open_service(settings(journal), recover=True) as service:
+            view = await service.runtime.wait_for_end(run)
+            events = await service.journal.read(0, 100_000, run)
+    assert touched == []
+    assert view.status == "finished"
+    started = events[0]
+    assert isinstance(started, ev.RunStarted)
+    assert broken_constraints(events, kinds_of(started)) == []
+    assert len([each for each in events if isinstance(each, ev.NodeDone)]) == 20
+
+
+async def test_the_workcell_says_that_it_has_one_robot() -> None:
+    pytest.importorskip("pybullet")
+    async with open_service(settings()) as service:
+        scene = (EXAMPLES / "kit_for_two.yaml").read_text()
+        await service.library.scenes.save("kit_for_two", scene)
+        with pytest.raises(ImpossibleError) as refused:
+            await service.runtime.start_run(request("kit", "kit_for_two", "workcell"))
+    assert [each.message for each in refused.value.scene_problems] == [ONE_ROBOT]

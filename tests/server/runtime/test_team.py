@@ -1,0 +1,217 @@
+"""Robots that share a run: who can do a leaf, and who may be where."""
+
+from typing import Any
+
+import pytest
+from shapely import Point
+
+from mend.robots.link.messages import (
+    CommandBody,
+    Hello,
+    Holding,
+    Looked,
+    Position,
+    ReachLimits,
+    RoomLimits,
+    Sighting,
+)
+from mend.server.runtime.robot_side import RobotSide
+from mend.server.runtime.team import Team, held_by
+from mend.tasks.definition import BehaviorNode
+from mend.tasks.frames import Frame
+from mend.tasks.scene import Place, Pose, Scene, SceneObject
+
+ROOM = RoomLimits(resting=[(0.5, -0.9)], hand_over=(0.4, 0.0), around_m=0.1)
+ACROSS = Frame(1.24, 0.0, 2)
+COLOR, SIZE = (0.9, 0.1, 0.1), (0.04, 0.04, 0.05)
+
+
+class Link:
+    """Notes nothing: what robots are told is not looked at here."""
+
+    def send(self, robot: str, command_id: str, body: CommandBody, *, renews: bool = True) -> None:
+        pass
+
+
+def hello(robot: str, **fields: Any) -> Hello:
+    given: dict[str, Any] = {
+        "protocol": 1,
+        "robot": robot,
+        "boot": "b",
+        "behaviors": ["pick_and_place"],
+        "cameras": [],
+        "reach": ReachLimits(x=0.0, y=-0.19, min_m=0.4, max_m=0.79),
+        "time": 0.0,
+        "room": ROOM,
+    }
+    return Hello(**given | fields)
+
+
+def leaf(part: str) -> BehaviorNode:
+    return BehaviorNode(
+        parent=0,
+        name=part,
+        behavior="pick_and_place",
+        parameters={"object": part, "place": part},
+    )
+
+
+def scene(**ways: tuple[float, float, float, float]) -> Scene:
+    """Parts by name, each with where it is and where it is to be."""
+    return Scene(
+        name="s",
+        objects={
+            name: SceneObject(color=COLOR, size=SIZE, pose=Pose(x=way[0], y=way[1]))
+            for name, way in ways.items()
+        },
+        places={name: Place(pose=Pose(x=way[2], y=way[3])) for name, way in ways.items()},
+    )
+
+
+NEAR = (0.45, -0.4, 0.45, -0.2)
+"""What only the robot in the middle reaches."""
+FAR = (0.79, 0.4, 0.79, 0.2)
+"""What only the one across the table reaches."""
+MIDDLE = (0.62, -0.1, 0.62, 0.1)
+"""What both reach."""
+
+
+@pytest.fixture
+def team() -> Team:
+    return Team(scene(near=NEAR, far=FAR, middle=MIDDLE))
+
+
+@pytest.fixture
+def pair(team: Team) -> tuple[RobotSide, RobotSide]:
+    here, there = RobotSide("here", Link()), RobotSide("there", Link(), ACROSS)
+    team.join({"here": here, "there": there})
+    here.connect(hello("here"))
+    there.connect(hello("there"))
+    return here, there
+
+
+def test_what_only_another_reaches_is_left_to_it(
+    team: Team, pair: tuple[RobotSide, RobotSide]
+) -> None:
+    here, there = pair
+    left = {
+        (side.robot, part): team.leaves_to_others(side, leaf(part))
+        for side in (here, there)
+        for part in ("near", "far", "middle")
+    }
+    assert {who for who, is_left in left.items() if is_left} == {("here", "far"), ("there", "near")}
+
+
+def test_what_nobody_reaches_is_tried_so_that_people_are_asked(
+    pair: tuple[RobotSide, RobotSide],
+) -> None:
+    team = Team(scene(lost=(3.0, 3.0, 0.62, 0.1)))
+    team.join({each.robot: each for each in pair})
+    assert not any(team.leaves_to_others(side, leaf("lost")) for side in pair)
+
+
+def test_where_a_part_was_seen_counts_and_not_where_it_began(
+    team: Team, pair: tuple[RobotSide, RobotSide]
+) -> None:
+    here, there = pair
+    # In its own frame, which is turned by half a turn.
+    seen = Sighting(x=0.62, y=0.1, z=0.7, yaw=0.0, time=1.0)
+    there.take_look(looked(far=seen), time=1.0)
+    assert there.seen["far"].x == pytest.approx(0.62)
+    assert there.seen["far"].y == pytest.approx(-0.1)
+    assert team.leaves_to_others(here, leaf("far"))
+    places = team_with_place_in_the_middle(pair)
+    assert not places.leaves_to_others(here, leaf("far"))
+
+
+def team_with_place_in_the_middle(pair: tuple[RobotSide, RobotSide]) -> Team:
+    team = Team(scene(far=(0.79, 0.4, 0.62, 0.1)))
+    team.join({each.robot: each for each in pair})
+    return team
+
+
+def looked(**objects: Sighting) -> Looked:
+    return Looked(command="c", objects=objects, gripper=Position(x=0.5, y=-0.9, z=1.0))
+
+
+def test_space_is_held_by_one_until_its_arm_rests_again(
+    team: Team, pair: tuple[RobotSide, RobotSide]
+) -> None:
+    here, there = pair
+    assert team.may_begin(here, leaf("middle"))
+    team.take(here, leaf("middle"))
+    assert not team.may_begin(there, leaf("middle"))
+    # What it holds itself is not in its way.
+    assert team.may_begin(here, leaf("near"))
+    here.finish()
+    assert team.may_begin(there, leaf("middle"))
+
+
+def test_robots_work_side_by_side_where_their_ways_do_not_meet(
+    team: Team, pair: tuple[RobotSide, RobotSide]
+) -> None:
+    here, there = pair
+    team.take(here, leaf("near"))
+    assert team.may_begin(there, leaf("far"))
+    team.take(there, leaf("far"))
+    assert not held_by(here).intersects(held_by(there))
+
+
+def test_an_arm_that_has_stopped_on_its_way_keeps_its_space(
+    team: Team, pair: tuple[RobotSide, RobotSide]
+) -> None:
+    here, there = pair
+    team.take(here, leaf("middle"))
+    here.hold_execution(Holding(execution="e", at="in_place"))
+    assert not team.may_begin(there, leaf("middle"))
+    here.hold_execution(Holding(execution="e", at="neutral"))
+    assert team.may_begin(there, leaf("middle"))
+
+
+def test_a_robot_that_was_given_up_on_its_way_is_an_obstacle(
+    team: Team, pair: tuple[RobotSide, RobotSide]
+) -> None:
+    here, there = pair
+    team.take(here, leaf("middle"))
+    assert not team.leaves_to_others(there, leaf("middle"))
+    here.gone_for_good = True
+    assert team.leaves_to_others(there, leaf("middle"))
+
+
+def test_where_another_arm_rests_nothing_is_placed(pair: tuple[RobotSide, RobotSide]) -> None:
+    here, there = pair
+    x, y = there.frame.to_scene(0.5, -0.9)
+    team = Team(scene(cup=(0.62, 0.3, x - 0.1, y)))
+    team.join({each.robot: each for each in pair})
+    assert team.leaves_to_others(here, leaf("cup"))
+
+
+def test_taking_from_people_needs_the_space_before_the_robot(
+    team: Team, pair: tuple[RobotSide, RobotSide]
+) -> None:
+    here, _ = pair
+    team.take(here, leaf("near"))
+    hand_over = Point(ROOM.hand_over)
+    assert not held_by(here).covers(hand_over.buffer(0.05))
+    here.finish()
+    team.take(here, leaf("near"), handed_over=True)
+    assert held_by(here).covers(hand_over.buffer(0.05))
+
+
+def test_a_robot_that_says_nothing_of_its_room_is_trusted(team: Team) -> None:
+    here, there = RobotSide("here", Link()), RobotSide("there", Link(), ACROSS)
+    team.join({"here": here, "there": there})
+    here.connect(hello("here", room=None))
+    there.connect(hello("there"))
+    team.take(here, leaf("middle"))
+    assert here.area is None
+    assert team.may_begin(there, leaf("middle"))
+
+
+def test_a_robot_alone_has_everything() -> None:
+    team, here = Team(scene(far=FAR)), RobotSide("here", Link())
+    team.join({"here": here})
+    here.connect(hello("here"))
+    assert not team.shares
+    assert team.may_begin(here, leaf("far"))
+    assert not team.leaves_to_others(here, leaf("far"))
