@@ -113,9 +113,13 @@ def composition(
 
     What may be the part's own colour is no sign of another part, even of one that has more of it.
     """
+    if name not in model.names:
+        return None
     scale = region.shape[1] / REFERENCE_WIDTH_PX
+    if model.has_hue(name):
+        region = np.where(segmentation.tells(name), region, 0).astype(np.uint8)
     pixels = int(np.count_nonzero(region))
-    if name not in model.names or pixels < _FEWEST_PX * scale * scale:
+    if pixels < _FEWEST_PX * scale * scale:
         return None
     inside = segmentation.within(region)
     own = inside.may_be(name)
