@@ -194,6 +194,19 @@ class ColorModel:
         apart = np.abs(np.array(first) - second) / (tint_sigma(first) + tint_sigma(second))
         return bool(apart.max() < _TOLD_APART)
 
+    def may_pass_for(self, one: str, other: str) -> bool:
+        """Whether most of what an object shows may be another's, as far as its hue says.
+
+        What has no hue passes for anything that has none. An object that it does not know may be
+        anything.
+        """
+        if one not in self._learned or other not in self._learned:
+            return True
+        histogram = self._histograms[one].ravel()
+        if not histogram.any() or not self.has_hue(other):
+            return not histogram.any() and not self.has_hue(other)
+        return bool(histogram[self._shown[other][1:-1]].sum() >= histogram.sum() / 2)
+
     @classmethod
     def train(
         cls,
