@@ -11,7 +11,7 @@ from mend.robots.body import CameraImage, Matrix4
 from mend.robots.catalogue import Part
 from mend.robots.grasp import Grasp, corners_in_tool
 from mend.robots.grip.belief import Belief, Between
-from mend.robots.grip.composition import Composition
+from mend.robots.grip.composition import Composition, likeliest
 from mend.robots.grip.cues import CueModel, HandReading
 from mend.robots.grip.reading import GRIP, GripReading, GripState
 from mend.robots.grip.rivals import Rival, RivalView
@@ -122,7 +122,7 @@ class GripWatch:
         if self._read_s is not None:
             self._belief.predict(max(0.0, now_s - self._read_s))
         self._read_s = now_s
-        if reading.pushed and not self._pushed:
+        if hand.contact_n >= _PUSHED_N:
             self._belief.push()
         self._belief.update(self._log_likelihoods(reading))
         self._pushed = reading.pushed
@@ -189,13 +189,11 @@ class GripWatch:
         return composition(region, segmentation, self._model, self.part.name)
 
     def _log_likelihoods(self, reading: GripReading) -> Mapping[Between, float]:
-        hand = HandReading(
-            reading.opening_m,
-            reading.presses,
-            reading.composition,
-            reading.pushed,
-            reading.rivals,
-        )
+        seen = reading.composition
+        if self._state is GripState.HELD and seen is not None and likeliest(seen) == "nothing":
+            # What fingers still press on is hidden, and stays what it is however long.
+            seen = None
+        hand = HandReading(reading.opening_m, reading.presses, seen, reading.pushed, reading.rivals)
         return self._cues.log_likelihoods(hand, self.grasp, self._gripper)
 
     def _judge(self) -> None:
