@@ -5,12 +5,13 @@ what is there.
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from mend.robots.grasp import Grasp
 from mend.robots.grip.belief import Between
 from mend.robots.grip.composition import Composition, log_density
+from mend.robots.grip.rivals import RivalReading
 from mend.robots.gripper import GripperModel
 
 
@@ -19,12 +20,14 @@ class HandReading:
     """What the hand's sensors say at one moment; the composition is None where it cannot tell.
 
     `presses`: the fingers press on something; `pushed`: something has pushed against the arm.
+    `rivals` are the known parts that somebody may have put there in its stead.
     """
 
     opening_m: float
     presses: bool
     composition: Composition | None
     pushed: bool = False
+    rivals: Sequence[RivalReading] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +39,8 @@ class CueModel:
     the other way round or is jammed askew: flat fingers turn it straight unless the line between
     the two corners that they touch is within the angle of their `friction`, or something pushed.
     Fingers that closed on nothing are apart by the noise alone, in `moving_share` of the cases they
-    are still on their way.
+    are still on their way. Of other things that somebody puts between them `known_share`
+    are known parts, each as often.
     """
 
     encoder_sd_m: float = 0.0003
@@ -47,6 +51,7 @@ class CueModel:
     impossible_per_m: float = 1e-3
     presses_on_something: float = 0.9999
     presses_on_nothing: float = 0.3
+    known_share: float = 0.75
 
     def log_likelihoods(
         self, reading: HandReading, grasp: Grasp, gripper: GripperModel
@@ -57,20 +62,18 @@ class CueModel:
         on_nothing = self._log_pressing(reading.presses, self.presses_on_nothing)
         right = on_something + _log_looks(seen, "right")
         return {
-            Between.STRAIGHT: right + math.log(self._opening_on(opening_m, grasp)),
+            Between.STRAIGHT: right + math.log(self._opening_on(opening_m, grasp.width_m)),
             Between.TURNED: right
             + math.log(self._opening_on_turned(opening_m, grasp, gripper, pushed=reading.pushed)),
-            Between.OTHER: on_something
-            + _log_looks(seen, "other")
-            + math.log(self._opening_on_other(opening_m, gripper, pushed=reading.pushed)),
+            Between.OTHER: on_something + math.log(self._other(reading, grasp, gripper)),
             Between.NOTHING: on_nothing
             + _log_looks(seen, "nothing")
             + math.log(self._opening_on_nothing(opening_m, gripper)),
         }
 
-    def _opening_on(self, opening_m: float, grasp: Grasp) -> float:
+    def _opening_on(self, opening_m: float, width_m: float) -> float:
         """Density per metre."""
-        return _normal(opening_m - grasp.width_m, self._sd_m) + self.impossible_per_m
+        return _normal(opening_m - width_m, self._sd_m) + self.impossible_per_m
 
     def _opening_on_turned(
         self, opening_m: float, grasp: Grasp, gripper: GripperModel, *, pushed: bool
@@ -92,6 +95,24 @@ class CueModel:
         sd_m = math.hypot(self.encoder_sd_m, self.closed_sd_m)
         closed = 2.0 * _normal(opening_m, sd_m)
         return (1.0 - self.moving_share) * closed + self.moving_share / gripper.max_opening_m
+
+    def _other(self, reading: HandReading, grasp: Grasp, gripper: GripperModel) -> float:
+        """The density of opening and looks if something else is held."""
+        opening_m, rivals = reading.opening_m, reading.rivals
+        opening = self._opening_on_other(opening_m, gripper, pushed=reading.pushed)
+        anything = math.exp(_log_looks(reading.composition, "other")) * opening
+        if not rivals:
+            return anything
+        known = sum(
+            math.exp(each.log_looks) * self._opening_on(opening_m, self._felt_m(each, grasp))
+            for each in rivals
+        )
+        return (1.0 - self.known_share) * anything + self.known_share * known / len(rivals)
+
+    def _felt_m(self, rival: RivalReading, grasp: Grasp) -> float:
+        """A rival's width; the part's own where fingers cannot tell the two."""
+        told_apart = abs(rival.width_m - grasp.width_m) > 2 * self._sd_m
+        return rival.width_m if told_apart else grasp.width_m
 
     def _opening_on_other(self, opening_m: float, gripper: GripperModel, *, pushed: bool) -> float:
         # What is pushed they may have by a corner, narrower than any of its sides.

@@ -13,7 +13,6 @@ from mend.robots.looks.looker import Looker
 _STEADY_S = 0.3
 _TRY_EVERY_S = 2.0
 """Where the picture cannot tell whether anything is held out, the fingers close that often."""
-_MOST_READINGS = 6
 
 
 def take_from_person(looker: Looker, command: str, part: Part, within_s: float) -> Routine[Looked]:
@@ -32,7 +31,7 @@ def take_from_person(looker: Looker, command: str, part: Part, within_s: float) 
         if not offered:
             return looker.answer(command, fulfilled=False)
         yield from arm.close_gripper()
-        senses.hand.watch_grip(part)
+        senses.hand.watch_handed(part, senses.catalogue.parts.values())
         yield from _judge_grip(looker)
         if not senses.hand.holds(part.name):
             senses.let_go()
@@ -57,7 +56,8 @@ def _wait_until_offered(looker: Looker, part: Part, end_s: float) -> Routine[boo
 
 
 def _judge_grip(looker: Looker) -> Routine[None]:
-    for _ in range(_MOST_READINGS):
+    """Read until there is a verdict; in the end there is one."""
+    while True:
         reading = looker.senses.read_grip()
         if reading is None or reading.state is not GripState.UNDECIDED:
             return

@@ -144,6 +144,10 @@ class WorkcellBody:
         """Plan through all waypoints; each at its yaw, or each at its yaw + pi."""
         return _path(self._planner.plan(self._target, waypoints, self._rng))
 
+    def plan_back(self, waypoints: Sequence[ToolPose]) -> ArmPath | None:
+        """Back through poses that the tool has just passed, in the posture that the arm has."""
+        return self._planner.plan_back(self._target, waypoints)
+
     def plan_among(self, legs: Sequence[Leg], boxes: Sequence[SeenBox]) -> ArmPath | NoWay:
         """Plan through all legs so that nothing touches any of `boxes`."""
         return plan_legs(self._planner, self._pr2.collisions, self._target, legs, boxes, self._rng)
