@@ -31,6 +31,7 @@ from mend.server.api import (
 from mend.server.api import models as models_api
 from mend.server.api import poses as poses_api
 from mend.server.api import principals as principals_api
+from mend.server.api import sites as sites_api
 from mend.server.api import worlds as worlds_api
 from mend.server.api.absolute_form import AbsoluteForm
 from mend.server.api.gate import Gate
@@ -50,6 +51,7 @@ from mend.server.refusals import Refusals
 from mend.server.robots.passes import OwnRobots
 from mend.server.runtime.service import RunService
 from mend.server.settings import Settings
+from mend.server.sites.sites import Sites
 from mend.server.speech.abilities import NO_SPEECH, SpeechAbilities
 
 ROUTES = (
@@ -57,6 +59,7 @@ ROUTES = (
     principals_api,
     documents,
     worlds_api,
+    sites_api,
     runs,
     poses_api,
     dialogues,
@@ -87,6 +90,7 @@ def create_app(
     scenes: DocumentLibrary,
     scenarios: DocumentLibrary,
     worlds: WorldList,
+    sites: Sites,
     models: RobotModels,
     poses: PoseSource,
     access: Access,
@@ -111,6 +115,7 @@ def create_app(
         scenes,
         scenarios,
         worlds,
+        sites,
         models,
         poses,
         settings,

@@ -136,6 +136,10 @@ def _what(event: ev.Event) -> str | None:
     match event:
         case ev.RunStarted(tree_name=tree, world=world):
             return f"started a run of '{tree}' in '{world}'"
+        case ev.SiteOpened(scene=scene, world=world):
+            return f"opened a site with '{scene}' in '{world}'"
+        case ev.SiteClosed(site=site):
+            return f"closed the site {site}"
         case ev.RunPaused():
             return "paused the run"
         case ev.RunResumed():

@@ -26,6 +26,7 @@ from mend.server.refusals import Refusals
 from mend.server.runtime.service import RunService
 from mend.server.runtime.views import WorldView
 from mend.server.settings import Settings
+from mend.server.sites.sites import Sites
 from mend.server.speech.abilities import NO_SPEECH, SpeechAbilities
 from mend.tasks.spellings import NAME, SEEN_CHARACTERS
 
@@ -63,6 +64,7 @@ class Parts:
     scenes: DocumentLibrary
     scenarios: DocumentLibrary
     worlds: WorldList
+    sites: Sites
     models: RobotModels
     poses: PoseSource
     settings: Settings
@@ -101,6 +103,7 @@ WithCallerIfKnown = Annotated[Caller | None, Depends(caller_if_known)]
 WithParts = Annotated[Parts, Depends(parts_of)]
 
 RunId = Annotated[UUID, Path(description="The run's id.")]
+SiteId = Annotated[UUID, Path(description="The site's id.")]
 DialogueId = Annotated[UUID, Path(description="The dialogue's id.")]
 DocumentName = Annotated[str, Path(pattern=NAME, examples=["eket"])]
 After = Annotated[int, Query(ge=0, le=MAX_SEQ, description="Only what comes after this `seq`.")]

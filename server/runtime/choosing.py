@@ -80,6 +80,7 @@ def _free_mask(
     """Which of the leaves need no part, no place and no space that another robot has now."""
     theirs = [state.tree.leaf_definition(each.leaf) for each in state.executions.values()]
     used = {name for each in theirs for name in (each.object, each.place) if name is not None}
+    used |= team.handled_by_neighbours()
     free = np.zeros(leaves.size, dtype=np.bool_)
     for number in np.flatnonzero(able).tolist():
         leaf = state.tree.leaf_definition(int(leaves[number]))

@@ -82,7 +82,7 @@ class RunContext:
         entry = Entry(
             events=events,
             receipt=receipt,
-            world_run=self.state.id if world is not None else None,
+            world_run=self.state.world_kept_as if world is not None else None,
             world=world,
             pictures=pictures or {},
         )

@@ -58,7 +58,7 @@ class RobotPresence:
         """Start simulated robots, wait for real ones."""
         for side in self._sides.values():
             if self._hardware.simulated:
-                await self._hardware.restart(side.robot)
+                await self._hardware.begin(side.robot)
             else:
                 self._wait_for(side)
 
@@ -82,7 +82,7 @@ class RobotPresence:
             self._dialogues.robot_rebooted()
         was_doing = side.doing
         side.connect(hello)
-        self._hardware.came(robot)
+        self._hardware.came(side)
         self._poses.robot_connected(hello)
         execution = state.executions.get(robot)
         continues = execution is not None and execution.boot == hello.boot

@@ -1,6 +1,7 @@
 """What a client asks of a run, checked at the edge."""
 
 from typing import Annotated, Literal
+from uuid import UUID
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -23,7 +24,9 @@ class RunRequest(BaseModel):
     `answers`: a scripted helper's answers, `random` (from the seed), `none` (nobody ever answers)
     or `live` (helpers do); None means the scenario's answers, and live helpers where it has none.
     `interventions`: `random` has a simulated person steal, move and block, by the seed. `robots`:
-    the ids of connected robots, for world `live`. `scene` names a scene to do the tree in instead
+    the ids of connected robots, for world `live`, or those of a site's that it is to have (all
+    without it). `site`: where it is to be, which then says the world, its scene, seed and speed.
+    `scene` names a scene to do the tree in instead
     of the one that it is for; it has to have everything that the tree names.
     """
 
@@ -41,3 +44,4 @@ class RunRequest(BaseModel):
     robots: Annotated[list[str], Field(max_length=64)] = []
     max_attempts: Annotated[int, Field(ge=1, le=100)] = 3
     world_options: dict[str, WorldOption] = {}
+    site: Annotated[UUID | None, Field(strict=False)] = None

@@ -23,7 +23,7 @@ class RobotOwners:
         """The runs that are being journaled, and get their robots then."""
         return set(self._promised.values())
 
-    def check(self, robots: Sequence[str]) -> None:
+    def check_live(self, robots: Sequence[str]) -> None:
         """Look whether a run in the world 'live' can have these robots.
 
         Raises `WrongInputError`, `NotFoundError` or `ConflictError`.
@@ -37,10 +37,15 @@ class RobotOwners:
             raise WrongInputError(
                 f"'robots' names the robot '{twice}' more than once; once is enough"
             )
-        busy = self._given | self._promised
         for robot in robots:
             if not self._robots.connected(robot):
                 raise NotFoundError(f"no robot '{robot}' is connected")
+        self.check_free(robots)
+
+    def check_free(self, robots: Sequence[str]) -> None:
+        """Raise `ConflictError` where a run has one of these robots, or is about to."""
+        busy = self._given | self._promised
+        for robot in robots:
             if robot in busy:
                 raise ConflictError(f"the robot '{robot}' is busy with run {busy[robot]}")
 

@@ -72,7 +72,7 @@ class Run:
     ) -> None:
         self._context = context
         self._sides = sides
-        self._team = Team(context.state.scene)
+        self._team = Team(context.state.scene, hardware.neighbours)
         self._team.join(sides)
         self._dialogues = dialogues
         self._hardware = hardware
@@ -114,6 +114,18 @@ class Run:
     @property
     def claims(self) -> Claims:
         return self._claims
+
+    # --- Others at the same site (Neighbour) --------------------------------------------------
+
+    def handled(self) -> set[str]:
+        """The parts and places that its robots are about."""
+        state = self._context.state
+        leaves = [state.tree.leaf_definition(each.leaf) for each in state.executions.values()]
+        return {name for each in leaves for name in (each.object, each.place) if name is not None}
+
+    def look_again(self) -> None:
+        """Others have changed something that this run may have waited for."""
+        self._inbox.tell(_nothing)
 
     # --- The actor ----------------------------------------------------------------------------
 
@@ -191,6 +203,8 @@ class Run:
             # time pass, and what follows from the report is to reach it before that.
             await self._go_on()
             await self._context.noted()
+            if item.task is not _nothing:
+                self._hardware.tell_neighbours()
         except asyncio.CancelledError:
             # Whoever waits for it must not wait for ever when the service shuts down.
             item.fail(BusyError("the service is shutting down"))

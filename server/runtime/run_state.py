@@ -109,6 +109,11 @@ class RunState:
         return self.started.run
 
     @property
+    def world_kept_as(self) -> UUID:
+        """What the journal keeps the state of its simulated world under."""
+        return self.started.site or self.id
+
+    @property
     def scenario(self) -> Scenario | None:
         """The run's scenario as it was when the run began."""
         if self.started.script is not None:

@@ -22,11 +22,12 @@ from mend.server.journal.journal import Entry, Journal
 from mend.server.journal.run_index import UNREADABLE, IndexedRun, RunPage
 from mend.server.refusals import Refusals
 from mend.server.runtime.choosing import potentials_for
-from mend.server.runtime.clock import RunClock, SimulatedClock, WallClock
+from mend.server.runtime.clock import RunClock, SimulatedClock
 from mend.server.runtime.context import RunContext, RunSettings
 from mend.server.runtime.dialogue_driver import DialogueDriver
 from mend.server.runtime.dialogue_state import DialogueState
 from mend.server.runtime.failure import fail_run, why_it_stopped
+from mend.server.runtime.hardware import Hardware
 from mend.server.runtime.new_run import NewRun, NewRuns
 from mend.server.runtime.ports import LIVE, Poses, Preparation, RealRobots, Robots, Worlds
 from mend.server.runtime.requests import RunRequest
@@ -146,9 +147,13 @@ class Runtime:
             raise BusyError("the service is shutting down")
         # Others may have begun meanwhile.
         self._refuse_one_too_many()
-        if request.world == LIVE:
-            await self._wait_until_given_back(request.robots)
-            self._owners.check(request.robots)
+        started = new.started
+        if started.world == LIVE or started.site is not None:
+            await self._wait_until_given_back(started.robots)
+        if started.world == LIVE:
+            self._owners.check_live(started.robots)
+        else:
+            self._owners.check_free(started.robots)
         with self._owners.promised(new.started):
             return await self._begin(new)
 
@@ -190,20 +195,29 @@ class Runtime:
 
     async def _take_up_or_fail(self, state: RunState) -> None:
         """Let a run go on; if that cannot be, it fails and says why."""
-        live = state.started.world == LIVE
-        clock: RunClock = (
-            WallClock(self._monotonic, state.time) if live else SimulatedClock(state.time)
-        )
-        context = RunContext(
-            state, clock, self._journal, self._settings, self._utc_now, self._refusals
-        )
         try:
-            self._take_up(context, live=live)
+            hardware = self._hardware_of(state)
+        except NotFoundError as error:
+            await fail_run(self._context(state, SimulatedClock(state.time)), str(error))
+            return
+        context = self._context(state, hardware.clock(state.time))
+        try:
+            self._take_up(context, hardware)
         except Exception as error:
             log.exception("run %s could not be taken up", state.id)
             await fail_run(context, why_it_stopped(error))
 
-    def _take_up(self, context: RunContext, *, live: bool) -> None:
+    def _hardware_of(self, state: RunState) -> Hardware:
+        if state.started.world == LIVE:
+            return RealRobots(self._monotonic)
+        return self._worlds.open(state, lambda: self._runs[state.id])
+
+    def _context(self, state: RunState, clock: RunClock) -> RunContext:
+        return RunContext(
+            state, clock, self._journal, self._settings, self._utc_now, self._refusals
+        )
+
+    def _take_up(self, context: RunContext, hardware: Hardware) -> None:
         state = context.state
         sides = {
             robot: RobotSide(robot, self._robots, frame) for robot, frame in state.frames.items()
@@ -213,10 +227,9 @@ class Runtime:
             context,
             answer_source(state.request, scenario),
             self._policy,
-            None if live else _person_of(state, scenario),
+            _person_of(state, scenario) if hardware.simulated else None,
             partial(self._send_mail, state),
         )
-        hardware = RealRobots() if live else self._worlds.open(state, lambda: self._runs[state.id])
         run = Run(context, sides, dialogues, hardware, self._poses.open(state))
         try:
             self._owners.give(run)
@@ -224,6 +237,7 @@ class Runtime:
             self._poses.close(state.id)
             raise
         self._runs[state.id] = run
+        hardware.lend()
         task = asyncio.create_task(run.main(), name=f"run {state.id}")
         task.add_done_callback(partial(self._ended, run))
         self._tasks[state.id] = task

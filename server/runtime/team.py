@@ -6,9 +6,9 @@ rests is its own all the time, and where one has stopped that is given up. A rob
 what room it takes is trusted to keep out of the others' way itself.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from math import dist, hypot
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from shapely import MultiPoint, Point
 from shapely.geometry.base import BaseGeometry
@@ -23,23 +23,39 @@ Flat = tuple[float, float]
 """A point of the scene's plane."""
 
 
-class Team:
-    """The robots of one run, and the scene that they work in."""
+class Neighbour(Protocol):
+    """Who else has robots where a run's robots work: another run, or the site itself."""
 
-    def __init__(self, scene: Scene) -> None:
+    @property
+    def sides(self) -> Mapping[str, "RobotSide"]: ...
+
+    def handled(self) -> set[str]:
+        """The parts and places that its robots are about."""
+        ...
+
+
+class Team:
+    """The robots of one run, the scene that they work in, and who else works there."""
+
+    def __init__(self, scene: Scene, neighbours: Callable[[], Sequence[Neighbour]]) -> None:
         self._scene = scene
+        self._neighbours = neighbours
         self._sides: Sequence[RobotSide] = ()
 
     def join(self, sides: Mapping[str, "RobotSide"]) -> None:
-        """These are all the robots."""
+        """These are all the robots of the run."""
         self._sides = tuple(sides.values())
         for side in self._sides:
             side.team = self
 
     @property
     def shares(self) -> bool:
-        """Whether there are several robots."""
-        return len(self._sides) > 1
+        """Whether there are several robots, of whomever."""
+        return len(self._sides) > 1 or any(each.sides for each in self._neighbours())
+
+    def handled_by_neighbours(self) -> set[str]:
+        """The parts and places that others than this run are about."""
+        return {name for each in self._neighbours() for name in each.handled()}
 
     def leaves_to_others(self, side: "RobotSide", leaf: "BehaviorNode") -> bool:
         """Whether a leaf is not for this robot, as it is out of its reach or in another's home.
@@ -50,7 +66,7 @@ class Team:
             return False
         if self._meets_a_home(side, leaf):
             return True
-        others = (each for each in self._others(side) if _could(each, leaf.behavior))
+        others = (each for each in self._partners(side) if _could(each, leaf.behavior))
         return not self._reaches(side, leaf) and any(
             self._reaches(each, leaf) and not self._meets_a_home(each, leaf) for each in others
         )
@@ -73,8 +89,13 @@ class Team:
             area = self._area(side, leaf, handed_over)
             side.area = area if side.area is None else area.union(side.area)
 
-    def _others(self, side: "RobotSide") -> list["RobotSide"]:
+    def _partners(self, side: "RobotSide") -> list["RobotSide"]:
         return [each for each in self._sides if each is not side and each.hello is not None]
+
+    def _others(self, side: "RobotSide") -> list["RobotSide"]:
+        """Whoever may be in its way, of this run or not."""
+        near = (each for of in self._neighbours() for each in of.sides.values())
+        return [*self._partners(side), *(each for each in near if each.hello is not None)]
 
     def _reaches(self, side: "RobotSide", leaf: "BehaviorNode") -> bool:
         """Whether a leaf's object, where it was seen, and its place are in a robot's ring."""

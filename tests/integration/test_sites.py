@@ -1,0 +1,199 @@
+"""Sites: simulated worlds that stay, and whose robots runs borrow and give back."""
+
+import asyncio
+from collections.abc import AsyncIterator, Sequence
+from contextlib import asynccontextmanager
+from pathlib import Path
+from uuid import UUID
+
+import pytest
+from broken_constraints import broken_constraints
+from touching_robots import touching_robots
+from untruths import kinds_of
+
+from mend.errors import ConflictError, NotFoundError, WrongInputError
+from mend.server.composition import Service, open_service
+from mend.server.journal import events as ev
+from mend.server.runtime.requests import RunRequest
+from mend.server.runtime.views import RunStatus
+from mend.server.settings import Settings
+from mend.server.sites.requests import SiteRequest
+from mend.server.sites.views import SiteView
+
+EXAMPLES = Path(__file__).parents[2] / "examples" / "two_arms"
+
+THERE_AND_BACK = """
+name: {name}
+scene: bench_for_two
+tree:
+  then:
+    - {{behavior: pick_and_place, object: {part}, place: {place}}}
+"""
+
+BENCH_FOR_TWO = """
+name: bench_for_two
+table: {height: 0.70, center: [0.62, 0.0], size: [0.66, 1.30]}
+robots:
+  left: {x: 0.0, y: 0.0}
+  right: {x: 1.24, y: 0.0, yaw: 3.1416}
+objects:
+  red_box: {color: [0.9, 0.1, 0.1], size: [0.04, 0.05, 0.05], pose: {x: 0.45, y: -0.40}}
+  blue_box: {color: [0.1, 0.2, 0.9], size: [0.04, 0.05, 0.05], pose: {x: 0.79, y: 0.40}}
+places:
+  near_left: {pose: {x: 0.45, y: -0.25}}
+  far_left: {pose: {x: 0.45, y: -0.40}}
+  near_right: {pose: {x: 0.79, y: 0.25}}
+"""
+
+
+@asynccontextmanager
+async def service(folder: Path) -> AsyncIterator[Service]:
+    """A service whose journal is kept, with the bench and its trees."""
+    settings = Settings(
+        port=0, journal=folder / "journal.db", log_level="error", speech_voice="none"
+    )
+    async with open_service(settings) as found:
+        if "bench_for_two" not in await found.journal.documents("scene"):
+            await found.library.scenes.save("bench_for_two", BENCH_FOR_TWO)
+            for name, part, place in (
+                ("red_near", "red_box", "near_left"),
+                ("red_back", "red_box", "far_left"),
+                ("blue_near", "blue_box", "near_right"),
+            ):
+                text = THERE_AND_BACK.format(name=name, part=part, place=place)
+                await found.library.trees.save(name, text)
+        yield found
+
+
+async def open_bench(found: Service) -> SiteView:
+    request = SiteRequest(scene="bench_for_two", world="tabletop", speed="max", seed=5)
+    return await found.sites.open_site(request)
+
+
+async def begin(found: Service, tree: str, site: UUID, *robots: str) -> UUID:
+    request = RunRequest(tree=tree, site=site, robots=list(robots), answers="none")
+    return (await found.runtime.start_run(request)).id
+
+
+async def done(found: Service, run: UUID) -> Sequence[ev.Event]:
+    view = await found.runtime.wait_for_end(run)
+    events = await found.journal.read(0, 100_000, run)
+    assert view.status is RunStatus.FINISHED, view.result
+    started = events[0]
+    assert isinstance(started, ev.RunStarted)
+    assert broken_constraints(events, kinds_of(started)) == []
+    assert not [each for each in events if isinstance(each, ev.IssueRaised)]
+    return events
+
+
+def robot(site: SiteView, stands: str) -> str:
+    return next(each.robot for each in site.robots if each.stands == stands)
+
+
+async def test_a_run_finds_the_world_as_the_one_before_has_left_it(tmp_path: Path) -> None:
+    async with service(tmp_path) as found:
+        site = await open_bench(found)
+        first = await done(found, await begin(found, "red_near", site.id))
+        assert found.sites.view(site.id).moved == {"red_box": "near_left"}
+        second = await done(found, await begin(found, "red_near", site.id))
+        back = await done(found, await begin(found, "red_back", site.id))
+        assert [each.run for each in found.sites.view(site.id).robots] == [None, None]
+    steps = [[e for e in each if isinstance(e, ev.StepStarted)] for each in (first, second, back)]
+    assert steps[0]
+    assert not steps[1]
+    assert steps[2]
+    # Each run has a clock of its own, from 0.
+    assert back[1].time < 5.0
+
+
+async def test_two_runs_share_a_site_and_never_touch(tmp_path: Path) -> None:
+    async with service(tmp_path) as found:
+        site = await open_bench(found)
+        with touching_robots() as touched:
+            runs = [
+                await begin(found, "red_near", site.id, robot(site, "left")),
+                await begin(found, "blue_near", site.id, robot(site, "right")),
+            ]
+            both = [await done(found, run) for run in runs]
+        assert touched == []
+        moved = found.sites.view(site.id).moved
+    assert moved == {"red_box": "near_left", "blue_box": "near_right"}
+    owners = [{each.robot for each in of if isinstance(each, ev.NodeStarted)} for of in both]
+    assert owners == [{robot(site, "left")}, {robot(site, "right")}]
+
+
+async def test_a_robot_is_one_runs_at_a_time_and_a_used_site_stays_open(tmp_path: Path) -> None:
+    async with service(tmp_path) as found:
+        site = await open_bench(found)
+        run = await begin(found, "red_near", site.id, robot(site, "left"))
+        with pytest.raises(ConflictError, match=f"busy with run {run}"):
+            await begin(found, "red_back", site.id)
+        with pytest.raises(ConflictError, match="is used by a run"):
+            await found.sites.close_site(site.id)
+        await done(found, run)
+        await found.sites.close_site(site.id)
+        with pytest.raises(NotFoundError, match="there is no site"):
+            await begin(found, "red_back", site.id)
+        told = [vars(each)["type"] for each in await found.sites.events(site.id, 0, 100)]
+        assert await found.journal.world(site.id) is None
+    assert told == ["site_opened", "site_given_back", "site_closed"]
+
+
+async def test_a_site_and_what_lies_there_are_there_again_after_a_restart(tmp_path: Path) -> None:
+    async with service(tmp_path) as found:
+        site = await open_bench(found)
+        await done(found, await begin(found, "red_near", site.id))
+    async with service(tmp_path) as found:
+        again = found.sites.view(site.id)
+        assert [each.robot for each in again.robots] == [each.robot for each in site.robots]
+        assert again.moved == {"red_box": "near_left"}
+        events = await done(found, await begin(found, "red_near", site.id))
+    assert not [each for each in events if isinstance(each, ev.StepStarted)]
+
+
+async def test_a_run_at_a_site_goes_on_after_a_restart(tmp_path: Path) -> None:
+    async with service(tmp_path) as found:
+        site = await open_bench(found)
+        run = await begin(found, "red_near", site.id)
+        with found.journal.subscribe(0) as events:
+            async for record in events:
+                if '"step_started"' in record.text:
+                    break
+    async with service(tmp_path) as found:
+        await done(found, run)
+        assert found.sites.view(site.id).moved == {"red_box": "near_left"}
+
+
+@pytest.mark.parametrize(
+    ("asked", "sentence"),
+    [
+        ({"speed": 2.0}, "'speed' is 2.0, but that of site .* is max: leave it out"),
+        ({"world": "workcell"}, "'world' is workcell, but that of site .* is tabletop"),
+        ({"scenario": "eket_paper"}, "'scenario' is for a run with a world of its own"),
+        ({"robots": ["nobody"]}, "has no robot 'nobody'; it has left-.*, right-"),
+    ],
+)
+async def test_what_a_site_says_a_run_does_not(
+    tmp_path: Path, asked: dict[str, object], sentence: str
+) -> None:
+    async with service(tmp_path) as found:
+        site = await open_bench(found)
+        request = RunRequest.model_validate({"tree": "red_near", "site": site.id, **asked})
+        with pytest.raises(WrongInputError, match=sentence):
+            await found.runtime.start_run(request)
+
+
+async def test_a_world_that_ends_while_nobody_uses_it_is_started_again(tmp_path: Path) -> None:
+    async with service(tmp_path) as found:
+        site = await open_bench(found)
+        await done(found, await begin(found, "red_near", site.id))
+        world = found.sites._sites[site.id].world
+        world._ended(world._life, "its process was killed")
+        for _ in range(1000):
+            told = [vars(each)["type"] for each in await found.sites.events(site.id, 0, 100)]
+            if "site_restarted" in told:
+                break
+            await asyncio.sleep(0.01)
+        assert "site_restarted" in told
+        events = await done(found, await begin(found, "red_near", site.id))
+    assert not [each for each in events if isinstance(each, ev.StepStarted)]
