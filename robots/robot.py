@@ -116,6 +116,10 @@ class Robot:
 
     # --- What it is ---------------------------------------------------------------------------
 
+    @property
+    def name(self) -> str:
+        return self._name
+
     def hello(self, boot: str) -> Hello:
         """What the robot is, and what it is doing now."""
         reach, room = self._body.reach, self._body.room

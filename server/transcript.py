@@ -189,7 +189,11 @@ class Transcript:
         | ev.SignedIn
         | ev.SignInFailed
         | ev.SignedOut
-        | ev.AccessChanged,
+        | ev.AccessChanged
+        | ev.SiteOpened
+        | ev.SiteGivenBack
+        | ev.SiteRestarted
+        | ev.SiteClosed,
     ) -> list[Line]:
         return []  # It belongs to no run.
 

@@ -63,7 +63,7 @@ DEEDS: frozenset[str] = frozenset(
         "run_started", "run_paused", "run_resumed", "run_aborted", "intervention_accepted",
         "answered", "claimed", "released", "deadline_extended",
         "document_kept", "document_deleted", "signed_in", "sign_in_failed", "signed_out",
-        "access_changed",
+        "access_changed", "site_opened", "site_closed",
     }
 )  # fmt: skip
 """The types of events that are deeds; some of them only where somebody did them."""

@@ -195,13 +195,10 @@ class Runtime:
 
     async def _take_up_or_fail(self, state: RunState) -> None:
         """Let a run go on; if that cannot be, it fails and says why."""
+        context = self._context(state, SimulatedClock(state.time))
         try:
             hardware = self._hardware_of(state)
-        except NotFoundError as error:
-            await fail_run(self._context(state, SimulatedClock(state.time)), str(error))
-            return
-        context = self._context(state, hardware.clock(state.time))
-        try:
+            context = self._context(state, hardware.clock(state.time))
             self._take_up(context, hardware)
         except Exception as error:
             log.exception("run %s could not be taken up", state.id)

@@ -25,6 +25,10 @@ OF_NO_RUN = {
     "sign_in_failed",
     "signed_in",
     "signed_out",
+    "site_closed",
+    "site_given_back",
+    "site_opened",
+    "site_restarted",
 }
 ADDED_SINCE: dict[str, set[str]] = {
     "v1": {

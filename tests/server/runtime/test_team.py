@@ -78,7 +78,7 @@ MIDDLE = (0.62, -0.1, 0.62, 0.1)
 
 @pytest.fixture
 def team() -> Team:
-    return Team(scene(near=NEAR, far=FAR, middle=MIDDLE))
+    return Team(scene(near=NEAR, far=FAR, middle=MIDDLE), tuple)
 
 
 @pytest.fixture
@@ -105,7 +105,7 @@ def test_what_only_another_reaches_is_left_to_it(
 def test_what_nobody_reaches_is_tried_so_that_people_are_asked(
     pair: tuple[RobotSide, RobotSide],
 ) -> None:
-    team = Team(scene(lost=(3.0, 3.0, 0.62, 0.1)))
+    team = Team(scene(lost=(3.0, 3.0, 0.62, 0.1)), tuple)
     team.join({each.robot: each for each in pair})
     assert not any(team.leaves_to_others(side, leaf("lost")) for side in pair)
 
@@ -125,7 +125,7 @@ def test_where_a_part_was_seen_counts_and_not_where_it_began(
 
 
 def team_with_place_in_the_middle(pair: tuple[RobotSide, RobotSide]) -> Team:
-    team = Team(scene(far=(0.79, 0.4, 0.62, 0.1)))
+    team = Team(scene(far=(0.79, 0.4, 0.62, 0.1)), tuple)
     team.join({each.robot: each for each in pair})
     return team
 
@@ -181,7 +181,7 @@ def test_a_robot_that_was_given_up_on_its_way_is_an_obstacle(
 def test_where_another_arm_rests_nothing_is_placed(pair: tuple[RobotSide, RobotSide]) -> None:
     here, there = pair
     x, y = there.frame.to_scene(0.5, -0.9)
-    team = Team(scene(cup=(0.62, 0.3, x - 0.1, y)))
+    team = Team(scene(cup=(0.62, 0.3, x - 0.1, y)), tuple)
     team.join({each.robot: each for each in pair})
     assert team.leaves_to_others(here, leaf("cup"))
 
@@ -209,7 +209,7 @@ def test_a_robot_that_says_nothing_of_its_room_is_trusted(team: Team) -> None:
 
 
 def test_a_robot_alone_has_everything() -> None:
-    team, here = Team(scene(far=FAR)), RobotSide("here", Link())
+    team, here = Team(scene(far=FAR), tuple), RobotSide("here", Link())
     team.join({"here": here})
     here.connect(hello("here"))
     assert not team.shares
