@@ -1,8 +1,9 @@
 """Sites: simulated worlds that stay, and whose robots runs borrow and give back."""
 
 import asyncio
+import random
 from collections.abc import AsyncIterator, Sequence
-from contextlib import asynccontextmanager
+from contextlib import asynccontextmanager, suppress
 from pathlib import Path
 from uuid import UUID
 
@@ -13,7 +14,9 @@ from untruths import kinds_of
 
 from mend.errors import ConflictError, NotFoundError, WrongInputError
 from mend.server.composition import Service, open_service
+from mend.server.errors import ImpossibleError
 from mend.server.journal import events as ev
+from mend.server.journal.run_index import RunPage
 from mend.server.runtime.requests import RunRequest
 from mend.server.runtime.views import RunStatus
 from mend.server.settings import Settings
@@ -39,7 +42,10 @@ robots:
 objects:
   red_box: {color: [0.9, 0.1, 0.1], size: [0.04, 0.05, 0.05], pose: {x: 0.45, y: -0.40}}
   blue_box: {color: [0.1, 0.2, 0.9], size: [0.04, 0.05, 0.05], pose: {x: 0.79, y: 0.40}}
+  green_box: {color: [0.1, 0.8, 0.1], size: [0.04, 0.05, 0.05], pose: {x: 0.62, y: 0.0}}
 places:
+  middle_near: {pose: {x: 0.55, y: 0.10}}
+  middle_far: {pose: {x: 0.69, y: -0.10}}
   near_left: {pose: {x: 0.45, y: -0.25}}
   far_left: {pose: {x: 0.45, y: -0.40}}
   near_right: {pose: {x: 0.79, y: 0.25}}
@@ -59,6 +65,8 @@ async def service(folder: Path) -> AsyncIterator[Service]:
                 ("red_near", "red_box", "near_left"),
                 ("red_back", "red_box", "far_left"),
                 ("blue_near", "blue_box", "near_right"),
+                ("green_near", "green_box", "middle_near"),
+                ("green_far", "green_box", "middle_far"),
             ):
                 text = THERE_AND_BACK.format(name=name, part=part, place=place)
                 await found.library.trees.save(name, text)
@@ -197,3 +205,56 @@ async def test_a_world_that_ends_while_nobody_uses_it_is_started_again(tmp_path:
         assert "site_restarted" in told
         events = await done(found, await begin(found, "red_near", site.id))
     assert not [each for each in events if isinstance(each, ev.StepStarted)]
+
+
+@pytest.mark.slow(20)
+@pytest.mark.parametrize("seed", range(3))
+async def test_runs_that_come_and_go_never_touch_and_all_end(tmp_path: Path, seed: int) -> None:
+    """Random runs on whichever robots are free; some are aborted, and the world dies now and then.
+
+    A run may fail, as the part may be where its robot does not reach: but it ends, and says so.
+    """
+    rng = random.Random(seed)
+    trees = ("red_near", "red_back", "blue_near", "green_near", "green_far")
+    async with service(tmp_path) as found:
+        site = await open_bench(found)
+        going: set[UUID] = set()
+        began = 0
+        with touching_robots() as touched:
+            while began < 12 or going:
+                free = [each.robot for each in found.sites.view(site.id).robots if not each.run]
+                if free and began < 12:
+                    some = rng.sample(free, rng.randint(1, len(free)))
+                    with suppress(ImpossibleError):
+                        going.add(await begin(found, rng.choice(trees), site.id, *some))
+                        began += 1
+                    await asyncio.sleep(rng.random() * 0.5)
+                elif going:
+                    ended = await asyncio.wait_for(a_run_has_ended(found, going), 60.0)
+                    going -= ended
+                if going and rng.random() < 0.15:
+                    with suppress(ConflictError):
+                        await found.runtime.abort(rng.choice(sorted(going)))
+                if rng.random() < 0.15:
+                    world = found.sites._sites[site.id].world
+                    assert world._handle is not None
+                    await world._handle.stop()
+                    world._ended(world._life, "its process was killed")
+        assert touched == []
+        for run in await found.runtime.runs(RunPage()):
+            events = await found.journal.read(0, 100_000, run.id)
+            started = events[0]
+            assert isinstance(started, ev.RunStarted)
+            assert broken_constraints(events, kinds_of(started)) == []
+            if run.status is RunStatus.FAILED:
+                assert run.result is not None
+                assert "could not be done" in run.result.reason
+        await found.sites.close_site(site.id)
+
+
+async def a_run_has_ended(found: Service, going: set[UUID]) -> set[UUID]:
+    waits = {asyncio.create_task(found.runtime.wait_for_end(run)): run for run in going}
+    done, left = await asyncio.wait(waits, return_when=asyncio.FIRST_COMPLETED)
+    for each in left:
+        each.cancel()
+    return {waits[each] for each in done}
