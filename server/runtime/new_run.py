@@ -11,6 +11,7 @@ from mend.server.limits import Limits
 from mend.server.runtime.journaled_tree import read_nodes
 from mend.server.runtime.ports import LIVE, Preparation, Worlds
 from mend.server.runtime.requests import RunRequest
+from mend.server.runtime.standing import stand
 from mend.tasks.frames import frames_of
 from mend.tasks.node_table import NodeTable
 from mend.tasks.scene import Scene
@@ -54,15 +55,19 @@ class NewRuns:
             self._worlds.check(request.world, request.world_options)
         prepared = await self._preparation.prepare(request)
         run = uuid4()
+        if request.world == LIVE:
+            robots, scene = stand(request.robots, prepared.scene)
+        else:
+            robots, scene = _names(prepared.scene, run), prepared.scene
         started = ev.RunStarted(
             time=0.0,
             wall_time=self._utc_now(),
             run=run,
             tree_name=prepared.tree_name,
             tree={},
-            scene=prepared.scene.model_dump(mode="json"),
+            scene=scene.model_dump(mode="json"),
             world=request.world,
-            robots=request.robots if request.world == LIVE else _names(prepared.scene, run),
+            robots=robots,
             seed=request.seed,
             speed=request.speed,
             scenario=request.scenario,

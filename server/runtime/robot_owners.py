@@ -37,11 +37,6 @@ class RobotOwners:
                 "a run in the world 'live' needs 'robots', the names of connected ones "
                 f"({self._who_is_free()})"
             )
-        twice = next((each for each in robots if robots.count(each) > 1), None)
-        if twice is not None:
-            raise WrongInputError(
-                f"'robots' names the robot '{twice}' more than once; once is enough"
-            )
         away = [each for each in robots if not self._robots.connected(each)]
         if away:
             names = " or ".join(f"'{each}'" for each in away)

@@ -147,8 +147,8 @@ class Runtime:
         # Others may have begun meanwhile.
         self._refuse_one_too_many()
         if request.world == LIVE:
-            await self._wait_until_given_back(request.robots)
-            self._owners.check(request.robots)
+            await self._wait_until_given_back(new.started.robots)
+            self._owners.check(new.started.robots)
         with self._owners.promised(new.started):
             return await self._begin(new)
 

@@ -14,9 +14,11 @@ from example_robot import example_robot
 from service_process import ServiceProcess, free_port, service_process
 
 from mend.server.client import MendClient
+from mend.server.journal import events as ev
 
 pytestmark = pytest.mark.slow(6)
 
+EXAMPLES = Path(__file__).parents[2] / "examples"
 MEND = str(Path(sys.executable).with_name("mend"))
 PATIENCE_S = 120.0
 
@@ -113,7 +115,7 @@ async def test_a_service_that_is_there_does_it(tmp_path: Path) -> None:
 
 
 async def test_own_files_and_reports_go_with_a_service_too(tmp_path: Path) -> None:
-    shelf = Path(__file__).parents[2] / "examples" / "tasks" / "shelf.yaml"
+    shelf = EXAMPLES / "tasks" / "shelf.yaml"
     report = tmp_path / "report.html"
     async with (
         service_process(tmp_path) as service,
@@ -151,6 +153,53 @@ async def test_robots_that_are_not_there_are_told_with_those_that_are(tmp_path: 
     assert "mend: no robot 'dmo' is connected (connected and free: 'demo'); " in wrong[2]
     # What no waiting would mend is told at once.
     assert tree[2] == "mend: there is no task tree 'ekett'\n"
+
+
+KIT = ("kit", "--scene", str(EXAMPLES / "two_arms" / "kit_for_two.yaml"), "--world", "live")
+
+
+@pytest.mark.parametrize("through_a_service", [False, True])
+async def test_two_robots_stand_where_the_scene_says_and_share_the_work(
+    tmp_path: Path, *, through_a_service: bool
+) -> None:
+    async with service_process(tmp_path) as service:
+        port = free_port()
+        at = ("--url", service.url) if through_a_service else ()
+        door = door_of(service) if through_a_service else f"ws://127.0.0.1:{port}/ws/robot"
+        robots = ("--robot", "right=demo-2", "--robot", "left=demo-1")
+        async with (
+            example_robot(door, name="demo-1"),
+            example_robot(door, name="demo-2"),
+            mend_run(tmp_path, *KIT, *robots, *at, "--json", MEND_PORT=str(port)) as run,
+        ):
+            code, told, _ = await run.outcome()
+    assert code == 0
+    started, *events = [ev.any_event.validate_json(each) for each in told.splitlines()]
+    assert isinstance(started, ev.RunStarted)
+    assert started.robots == ["demo-1", "demo-2"]
+    assert list(started.scene["robots"]) == ["left", "right"]
+    begun = [each.robot for each in events if isinstance(each, ev.NodeStarted)]
+    assert len(begun) == 20
+    assert set(begun) == {"demo-1", "demo-2"}
+    finished = events[-1]
+    assert isinstance(finished, ev.RunFinished)
+    assert (finished.missing, finished.unseen) == ([], [])
+
+
+async def test_who_stands_nowhere_in_the_scene_is_told_before_anybody_is_waited_for(
+    tmp_path: Path,
+) -> None:
+    port = str(free_port())
+    async with mend_run(tmp_path, *KIT, "--robot", "lft=demo", MEND_PORT=port) as misplaced:
+        wrong = await misplaced.outcome()
+    async with mend_run(tmp_path, *KIT, "--robot", "demo", MEND_PORT=port) as alone:
+        lacking = await alone.outcome()
+    async with mend_run(tmp_path, *KIT, "--robot", "left=a", "--robot", "b") as mixed:
+        both = await mixed.outcome()
+    assert [each[:2] for each in (wrong, lacking, both)] == [(2, "")] * 3
+    assert "the scene 'kit_for_two' has no robot 'lft'; it has 'left', 'right'" in wrong[2]
+    assert "'robots' lists 1, but in the scene 'kit_for_two' stand 'left', 'right'" in lacking[2]
+    assert "--robot is 'b'; where one robot is PLACE=NAME all have to be" in both[2]
 
 
 @pytest.mark.parametrize("through_a_service", [False, True])
