@@ -39,6 +39,8 @@ from mend.server.journal.events import (
 from mend.server.journal.trouble import Sleep
 from mend.server.runtime.requests import RunRequest
 from mend.server.runtime.views import DialogueView, RobotView, RunSummary, RunView, Snapshot
+from mend.server.sites.requests import SiteRequest
+from mend.server.sites.views import SiteView
 from mend.tasks.intervention import Intervention
 
 T = TypeVar("T")
@@ -239,6 +241,24 @@ class MendClient:
     async def picture(self, picture: UUID) -> bytes:
         """The picture that an event names, as JPEG."""
         return (await self._request("GET", f"/api/pictures/{picture}")).content
+
+    # --- sites --------------------------------------------------------------------------------
+
+    async def open_site(self, request: SiteRequest) -> SiteView:
+        """Start a simulated world that stays, with its robots, for runs to come."""
+        return await self._post("/api/sites", SiteView, request.model_dump(mode="json"))
+
+    async def sites(self) -> list[SiteView]:
+        return await self._get("/api/sites", list[SiteView])
+
+    async def site(self, site: UUID) -> SiteView:
+        return await self._get(f"/api/sites/{site}", SiteView)
+
+    async def close_site(self, site: UUID) -> None:
+        """Stop a site's world for good; no run may be using it."""
+        await self._request("DELETE", f"/api/sites/{site}")
+
+    # --- robots -------------------------------------------------------------------------------
 
     async def robots(self) -> list[RobotView]:
         return await self._get("/api/robots", list[RobotView])

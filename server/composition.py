@@ -13,7 +13,7 @@ from functools import partial
 from mend.dialogue.registry import load_scripts
 from mend.server.access.access import Access
 from mend.server.access.deed_log import DeedLog
-from mend.server.api.robot_socket import ROBOT_PATH, add_robot_route
+from mend.server.api.robot_socket import add_robot_route, robots_url
 from mend.server.app import build_access, create_app
 from mend.server.background import Endless
 from mend.server.believed_time import BelievedTime
@@ -71,6 +71,11 @@ class Service:
     url: str
     public_url: str | None
     settings: Settings
+
+    @property
+    def robots_url(self) -> str:
+        """Where this machine's robots connect."""
+        return robots_url(self.url)
 
 
 @asynccontextmanager
@@ -144,7 +149,7 @@ async def _open(
         partial(
             launch,
             registry=registry,
-            url=f"ws{url.removeprefix('http')}{ROBOT_PATH}",
+            url=robots_url(url),
             own_robots=own_robots,
             aside=simulation_thread,
             certificate=settings.tls_certificate,

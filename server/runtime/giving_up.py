@@ -34,7 +34,7 @@ class GivingUp:
             await self._give_up(leaf, reason)
             return True
         for leaf in self._for_nobody():
-            await self._give_up(leaf, "no robot can do it")
+            await self._give_up(leaf, f"no robot can do it{self._who_is_in_the_way(leaf)}")
             return True
         return False
 
@@ -59,11 +59,21 @@ class GivingUp:
         state, sides = self._context.state, self._sides.values()
         if not all(side.hello is not None or side.gone_for_good for side in sides):
             return []
+        if any(side.gone_for_good and side.owes_a_report for side in sides):
+            # Once its arm rests it is in nobody's way.
+            return []
         leaves = state.tree.eligible_leaves()
         anybody = np.zeros(leaves.size, dtype=np.bool_)
         for side in sides:
             anybody |= suitabilities(state, side, leaves) > 0
         return [int(leaf) for leaf in leaves[~anybody][:1]]
+
+    def _who_is_in_the_way(self, leaf: int) -> str:
+        team = next(iter(self._sides.values())).team
+        definition = self._context.state.tree.leaf_definition(leaf)
+        stopped = [] if team is None else team.given_up_in_the_way(definition)
+        names = ", ".join(f"'{each}'" for each in stopped)
+        return f": the arm of {names} may be in the way, which was given up there" if names else ""
 
     async def _give_up(self, leaf: int, reason: str) -> None:
         """Abandon the nearest alternative that holds a leaf, or fail the run."""

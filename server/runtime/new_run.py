@@ -1,7 +1,7 @@
 """From a request to the event that begins a run."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import datetime
 from uuid import UUID, uuid4
 
@@ -11,6 +11,7 @@ from mend.server.limits import Limits
 from mend.server.runtime.journaled_tree import read_nodes
 from mend.server.runtime.ports import LIVE, Preparation, PreparedRun, SiteOffer, Worlds
 from mend.server.runtime.requests import RunRequest, WorldOption
+from mend.server.runtime.standing import stand
 from mend.tasks.frames import frames_of
 from mend.tasks.node_table import NodeTable
 from mend.tasks.scene import Scene
@@ -56,12 +57,19 @@ class NewRuns:
             self._worlds.check(request.world, request.world_options)
         run = uuid4()
         prepared = await self._preparation.prepare(request)
-        live = request.world == LIVE
-        robots = request.robots if live else robot_names(prepared.scene, run)
-        return await self._begun(run, request, prepared, robots, author)
+        if request.world == LIVE:
+            robots, scene = stand(request.robots, prepared.scene)
+        else:
+            robots, scene = robot_names(prepared.scene, run), prepared.scene
+        return await self._begun(run, request, replace(prepared, scene=scene), robots, author)
 
     async def _at_site(self, request: RunRequest, site: UUID, author: ev.Author | None) -> NewRun:
         """A run where there is a world already, with robots in it."""
+        if isinstance(request.robots, dict):
+            raise WrongInputError(
+                "'robots' says who stands where, but those of a site stand where they are: list "
+                "those that the run is to have"
+            )
         offer = self._worlds.offer(site, request.robots)
         _refuse_what_the_site_says(request, offer)
         there = {"world": offer.world, "seed": offer.seed, "speed": offer.speed}

@@ -93,6 +93,8 @@ class RobotPresence:
                     **self._context.stamp(), robot=robot, boot=hello.boot, continues=continues
                 )
             )
+        if continues and execution is not None and side.team is not None:
+            side.team.take_up_again(side, state.tree.leaf_definition(execution.leaf))
         dialogue = None if execution is None else state.dialogue_of(execution.leaf)
         waits = dialogue is not None and dialogue.raised.interrupts
         if execution is not None and not continues and not waits:

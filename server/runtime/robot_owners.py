@@ -4,10 +4,14 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from uuid import UUID
 
-from mend.errors import ConflictError, NotFoundError, WrongInputError
+from mend.errors import ConflictError, WrongInputError
+from mend.server.errors import NotConnectedError
 from mend.server.journal.events import RunStarted
 from mend.server.runtime.ports import Robots
 from mend.server.runtime.run import Run
+
+MOST_NAMED = 20
+"""A sentence about robots names so many of them."""
 
 
 class RobotOwners:
@@ -26,20 +30,17 @@ class RobotOwners:
     def check_live(self, robots: Sequence[str]) -> None:
         """Look whether a run in the world 'live' can have these robots.
 
-        Raises `WrongInputError`, `NotFoundError` or `ConflictError`.
+        Raises `WrongInputError`, `NotConnectedError` or `ConflictError`.
         """
         if not robots:
             raise WrongInputError(
-                "a run in the world 'live' needs 'robots': the ids of connected ones"
+                "a run in the world 'live' needs 'robots', the names of connected ones "
+                f"({self._who_is_free()})"
             )
-        twice = next((each for each in robots if robots.count(each) > 1), None)
-        if twice is not None:
-            raise WrongInputError(
-                f"'robots' names the robot '{twice}' more than once; once is enough"
-            )
-        for robot in robots:
-            if not self._robots.connected(robot):
-                raise NotFoundError(f"no robot '{robot}' is connected")
+        away = [each for each in robots if not self._robots.connected(each)]
+        if away:
+            names = " or ".join(f"'{each}'" for each in away)
+            raise NotConnectedError(f"no robot {names} is connected ({self._who_is_free()})", away)
         self.check_free(robots)
 
     def check_free(self, robots: Sequence[str]) -> None:
@@ -48,6 +49,13 @@ class RobotOwners:
         for robot in robots:
             if robot in busy:
                 raise ConflictError(f"the robot '{robot}' is busy with run {busy[robot]}")
+
+    def _who_is_free(self) -> str:
+        busy = self._given | self._promised
+        known = [each for each in self._robots.known() if self._robots.connected(each)]
+        free = [f"'{each}'" for each in known if each not in busy]
+        more = f" and {len(free) - MOST_NAMED} more" if len(free) > MOST_NAMED else ""
+        return f"connected and free: {', '.join(free[:MOST_NAMED]) or 'none'}{more}"
 
     @contextmanager
     def promised(self, started: RunStarted) -> Iterator[None]:

@@ -20,13 +20,14 @@ from mend.robots.link.messages import (
     Look,
     Looked,
     Resume,
+    RoomLimits,
     Sighting,
     Start,
     WasDone,
 )
 from mend.server.runtime.livelock import Livelock
 from mend.server.runtime.run_state import StartedExecution
-from mend.server.runtime.team import Team
+from mend.server.runtime.team import EVERYWHERE, Team
 from mend.tasks.frames import Frame
 from mend.tasks.intervention import Intervention
 from mend.tasks.potential import Point
@@ -83,6 +84,8 @@ class RobotSide:
     link: CommandSender
     frame: Frame = field(default_factory=Frame)
     team: Team | None = None
+    stands_somewhere: bool = True
+    """Whether the scene says where it stands."""
     area: BaseGeometry | None = None
     """What space it has beyond where its arm rests; `Team` says when it may have it."""
     doing: Doing = Doing.ABSENT
@@ -110,6 +113,11 @@ class RobotSide:
     """Why the last look saw nothing of the table."""
 
     @property
+    def room(self) -> RoomLimits | None:
+        """What room its arm takes, from where it stands; None: nobody knows."""
+        return self.hello.room if self.hello is not None and self.stands_somewhere else None
+
+    @property
     def free(self) -> bool:
         """Whether it may be told something new without cutting short what it does."""
         return self.doing is Doing.IDLE
@@ -124,9 +132,12 @@ class RobotSide:
 
     @property
     def owes_a_report(self) -> bool:
-        """Whether it was told something of which a report is still to come."""
+        """Whether it was told something of which a report is still to come.
+
+        Of one that was given up only that its arm rests, where others wait for that.
+        """
         busy = self.doing in (Doing.LOOKING, Doing.WORKING, Doing.RETREATING)
-        return busy and not self.gone_for_good
+        return busy and (not self.gone_for_good or self.area is not None)
 
     def suitability(self, behavior: str) -> float:
         """How well it can do a behavior; 0 if it cannot."""
@@ -142,6 +153,8 @@ class RobotSide:
         self.holds_execution = executing is not None and executing.state == "holding"
         if executing is None:
             self.area = None
+        elif self.area is None:
+            self.area = EVERYWHERE
         if executing is None or self.holds_execution:
             self.doing = Doing.IDLE
         elif executing.state == "retreating":

@@ -73,7 +73,7 @@ class Run:
         self._context = context
         self._sides = sides
         self._team = Team(context.state.scene, hardware.neighbours)
-        self._team.join(sides)
+        self._team.join(sides, executing=context.state.executions)
         self._dialogues = dialogues
         self._hardware = hardware
         self._poses = poses
@@ -98,6 +98,8 @@ class Run:
         self.ended = asyncio.Event()
         self._aborting = False
         self._settled_s = -math.inf
+        self._looked_last: set[str] = set()
+        """The robots that have looked since the task was done."""
 
     @property
     def context(self) -> RunContext:
@@ -300,7 +302,7 @@ class Run:
 
     async def _looked(self, side: RobotSide, purpose: Purpose, fulfilled: bool) -> None:
         if purpose is Purpose.LAST:
-            await self._finish(side)
+            self._looked_last.add(side.robot)
             return
         dialogue = self._dialogue_of(side)
         if dialogue is not None:
@@ -356,10 +358,16 @@ class Run:
         return True
 
     async def _gave_up_as_silent(self, side: RobotSide) -> bool:
-        """Give a robot up that says nothing of what it was told; whether it did."""
+        """Give a robot up that says nothing of what it was told; whether it did.
+
+        Of one that was given up before nobody waits any longer to hear that its arm rests.
+        """
         due = self._silent_too_long_at(side)
         if due is None or self._context.clock.now() < due:
             return False
+        if side.gone_for_good:
+            side.doing = Doing.IDLE
+            return True
         timeout_s = self._context.settings.robot_silent_timeout_s
         await self._presence.give_up(
             side, f"is given up: for {timeout_s:g} s it has said nothing of what it was told"
@@ -380,9 +388,8 @@ class Run:
             side.retreat()
             return False
         if state.tree.done(0):
-            if not state.executions:
-                side.look(Purpose.LAST)
-            return False
+            return not state.executions and await self._look_last(side)
+        self._looked_last.clear()
         return await self._start_something(side)
 
     def _may_resume(self, side: RobotSide, execution: StartedExecution) -> bool:
@@ -452,10 +459,22 @@ class Run:
 
     # --- The end ------------------------------------------------------------------------------
 
+    async def _look_last(self, side: RobotSide) -> bool:
+        """Have every robot look that can, each at what it sees; True if that changed the state."""
+        if side.robot not in self._looked_last:
+            side.look(Purpose.LAST)
+            return False
+        looking = (each.doing is Doing.LOOKING for each in self._sides.values())
+        if any(looking):
+            return False
+        await self._finish(side)
+        return True
+
     async def _finish(self, side: RobotSide) -> None:
-        """End the run, unless the last look has taken something back, or has seen no table."""
+        """End the run, unless of those who looked nobody has seen the table."""
         state = self._context.state
-        if state.tree.done(0) and side.blind is not None:
+        looked = [each for each in self._sides.values() if each.robot in self._looked_last]
+        if side.blind is not None and all(each.blind is not None for each in looked):
             await self._results.doubt_last(side, side.blind)
         if not state.tree.done(0):
             return
@@ -482,6 +501,8 @@ class Run:
         """Go on. Raises `ConflictError` unless paused."""
         self._require(RunStatus.PAUSED, "resume")
         self._context.clock.resume()
+        # Who knows what was done meanwhile.
+        self._looked_last.clear()
         await self._context.commit([ev.RunResumed(**self._context.stamp(), author=author)])
 
     async def abort(self, reason: str = "", author: ev.Author | None = None) -> None:

@@ -122,12 +122,14 @@ class RunState:
 
     @property
     def frames(self) -> dict[str, Frame]:
-        """The base frame of each robot: as the scene has its name, else in the scene's order."""
-        robots, known = self.started.robots, frames_of(self.scene)
-        in_order = list(known.values()) if len(known) == len(robots) else [Frame()] * len(robots)
-        return {
-            robot: known.get(robot, frame) for robot, frame in zip(robots, in_order, strict=True)
-        }
+        """The base frame of each robot, in the scene's order.
+
+        Robots of a scene that does not say where they stand have its frame as their own.
+        """
+        robots, frames = self.started.robots, list(frames_of(self.scene).values())
+        if len(frames) != len(robots):
+            frames = [Frame()] * len(robots)
+        return dict(zip(robots, frames, strict=True))
 
     @property
     def open_dialogues(self) -> list[DialogueState]:

@@ -3,14 +3,16 @@
 A robot asks for all the space that a leaf needs at once, while its arm rests, and has it until its
 arm rests again. So nobody has space and waits for more, and there is no deadlock. Where an arm
 rests is its own all the time, and where one has stopped that is given up. A robot that does not say
-what room it takes is trusted to keep out of the others' way itself.
+what room it takes, or of which the scene does not say where it stands, may be anywhere while its
+arm does not rest, so that nobody else works then; at rest it is trusted to be out of the others'
+way.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from math import dist, hypot
 from typing import TYPE_CHECKING, Protocol
 
-from shapely import MultiPoint, Point
+from shapely import MultiPoint, Point, box
 from shapely.geometry.base import BaseGeometry
 
 from mend.tasks.scene import Scene
@@ -21,6 +23,10 @@ if TYPE_CHECKING:
 
 Flat = tuple[float, float]
 """A point of the scene's plane."""
+
+
+EVERYWHERE = box(-1e6, -1e6, 1e6, 1e6)
+"""The space of an arm of which nobody knows where it is: all that a robot can name."""
 
 
 class Neighbour(Protocol):
@@ -42,11 +48,16 @@ class Team:
         self._neighbours = neighbours
         self._sides: Sequence[RobotSide] = ()
 
-    def join(self, sides: Mapping[str, "RobotSide"]) -> None:
-        """These are all the robots of the run."""
+    def join(self, sides: Mapping[str, "RobotSide"], executing: Collection[str] = ()) -> None:
+        """These are all the robots of the run.
+
+        Of those `executing` something nobody knows where they are.
+        """
         self._sides = tuple(sides.values())
         for side in self._sides:
             side.team = self
+            side.stands_somewhere = bool(self._scene.robots)
+            side.area = EVERYWHERE if side.robot in executing else None
 
     @property
     def shares(self) -> bool:
@@ -81,21 +92,37 @@ class Team:
         if not self.shares:
             return True
         wanted = self._area(side, leaf, handed_over)
-        return not any(wanted.intersects(held_by(each)) for each in self._others(side))
+        return not any(_not_known_yet(each) or _meets(wanted, each) for each in self._others(side))
 
     def take(self, side: "RobotSide", leaf: "BehaviorNode", *, handed_over: bool = False) -> None:
         """Have the space for a leaf, until `RobotSide` gives it back."""
-        if self.shares and side.hello is not None and side.hello.room is not None:
+        if self.shares:
             area = self._area(side, leaf, handed_over)
             side.area = area if side.area is None else area.union(side.area)
 
+    def take_up_again(self, side: "RobotSide", leaf: "BehaviorNode") -> None:
+        """A robot that may have been anywhere is still at a leaf."""
+        if side.area is EVERYWHERE:
+            side.area = None
+            self.take(side, leaf, handed_over=True)
+
+    def given_up_in_the_way(self, leaf: "BehaviorNode") -> list[str]:
+        """The robots that were given up and whose arms may be where a leaf needs space."""
+        stopped = [each for each in self._sides if each.gone_for_good and each.area is not None]
+        areas = [self._area(each, leaf) for each in self._sides if not each.gone_for_good]
+        return [
+            each.robot for each in stopped if areas and all(_meets(area, each) for area in areas)
+        ]
+
     def _partners(self, side: "RobotSide") -> list["RobotSide"]:
-        return [each for each in self._sides if each is not side and each.hello is not None]
+        return [each for each in self._sides if each is not side]
 
     def _others(self, side: "RobotSide") -> list["RobotSide"]:
         """Whoever may be in its way, of this run or not."""
         near = (each for of in self._neighbours() for each in of.sides.values())
-        return [*self._partners(side), *(each for each in near if each.hello is not None)]
+        # Who has not come yet and was about nothing is at rest in a world that is being started.
+        there = (each for each in near if each.hello is not None or each.area is not None)
+        return [*self._partners(side), *there]
 
     def _reaches(self, side: "RobotSide", leaf: "BehaviorNode") -> bool:
         """Whether a leaf's object, where it was seen, and its place are in a robot's ring."""
@@ -108,21 +135,23 @@ class Team:
     def _meets_a_home(self, side: "RobotSide", leaf: "BehaviorNode") -> bool:
         wanted = self._area(side, leaf)
         return any(
-            wanted.intersects(held_by(each) if each.gone_for_good else _home(each))
+            _meets(wanted, each)
+            if each.gone_for_good
+            else wanted is not EVERYWHERE and wanted.intersects(_home(each))
             for each in self._others(side)
         )
 
     def _area(
         self, side: "RobotSide", leaf: "BehaviorNode", handed_over: bool = False
     ) -> BaseGeometry:
-        if side.hello is None or side.hello.room is None:
-            return Point()
+        if side.room is None:
+            return EVERYWHERE
         part = self._scene.objects.get(leaf.object or "")
-        around_m = side.hello.room.around_m
+        around_m = side.room.around_m
         around_m += 0.0 if part is None else hypot(*part.size[:2]) / 2
         corners = [*_home_points(side), *self._ends(leaf)]
         if handed_over:
-            corners.append(side.frame.to_scene(*side.hello.room.hand_over))
+            corners.append(side.frame.to_scene(*side.room.hand_over))
         hull = MultiPoint(corners).convex_hull
         return hull.buffer(around_m)
 
@@ -144,6 +173,19 @@ class Team:
         return ends
 
 
+def _not_known_yet(side: "RobotSide") -> bool:
+    """Whether a robot still has to come and say where its arm is."""
+    return side.hello is None and not side.gone_for_good
+
+
+def _meets(wanted: BaseGeometry, other: "RobotSide") -> bool:
+    """Whether another robot has some of the space that one wants."""
+    if wanted is EVERYWHERE:
+        # Where others rest it is not, though nobody can say where it is.
+        return other.area is not None
+    return wanted.intersects(held_by(other))
+
+
 def _could(side: "RobotSide", behavior: str) -> bool:
     return side.suitability(behavior) > 0.0
 
@@ -154,13 +196,12 @@ def held_by(side: "RobotSide") -> BaseGeometry:
 
 
 def _home_points(side: "RobotSide") -> list[Flat]:
-    assert side.hello is not None
-    assert side.hello.room is not None
-    return [side.frame.to_scene(*each) for each in side.hello.room.resting]
+    assert side.room is not None
+    return [side.frame.to_scene(*each) for each in side.room.resting]
 
 
 def _home(side: "RobotSide") -> BaseGeometry:
     """Where an arm is that rests."""
-    if side.hello is None or side.hello.room is None:
+    if side.room is None:
         return Point()
-    return MultiPoint(_home_points(side)).convex_hull.buffer(side.hello.room.around_m)
+    return MultiPoint(_home_points(side)).convex_hull.buffer(side.room.around_m)

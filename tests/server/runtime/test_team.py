@@ -6,6 +6,7 @@ import pytest
 from shapely import Point
 
 from mend.robots.link.messages import (
+    ActiveExecution,
     CommandBody,
     Hello,
     Holding,
@@ -19,7 +20,7 @@ from mend.server.runtime.robot_side import RobotSide
 from mend.server.runtime.team import Team, held_by
 from mend.tasks.definition import BehaviorNode
 from mend.tasks.frames import Frame
-from mend.tasks.scene import Place, Pose, Scene, SceneObject
+from mend.tasks.scene import Base, Place, Pose, Scene, SceneObject
 
 ROOM = RoomLimits(resting=[(0.5, -0.9)], hand_over=(0.4, 0.0), around_m=0.1)
 ACROSS = Frame(1.24, 0.0, 2)
@@ -65,6 +66,7 @@ def scene(**ways: tuple[float, float, float, float]) -> Scene:
             for name, way in ways.items()
         },
         places={name: Place(pose=Pose(x=way[2], y=way[3])) for name, way in ways.items()},
+        robots={"here": Base(x=0.0, y=0.0), "there": Base(x=1.24, y=0.0, yaw=3.1416)},
     )
 
 
@@ -198,14 +200,88 @@ def test_taking_from_people_needs_the_space_before_the_robot(
     assert held_by(here).covers(hand_over.buffer(0.05))
 
 
-def test_a_robot_that_says_nothing_of_its_room_is_trusted(team: Team) -> None:
+@pytest.fixture
+def unsaid(team: Team) -> tuple[RobotSide, RobotSide]:
+    """The first does not say what room it takes."""
     here, there = RobotSide("here", Link()), RobotSide("there", Link(), ACROSS)
     team.join({"here": here, "there": there})
     here.connect(hello("here", room=None))
     there.connect(hello("there"))
-    team.take(here, leaf("middle"))
-    assert here.area is None
-    assert team.may_begin(there, leaf("middle"))
+    return here, there
+
+
+def test_a_robot_that_does_not_say_what_room_it_takes_works_while_nobody_else_does(
+    team: Team, unsaid: tuple[RobotSide, RobotSide]
+) -> None:
+    here, there = unsaid
+    assert team.may_begin(here, leaf("near"))
+    team.take(here, leaf("near"))
+    assert not team.may_begin(there, leaf("far"))
+    here.finish()
+    assert team.may_begin(there, leaf("far"))
+    team.take(there, leaf("far"))
+    assert not team.may_begin(here, leaf("near"))
+    there.finish()
+    assert team.may_begin(here, leaf("near"))
+
+
+def test_nor_do_robots_at_once_of_which_the_scene_does_not_say_where_they_stand() -> None:
+    team = Team(scene(near=NEAR, far=FAR).model_copy(update={"robots": {}}), tuple)
+    here, there = RobotSide("here", Link()), RobotSide("there", Link())
+    team.join({"here": here, "there": there})
+    here.connect(hello("here"))
+    there.connect(hello("there"))
+    assert not team.leaves_to_others(here, leaf("near"))
+    team.take(here, leaf("near"))
+    assert not team.may_begin(there, leaf("far"))
+    here.finish()
+    assert team.may_begin(there, leaf("far"))
+
+
+def test_where_it_was_given_up_on_its_way_nobody_works_any_more(
+    team: Team, unsaid: tuple[RobotSide, RobotSide]
+) -> None:
+    here, there = unsaid
+    team.take(here, leaf("near"))
+    here.gone_for_good = True
+    assert team.leaves_to_others(there, leaf("far"))
+    assert team.given_up_in_the_way(leaf("far")) == ["here"]
+    # Its program was started again, and its arm rests.
+    here.connect(hello("here", room=None, boot="b2"))
+    assert not team.leaves_to_others(there, leaf("far"))
+
+
+def test_nor_does_it_where_another_was_given_up_on_its_way(
+    team: Team, unsaid: tuple[RobotSide, RobotSide]
+) -> None:
+    here, there = unsaid
+    team.take(there, leaf("far"))
+    there.gone_for_good = True
+    assert team.leaves_to_others(here, leaf("near"))
+
+
+def test_nobody_begins_before_all_have_said_where_their_arms_are(team: Team) -> None:
+    here, there = RobotSide("here", Link()), RobotSide("there", Link(), ACROSS)
+    team.join({"here": here, "there": there})
+    here.connect(hello("here"))
+    assert not team.may_begin(here, leaf("near"))
+    there.gone_for_good = True
+    assert team.may_begin(here, leaf("near"))
+
+
+def test_a_robot_that_is_still_at_something_when_it_comes_may_be_anywhere(team: Team) -> None:
+    here, there = RobotSide("here", Link()), RobotSide("there", Link(), ACROSS)
+    team.join({"here": here, "there": there})
+    here.connect(hello("here"))
+    at_work = ActiveExecution(execution="e", state="running", step=3)
+    there.connect(hello("there", executing=at_work))
+    assert not team.may_begin(here, leaf("near"))
+    # What it is at is known.
+    team.take_up_again(there, leaf("far"))
+    assert team.may_begin(here, leaf("near"))
+    assert not team.may_begin(here, leaf("middle"))
+    there.finish()
+    assert team.may_begin(here, leaf("middle"))
 
 
 def test_a_robot_alone_has_everything() -> None:
