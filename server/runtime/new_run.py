@@ -128,7 +128,8 @@ def _refuse_what_the_site_says(request: RunRequest, offer: SiteOffer) -> None:
     """Raises `WrongInputError`."""
     for name in ("world", "seed", "speed"):
         wanted, there = getattr(request, name), getattr(offer, name)
-        if name in request.model_fields_set and wanted != there:
+        # Clients that send every field say the default where nobody has said anything.
+        if wanted not in (RunRequest.model_fields[name].default, there):
             raise WrongInputError(
                 f"'{name}' is {wanted}, but that of site {request.site} is {there}: leave it out"
             )

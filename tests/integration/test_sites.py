@@ -1,7 +1,9 @@
 """Sites: simulated worlds that stay, and whose robots runs borrow and give back."""
 
 import asyncio
+import os
 import random
+import signal
 from collections.abc import AsyncIterator, Sequence
 from contextlib import asynccontextmanager, suppress
 from pathlib import Path
@@ -13,10 +15,13 @@ from touching_robots import touching_robots
 from untruths import kinds_of
 
 from mend.errors import ConflictError, NotFoundError, WrongInputError
+from mend.server.client import MendClient
+from mend.server.client_errors import RefusedError
 from mend.server.composition import Service, open_service
 from mend.server.errors import ImpossibleError
 from mend.server.journal import events as ev
 from mend.server.journal.run_index import RunPage
+from mend.server.robots.process import WorldProcess
 from mend.server.runtime.requests import RunRequest
 from mend.server.runtime.views import RunStatus
 from mend.server.settings import Settings
@@ -176,7 +181,7 @@ async def test_a_run_at_a_site_goes_on_after_a_restart(tmp_path: Path) -> None:
     ("asked", "sentence"),
     [
         ({"speed": 2.0}, "'speed' is 2.0, but that of site .* is max: leave it out"),
-        ({"world": "workcell"}, "'world' is workcell, but that of site .* is tabletop"),
+        ({"world": "live"}, "'world' is live, but that of site .* is tabletop"),
         ({"scenario": "eket_paper"}, "'scenario' is for a run with a world of its own"),
         ({"robots": ["nobody"]}, "has no robot 'nobody'; it has left-.*, right-"),
     ],
@@ -197,12 +202,7 @@ async def test_a_world_that_ends_while_nobody_uses_it_is_started_again(tmp_path:
         await done(found, await begin(found, "red_near", site.id))
         world = found.sites._sites[site.id].world
         world._ended(world._life, "its process was killed")
-        for _ in range(1000):
-            told = [vars(each)["type"] for each in await found.sites.events(site.id, 0, 100)]
-            if "site_restarted" in told:
-                break
-            await asyncio.sleep(0.01)
-        assert "site_restarted" in told
+        await until_told(found, site.id, "site_restarted")
         events = await done(found, await begin(found, "red_near", site.id))
     assert not [each for each in events if isinstance(each, ev.StepStarted)]
 
@@ -258,3 +258,44 @@ async def a_run_has_ended(found: Service, going: set[UUID]) -> set[UUID]:
     for each in left:
         each.cancel()
     return {waits[each] for each in done}
+
+
+async def test_a_site_is_opened_used_and_closed_over_rest(tmp_path: Path) -> None:
+    async with service(tmp_path) as found, MendClient(found.url) as client:
+        request = SiteRequest(scene="bench_for_two", world="tabletop", speed="max")
+        site = await client.open_site(request)
+        assert [each.stands for each in site.robots] == ["left", "right"]
+        run = await client.start_run(RunRequest(tree="red_near", site=site.id, answers="none"))
+        assert (await client.wait_for_end(run.id)).status is RunStatus.FINISHED
+        assert await client.sites() == [await client.site(site.id)]
+        with pytest.raises(RefusedError, match="there is no scene 'nowhere'"):
+            await client.open_site(SiteRequest(scene="nowhere", world="tabletop"))
+        await client.close_site(site.id)
+        with pytest.raises(RefusedError, match="it may have been closed"):
+            await client.site(site.id)
+        assert await client.sites() == []
+
+
+@pytest.mark.slow(20)
+async def test_a_site_outlives_its_killed_process(tmp_path: Path) -> None:
+    pytest.importorskip("pybullet")
+    async with service(tmp_path) as found:
+        request = SiteRequest(scene="tower", world="workcell", speed="max")
+        site = await found.sites.open_site(request)
+        world = found.sites._sites[site.id].world
+        assert isinstance(world._handle, WorldProcess)
+        first = world._handle.pid
+        assert first is not None
+        os.kill(first, signal.SIGKILL)
+        await until_told(found, site.id, "site_restarted")
+        await done(found, await begin(found, "tower", site.id))
+        assert world._handle.pid != first
+
+
+async def until_told(found: Service, site: UUID, kind: str) -> None:
+    """Wait until a site has an event of this type."""
+    with found.journal.subscribe(0) as events:
+        async with asyncio.timeout(60.0):
+            async for record in events:
+                if f'"{kind}"' in record.text and str(site) in record.text:
+                    return

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from pretend_robots import PretendRobot
 from pretend_service import pretend_service
 from random_task import random_task
+from sampled import sample
 from task_documents import definition_of
 
 from mend.dialogue.registry import load_scripts
@@ -352,7 +353,7 @@ def seen_of(tree: TaskTree) -> list[tuple[Any, ...]]:
 
 
 @pytest.mark.slow
-@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=sample(30, 60), deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(
     seed=st.integers(0, 2**31 - 1),
     leaves=st.integers(1, 14),

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from sampled import sample
 
 from mend.robots.catalogue import Catalogue
 from mend.robots.link.messages import Location
@@ -127,7 +128,7 @@ def test_what_is_wanted_takes_no_equal_from_where_that_stands() -> None:
     assert all(near(where, spots[name]) for name, where in seen.items())
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=sample(6, 15), deadline=None)
 @given(
     moves=st.lists(st.tuples(st.integers(0, 4), st.integers(0, 11)), min_size=1, max_size=6),
     seed=st.integers(0, 1000),
@@ -278,7 +279,7 @@ def test_presence_tells_there_gone_and_hidden() -> None:
     assert watcher.presence("part", 0.6, 0.0) is Presence.THERE
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=sample(10, 20), deadline=None)
 @given(
     x=st.floats(0.42, 0.68),
     y=st.floats(-0.55, 0.15),
