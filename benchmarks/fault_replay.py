@@ -19,7 +19,7 @@ def told(of: Iterator[Bench], pictures: Path | None) -> Iterator[Bench]:
     print(f"seed {bench.seed}")
     for name, each in bench.scene.objects.items():
         print(f"  {name}: {each.size} m, knob {each.knob}, colour {each.color}")
-    bench.senses.on_reading = lambda reading: _tell(bench, reading, pictures)
+    bench.perception.on_reading = lambda reading: _tell(bench, reading, pictures)
     yield bench
 
 

@@ -8,7 +8,7 @@ from mend.robots.body import Body
 from mend.robots.catalogue import Catalogue
 from mend.robots.grip import GripReading, GripState
 from mend.robots.grip.watch import GripWatch
-from mend.robots.senses import Senses
+from mend.robots.perception import Perception
 from mend.robots.vision.color_model import ColorModel
 
 
@@ -41,8 +41,8 @@ class PlainWatch:
             self.alarm_s = reading.image.time
 
 
-class SharedSenses(Senses):
-    """The robot's senses, whose forearm pictures the plain watch sees too.
+class SharedSenses(Perception):
+    """The robot's perception, whose forearm pictures the plain watch sees too.
 
     `on_reading` is told every reading of the hand.
     """

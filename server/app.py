@@ -38,9 +38,9 @@ from mend.server.api.gate import Gate
 from mend.server.api.idempotency_key import take_keys
 from mend.server.api.openapi_links import add_links
 from mend.server.api.openapi_responses import document_answers
-from mend.server.api.parts import ObservedJournal, Parts, WorldList
 from mend.server.api.problems import Problem, answer_errors_with_problems
 from mend.server.api.repeats import Repeats
+from mend.server.api.services import ObservedJournal, Services, WorldList
 from mend.server.documents import DocumentLibrary
 from mend.server.models import RobotModels
 from mend.server.off_loop import OffLoop
@@ -108,7 +108,7 @@ def create_app(
     """
     app = described_app(lifespan)
     refusals = refusals or Refusals()
-    app.state.parts = Parts(
+    app.state.services = Services(
         service,
         journal,
         trees,

@@ -14,7 +14,7 @@ from pydantic import TypeAdapter, ValidationError
 from mend.server.api.principals import CodeView, DeedsPage, PrincipalView, TokenView
 from mend.server.api.problems import Problem, problem
 from mend.server.api.speech import SpeechView
-from mend.server.client_connection import HelperDoor
+from mend.server.client_connection import HelperEndpoint
 from mend.server.client_errors import RefusedError, UnreachableError
 from mend.server.client_retries import send_once
 from mend.server.client_speech import SpeechStream
@@ -312,7 +312,7 @@ class MendClient:
     async def talk(self, helper: str) -> AsyncIterator[SpeechStream]:
         """A microphone, to answer questions by voice."""
         # Sound does not get smaller by deflating it, only later.
-        door = HelperDoor(self._url, "/ws/speech", self._headers, helper)
+        door = HelperEndpoint(self._url, "/ws/speech", self._headers, helper)
         async with door.connected(compression=None) as socket:
             yield SpeechStream(socket)
 
@@ -320,7 +320,7 @@ class MendClient:
 
     def follow(self, helper: str, after: int | None = None) -> EventStream:
         """Follow every event from now on, or from the one after `after`, as a helper."""
-        return EventStream(HelperDoor(self._url, "/ws/helper", self._headers, helper), after)
+        return EventStream(HelperEndpoint(self._url, "/ws/helper", self._headers, helper), after)
 
     async def wait_until_ready(self, timeout_s: float = 30.0) -> None:
         """Wait until the service can be used. Raises `UnreachableError` after the time-out."""

@@ -27,8 +27,8 @@ from mend.server.access.deed_log import ToldLaterError
 from mend.server.access.principals_file import PrincipalsFileError
 from mend.server.access.roles import Role, with_article
 from mend.server.api.mistakes import MOST_TOLD, validation_sentences
-from mend.server.api.parts import parts_of
 from mend.server.api.safe_headers import SAFE_HEADERS
+from mend.server.api.services import services_of
 from mend.server.descriptors import NO_DESCRIPTOR
 from mend.server.errors import BusyError, LostRaceError, NotConnectedError
 from mend.server.journal.journal import JournalClosedError, JournalReadError, JournalWriteError
@@ -177,7 +177,7 @@ async def _validation_error(_request: Request, error: Exception) -> Response:
 
 async def _problem_error(request: Request, error: Exception) -> Response:
     assert isinstance(error, ProblemError)
-    count_refusal(error, parts_of(request).refusals)
+    count_refusal(error, services_of(request).refusals)
     return problem_response(problem(error.status, str(error)), error.headers)
 
 
@@ -185,7 +185,7 @@ async def _mend_error(request: Request, error: Exception) -> Response:
     refusal = problem_of(error)
     if refusal is None:
         return await _defect(request, error)
-    count_refusal(error, parts_of(request).refusals)
+    count_refusal(error, services_of(request).refusals)
     return problem_response(refusal, _retry_after(error))
 
 

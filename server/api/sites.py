@@ -5,9 +5,9 @@ from typing import Annotated
 
 from fastapi import APIRouter, Body, Response
 
-from mend.server.api.parts import After, Limit, Offset, SiteId, WithCaller, WithParts
 from mend.server.api.problems import documented
 from mend.server.api.repeatable import RepeatableRoute
+from mend.server.api.services import After, Limit, Offset, SiteId, WithCaller, WithServices
 from mend.server.journal.events import AnyEvent, Event
 from mend.server.sites.requests import SiteRequest
 from mend.server.sites.views import SiteView
@@ -29,25 +29,27 @@ SITE_EXAMPLES = [
 async def open_site(
     request: Annotated[SiteRequest, Body(examples=SITE_EXAMPLES)],
     response: Response,
-    parts: WithParts,
+    services: WithServices,
     caller: WithCaller,
 ) -> SiteView:
     """Start a simulated world that stays, with its robots, until it is closed."""
-    site = await parts.sites.open_site(request, caller.author)
+    site = await services.sites.open_site(request, caller.author)
     response.headers["Location"] = f"/api/sites/{site.id}"
     return site
 
 
 @router.get("", operation_id="list_sites", responses=documented(401, 421, 422))
-async def list_sites(parts: WithParts, limit: Limit = 1000, offset: Offset = 0) -> list[SiteView]:
+async def list_sites(
+    services: WithServices, limit: Limit = 1000, offset: Offset = 0
+) -> list[SiteView]:
     """Every open site with its robots, in the order in which they were opened."""
-    return parts.sites.sites()[offset : offset + limit]
+    return services.sites.sites()[offset : offset + limit]
 
 
 @router.get("/{site}", operation_id="get_site", responses=documented(401, 404, 421, 422))
-async def get_site(site: SiteId, parts: WithParts) -> SiteView:
+async def get_site(site: SiteId, services: WithServices) -> SiteView:
     """One site, its robots, and the runs that have them."""
-    return parts.sites.view(site)
+    return services.sites.view(site)
 
 
 @router.delete(
@@ -56,9 +58,9 @@ async def get_site(site: SiteId, parts: WithParts) -> SiteView:
     status_code=204,
     responses=documented(401, 403, 404, 409, 421, 422, 503),
 )
-async def close_site(site: SiteId, parts: WithParts, caller: WithCaller) -> None:
+async def close_site(site: SiteId, services: WithServices, caller: WithCaller) -> None:
     """Stop a site's world for good; no run may be using it."""
-    await parts.sites.close_site(site, caller.author)
+    await services.sites.close_site(site, caller.author)
 
 
 @router.get(
@@ -68,7 +70,7 @@ async def close_site(site: SiteId, parts: WithParts, caller: WithCaller) -> None
     responses=documented(401, 404, 421, 422, 500),
 )
 async def list_site_events(
-    site: SiteId, parts: WithParts, after: After = 0, limit: Limit = 100
+    site: SiteId, services: WithServices, after: After = 0, limit: Limit = 100
 ) -> Sequence[Event]:
     """What became of a site, in order, also of a closed one; go on with the last `seq`."""
-    return await parts.sites.events(site, after, limit)
+    return await services.sites.events(site, after, limit)

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import Protocol
 
 from mend.server.runtime.clock import RunClock
-from mend.server.runtime.robot_side import RobotSide
+from mend.server.runtime.robot_proxy import RobotProxy
 from mend.server.runtime.team import Neighbour
 
 
@@ -30,7 +30,7 @@ class Hardware(Protocol):
         """Start a simulated robot (again), with its world as the journal has it."""
         ...
 
-    def came(self, side: RobotSide) -> None:
+    def came(self, proxy: RobotProxy) -> None:
         """A robot has connected."""
         ...
 

@@ -10,7 +10,7 @@ from mend.server.runtime.clock import RunClock, WallClock
 from mend.server.runtime.hardware import Hardware
 from mend.server.runtime.pose_sink import PoseSink
 from mend.server.runtime.requests import RunRequest
-from mend.server.runtime.robot_side import CommandSender, RobotSide
+from mend.server.runtime.robot_proxy import CommandSender, RobotProxy
 from mend.server.runtime.run import Run
 from mend.server.runtime.run_state import RunState
 from mend.server.runtime.team import Neighbour
@@ -120,7 +120,7 @@ class RealRobots:
     async def restart(self, robot: str) -> None:
         """A real robot comes back by itself."""
 
-    def came(self, side: RobotSide) -> None:
+    def came(self, proxy: RobotProxy) -> None:
         """Nothing to do, as for `restart`."""
 
     def neighbours(self) -> Sequence[Neighbour]:

@@ -72,7 +72,7 @@ class RobotOwners:
         """Give a run all its robots, or none. Raises `ConflictError` if another run has one."""
         given: list[str] = []
         try:
-            for robot in run.sides:
+            for robot in run.proxies:
                 self._robots.assign(robot, run)
                 given.append(robot)
         except ConflictError:
@@ -83,6 +83,6 @@ class RobotOwners:
 
     def take_back(self, run: Run) -> None:
         """A run needs its robots no more."""
-        for robot in run.sides:
+        for robot in run.proxies:
             self._robots.unassign(robot)
             del self._given[robot]

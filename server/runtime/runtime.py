@@ -32,7 +32,7 @@ from mend.server.runtime.new_run import NewRun, NewRuns
 from mend.server.runtime.ports import LIVE, Poses, Preparation, RealRobots, Robots, Worlds
 from mend.server.runtime.requests import RunRequest
 from mend.server.runtime.robot_owners import RobotOwners
-from mend.server.runtime.robot_side import RobotSide
+from mend.server.runtime.robot_proxy import RobotProxy
 from mend.server.runtime.run import Run
 from mend.server.runtime.run_state import RunState
 from mend.server.runtime.run_states import RunStates
@@ -188,7 +188,7 @@ class Runtime:
         parting = [
             self._tasks[run]
             for run, each in self._runs.items()
-            if each.context.state.status.ended and not each.sides.keys().isdisjoint(robots)
+            if each.context.state.status.ended and not each.proxies.keys().isdisjoint(robots)
         ]
         if parting:
             await asyncio.wait(parting)
@@ -216,8 +216,8 @@ class Runtime:
 
     def _take_up(self, context: RunContext, hardware: Hardware) -> None:
         state = context.state
-        sides = {
-            robot: RobotSide(robot, self._robots, frame) for robot, frame in state.frames.items()
+        proxies = {
+            robot: RobotProxy(robot, self._robots, frame) for robot, frame in state.frames.items()
         }
         scenario = state.scenario
         dialogues = DialogueDriver(
@@ -227,7 +227,7 @@ class Runtime:
             _person_of(state, scenario) if hardware.simulated else None,
             partial(self._send_mail, state),
         )
-        run = Run(context, sides, dialogues, hardware, self._poses.open(state))
+        run = Run(context, proxies, dialogues, hardware, self._poses.open(state))
         try:
             self._owners.give(run)
         except ConflictError:
@@ -296,8 +296,8 @@ class Runtime:
         leaves = np.asarray(state.tree.leaves, dtype=np.int64)
         potentials = np.zeros(len(state.tree))
         run = self._runs.get(state.id)
-        for side in run.sides.values() if run else ():
-            of_side = potentials_for(state, side, leaves)
+        for proxy in run.proxies.values() if run else ():
+            of_side = potentials_for(state, proxy, leaves)
             potentials[leaves] = np.maximum(potentials[leaves], of_side)
         trouble = self._journal.trouble.reason
         return RunViewing(state, self._time(state), array("d", potentials.tobytes()), trouble)
@@ -362,8 +362,8 @@ class Runtime:
     async def picture(self, run: UUID, camera: str) -> bytes:
         """A camera's picture now, as JPEG. Raises `NotFoundError` or `ConflictError`."""
         running = await self._running(run)
-        for robot, side in running.sides.items():
-            if side.hello is not None and camera in side.hello.cameras:
+        for robot, proxy in running.proxies.items():
+            if proxy.hello is not None and camera in proxy.hello.cameras:
                 return await self._robots.take_picture(robot, camera)
         raise NotFoundError(f"no robot of this run has a camera '{camera}'")
 
@@ -404,9 +404,9 @@ class Runtime:
         found = await self._states.find_dialogue(dialogue)
         try:
             run = await self._running(found.opened.run)
-            side = run.sides[found.opened.robot]
+            proxy = run.proxies[found.opened.robot]
             answered = await run.request(
-                lambda: run.dialogues.answer(found, prompt, answer, helper, side, author)
+                lambda: run.dialogues.answer(found, prompt, answer, helper, proxy, author)
             )
         except ConflictError:
             # Who was first is told also where that answer has ended the run.
@@ -456,7 +456,7 @@ class Runtime:
 
     def robots(self) -> list[RobotView]:
         """Every robot that is or was connected."""
-        owners = {robot: run.context.state for run in self._runs.values() for robot in run.sides}
+        owners = {robot: run.context.state for run in self._runs.values() for robot in run.proxies}
         return [
             robot_view(
                 robot, self._robots.hello(robot), self._robots.connected(robot), owners.get(robot)

@@ -18,7 +18,7 @@ from shapely.geometry.base import BaseGeometry
 from mend.tasks.scene import Scene
 
 if TYPE_CHECKING:
-    from mend.server.runtime.robot_side import RobotSide
+    from mend.server.runtime.robot_proxy import RobotProxy
     from mend.tasks.definition import BehaviorNode
 
 Flat = tuple[float, float]
@@ -33,7 +33,7 @@ class Neighbour(Protocol):
     """Who else has robots where a run's robots work: another run, or the site itself."""
 
     @property
-    def sides(self) -> Mapping[str, "RobotSide"]: ...
+    def proxies(self) -> Mapping[str, "RobotProxy"]: ...
 
     def handled(self) -> set[str]:
         """The parts and places that its robots are about."""
@@ -46,44 +46,44 @@ class Team:
     def __init__(self, scene: Scene, neighbours: Callable[[], Sequence[Neighbour]]) -> None:
         self._scene = scene
         self._neighbours = neighbours
-        self._sides: Sequence[RobotSide] = ()
+        self._proxies: Sequence[RobotProxy] = ()
 
-    def join(self, sides: Mapping[str, "RobotSide"], executing: Collection[str] = ()) -> None:
+    def join(self, proxies: Mapping[str, "RobotProxy"], executing: Collection[str] = ()) -> None:
         """These are all the robots of the run.
 
         Of those `executing` something nobody knows where they are.
         """
-        self._sides = tuple(sides.values())
-        for side in self._sides:
-            side.team = self
-            side.stands_somewhere = bool(self._scene.robots)
-            side.area = EVERYWHERE if side.robot in executing else None
+        self._proxies = tuple(proxies.values())
+        for proxy in self._proxies:
+            proxy.team = self
+            proxy.stands_somewhere = bool(self._scene.robots)
+            proxy.area = EVERYWHERE if proxy.robot in executing else None
 
     @property
     def shares(self) -> bool:
         """Whether there are several robots, of whomever."""
-        return len(self._sides) > 1 or any(each.sides for each in self._neighbours())
+        return len(self._proxies) > 1 or any(each.proxies for each in self._neighbours())
 
     def handled_by_neighbours(self) -> set[str]:
         """The parts and places that others than this run are about."""
         return {name for each in self._neighbours() for name in each.handled()}
 
-    def leaves_to_others(self, side: "RobotSide", leaf: "BehaviorNode") -> bool:
+    def leaves_to_others(self, proxy: "RobotProxy", leaf: "BehaviorNode") -> bool:
         """Whether a leaf is not for this robot, as it is out of its reach or in another's home.
 
         What is out of everybody's reach is left to nobody: the robot that tries it asks people.
         """
         if not self.shares:
             return False
-        if self._meets_a_home(side, leaf):
+        if self._meets_a_home(proxy, leaf):
             return True
-        others = (each for each in self._partners(side) if _could(each, leaf.behavior))
-        return not self._reaches(side, leaf) and any(
+        others = (each for each in self._partners(proxy) if _could(each, leaf.behavior))
+        return not self._reaches(proxy, leaf) and any(
             self._reaches(each, leaf) and not self._meets_a_home(each, leaf) for each in others
         )
 
     def may_begin(
-        self, side: "RobotSide", leaf: "BehaviorNode", *, handed_over: bool = False
+        self, proxy: "RobotProxy", leaf: "BehaviorNode", *, handed_over: bool = False
     ) -> bool:
         """Whether nobody else has the space that a leaf needs.
 
@@ -91,67 +91,67 @@ class Team:
         """
         if not self.shares:
             return True
-        wanted = self._area(side, leaf, handed_over)
-        return not any(_not_known_yet(each) or _meets(wanted, each) for each in self._others(side))
+        wanted = self._area(proxy, leaf, handed_over)
+        return not any(_not_known_yet(each) or _meets(wanted, each) for each in self._others(proxy))
 
-    def take(self, side: "RobotSide", leaf: "BehaviorNode", *, handed_over: bool = False) -> None:
-        """Have the space for a leaf, until `RobotSide` gives it back."""
+    def take(self, proxy: "RobotProxy", leaf: "BehaviorNode", *, handed_over: bool = False) -> None:
+        """Have the space for a leaf, until `RobotProxy` gives it back."""
         if self.shares:
-            area = self._area(side, leaf, handed_over)
-            side.area = area if side.area is None else area.union(side.area)
+            area = self._area(proxy, leaf, handed_over)
+            proxy.area = area if proxy.area is None else area.union(proxy.area)
 
-    def take_up_again(self, side: "RobotSide", leaf: "BehaviorNode") -> None:
+    def take_up_again(self, proxy: "RobotProxy", leaf: "BehaviorNode") -> None:
         """A robot that may have been anywhere is still at a leaf."""
-        if side.area is EVERYWHERE:
-            side.area = None
-            self.take(side, leaf, handed_over=True)
+        if proxy.area is EVERYWHERE:
+            proxy.area = None
+            self.take(proxy, leaf, handed_over=True)
 
     def given_up_in_the_way(self, leaf: "BehaviorNode") -> list[str]:
         """The robots that were given up and whose arms may be where a leaf needs space."""
-        stopped = [each for each in self._sides if each.gone_for_good and each.area is not None]
-        areas = [self._area(each, leaf) for each in self._sides if not each.gone_for_good]
+        stopped = [each for each in self._proxies if each.gone_for_good and each.area is not None]
+        areas = [self._area(each, leaf) for each in self._proxies if not each.gone_for_good]
         return [
             each.robot for each in stopped if areas and all(_meets(area, each) for area in areas)
         ]
 
-    def _partners(self, side: "RobotSide") -> list["RobotSide"]:
-        return [each for each in self._sides if each is not side]
+    def _partners(self, proxy: "RobotProxy") -> list["RobotProxy"]:
+        return [each for each in self._proxies if each is not proxy]
 
-    def _others(self, side: "RobotSide") -> list["RobotSide"]:
+    def _others(self, proxy: "RobotProxy") -> list["RobotProxy"]:
         """Whoever may be in its way, of this run or not."""
-        near = (each for of in self._neighbours() for each in of.sides.values())
+        near = (each for of in self._neighbours() for each in of.proxies.values())
         # Who has not come yet and was about nothing is at rest in a world that is being started.
         there = (each for each in near if each.hello is not None or each.area is not None)
-        return [*self._partners(side), *there]
+        return [*self._partners(proxy), *there]
 
-    def _reaches(self, side: "RobotSide", leaf: "BehaviorNode") -> bool:
+    def _reaches(self, proxy: "RobotProxy", leaf: "BehaviorNode") -> bool:
         """Whether a leaf's object, where it was seen, and its place are in a robot's ring."""
-        assert side.hello is not None
-        reach = side.hello.reach
-        middle = side.frame.to_scene(reach.x, reach.y)
+        assert proxy.hello is not None
+        reach = proxy.hello.reach
+        middle = proxy.frame.to_scene(reach.x, reach.y)
         ends = self._ends(leaf)
         return all(reach.min_m <= dist(middle, each) <= reach.max_m for each in ends)
 
-    def _meets_a_home(self, side: "RobotSide", leaf: "BehaviorNode") -> bool:
-        wanted = self._area(side, leaf)
+    def _meets_a_home(self, proxy: "RobotProxy", leaf: "BehaviorNode") -> bool:
+        wanted = self._area(proxy, leaf)
         return any(
             _meets(wanted, each)
             if each.gone_for_good
             else wanted is not EVERYWHERE and wanted.intersects(_home(each))
-            for each in self._others(side)
+            for each in self._others(proxy)
         )
 
     def _area(
-        self, side: "RobotSide", leaf: "BehaviorNode", handed_over: bool = False
+        self, proxy: "RobotProxy", leaf: "BehaviorNode", handed_over: bool = False
     ) -> BaseGeometry:
-        if side.room is None:
+        if proxy.room is None:
             return EVERYWHERE
         part = self._scene.objects.get(leaf.object or "")
-        around_m = side.room.around_m
+        around_m = proxy.room.around_m
         around_m += 0.0 if part is None else hypot(*part.size[:2]) / 2
-        corners = [*_home_points(side), *self._ends(leaf)]
+        corners = [*_home_points(proxy), *self._ends(leaf)]
         if handed_over:
-            corners.append(side.frame.to_scene(*side.room.hand_over))
+            corners.append(proxy.frame.to_scene(*proxy.room.hand_over))
         hull = MultiPoint(corners).convex_hull
         return hull.buffer(around_m)
 
@@ -160,7 +160,7 @@ class Team:
         ends: list[Flat] = []
         seen = [
             (each.seen_at, sighting)
-            for each in self._sides
+            for each in self._proxies
             if (sighting := each.seen.get(leaf.object or "")) is not None
         ]
         if seen:
@@ -173,12 +173,12 @@ class Team:
         return ends
 
 
-def _not_known_yet(side: "RobotSide") -> bool:
+def _not_known_yet(proxy: "RobotProxy") -> bool:
     """Whether a robot still has to come and say where its arm is."""
-    return side.hello is None and not side.gone_for_good
+    return proxy.hello is None and not proxy.gone_for_good
 
 
-def _meets(wanted: BaseGeometry, other: "RobotSide") -> bool:
+def _meets(wanted: BaseGeometry, other: "RobotProxy") -> bool:
     """Whether another robot has some of the space that one wants."""
     if wanted is EVERYWHERE:
         # Where others rest it is not, though nobody can say where it is.
@@ -186,22 +186,22 @@ def _meets(wanted: BaseGeometry, other: "RobotSide") -> bool:
     return wanted.intersects(held_by(other))
 
 
-def _could(side: "RobotSide", behavior: str) -> bool:
-    return side.suitability(behavior) > 0.0
+def _could(proxy: "RobotProxy", behavior: str) -> bool:
+    return proxy.suitability(behavior) > 0.0
 
 
-def held_by(side: "RobotSide") -> BaseGeometry:
+def held_by(proxy: "RobotProxy") -> BaseGeometry:
     """The space that a robot has now."""
-    return _home(side) if side.area is None else side.area
+    return _home(proxy) if proxy.area is None else proxy.area
 
 
-def _home_points(side: "RobotSide") -> list[Flat]:
-    assert side.room is not None
-    return [side.frame.to_scene(*each) for each in side.room.resting]
+def _home_points(proxy: "RobotProxy") -> list[Flat]:
+    assert proxy.room is not None
+    return [proxy.frame.to_scene(*each) for each in proxy.room.resting]
 
 
-def _home(side: "RobotSide") -> BaseGeometry:
+def _home(proxy: "RobotProxy") -> BaseGeometry:
     """Where an arm is that rests."""
-    if side.room is None:
+    if proxy.room is None:
         return Point()
-    return MultiPoint(_home_points(side)).convex_hull.buffer(side.room.around_m)
+    return MultiPoint(_home_points(proxy)).convex_hull.buffer(proxy.room.around_m)

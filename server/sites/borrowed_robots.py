@@ -3,7 +3,7 @@
 from collections.abc import Awaitable, Callable, Sequence
 
 from mend.server.runtime.clock import RunClock, SimulatedClock
-from mend.server.runtime.robot_side import RobotSide
+from mend.server.runtime.robot_proxy import RobotProxy
 from mend.server.runtime.run import Run
 from mend.server.runtime.team import Neighbour
 from mend.server.sites.site import Site
@@ -48,9 +48,9 @@ class BorrowedRobots:
         """Start the world again for all robots in it."""
         await self._site.world.restart(robot)
 
-    def came(self, side: RobotSide) -> None:
+    def came(self, proxy: RobotProxy) -> None:
         """A robot has connected."""
-        self._site.came(side)
+        self._site.came(proxy)
 
     def neighbours(self) -> Sequence[Neighbour]:
         """Other runs at this site, and its robots that none has."""

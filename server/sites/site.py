@@ -10,7 +10,7 @@ from mend.errors import ConflictError
 from mend.robots.link.messages import Hello, Holding, Poses, Report
 from mend.server.journal.journal import Entry, Journal, Receipt
 from mend.server.robots.registry import RobotRegistry
-from mend.server.runtime.robot_side import Doing, RobotSide
+from mend.server.runtime.robot_proxy import RobotActivity, RobotProxy
 from mend.server.runtime.team import Neighbour
 from mend.server.sites.running_world import RunningWorld
 from mend.tasks.frames import Frame
@@ -49,15 +49,15 @@ class Site:
         self._restarted = restarted
         self._frames = dict(robots)
         self._resting = {name: self._at_rest(name) for name in robots}
-        self._handed_over: dict[str, RobotSide] = {}
+        self._handed_over: dict[str, RobotProxy] = {}
         self._runs: dict[UUID, Run] = {}
         self.forgotten = False
         """Whether its world's state is kept no more, as it is being closed."""
         self._restarts = 0
         self._tasks: set[asyncio.Task[None]] = set()
 
-    def _at_rest(self, robot: str) -> RobotSide:
-        return RobotSide(robot, self._registry, self._frames[robot])
+    def _at_rest(self, robot: str) -> RobotProxy:
+        return RobotProxy(robot, self._registry, self._frames[robot])
 
     @property
     def used(self) -> bool:
@@ -66,7 +66,7 @@ class Site:
 
     def run_of(self, robot: str) -> UUID | None:
         """Which run has a robot."""
-        return next((run for run, each in self._runs.items() if robot in each.sides), None)
+        return next((run for run, each in self._runs.items() if robot in each.proxies), None)
 
     # --- Its world ----------------------------------------------------------------------------
 
@@ -99,11 +99,11 @@ class Site:
         task.add_done_callback(self._tasks.discard)
 
     async def _restart(self, robot: str, reason: str) -> None:
-        side = self._resting.get(robot)
-        if side is None:
+        proxy = self._resting.get(robot)
+        if proxy is None:
             return
-        side.disconnect()
-        side.area = None
+        proxy.disconnect()
+        proxy.area = None
         self._restarts += 1
         if self._restarts > MAX_RESTARTS:
             log.error("site %s: its world keeps ending: %s", self.id, reason)
@@ -115,17 +115,17 @@ class Site:
 
     async def robot_connected(self, robot: str, hello: Hello) -> None:
         """A robot is there, with nobody who has work for it."""
-        side = self._resting.get(robot)
-        if side is None:
+        proxy = self._resting.get(robot)
+        if proxy is None:
             return
-        area, was_there = side.area, side.hello is not None and side.hello.boot == hello.boot
-        side.connect(hello)
+        area, was_there = proxy.area, proxy.hello is not None and proxy.hello.boot == hello.boot
+        proxy.connect(hello)
         self.world.came(robot)
         self.world.time.heard(hello.time)
         if was_there or hello.executing is not None:
             # What it was about for a run is over; until it rests it has its space.
-            side.area = area
-            side.retreat()
+            proxy.area = area
+            proxy.retreat()
 
     async def robot_reported(self, robot: str, report: Report, receipt: Receipt) -> None:
         """Keep what a robot reports that comes to rest."""
@@ -134,9 +134,9 @@ class Site:
         world = None if self.forgotten else report.world
         entry = Entry(receipt=receipt, world_run=None if world is None else self.id, world=world)
         await self._journal.append(entry, patient=True)
-        side = self._resting.get(robot)
-        if side is not None and isinstance(report.body, Holding):
-            side.hold_execution(report.body)
+        proxy = self._resting.get(robot)
+        if proxy is not None and isinstance(report.body, Holding):
+            proxy.hold_execution(report.body)
             self.tell_neighbours(None)
 
     def robot_posed(self, robot: str, poses: Poses) -> None:
@@ -151,25 +151,25 @@ class Site:
     def lend(self, run: "Run") -> None:
         """A run has its robots from now on."""
         self._runs[run.context.state.id] = run
-        for robot in run.sides:
+        for robot in run.proxies:
             self._handed_over[robot] = self._resting.pop(robot)
 
-    def came(self, side: RobotSide) -> None:
+    def came(self, proxy: RobotProxy) -> None:
         """A robot of a run has connected: it goes to rest first if it had not yet."""
-        self.world.came(side.robot)
-        before = self._handed_over.pop(side.robot, None)
-        if before is not None and before.doing is Doing.RETREATING:
-            side.area = before.area
-            side.retreat()
+        self.world.came(proxy.robot)
+        before = self._handed_over.pop(proxy.robot, None)
+        if before is not None and before.doing is RobotActivity.RETREATING:
+            proxy.area = before.area
+            proxy.retreat()
 
     def take_back(self, run: "Run") -> None:
         """A run has ended: its robots are the site's again, each with its space until it rests."""
         if self._runs.pop(run.context.state.id, None) is None:
             return
-        for robot, side in run.sides.items():
+        for robot, proxy in run.proxies.items():
             self._handed_over.pop(robot, None)
             resting = self._at_rest(robot)
-            resting.hello, resting.area = side.hello, side.area
+            resting.hello, resting.area = proxy.hello, proxy.area
             self._resting[robot] = resting
         self.tell_neighbours(run)
 
@@ -183,7 +183,7 @@ class Site:
     # --- Who else is there (Neighbour) --------------------------------------------------------
 
     @property
-    def sides(self) -> Mapping[str, RobotSide]:
+    def proxies(self) -> Mapping[str, RobotProxy]:
         return self._resting
 
     def handled(self) -> set[str]:

@@ -34,7 +34,7 @@ from mend.server.sites.site import Site
 from mend.server.sites.site_record import KIND, SiteRecord
 from mend.server.sites.views import SiteRobot, SiteView
 from mend.server.sites.worlds import Launch, RobotNames, SimulatedWorlds
-from mend.sim.mischief import random_interventions
+from mend.sim.random_interventions import random_interventions
 from mend.sim.world import WorldSetup
 from mend.tasks.frames import Frame, frames_of
 from mend.tasks.scenario import ScriptedIntervention
@@ -315,7 +315,7 @@ class Sites:
             wall_time=self._utc_now(),
             site=site.id,
             of_run=state.id,
-            robots=list(run.sides),
+            robots=list(run.proxies),
             moved=moved,
         )
         # At once: another run may end while this is written.

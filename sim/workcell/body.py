@@ -1,4 +1,4 @@
-"""The PR2 as a `mend.robots.body.Body`: motions of the arm and the gripper, cameras, senses."""
+"""The PR2 as a `mend.robots.body.Body`: motions of the arm and the gripper, cameras, perception."""
 
 from collections.abc import Callable, Mapping, Sequence
 

@@ -25,7 +25,7 @@ from mend.server.runtime.context import RunSettings
 from mend.server.runtime.dialogue_state import DialogueState
 from mend.server.runtime.ports import PreparedRun, SiteOffer
 from mend.server.runtime.requests import RunRequest
-from mend.server.runtime.robot_side import RobotSide
+from mend.server.runtime.robot_proxy import RobotProxy
 from mend.server.runtime.run import Run
 from mend.server.runtime.run_state import RunState
 from mend.server.runtime.runtime import Runtime
@@ -54,7 +54,7 @@ class NoHardware:
     async def restart(self, robot: str) -> None:
         self._restarted.append(robot)
 
-    def came(self, side: RobotSide) -> None: ...
+    def came(self, proxy: RobotProxy) -> None: ...
 
     def neighbours(self) -> Sequence[Neighbour]:
         return ()

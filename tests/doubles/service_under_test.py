@@ -64,7 +64,7 @@ class ServiceUnderTest:
 
     @property
     def refusals(self) -> Refusals:
-        refusals: Refusals = self.app.state.parts.refusals
+        refusals: Refusals = self.app.state.services.refusals
         return refusals
 
     async def refused(self, limit: LimitName) -> None:

@@ -32,8 +32,8 @@ from mend.robots.link.messages import (
     StepStarted,
     TakePicture,
 )
+from mend.robots.perception.head import HeadSense
 from mend.robots.robot import Robot
-from mend.robots.senses.head import HeadSense
 from mend.robots.vision.obstruction import Obstruction
 from mend.tasks.plugins import load_plugins
 

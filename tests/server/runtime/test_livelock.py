@@ -319,8 +319,8 @@ async def test_a_robot_that_comes_back_after_it_was_given_up_lets_go_of_what_it_
         times=LinkTimes(absence_s=0.01),
     ) as (service, robot, run):
         await gone.wait()
-        side = service.runtime._runs[run].sides["arm"]
-        while not side.gone_for_good:  # noqa: ASYNC110
+        proxy = service.runtime._runs[run].proxies["arm"]
+        while not proxy.gone_for_good:  # noqa: ASYNC110
             await asyncio.sleep(0.01)
         holding = {"execution": "of an earlier run", "state": "holding", "step": 3}
         await robot.connect(leaves, executing=holding)

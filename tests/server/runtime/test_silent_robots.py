@@ -73,13 +73,13 @@ async def test_no_time_passes_while_the_run_is_paused() -> None:
         await started.wait()
         await service.runtime.pause(run)
         actor = service.runtime._runs[run]
-        side = actor.sides["arm"]
-        at = actor._silent_too_long_at(side)
+        proxy = actor.proxies["arm"]
+        at = actor._silent_too_long_at(proxy)
         before = actor.context.clock.now()
         await asyncio.sleep(0)
         assert actor.context.clock.now() == before
         assert at is not None
-        assert at == actor._silent_too_long_at(side)
+        assert at == actor._silent_too_long_at(proxy)
     journal.close()
 
 
@@ -97,9 +97,9 @@ async def test_while_the_journal_could_not_be_written_nobody_counts_as_silent() 
     async with at_work(starts, journal, settings=settings) as (service, _, run):
         await started.wait()
         actor = service.runtime._runs[run]
-        side = actor.sides["arm"]
-        side.silent_since = actor.context.clock.now() - 7200.0
+        proxy = actor.proxies["arm"]
+        proxy.silent_since = actor.context.clock.now() - 7200.0
         actor.journal_troubled(None)
         await actor.request(actor._go_on)
-        assert not side.gone_for_good
+        assert not proxy.gone_for_good
     journal.close()

@@ -16,7 +16,7 @@ from mend.robots.link.messages import (
     RoomLimits,
     Sighting,
 )
-from mend.server.runtime.robot_side import RobotSide
+from mend.server.runtime.robot_proxy import RobotProxy
 from mend.server.runtime.team import Team, held_by
 from mend.tasks.definition import BehaviorNode
 from mend.tasks.frames import Frame
@@ -84,8 +84,8 @@ def team() -> Team:
 
 
 @pytest.fixture
-def pair(team: Team) -> tuple[RobotSide, RobotSide]:
-    here, there = RobotSide("here", Link()), RobotSide("there", Link(), ACROSS)
+def pair(team: Team) -> tuple[RobotProxy, RobotProxy]:
+    here, there = RobotProxy("here", Link()), RobotProxy("there", Link(), ACROSS)
     team.join({"here": here, "there": there})
     here.connect(hello("here"))
     there.connect(hello("there"))
@@ -93,27 +93,27 @@ def pair(team: Team) -> tuple[RobotSide, RobotSide]:
 
 
 def test_what_only_another_reaches_is_left_to_it(
-    team: Team, pair: tuple[RobotSide, RobotSide]
+    team: Team, pair: tuple[RobotProxy, RobotProxy]
 ) -> None:
     here, there = pair
     left = {
-        (side.robot, part): team.leaves_to_others(side, leaf(part))
-        for side in (here, there)
+        (proxy.robot, part): team.leaves_to_others(proxy, leaf(part))
+        for proxy in (here, there)
         for part in ("near", "far", "middle")
     }
     assert {who for who, is_left in left.items() if is_left} == {("here", "far"), ("there", "near")}
 
 
 def test_what_nobody_reaches_is_tried_so_that_people_are_asked(
-    pair: tuple[RobotSide, RobotSide],
+    pair: tuple[RobotProxy, RobotProxy],
 ) -> None:
     team = Team(scene(lost=(3.0, 3.0, 0.62, 0.1)), tuple)
     team.join({each.robot: each for each in pair})
-    assert not any(team.leaves_to_others(side, leaf("lost")) for side in pair)
+    assert not any(team.leaves_to_others(proxy, leaf("lost")) for proxy in pair)
 
 
 def test_where_a_part_was_seen_counts_and_not_where_it_began(
-    team: Team, pair: tuple[RobotSide, RobotSide]
+    team: Team, pair: tuple[RobotProxy, RobotProxy]
 ) -> None:
     here, there = pair
     # In its own frame, which is turned by half a turn.
@@ -126,7 +126,7 @@ def test_where_a_part_was_seen_counts_and_not_where_it_began(
     assert not places.leaves_to_others(here, leaf("far"))
 
 
-def team_with_place_in_the_middle(pair: tuple[RobotSide, RobotSide]) -> Team:
+def team_with_place_in_the_middle(pair: tuple[RobotProxy, RobotProxy]) -> Team:
     team = Team(scene(far=(0.79, 0.4, 0.62, 0.1)), tuple)
     team.join({each.robot: each for each in pair})
     return team
@@ -137,7 +137,7 @@ def looked(**objects: Sighting) -> Looked:
 
 
 def test_space_is_held_by_one_until_its_arm_rests_again(
-    team: Team, pair: tuple[RobotSide, RobotSide]
+    team: Team, pair: tuple[RobotProxy, RobotProxy]
 ) -> None:
     here, there = pair
     assert team.may_begin(here, leaf("middle"))
@@ -150,7 +150,7 @@ def test_space_is_held_by_one_until_its_arm_rests_again(
 
 
 def test_robots_work_side_by_side_where_their_ways_do_not_meet(
-    team: Team, pair: tuple[RobotSide, RobotSide]
+    team: Team, pair: tuple[RobotProxy, RobotProxy]
 ) -> None:
     here, there = pair
     team.take(here, leaf("near"))
@@ -160,7 +160,7 @@ def test_robots_work_side_by_side_where_their_ways_do_not_meet(
 
 
 def test_an_arm_that_has_stopped_on_its_way_keeps_its_space(
-    team: Team, pair: tuple[RobotSide, RobotSide]
+    team: Team, pair: tuple[RobotProxy, RobotProxy]
 ) -> None:
     here, there = pair
     team.take(here, leaf("middle"))
@@ -171,7 +171,7 @@ def test_an_arm_that_has_stopped_on_its_way_keeps_its_space(
 
 
 def test_a_robot_that_was_given_up_on_its_way_is_an_obstacle(
-    team: Team, pair: tuple[RobotSide, RobotSide]
+    team: Team, pair: tuple[RobotProxy, RobotProxy]
 ) -> None:
     here, there = pair
     team.take(here, leaf("middle"))
@@ -180,7 +180,7 @@ def test_a_robot_that_was_given_up_on_its_way_is_an_obstacle(
     assert team.leaves_to_others(there, leaf("middle"))
 
 
-def test_where_another_arm_rests_nothing_is_placed(pair: tuple[RobotSide, RobotSide]) -> None:
+def test_where_another_arm_rests_nothing_is_placed(pair: tuple[RobotProxy, RobotProxy]) -> None:
     here, there = pair
     x, y = there.frame.to_scene(0.5, -0.9)
     team = Team(scene(cup=(0.62, 0.3, x - 0.1, y)), tuple)
@@ -189,7 +189,7 @@ def test_where_another_arm_rests_nothing_is_placed(pair: tuple[RobotSide, RobotS
 
 
 def test_taking_from_people_needs_the_space_before_the_robot(
-    team: Team, pair: tuple[RobotSide, RobotSide]
+    team: Team, pair: tuple[RobotProxy, RobotProxy]
 ) -> None:
     here, _ = pair
     team.take(here, leaf("near"))
@@ -201,9 +201,9 @@ def test_taking_from_people_needs_the_space_before_the_robot(
 
 
 @pytest.fixture
-def unsaid(team: Team) -> tuple[RobotSide, RobotSide]:
+def unsaid(team: Team) -> tuple[RobotProxy, RobotProxy]:
     """The first does not say what room it takes."""
-    here, there = RobotSide("here", Link()), RobotSide("there", Link(), ACROSS)
+    here, there = RobotProxy("here", Link()), RobotProxy("there", Link(), ACROSS)
     team.join({"here": here, "there": there})
     here.connect(hello("here", room=None))
     there.connect(hello("there"))
@@ -211,7 +211,7 @@ def unsaid(team: Team) -> tuple[RobotSide, RobotSide]:
 
 
 def test_a_robot_that_does_not_say_what_room_it_takes_works_while_nobody_else_does(
-    team: Team, unsaid: tuple[RobotSide, RobotSide]
+    team: Team, unsaid: tuple[RobotProxy, RobotProxy]
 ) -> None:
     here, there = unsaid
     assert team.may_begin(here, leaf("near"))
@@ -227,7 +227,7 @@ def test_a_robot_that_does_not_say_what_room_it_takes_works_while_nobody_else_do
 
 def test_nor_do_robots_at_once_of_which_the_scene_does_not_say_where_they_stand() -> None:
     team = Team(scene(near=NEAR, far=FAR).model_copy(update={"robots": {}}), tuple)
-    here, there = RobotSide("here", Link()), RobotSide("there", Link())
+    here, there = RobotProxy("here", Link()), RobotProxy("there", Link())
     team.join({"here": here, "there": there})
     here.connect(hello("here"))
     there.connect(hello("there"))
@@ -239,7 +239,7 @@ def test_nor_do_robots_at_once_of_which_the_scene_does_not_say_where_they_stand(
 
 
 def test_where_it_was_given_up_on_its_way_nobody_works_any_more(
-    team: Team, unsaid: tuple[RobotSide, RobotSide]
+    team: Team, unsaid: tuple[RobotProxy, RobotProxy]
 ) -> None:
     here, there = unsaid
     team.take(here, leaf("near"))
@@ -252,7 +252,7 @@ def test_where_it_was_given_up_on_its_way_nobody_works_any_more(
 
 
 def test_nor_does_it_where_another_was_given_up_on_its_way(
-    team: Team, unsaid: tuple[RobotSide, RobotSide]
+    team: Team, unsaid: tuple[RobotProxy, RobotProxy]
 ) -> None:
     here, there = unsaid
     team.take(there, leaf("far"))
@@ -261,7 +261,7 @@ def test_nor_does_it_where_another_was_given_up_on_its_way(
 
 
 def test_nobody_begins_before_all_have_said_where_their_arms_are(team: Team) -> None:
-    here, there = RobotSide("here", Link()), RobotSide("there", Link(), ACROSS)
+    here, there = RobotProxy("here", Link()), RobotProxy("there", Link(), ACROSS)
     team.join({"here": here, "there": there})
     here.connect(hello("here"))
     assert not team.may_begin(here, leaf("near"))
@@ -270,7 +270,7 @@ def test_nobody_begins_before_all_have_said_where_their_arms_are(team: Team) -> 
 
 
 def test_a_robot_that_is_still_at_something_when_it_comes_may_be_anywhere(team: Team) -> None:
-    here, there = RobotSide("here", Link()), RobotSide("there", Link(), ACROSS)
+    here, there = RobotProxy("here", Link()), RobotProxy("there", Link(), ACROSS)
     team.join({"here": here, "there": there})
     here.connect(hello("here"))
     at_work = ActiveExecution(execution="e", state="running", step=3)
@@ -285,7 +285,7 @@ def test_a_robot_that_is_still_at_something_when_it_comes_may_be_anywhere(team: 
 
 
 def test_a_robot_alone_has_everything() -> None:
-    team, here = Team(scene(far=FAR), tuple), RobotSide("here", Link())
+    team, here = Team(scene(far=FAR), tuple), RobotProxy("here", Link())
     team.join({"here": here})
     here.connect(hello("here"))
     assert not team.shares

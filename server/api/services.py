@@ -31,7 +31,7 @@ from mend.server.speech.abilities import NO_SPEECH, SpeechAbilities
 from mend.tasks.spellings import NAME, SEEN_CHARACTERS
 
 if TYPE_CHECKING:
-    # It refuses with problem documents, which know the parts.
+    # It refuses with problem documents, which know them.
     from mend.server.api.repeats import Repeats
 
 MAX_SEQ = 2**63 - 1
@@ -55,8 +55,8 @@ class WorldList(Protocol):
 
 
 @dataclass(frozen=True, slots=True)
-class Parts:
-    """The parts of one service; `app.state.parts` holds them."""
+class Services:
+    """The parts of one service; `app.state.services` holds them."""
 
     runs: RunService
     journal: ObservedJournal
@@ -81,9 +81,9 @@ class Parts:
         return datetime.fromtimestamp(self.wall_time_s(), UTC)
 
 
-def parts_of(connection: HTTPConnection) -> Parts:
-    parts: Parts = connection.app.state.parts
-    return parts
+def services_of(connection: HTTPConnection) -> Services:
+    services: Services = connection.app.state.services
+    return services
 
 
 def known_caller(connection: HTTPConnection) -> Caller:
@@ -100,7 +100,7 @@ def caller_if_known(connection: HTTPConnection) -> Caller | None:
 
 WithCaller = Annotated[Caller, Depends(known_caller)]
 WithCallerIfKnown = Annotated[Caller | None, Depends(caller_if_known)]
-WithParts = Annotated[Parts, Depends(parts_of)]
+WithServices = Annotated[Services, Depends(services_of)]
 
 RunId = Annotated[UUID, Path(description="The run's id.")]
 SiteId = Annotated[UUID, Path(description="The site's id.")]
