@@ -1,1 +1,1 @@
-"""What one robot does and perception: behaviors, fault monitors, vision and its end of the link."""
+"""What one robot does and senses: behaviors, fault monitors, vision and its end of the link."""

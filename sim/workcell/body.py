@@ -1,4 +1,4 @@
-"""The PR2 as a `mend.robots.body.Body`: motions of the arm and the gripper, cameras, perception."""
+"""The PR2 as a `mend.robots.body.Body`: motions of the arm and the gripper, cameras, sensing."""
 
 from collections.abc import Callable, Mapping, Sequence
 
