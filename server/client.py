@@ -190,6 +190,16 @@ class MendClient:
         """What a camera sees now, as JPEG."""
         return (await self._request("GET", f"/api/runs/{run}/cameras/{camera}")).content
 
+    async def take_leaf(self, run: UUID, node: str, helper: str) -> RunSummary:
+        """Have a leaf be a person's, who does it themselves; a robot that sees it done says so."""
+        body = {"node": node, "helper": helper}
+        return await self._post(f"/api/runs/{run}/leaves/take", RunSummary, body)
+
+    async def give_leaf_back(self, run: UUID, node: str, helper: str) -> RunSummary:
+        """Have it be anybody's again."""
+        body = {"node": node, "helper": helper}
+        return await self._post(f"/api/runs/{run}/leaves/give_back", RunSummary, body)
+
     async def intervene(self, run: UUID, intervention: Intervention) -> Intervention:
         """Have a person do something in a simulated world."""
         body = intervention.model_dump(mode="json")

@@ -172,6 +172,7 @@ async def _open(
         send_mail=mail.send_later,
         settings=RunSettings(
             help_window_s=settings.help_window_s,
+            person_leaf_s=settings.person_leaf_s,
             max_helped_retries=settings.max_helped_retries,
             max_times_gone=settings.max_times_gone,
             robot_lost_timeout_s=settings.robot_lost_timeout_s,

@@ -206,6 +206,10 @@ class Transcript:
         return [_line(event, self._robot(event.robot), text, Tone.CHOICE)]
 
     @lines.register
+    def _(self, event: ev.NodeTaken) -> list[Line]:
+        return [_line(event, event.helper, f"takes {event.name}, to do it", Tone.CHOICE)]
+
+    @lines.register
     def _(self, event: ev.StepStarted) -> list[Line]:
         text = f"{event.step} {event.step_name.replace('_', ' ')}"
         return [Line(event.time, event.name, text, Tone.STEP, thread=str(event.execution))]

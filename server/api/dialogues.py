@@ -6,11 +6,17 @@ from uuid import UUID
 from fastapi import APIRouter, Body, Query
 from pydantic import BaseModel, ConfigDict, Field
 
-from mend.errors import WrongInputError
-from mend.server.access.principal import Caller
 from mend.server.api.problems import documented
 from mend.server.api.repeatable import RepeatableRoute
-from mend.server.api.services import DialogueId, HelperName, Limit, Offset, WithCaller, WithServices
+from mend.server.api.services import (
+    DialogueId,
+    HelperName,
+    Limit,
+    Offset,
+    WithCaller,
+    WithServices,
+    helper_of,
+)
 from mend.server.journal.events import Answered, DeadlineExtended
 from mend.server.runtime.views import DialogueView
 
@@ -85,7 +91,7 @@ async def answer_prompt(
 ) -> Answered:
     """Answer a prompt. The first answer wins; a later one gets 409 with `answered_by`."""
     return await services.runs.answer(
-        dialogue, body.prompt, body.answer, _helper(caller, body.helper), caller.author
+        dialogue, body.prompt, body.answer, helper_of(caller, body.helper), caller.author
     )
 
 
@@ -98,7 +104,7 @@ async def claim_dialogue(
 ) -> DialogueView:
     """Show the other helpers that you are on it; the claim ends with its lease."""
     return await services.runs.claim(
-        dialogue, _helper(caller, body.helper), take_over=body.take_over, author=caller.author
+        dialogue, helper_of(caller, body.helper), take_over=body.take_over, author=caller.author
     )
 
 
@@ -111,7 +117,7 @@ async def extend_deadline(
 ) -> DeadlineExtended:
     """Move the open question's deadline by its original length, at most ten times."""
     return await services.runs.extend(
-        dialogue, body.prompt, _helper(caller, body.helper), caller.author
+        dialogue, body.prompt, helper_of(caller, body.helper), caller.author
     )
 
 
@@ -123,13 +129,4 @@ async def release_dialogue(
     caller: WithCaller,
 ) -> DialogueView:
     """Give up your claim."""
-    return await services.runs.release(dialogue, _helper(caller, body.helper), caller.author)
-
-
-def _helper(caller: Caller, declared: str | None) -> str:
-    """What the helper is called. Raises `WrongInputError` where nobody says so."""
-    name = caller.helper_name(declared)
-    if name is None:
-        missing = "body.helper: is missing: with this token everybody says who it is"
-        raise WrongInputError(missing, [missing])
-    return name
+    return await services.runs.release(dialogue, helper_of(caller, body.helper), caller.author)

@@ -11,6 +11,7 @@ from fastapi import Depends, Path, Query
 from pydantic import Field
 from starlette.requests import HTTPConnection
 
+from mend.errors import WrongInputError
 from mend.robots.link.shown_name import SHOWN
 from mend.server.access.access import Access
 from mend.server.access.deed_log import DeedLog
@@ -120,3 +121,12 @@ HelperName = Annotated[
     ),
     SHOWN,
 ]
+
+
+def helper_of(caller: Caller, declared: str | None) -> str:
+    """What the helper is called. Raises `WrongInputError` where nobody says so."""
+    name = caller.helper_name(declared)
+    if name is None:
+        missing = "body.helper: is missing: with this token everybody says who it is"
+        raise WrongInputError(missing, [missing])
+    return name

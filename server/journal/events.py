@@ -112,6 +112,19 @@ class NodeStarted(NodeEvent):
     candidates: list[Candidate]
 
 
+class NodeTaken(NodeEvent):
+    """A person does a leaf themselves, until (the run's clock) it is given back.
+
+    `was_at`: where a robot saw its object last (the scene's frame, metres), None if none had.
+    """
+
+    type: Literal["node_taken"] = "node_taken"
+    helper: str
+    until: float
+    was_at: tuple[float, float, float] | None
+    author: Author | None = None
+
+
 class StepStarted(NodeEvent):
     """A behavior's step has begun (1 is the first)."""
 
@@ -635,6 +648,7 @@ class SiteClosed(SiteEvent):
 AnyEvent = Annotated[
     RunStarted
     | NodeStarted
+    | NodeTaken
     | StepStarted
     | IssueRaised
     | ClipRecorded

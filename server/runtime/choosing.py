@@ -59,7 +59,7 @@ def choose(state: RunState, proxy: RobotProxy) -> Choice | None:
     """The leaf that a robot takes next; None if there is none that it can do, or do now."""
     leaves = state.tree.eligible_leaves()
     able = able_mask(state, proxy, leaves)
-    if proxy.team is not None and proxy.team.shares:
+    if proxy.team is not None and proxy.team.has_company:
         able &= _free_mask(state, proxy, proxy.team, leaves, able)
     if not able.any():
         return None

@@ -31,14 +31,14 @@ class CuttingShort:
         for leaf in leaves:
             if dialogue := state.dialogue_of(leaf):
                 events.append(self._dialogues.abort(dialogue))
-            owner = state.tree.owner(leaf) or ""
-            events.append(self._reports.reset(leaf, owner, reason, failed=False))
+            robot = None if leaf in state.people else state.tree.owner(leaf)
+            events.append(self._reports.reset(leaf, robot, reason, failed=False))
         return events
 
     async def commit(self, leaves: Iterable[int], events: Sequence[ev.Event]) -> None:
         """Commit events that put leaves back; then let the robots that held them retreat."""
-        tree = self._context.state.tree
-        owners = [tree.owner(leaf) or "" for leaf in leaves]
+        state = self._context.state
+        owners = [state.tree.owner(leaf) or "" for leaf in leaves if leaf not in state.people]
         await self._context.commit(events)
         for owner in owners:
             if self._proxies[owner].doing is not RobotActivity.ABSENT:

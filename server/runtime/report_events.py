@@ -63,7 +63,7 @@ class ReportEvents:
         tree = self._context.state.tree
         return {"node": tree.path_of(leaf), "name": tree.name_of(leaf)}
 
-    def reset(self, leaf: int, robot: str, reason: str, *, failed: bool) -> ev.NodeReset:
+    def reset(self, leaf: int, robot: str | None, reason: str, *, failed: bool) -> ev.NodeReset:
         return ev.NodeReset(
             **self._context.stamp(),
             **self.node(leaf),

@@ -52,11 +52,12 @@ class Purpose(StrEnum):
     WATCH = "watch"
     VIEW = "view"
     HELP = "help"
+    PERSON = "person"
     RESUME = "resume"
     LAST = "last"
 
 
-JUDGING = (Purpose.CHOOSE, Purpose.BASELINE, Purpose.RESUME, Purpose.LAST)
+JUDGING = (Purpose.CHOOSE, Purpose.BASELINE, Purpose.RESUME, Purpose.PERSON, Purpose.LAST)
 """Looks before something is built or asked: they judge what is finished as well."""
 
 
@@ -127,7 +128,7 @@ class RobotProxy:
         """Whether it only lets time pass, so that a new command may replace what it does."""
         return self.doing is RobotActivity.WAITING or (
             self.doing is RobotActivity.LOOKING
-            and self.purpose in (Purpose.BASELINE, Purpose.WATCH, Purpose.VIEW)
+            and self.purpose in (Purpose.BASELINE, Purpose.WATCH, Purpose.VIEW, Purpose.PERSON)
         )
 
     @property

@@ -43,6 +43,7 @@ from mend.server.runtime.giving_up import GivingUp
 from mend.server.runtime.hardware import Hardware
 from mend.server.runtime.inbox import Inbox, Item, Task, log_failure
 from mend.server.runtime.interventions import Interventions
+from mend.server.runtime.people import People
 from mend.server.runtime.pose_sink import PoseSink
 from mend.server.runtime.presence import RobotPresence
 from mend.server.runtime.report_events import ReportEvents
@@ -51,6 +52,7 @@ from mend.server.runtime.robot_proxy import JUDGING, Purpose, RobotActivity, Rob
 from mend.server.runtime.run_state import StartedExecution
 from mend.server.runtime.team import Team
 from mend.server.runtime.views import RunStatus
+from mend.tasks.definition import BehaviorNode
 from mend.tasks.intervention import Intervention
 
 log = logging.getLogger(__name__)
@@ -72,12 +74,13 @@ class Run:
     ) -> None:
         self._context = context
         self._proxies = proxies
-        self._team = Team(context.state.scene, hardware.neighbours)
+        self._team = Team(context.state.scene, hardware.neighbours, self._taken)
         self._team.join(proxies, executing=context.state.executions)
         self._dialogues = dialogues
         self._hardware = hardware
         self._poses = poses
         self._reports = ReportEvents(context, dialogues)
+        self._people = People(context, proxies, self._reports, self._team)
         self._claims = Claims(context)
         self._interventions = Interventions(context)
         self._inbox = Inbox()
@@ -114,6 +117,10 @@ class Run:
         return self._dialogues
 
     @property
+    def people(self) -> People:
+        return self._people
+
+    @property
     def claims(self) -> Claims:
         return self._claims
 
@@ -123,7 +130,13 @@ class Run:
         """The parts and places that its robots are about."""
         state = self._context.state
         leaves = [state.tree.leaf_definition(each.leaf) for each in state.executions.values()]
+        leaves += self._taken()
         return {name for each in leaves for name in (each.object, each.place) if name is not None}
+
+    def _taken(self) -> list[BehaviorNode]:
+        """The leaves that people do themselves."""
+        state = self._context.state
+        return [state.tree.leaf_definition(leaf) for leaf in state.people]
 
     def look_again(self) -> None:
         """Others have changed something that this run may have waited for."""
@@ -177,7 +190,8 @@ class Run:
         # What was due before has begun, or begins once an item says that it can.
         due = None if self._hardware.simulated else self._dialogues.next_due(self._settled_s)
         if self._context.state.status is RunStatus.RUNNING:
-            dues = [due, *(self._silent_too_long_at(each) for each in self._proxies.values())]
+            dues = [due, None if self._hardware.simulated else self._people.next_due()]
+            dues = [*dues, *(self._silent_too_long_at(each) for each in self._proxies.values())]
             now = self._context.clock.now()
             waits += [max(0.0, each - now) for each in dues if each is not None]
         timeout_s = min((each for each in waits if each is not None), default=None)
@@ -295,6 +309,7 @@ class Run:
                 purpose = proxy.take_look(body, self._context.clock.now())
                 if purpose in JUDGING:
                     await self._results.judged(proxy, body)
+                    await self._people.judged(proxy, body)
                 if purpose is not None:
                     await self._looked(proxy, purpose, bool(body.fulfilled))
             case Intervened():
@@ -331,7 +346,9 @@ class Run:
         state = self._context.state
         if state.status is not RunStatus.RUNNING or self._halted:
             return False
-        results = list(results_of(state))
+        if await self._people.expire():
+            return True
+        results = [*results_of(state), *self._people.results()]
         for proxy in self._proxies.values():
             proxy.finished = results
             if await self._gave_up_in_livelock(proxy) or await self._gave_up_as_silent(proxy):
@@ -411,6 +428,8 @@ class Run:
             if proxy.area is not None:
                 # Nothing that it could do is free: it is not to be in the way of others meanwhile.
                 proxy.retreat()
+            else:
+                self._people.watch(proxy)
             return False
         if not proxy.looked_just_now(self._context.clock.now()):
             proxy.look(Purpose.CHOOSE)

@@ -61,6 +61,8 @@ class RunState:
         self.result: RunResult | None = None
         self.ended: datetime | None = None
         self.executions: dict[str, StartedExecution] = {}
+        self.people: dict[int, ev.NodeTaken] = {}
+        """The leaves that people do themselves."""
         self.dialogues: dict[UUID, DialogueState] = {}
         self.lost: set[str] = set()
         self.accepted: dict[str, ev.InterventionAccepted] = {}
@@ -164,6 +166,17 @@ class RunState:
         self.executions[event.robot] = StartedExecution(
             event.execution, leaf, event.robot, event.boot
         )
+
+    @_apply.register
+    def _(self, event: ev.NodeTaken) -> None:
+        leaf = self.tree.index_of(event.node)
+        self.tree.start(leaf, event.helper)
+        self.results = None
+        if (handled := self.tree.leaf_definition(leaf).object) is not None:
+            self.last_handled[handled] = leaf
+        self.people[leaf] = event
+        self.taken_back.pop(leaf, None)
+        self.progress += 1
 
     @_apply.register
     def _(self, event: ev.StepStarted) -> None:
@@ -288,6 +301,7 @@ class RunState:
             self.exhausted.add(leaf)
 
     def _end_execution(self, leaf: int) -> None:
+        self.people.pop(leaf, None)
         self.executions = {
             robot: each for robot, each in self.executions.items() if each.leaf != leaf
         }

@@ -348,6 +348,20 @@ class Runtime:
         await running.abort_at_once(author)
         return self._summary(running.context.state)
 
+    async def take_leaf(
+        self, run: UUID, node: str, helper: str, author: ev.Author | None = None
+    ) -> RunSummary:
+        """Have a leaf be a person's, who does it themselves. Raises as `People.take`."""
+        running = await self._running(run)
+        await running.request(lambda: running.people.take(node, helper, author))
+        return self._summary(running.context.state)
+
+    async def give_leaf_back(self, run: UUID, node: str, helper: str) -> RunSummary:
+        """Have it be anybody's again. Raises as `People.give_back`."""
+        running = await self._running(run)
+        await running.request(lambda: running.people.give_back(node, helper))
+        return self._summary(running.context.state)
+
     async def intervene(
         self, run: UUID, intervention: Intervention, author: ev.Author | None = None
     ) -> None:

@@ -29,6 +29,10 @@ EVERYWHERE = box(-1e6, -1e6, 1e6, 1e6)
 """The space of an arm of which nobody knows where it is: all that a robot can name."""
 
 
+AROUND_PERSON_M = 0.15
+"""So far around what a person handles their hands and arms may be."""
+
+
 class Neighbour(Protocol):
     """Who else has robots where a run's robots work: another run, or the site itself."""
 
@@ -43,8 +47,15 @@ class Neighbour(Protocol):
 class Team:
     """The robots of one run, the scene that they work in, and who else works there."""
 
-    def __init__(self, scene: Scene, neighbours: Callable[[], Sequence[Neighbour]]) -> None:
+    def __init__(
+        self,
+        scene: Scene,
+        neighbours: Callable[[], Sequence[Neighbour]],
+        taken: Callable[[], Collection["BehaviorNode"]] = tuple,
+    ) -> None:
+        """`taken`: the leaves that people do themselves now."""
         self._scene = scene
+        self._taken = taken
         self._neighbours = neighbours
         self._proxies: Sequence[RobotProxy] = ()
 
@@ -56,13 +67,31 @@ class Team:
         self._proxies = tuple(proxies.values())
         for proxy in self._proxies:
             proxy.team = self
-            proxy.stands_somewhere = bool(self._scene.robots)
+            proxy.stands_somewhere = len(self._proxies) == 1 or bool(self._scene.robots)
             proxy.area = EVERYWHERE if proxy.robot in executing else None
 
     @property
     def shares(self) -> bool:
         """Whether there are several robots, of whomever."""
         return len(self._proxies) > 1 or any(each.proxies for each in self._neighbours())
+
+    @property
+    def has_company(self) -> bool:
+        """Whether anybody else may be at the table: another robot, or a person who took a leaf."""
+        return self.shares or bool(self._taken())
+
+    def at_work_where(self, leaf: "BehaviorNode") -> str | None:
+        """A robot that has some of the space now that a person needs for a leaf; None if none."""
+        wanted = self._of_person(leaf)
+        near = (each for of in self._neighbours() for each in of.proxies.values())
+        at_work = (each for each in (*self._proxies, *near) if each.area is not None)
+        return next((each.robot for each in at_work if wanted.intersects(held_by(each))), None)
+
+    def _of_person(self, leaf: "BehaviorNode") -> BaseGeometry:
+        """Where a person is who does a leaf: at its object, at its place and between them."""
+        part = self._scene.objects.get(leaf.object or "")
+        around_m = AROUND_PERSON_M + (0.0 if part is None else hypot(*part.size[:2]) / 2)
+        return MultiPoint(self._ends(leaf)).convex_hull.buffer(around_m)
 
     def handled_by_neighbours(self) -> set[str]:
         """The parts and places that others than this run are about."""
@@ -89,9 +118,9 @@ class Team:
 
         `handed_over`: also that in which people hold its object out.
         """
-        if not self.shares:
-            return True
         wanted = self._area(proxy, leaf, handed_over)
+        if any(wanted.intersects(self._of_person(each)) for each in self._taken()):
+            return False
         return not any(_not_known_yet(each) or _meets(wanted, each) for each in self._others(proxy))
 
     def take(self, proxy: "RobotProxy", leaf: "BehaviorNode", *, handed_over: bool = False) -> None:
