@@ -3,7 +3,7 @@
 from typing import Annotated, Literal
 from uuid import UUID
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag
 
 from mend.tasks.scenario import Person
 
@@ -17,8 +17,15 @@ WorldOption = (
     | str
 )
 
-RobotList = Annotated[list[str], Field(max_length=64)]
-RobotsByPlace = Annotated[dict[str, str], Field(max_length=64)]
+RobotList = Annotated[list[str], Field(max_length=64), Tag("list")]
+RobotsByPlace = Annotated[dict[str, str], Field(max_length=64), Tag("places")]
+
+
+def _is_by_place(robots: object) -> str:
+    return "places" if isinstance(robots, dict) else "list"
+
+
+Robots = Annotated[RobotList | RobotsByPlace, Discriminator(_is_by_place)]
 
 
 class RunRequest(BaseModel):
@@ -45,7 +52,7 @@ class RunRequest(BaseModel):
     answers: list[Literal["yes", "no", "silence"]] | Literal["random", "none", "live"] | None = None
     interventions: Literal["random"] | None = None
     person: Person | None = None
-    robots: RobotList | RobotsByPlace = []
+    robots: Robots = []
     max_attempts: Annotated[int, Field(ge=1, le=100)] = 3
     world_options: dict[str, WorldOption] = {}
     site: Annotated[UUID | None, Field(strict=False)] = None
