@@ -9,6 +9,7 @@ from mend.server.api.problems import documented
 from mend.server.api.repeatable import RepeatableRoute
 from mend.server.api.services import HelperName, RunId, WithCaller, WithServices, helper_of
 from mend.server.runtime.views import RunSummary
+from mend.tasks.spellings import NODE
 
 router = APIRouter(prefix="/api/runs/{run}/leaves", tags=["runs"], route_class=RepeatableRoute)
 
@@ -21,7 +22,7 @@ class LeafRequest(BaseModel):
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
 
-    node: Annotated[str, Field(pattern=r"^/(\d+(/\d+)*)?$", max_length=400)]
+    node: Annotated[str, Field(pattern=NODE, max_length=400)]
     helper: HelperName | None = None
 
 

@@ -45,16 +45,16 @@ class RobotsToCome:
         return await self._host.start(request)
 
     async def _wait_for(self, lacking: NotConnectedError) -> None:
-        self._note(
-            f"Waiting for {', '.join(lacking.robots)} at {self._host.door}: {lacking}. "
-            f"After {self._wait_s:g} s this gives up; Ctrl-C does so now."
-        )
         interrupt = asyncio.Event()
         coming = asyncio.create_task(self._all_come(set(lacking.robots)))
         interrupted = asyncio.create_task(interrupt.wait())
         loop = asyncio.get_running_loop()
         for number in SIGNALS:
             loop.add_signal_handler(number, interrupt.set)
+        self._note(
+            f"Waiting for {', '.join(lacking.robots)} at {self._host.door}: {lacking}. "
+            f"After {self._wait_s:g} s this gives up; Ctrl-C does so now."
+        )
         try:
             first = asyncio.FIRST_COMPLETED
             await asyncio.wait({coming, interrupted}, timeout=self._wait_s, return_when=first)

@@ -10,6 +10,7 @@ from typing import Any, Protocol
 from uuid import UUID, uuid4
 
 import numpy as np
+from pydantic import ValidationError
 
 from mend.errors import ConflictError, NotFoundError, WrongInputError
 from mend.server.journal import events as ev
@@ -87,9 +88,14 @@ class Sites:
     # --- Opening and closing ------------------------------------------------------------------
 
     async def recover(self) -> None:
-        """Have every site again that was open when the service stopped."""
-        for text in (await self._journal.documents(KIND)).values():
-            record = SiteRecord.model_validate_json(text)
+        """Have every site again that was open when the service stopped, and can be read."""
+        for name, text in (await self._journal.documents(KIND)).items():
+            try:
+                record = SiteRecord.model_validate_json(text)
+            except ValidationError as error:
+                # One site that cannot be read must not keep the service from starting.
+                log.error("site %s cannot be read: %s", name, error)
+                continue
             site = self._sites[record.site] = self._site_of(record)
             self._records[record.site] = record
             # It may take a while: who comes meanwhile waits for its robots, not for the service.

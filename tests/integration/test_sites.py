@@ -20,6 +20,7 @@ from mend.server.client_errors import RefusedError
 from mend.server.composition import Service, open_service
 from mend.server.errors import ImpossibleError
 from mend.server.journal import events as ev
+from mend.server.journal.journal import Document, Entry
 from mend.server.journal.run_index import RunPage
 from mend.server.robots.process import WorldProcess
 from mend.server.runtime.requests import RunRequest
@@ -299,3 +300,14 @@ async def until_told(found: Service, site: UUID, kind: str) -> None:
             async for record in events:
                 if f'"{kind}"' in record.text and str(site) in record.text:
                     return
+
+
+async def test_a_site_that_cannot_be_read_does_not_keep_the_service_from_starting(
+    tmp_path: Path,
+) -> None:
+    async with service(tmp_path) as found:
+        site = await open_bench(found)
+        spoilt = Document("site", "spoilt", '{"site": "?"}')
+        await found.journal.append(Entry(document=spoilt))
+    async with service(tmp_path) as found:
+        assert [each.id for each in found.sites.sites()] == [site.id]
