@@ -29,7 +29,7 @@ Hypothesis = Between | int
 
 HELD = frozenset({Between.STRAIGHT, Between.TURNED})
 
-_AT_FIRST: Mapping[Between, float] = {
+_AT_FIRST: Mapping[Hypothesis, float] = {
     Between.STRAIGHT: 0.485,
     Between.TURNED: 0.015,
     Between.OTHER: 0.25,
@@ -59,7 +59,7 @@ class Belief:
     """
 
     def __init__(self, rivals: int = 0) -> None:
-        self._shares: dict[Hypothesis, float] = dict(_AT_FIRST)
+        self._shares: dict[Hypothesis, float] = {**_AT_FIRST}
         if rivals:
             other = self._shares[Between.OTHER]
             self._shares[Between.OTHER] = (1.0 - _KNOWN_SHARE) * other

@@ -59,7 +59,7 @@ class CueModel:
         on_something = self._log_pressing(reading.presses, self.presses_on_something)
         on_nothing = self._log_pressing(reading.presses, self.presses_on_nothing)
         right = on_something + _log_looks(seen, "right")
-        rivals = {
+        rivals: dict[Hypothesis, float] = {
             number: on_something + self._log_rival(opening_m, each, grasp)
             for number, each in enumerate(reading.rivals)
         }
