@@ -35,7 +35,7 @@ class Probe:
 
     @contextmanager
     def excused(self) -> Iterator[None]:
-        """Meanwhile nobody expects an answer: the service is stopped, or is not there."""
+        """Reaction nobody expects an answer: the service is stopped, or is not there."""
         self._not_expected += 1
         self._epoch += 1
         try:

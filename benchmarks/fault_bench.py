@@ -48,8 +48,8 @@ class Bench:
         self.judge = Judge(self.world, scene)
         model = learn_colors(scene, noise)
         catalogue = Catalogue.from_scene(scene)
-        senses = SharedSenses(self.world.body, model, catalogue)
-        senses.plain = self._plain = PlainWatch()
+        self.perception = SharedSenses(self.world.body, model, catalogue)
+        self.perception.plain = self._plain = PlainWatch()
         self.robot = Robot(
             "r1",
             self.world.body,
@@ -57,7 +57,7 @@ class Bench:
             catalogue,
             load_plugins("mend.behaviors"),
             load_plugins("mend.monitors"),
-            senses=senses,
+            perception=self.perception,
         )
         self._trial: Trial | None = None
         self._looked: Looked | None = None

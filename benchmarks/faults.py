@@ -3,6 +3,7 @@
     python benchmarks/faults.py [--picks 1000] [--faults 1000] [--seed 1] [--quick]
     python benchmarks/faults.py --seed 5000 --picks 0 --faults 100 --keep more.jsonl
     python benchmarks/faults.py --show some.jsonl more.jsonl
+    python benchmarks/faults.py --replay 105000 --first vanish [--pictures FOLDER]
 
 Parts are drawn over all that the gripper fits, dark, grey and equal ones too. Pictures and depth
 have noise, light and exposure change. Every issue is judged by the simulated world the moment it
@@ -27,6 +28,7 @@ from pathlib import Path
 import numpy as np
 from fault_bench import Bench, alone, benches, width_m
 from fault_kinds import KINDS, Verdict, latency_ms, verdict
+from fault_replay import told
 from fault_trial import Moment, NotNowError, Said, Trial
 
 CLEAN = "clean"
@@ -174,6 +176,15 @@ def _measure(given: argparse.Namespace) -> Iterator[Trial]:
     yield from faulty_picks(of, faults, kinds, given.narrowest)
 
 
+def replay(given: argparse.Namespace) -> None:
+    """The faults of one scene, of which the first was of the kind `given.first`."""
+    kinds = list(KINDS)
+    begin = kinds.index(given.first)
+    of = told(benches(given.replay, given.noise, given.light), given.pictures)
+    for trial in faulty_picks(of, 1000, kinds[begin:] + kinds[:begin], given.narrowest):
+        print(f"{verdict(trial)}: {trial}")
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--picks", type=int, default=1000)
@@ -185,10 +196,18 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--keep", type=Path, help="add what is found to this file")
     parser.add_argument("--show", type=Path, nargs="+", help="report what was kept in these")
+    parser.add_argument(
+        "--replay", type=int, help="tell all that happens in the scene of this seed"
+    )
+    parser.add_argument("--first", choices=list(KINDS), default="vanish", help="fault of a replay")
+    parser.add_argument("--pictures", type=Path, help="keep the pictures of a replay here")
     parser.add_argument("--quick", action="store_true", help="6 picks and one fault of each kind")
     given = parser.parse_args()
     if given.show:
         report([trial for path in given.show for trial in read(path)])
+        return
+    if given.replay is not None:
+        replay(given)
         return
     print(f"camera noise {given.noise:g} grey levels, light varies by {given.light:g}")
     begin = time.perf_counter()

@@ -27,7 +27,7 @@ from websockets.asyncio.client import connect
 
 from mend.server.access.access import Access
 from mend.server.api import helper_socket
-from mend.server.api.parts import Parts
+from mend.server.api.services import Services
 from mend.server.journal.events import RunFailed
 from mend.server.journal.journal import Entry
 from mend.server.journal.sqlite import SqliteJournal
@@ -214,7 +214,7 @@ async def mend(folder: Path, helpers: int, seconds: float) -> float:
     nothing: Any = None
     settings = Settings(subscriber_queue=QUEUE)
     access = Access(None, wall_time_s=time.time)
-    app.state.parts = Parts(
+    app.state.services = Services(
         runtime, journal, nothing, nothing, nothing, nothing, nothing, nothing, settings, access
     )
     print(f"Mend: {helpers} helpers and a stuck one, {RUNS} runs, {seconds:.0f} s")

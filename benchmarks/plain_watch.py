@@ -1,9 +1,15 @@
 """A naive watch beside the robot's own, which looks at the same forearm pictures."""
 
+from collections.abc import Callable
+
 import numpy as np
 
+from mend.robots.body import Body
+from mend.robots.catalogue import Catalogue
 from mend.robots.grip import GripReading, GripState
-from mend.robots.senses import Senses
+from mend.robots.grip.watch import GripWatch
+from mend.robots.perception import Perception
+from mend.robots.vision.color_model import ColorModel
 
 
 class PlainWatch:
@@ -35,13 +41,30 @@ class PlainWatch:
             self.alarm_s = reading.image.time
 
 
-class SharedSenses(Senses):
-    """The robot's senses, whose forearm pictures the plain watch sees too."""
+class SharedSenses(Perception):
+    """The robot's perception, whose forearm pictures the plain watch sees too.
+
+    `on_reading` is told every reading of the hand.
+    """
 
     plain: PlainWatch
+
+    def __init__(self, body: Body, model: ColorModel, catalogue: Catalogue) -> None:
+        super().__init__(body, model, catalogue)
+        self.on_reading: Callable[[GripReading], None] | None = None
 
     def read_grip(self) -> GripReading | None:
         reading = super().read_grip()
         if reading is not None:
             self.plain.update(reading)
+            self._tell(reading)
         return reading
+
+    def measure_grip(self, watch: GripWatch) -> GripReading:
+        reading = super().measure_grip(watch)
+        self._tell(reading)
+        return reading
+
+    def _tell(self, reading: GripReading) -> None:
+        if self.on_reading is not None:
+            self.on_reading(reading)

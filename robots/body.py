@@ -163,6 +163,13 @@ class Body(Protocol):
         """
         ...
 
+    def plan_back(self, waypoints: Sequence[ToolPose]) -> ArmPath | None:
+        """Plan back through poses that the tool has just passed; None if that is not found.
+
+        The arm stays in the posture in which it passed them: amid what it touches it turns nothing.
+        """
+        ...
+
     def plan_among(self, legs: Sequence[Leg], boxes: Sequence[SeenBox]) -> ArmPath | NoWay:
         """As `plan_path`, and so that neither arm nor what it holds touches any of `boxes`."""
         ...

@@ -14,6 +14,7 @@ from mend.robots.behaviors.work import Work
 from mend.robots.body import Body, CameraImage
 from mend.robots.catalogue import Catalogue
 from mend.robots.clip import encode_clip
+from mend.robots.command_resolver import CommandError, CommandResolver
 from mend.robots.link.messages import (
     PROTOCOL_VERSION,
     ActiveExecution,
@@ -41,11 +42,10 @@ from mend.robots.link.messages import (
 )
 from mend.robots.looks import Looker, look_as_told
 from mend.robots.monitors.monitor import BEFORE_FIRST_STEP, Monitor
+from mend.robots.perception import FOREARM, Perception
 from mend.robots.result import JudgedResult
-from mend.robots.senses import FOREARM, Senses
 from mend.robots.showing import PoseDisplay
 from mend.robots.task_progress import TaskProgress
-from mend.robots.understanding import CommandError, Understanding
 from mend.robots.vision.color_model import ColorModel
 from mend.robots.vision.drawing import encode_jpeg
 from mend.robots.vision.warming_up import warm_up
@@ -84,7 +84,7 @@ class Robot:
         behaviors: Mapping[str, type[Behavior]],
         monitors: Mapping[str, type[Monitor[Any]]],
         monitor_parameters: Mapping[str, Mapping[str, Any]] | None = None,
-        senses: Senses | None = None,
+        perception: Perception | None = None,
         *,
         films: bool = True,
     ) -> None:
@@ -98,8 +98,8 @@ class Robot:
         self._monitors = dict(monitors)
         self._monitor_parameters = dict(monitor_parameters or {})
         self._arm = Arm(body)
-        self._senses = senses or Senses(body, model, catalogue)
-        self._understanding = Understanding(behaviors, catalogue, model.names)
+        self._perception = perception or Perception(body, model, catalogue)
+        self._resolver = CommandResolver(behaviors, catalogue, model.names)
         self._emit: Emit | None = None
         self._emit_picture: EmitPicture | None = None
         self._activity: Routine[None] | None = None
@@ -110,11 +110,15 @@ class Robot:
         self._waiting: list[tuple[str, CommandBody]] = []
         self._films = films and FOREARM in body.cameras
         self._owed_clip: _OwedClip | None = None
-        self._display = PoseDisplay(body, catalogue, self._senses)
+        self._display = PoseDisplay(body, catalogue, self._perception)
         self._reported = False
         self._shut_down = False
 
     # --- What it is ---------------------------------------------------------------------------
+
+    @property
+    def name(self) -> str:
+        return self._name
 
     def hello(self, boot: str) -> Hello:
         """What the robot is, and what it is doing now."""
@@ -208,7 +212,7 @@ class Robot:
             return
         self._decided = None
         if self._films and self._walking:
-            self._senses.hand.film()
+            self._perception.hand.film()
 
     @property
     def active(self) -> bool:
@@ -278,7 +282,7 @@ class Robot:
             raise CommandError(
                 f"a behavior is still under way; interrupt it before starting '{start.behavior}'"
             )
-        assignment = self._understanding.assign(start)
+        assignment = self._resolver.assign(start)
         self._drop_look()
         if self._execution is not None and not self._execution.over:
             self._execution.end()
@@ -289,9 +293,9 @@ class Robot:
             kind.create(self._monitor_parameters.get(name, {}))
             for name, kind in self._monitors.items()
         ]
-        self._senses.hand.clip.begin()
+        self._perception.hand.clip.begin()
         progress = Progress(assignment.was_done)
-        work = Work(assignment, progress, self._arm, self._senses, self._report)
+        work = Work(assignment, progress, self._arm, self._perception, self._report)
         self._execution = Execution(work, monitors)
         self._activity = self._execution.run()
 
@@ -334,8 +338,8 @@ class Robot:
                 raise CommandError(f"cannot look for '{look.expect}' while a behavior is under way")
             self._report(self._looker().answer(command_id, None))
             return
-        results = self._understanding.results_of(look.finished)
-        routine = look_as_told(self._looker(results), command_id, look, self._understanding)
+        results = self._resolver.results_of(look.finished)
+        routine = look_as_told(self._looker(results), command_id, look, self._resolver)
         self._drop_look()
         self._activity, self._looking = self._report_look(routine), True
 
@@ -384,10 +388,10 @@ class Robot:
         may_move = not self._executing and (held is None or held.step == 0)
         return Looker(
             arm=self._arm,
-            senses=self._senses,
+            perception=self._perception,
             report=self._report,
             held=held,
-            may_move=may_move and not self._senses.hand.holds(),
+            may_move=may_move and not self._perception.hand.holds(),
             finished=finished,
         )
 
@@ -409,7 +413,7 @@ class Robot:
         if isinstance(body, _SEEN_AT_ONCE):
             self._reported = True
         if isinstance(body, IssueDetected) and body.step > BEFORE_FIRST_STEP:
-            images = self._senses.hand.clip.images()
+            images = self._perception.hand.clip.images()
             if images:
                 self._owed_clip = _OwedClip(body.execution, body.issue, self.time_s(), images)
         if isinstance(body, Looked) and body.blind is None:

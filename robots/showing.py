@@ -17,7 +17,7 @@ from mend.robots.link.messages import (
     ShownPose,
     Sighting,
 )
-from mend.robots.senses import Senses
+from mend.robots.perception import Perception
 
 
 @runtime_checkable
@@ -42,11 +42,11 @@ class JointedBody(Protocol):
 class PoseDisplay:
     """What is shown of one robot: its joints and tool, and the parts where it located them."""
 
-    def __init__(self, body: Body, catalogue: Catalogue, senses: Senses) -> None:
+    def __init__(self, body: Body, catalogue: Catalogue, perception: Perception) -> None:
         self._body = body
         self._jointed = body if isinstance(body, JointedBody) else None
         self._catalogue = catalogue
-        self._senses = senses
+        self._perception = perception
         self.located: Mapping[str, Sighting] = {}
 
     def layout(self) -> PoseLayout:
@@ -72,8 +72,8 @@ class PoseDisplay:
         )
 
     def _shown(self, part: Part) -> ShownPose:
-        if self._senses.hand.grip is not None and self._senses.hand.holds(part.name):
-            held = self._body.tool_pose() @ part_in_tool(self._senses.hand.grip.grasp)
+        if self._perception.hand.grip is not None and self._perception.hand.holds(part.name):
+            held = self._body.tool_pose() @ part_in_tool(self._perception.hand.grip.grasp)
             return ShownPose(pose=pose_values(held), held=True)
         located = self.located.get(part.name)
         if located is None:

@@ -18,6 +18,7 @@ from mend.server.api import (
     documents,
     health,
     helper_socket,
+    leaves,
     live_socket,
     metrics,
     pictures,
@@ -31,15 +32,16 @@ from mend.server.api import (
 from mend.server.api import models as models_api
 from mend.server.api import poses as poses_api
 from mend.server.api import principals as principals_api
+from mend.server.api import sites as sites_api
 from mend.server.api import worlds as worlds_api
 from mend.server.api.absolute_form import AbsoluteForm
 from mend.server.api.gate import Gate
 from mend.server.api.idempotency_key import take_keys
 from mend.server.api.openapi_links import add_links
 from mend.server.api.openapi_responses import document_answers
-from mend.server.api.parts import ObservedJournal, Parts, WorldList
 from mend.server.api.problems import Problem, answer_errors_with_problems
 from mend.server.api.repeats import Repeats
+from mend.server.api.services import ObservedJournal, Services, WorldList
 from mend.server.documents import DocumentLibrary
 from mend.server.models import RobotModels
 from mend.server.off_loop import OffLoop
@@ -50,6 +52,7 @@ from mend.server.refusals import Refusals
 from mend.server.robots.passes import OwnRobots
 from mend.server.runtime.service import RunService
 from mend.server.settings import Settings
+from mend.server.sites.sites import Sites
 from mend.server.speech.abilities import NO_SPEECH, SpeechAbilities
 
 ROUTES = (
@@ -57,7 +60,9 @@ ROUTES = (
     principals_api,
     documents,
     worlds_api,
+    sites_api,
     runs,
+    leaves,
     poses_api,
     dialogues,
     robots,
@@ -87,6 +92,7 @@ def create_app(
     scenes: DocumentLibrary,
     scenarios: DocumentLibrary,
     worlds: WorldList,
+    sites: Sites,
     models: RobotModels,
     poses: PoseSource,
     access: Access,
@@ -104,13 +110,14 @@ def create_app(
     """
     app = described_app(lifespan)
     refusals = refusals or Refusals()
-    app.state.parts = Parts(
+    app.state.services = Services(
         service,
         journal,
         trees,
         scenes,
         scenarios,
         worlds,
+        sites,
         models,
         poses,
         settings,

@@ -14,7 +14,7 @@ from pydantic import TypeAdapter, ValidationError
 from mend.server.api.principals import CodeView, DeedsPage, PrincipalView, TokenView
 from mend.server.api.problems import Problem, problem
 from mend.server.api.speech import SpeechView
-from mend.server.client_connection import HelperDoor
+from mend.server.client_connection import HelperEndpoint
 from mend.server.client_errors import RefusedError, UnreachableError
 from mend.server.client_retries import send_once
 from mend.server.client_speech import SpeechStream
@@ -39,6 +39,8 @@ from mend.server.journal.events import (
 from mend.server.journal.trouble import Sleep
 from mend.server.runtime.requests import RunRequest
 from mend.server.runtime.views import DialogueView, RobotView, RunSummary, RunView, Snapshot
+from mend.server.sites.requests import SiteRequest
+from mend.server.sites.views import SiteView
 from mend.tasks.intervention import Intervention
 
 T = TypeVar("T")
@@ -188,6 +190,16 @@ class MendClient:
         """What a camera sees now, as JPEG."""
         return (await self._request("GET", f"/api/runs/{run}/cameras/{camera}")).content
 
+    async def take_leaf(self, run: UUID, node: str, helper: str) -> RunSummary:
+        """Have a leaf be a person's, who does it themselves; a robot that sees it done says so."""
+        body = {"node": node, "helper": helper}
+        return await self._post(f"/api/runs/{run}/leaves/take", RunSummary, body)
+
+    async def give_leaf_back(self, run: UUID, node: str, helper: str) -> RunSummary:
+        """Have it be anybody's again."""
+        body = {"node": node, "helper": helper}
+        return await self._post(f"/api/runs/{run}/leaves/give_back", RunSummary, body)
+
     async def intervene(self, run: UUID, intervention: Intervention) -> Intervention:
         """Have a person do something in a simulated world."""
         body = intervention.model_dump(mode="json")
@@ -239,6 +251,24 @@ class MendClient:
     async def picture(self, picture: UUID) -> bytes:
         """The picture that an event names, as JPEG."""
         return (await self._request("GET", f"/api/pictures/{picture}")).content
+
+    # --- sites --------------------------------------------------------------------------------
+
+    async def open_site(self, request: SiteRequest) -> SiteView:
+        """Start a simulated world that stays, with its robots, for runs to come."""
+        return await self._post("/api/sites", SiteView, request.model_dump(mode="json"))
+
+    async def sites(self) -> list[SiteView]:
+        return await self._get("/api/sites", list[SiteView])
+
+    async def site(self, site: UUID) -> SiteView:
+        return await self._get(f"/api/sites/{site}", SiteView)
+
+    async def close_site(self, site: UUID) -> None:
+        """Stop a site's world for good; no run may be using it."""
+        await self._request("DELETE", f"/api/sites/{site}")
+
+    # --- robots -------------------------------------------------------------------------------
 
     async def robots(self) -> list[RobotView]:
         return await self._get("/api/robots", list[RobotView])
@@ -292,7 +322,7 @@ class MendClient:
     async def talk(self, helper: str) -> AsyncIterator[SpeechStream]:
         """A microphone, to answer questions by voice."""
         # Sound does not get smaller by deflating it, only later.
-        door = HelperDoor(self._url, "/ws/speech", self._headers, helper)
+        door = HelperEndpoint(self._url, "/ws/speech", self._headers, helper)
         async with door.connected(compression=None) as socket:
             yield SpeechStream(socket)
 
@@ -300,7 +330,7 @@ class MendClient:
 
     def follow(self, helper: str, after: int | None = None) -> EventStream:
         """Follow every event from now on, or from the one after `after`, as a helper."""
-        return EventStream(HelperDoor(self._url, "/ws/helper", self._headers, helper), after)
+        return EventStream(HelperEndpoint(self._url, "/ws/helper", self._headers, helper), after)
 
     async def wait_until_ready(self, timeout_s: float = 30.0) -> None:
         """Wait until the service can be used. Raises `UnreachableError` after the time-out."""

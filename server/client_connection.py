@@ -14,7 +14,7 @@ POLICY_VIOLATION = 1008
 TOO_MANY_REQUESTS = 429
 
 
-class HelperDoor:
+class HelperEndpoint:
     """Where one helper gets in at one of the service's WebSockets."""
 
     def __init__(self, url: str, path: str, headers: dict[str, str], helper: str) -> None:

@@ -13,7 +13,7 @@ from websockets.asyncio.client import ClientConnection
 from websockets.exceptions import ConnectionClosed
 
 from mend.server.api.helper_messages import Error
-from mend.server.client_connection import HelperDoor, check_not_turned_away, readable
+from mend.server.client_connection import HelperEndpoint, check_not_turned_away, readable
 from mend.server.client_errors import CommandRefusedError, ConnectionLostError, UnreachableError
 from mend.server.journal.events import Event, any_event
 from mend.server.runtime.views import Snapshot
@@ -30,7 +30,7 @@ class EventStream:
     taken yet waits here, without limit.
     """
 
-    def __init__(self, door: HelperDoor, after: int | None = None) -> None:
+    def __init__(self, door: HelperEndpoint, after: int | None = None) -> None:
         self._door = door
         self._seen = after
         self._snapshot_wanted = True

@@ -13,7 +13,7 @@ from functools import partial
 from mend.dialogue.registry import load_scripts
 from mend.server.access.access import Access
 from mend.server.access.deed_log import DeedLog
-from mend.server.api.robot_socket import ROBOT_PATH, add_robot_route
+from mend.server.api.robot_socket import add_robot_route, robots_url
 from mend.server.app import build_access, create_app
 from mend.server.background import Endless
 from mend.server.believed_time import BelievedTime
@@ -38,12 +38,13 @@ from mend.server.robots.times import LinkTimes
 from mend.server.runtime.context import RunSettings
 from mend.server.runtime.operator_mail import OperatorMail
 from mend.server.runtime.runtime import Runtime
-from mend.server.runtime.worlds import SimulatedWorlds
 from mend.server.scene_checks import WorldChecks
 from mend.server.server_tls import server_tls
 from mend.server.serving import Server, serve_config
 from mend.server.session_key import session_key
 from mend.server.settings import Settings, is_everywhere
+from mend.server.sites.sites import Sites
+from mend.server.sites.worlds import SimulatedWorlds
 from mend.server.speech.abilities import SpeechAbilities
 from mend.server.speech.ear import choose_ears
 from mend.server.speech.rendering import SpokenTexts, render_prompts
@@ -66,9 +67,15 @@ class Service:
     journal: SqliteJournal
     registry: RobotRegistry
     library: Library
+    sites: Sites
     url: str
     public_url: str | None
     settings: Settings
+
+    @property
+    def robots_url(self) -> str:
+        """Where this machine's robots connect."""
+        return robots_url(self.url)
 
 
 @asynccontextmanager
@@ -134,32 +141,38 @@ async def _open(
     )
     models = RobotModels(adapters.values())
     poses = PoseFeed(registry.show_poses, models.address, _pose_records(settings))
-    worlds = SimulatedWorlds(
-        adapters,
+    worlds = SimulatedWorlds(adapters)
+    sites = Sites(
+        worlds,
         journal,
+        registry,
         partial(
             launch,
             registry=registry,
-            url=f"ws{url.removeprefix('http')}{ROBOT_PATH}",
+            url=robots_url(url),
             own_robots=own_robots,
             aside=simulation_thread,
             certificate=settings.tls_certificate,
             hang_s=settings.robot_hang_timeout_s,
         ),
         own_robots,
+        settings.limits,
+        library,
+        utc_now=lambda: datetime.now(UTC),
     )
     public_url = settings.public_url or (None if is_everywhere(settings.host) else url)
     mail = _operator_mail(settings, public_url)
     runtime = Runtime(
         journal=journal,
         robots=registry,
-        worlds=worlds,
+        worlds=sites,
         preparation=library,
         scripts=load_scripts(),
         policy=_policy(settings),
         send_mail=mail.send_later,
         settings=RunSettings(
             help_window_s=settings.help_window_s,
+            person_leaf_s=settings.person_leaf_s,
             max_helped_retries=settings.max_helped_retries,
             max_times_gone=settings.max_times_gone,
             robot_lost_timeout_s=settings.robot_lost_timeout_s,
@@ -181,6 +194,7 @@ async def _open(
         scenes=library.scenes,
         scenarios=library.scenarios,
         worlds=worlds,
+        sites=sites,
         models=models,
         poses=poses,
         access=access,
@@ -198,6 +212,7 @@ async def _open(
     try:
         if recover:
             # Before it listens: a run that is not read yet would be unknown to whoever asks.
+            await sites.recover()
             await runtime.recover()
             await deeds.recover(access.sessions)
         pruning = asyncio.create_task(
@@ -210,7 +225,7 @@ async def _open(
         watching = asyncio.create_task(_watch_access(access, deeds, journal_changes=recover))
         serving = asyncio.create_task(server.serve(sockets=[config_socket]), name="server")
         await server.wait_until_started(serving)
-        yield Service(runtime, journal, registry, library, url, public_url, settings)
+        yield Service(runtime, journal, registry, library, sites, url, public_url, settings)
     finally:
         # From the last to the first, each of them also where one before has failed.
         async with AsyncExitStack() as ending:
@@ -222,6 +237,7 @@ async def _open(
             ending.callback(poses.shut)
             ending.push_async_callback(mail.close)
             ending.push_async_callback(_cancel, watching)
+            ending.push_async_callback(sites.close)
             ending.push_async_callback(runtime.close)
             ending.push_async_callback(_cancel, pruning)
             # Nobody's end waits for what takes long: who asked for it is told to come again.

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from uuid import UUID
 
-from mend.errors import ConflictError, UnavailableError, WrongInputError
+from mend.errors import ConflictError, NotFoundError, UnavailableError, WrongInputError
 from mend.tasks.scene_problem import SceneProblem
 
 
@@ -20,6 +20,14 @@ class LostRaceError(ConflictError):
         super().__init__(f"this question was already answered by {answered_by}")
         self.prompt = prompt
         self.answered_by = answered_by
+
+
+class NotConnectedError(NotFoundError):
+    """Robots that a run is to have are not connected; `robots` names those."""
+
+    def __init__(self, message: str, robots: Sequence[str]) -> None:
+        super().__init__(message)
+        self.robots = list(robots)
 
 
 class ImpossibleError(WrongInputError):

@@ -22,6 +22,7 @@ from mend.server.runtime.ports import PreparedRun
 from mend.server.runtime.requests import RunRequest
 from mend.server.scene_checks import WorldChecks
 from mend.server.uploads import Uploads
+from mend.tasks.scene import Scene
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,8 +37,8 @@ class Library:
     journal: Journal
     off_loop: OffLoop
 
-    async def prepare(self, request: RunRequest) -> PreparedRun:
-        """Read and check what a request names.
+    async def prepare(self, request: RunRequest, scene: Scene | None = None) -> PreparedRun:
+        """Read and check what a request names, for a `scene` that is there already if given.
 
         Raises `NotFoundError`, `WrongInputError` or `BusyError`.
         """
@@ -45,7 +46,13 @@ class Library:
         kinds = (DocumentKind.SCENARIO, DocumentKind.TREE, DocumentKind.SCENE)
         uploaded = await self.uploads.named_in(named, kinds)
         chars = sum(len(text) for texts in uploaded.values() for text in texts.values())
-        return await self.off_loop.run(chars, self.preparer.prepare, request, uploaded)
+        return await self.off_loop.run(chars, self.preparer.prepare, request, uploaded, scene)
+
+    async def scene(self, name: str) -> Scene:
+        """A scene by its name. Raises `NotFoundError`, `WrongInputError` or `BusyError`."""
+        uploaded = await self.uploads.named_in([name], (DocumentKind.SCENE,))
+        chars = sum(len(text) for texts in uploaded.values() for text in texts.values())
+        return await self.off_loop.run(chars, self.preparer.scene, name, uploaded)
 
 
 def build_library(

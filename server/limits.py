@@ -18,6 +18,7 @@ SetLimitName = Literal[
     "waiting_chars",
     "check_s",
     "running_runs",
+    "sites",
     "connections",
     "connections_per_principal",
     "strangers",
@@ -87,6 +88,8 @@ class Limits(BaseModel):
     """How long reading and checking one large piece of that may take."""
     running_runs: AtLeastOne = 16
     """Runs that have not ended, at a time; each in a simulated world may take a process."""
+    sites: AtLeastOne = 8
+    """Sites that are open, at a time; each may take a process."""
     connections: AtLeastOne = 500
     """Connections to the service at a time."""
     connections_per_principal: AtLeastOne = 50

@@ -8,8 +8,12 @@ SEND_BUFFER_BYTES = 256 * 1024
 """What the kernel may hold for a client that does not read; the kernel would go up to megabytes."""
 
 
+class CannotListenError(OSError):
+    """Another program has the port, or this one may not have it."""
+
+
 def listen(settings: Settings) -> socket.socket:
-    """The listening socket. Raises `OSError` with a sentence if the port is taken."""
+    """The listening socket. Raises `CannotListenError`, a sentence."""
     family = socket.AF_INET6 if ":" in settings.host else socket.AF_INET
     # asyncio turns Nagle's algorithm off only for sockets that name TCP; with it on, a second small
     # message would wait for the acknowledgement of the first, some 40 ms.
@@ -20,7 +24,7 @@ def listen(settings: Settings) -> socket.socket:
         listening.bind((settings.host, settings.port))
     except OSError as error:
         listening.close()
-        raise OSError(
+        raise CannotListenError(
             f"cannot listen on {settings.host}:{settings.port}: {error.strerror}"
         ) from error
     return listening

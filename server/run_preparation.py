@@ -28,11 +28,17 @@ class RunPreparer:
     fixed: Mapping[DocumentKind, FixedDocuments]
     worlds: WorldChecks
 
-    def prepare(self, request: RunRequest, uploaded: Uploaded) -> PreparedRun:
-        """Raises `NotFoundError` or `WrongInputError`."""
+    def prepare(
+        self, request: RunRequest, uploaded: Uploaded, there: Scene | None = None
+    ) -> PreparedRun:
+        """`there`: the scene of a site, in which it is to be done.
+
+        Raises `NotFoundError` or `WrongInputError`.
+        """
         finder = Finder(self.fixed, uploaded)
         scenario = self._scenario(request, finder)
-        tree, scene = _load_tree(finder, request.tree, request.scene)
+        chosen = there or (_scene(finder, request.scene) if request.scene else None)
+        tree, scene = _load_tree(finder, request.tree, chosen)
         if request.world == LIVE:
             scene = scene or Scene(name="live", objects={}, places={})
         else:
@@ -93,15 +99,24 @@ class RunPreparer:
                 problems,
             )
 
+    def scene(self, name: str, uploaded: Uploaded) -> Scene:
+        """A scene by its name. Raises `NotFoundError` or `WrongInputError`."""
+        return _scene(Finder(self.fixed, uploaded), name)
+
+
+def _scene(finder: Finder, name: str) -> Scene:
+    try:
+        return finder.scene(name)
+    except NotInLibraryError as error:
+        raise NotFoundError(str(error)) from error
+    except InvalidFileError as error:
+        raise _unusable(DocumentKind.SCENE, name, error) from error
+
 
 def _load_tree(
-    finder: Finder, name: str, scene: str | None
+    finder: Finder, name: str, chosen: Scene | None
 ) -> tuple[TaskTreeDefinition, Scene | None]:
-    """A tree and its scene; `scene` names another one that the tree fits."""
-    try:
-        chosen = finder.scene(scene) if scene else None
-    except InvalidFileError as error:
-        raise _unusable(DocumentKind.SCENE, scene or "", error) from error
+    """A tree and its scene; `chosen` is another one that the tree fits."""
     try:
         task = finder.task(name, chosen)
     except NotInLibraryError as error:

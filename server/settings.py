@@ -91,6 +91,7 @@ class Settings(BaseSettings):
     """How long to wait for an answer after the operators were written to."""
     ask_repeats: Annotated[int, Field(ge=0, le=100)] = 1
     help_window_s: Seconds = 30.0
+    person_leaf_s: Seconds = 120.0
     max_helped_retries: Annotated[int, Field(ge=0, le=1000)] = 20
     """How often a robot tries one leaf again because somebody has helped, before it gives up."""
     max_times_gone: Annotated[int, Field(ge=0, le=1000)] = 10

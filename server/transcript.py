@@ -189,7 +189,11 @@ class Transcript:
         | ev.SignedIn
         | ev.SignInFailed
         | ev.SignedOut
-        | ev.AccessChanged,
+        | ev.AccessChanged
+        | ev.SiteOpened
+        | ev.SiteGivenBack
+        | ev.SiteRestarted
+        | ev.SiteClosed,
     ) -> list[Line]:
         return []  # It belongs to no run.
 
@@ -200,6 +204,10 @@ class Transcript:
         attempt = f", attempt {event.attempt}" if event.attempt > 1 else ""
         text = f"starts {event.name}{attempt}{_comparison(event)}"
         return [_line(event, self._robot(event.robot), text, Tone.CHOICE)]
+
+    @lines.register
+    def _(self, event: ev.NodeTaken) -> list[Line]:
+        return [_line(event, event.helper, f"takes {event.name}, to do it", Tone.CHOICE)]
 
     @lines.register
     def _(self, event: ev.StepStarted) -> list[Line]:

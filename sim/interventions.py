@@ -18,21 +18,26 @@ _EPSILON = 1e-9
 
 
 class Queued(StrictModel):
-    """An intervention that a command asked for, to happen when the clock reaches `at_s`."""
+    """An intervention that a robot's command asked for, to happen when the clock reaches `at_s`."""
 
     command: str
     do: Intervention
     by: str
     at_s: float
+    robot: str = ""
 
 
 @dataclass(frozen=True, slots=True)
 class PersonAction:
-    """Something that a person does now; `command` asked for it, None if a script did."""
+    """Something that a person does now.
+
+    `command` of `robot` asked for it, None if a script did.
+    """
 
     do: Intervention
     by: str
     command: str | None = None
+    robot: str = ""
 
 
 class PendingSnapshot(StrictModel):
@@ -55,18 +60,20 @@ class PendingInterventions:
         """Whether anything is still to come."""
         return bool(self._queued) or len(self._fired) < len(self._scripted)
 
-    def queue(self, command_id: str, command: Intervene, at_s: float) -> None:
-        """Let somebody do something when the clock reaches `at_s`.
+    def queue(self, robot: str, command_id: str, command: Intervene, at_s: float) -> None:
+        """Let somebody do something when the clock reaches `at_s`, as a robot was told.
 
         A command that waits already is not doubled: a rebuilt world is told again what it may know.
         """
         if any(each.command == command_id for each in self._queued):
             return
-        queued = Queued(command=command_id, do=command.intervention, by=command.by, at_s=at_s)
+        queued = Queued(
+            command=command_id, do=command.intervention, by=command.by, at_s=at_s, robot=robot
+        )
         self._queued.append(queued)
 
-    def withdraw(self, handled: str | None) -> None:
-        """Nobody needs to do any more what was queued for an object.
+    def withdraw(self, robot: str, handled: str | None) -> None:
+        """Nobody needs to do any more what a robot was promised for an object.
 
         Who promised to get out of the way still does: an arm that has only just touched somebody
         may take its way for free.
@@ -74,7 +81,9 @@ class PendingInterventions:
         self._queued = [
             each
             for each in self._queued
-            if each.do.act is Act.RELEASE or each.do.object not in (None, handled)
+            if each.robot != robot
+            or each.do.act is Act.RELEASE
+            or each.do.object not in (None, handled)
         ]
 
     def take_due(self, time_s: float, progress: TaskProgress | None) -> list[PersonAction]:
@@ -87,7 +96,7 @@ class PendingInterventions:
         ripe = [each for each in self._queued if each.at_s <= time_s + _EPSILON]
         self._queued = [each for each in self._queued if each.at_s > time_s + _EPSILON]
         ripe.sort(key=lambda each: each.at_s)
-        due.extend(PersonAction(each.do, each.by, each.command) for each in ripe)
+        due.extend(PersonAction(each.do, each.by, each.command, each.robot) for each in ripe)
         return due
 
     def snapshot(self) -> PendingSnapshot:

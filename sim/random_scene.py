@@ -95,7 +95,7 @@ def _repair(drawing: "_Drawing", seed: int, count: int, check: SceneCheck | None
     if check is None:
         return True
     for _ in range(_REPAIRS):
-        wrong = drawing.parts_of(check(drawing.scene(seed), drawing.nodes(seed)))
+        wrong = drawing.services_of(check(drawing.scene(seed), drawing.nodes(seed)))
         if not wrong:
             return True
         for name in wrong:
@@ -130,7 +130,7 @@ class _Drawing:
             if name in (drawn.start.on, drawn.place.on):
                 self.take_away(other)
 
-    def parts_of(self, problems: Sequence[SceneProblem]) -> list[str]:
+    def services_of(self, problems: Sequence[SceneProblem]) -> list[str]:
         """The parts that problems speak of; all where one speaks of none."""
         named = [self._part_at(each.where) for each in problems]
         if any(name is None for name in named):

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from typing import Any
 
+from mend.robots.link.messages import Intervened
 from mend.robots.robot import Robot
 from mend.sim.simulated_agent import SimulatedAgent
 from mend.sim.surroundings import Surroundings
@@ -34,8 +35,8 @@ class SharedWorld:
         self._robots = list(robots)
         self._surroundings = Surroundings(world, self._robots, interventions)
         self._agents = [SimulatedAgent(each, self._surroundings) for each in self._robots]
-        # What people do is told once.
-        self._surroundings.tell = self._agents[0].report
+        self._by_name = {each.name: each for each in self._agents}
+        self._surroundings.tell = self._tell
         self._speed = speed
         if snapshot is not None:
             self._surroundings.restore(snapshot)
@@ -44,6 +45,10 @@ class SharedWorld:
     def world(self) -> World:
         """The world as it really is; for tests and benchmarks to judge by."""
         return self._surroundings.world
+
+    def _tell(self, robot: str, done: Intervened) -> None:
+        """Report what people did once, as the robot that it was for, else as the first."""
+        self._by_name.get(robot, self._agents[0]).report(done)
 
     @property
     def agents(self) -> Sequence[SimulatedAgent]:

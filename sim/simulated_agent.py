@@ -55,6 +55,10 @@ class SimulatedAgent:
 
     # --- What it is ---------------------------------------------------------------------------
 
+    @property
+    def name(self) -> str:
+        return self._robot.name
+
     def hello(self, boot: str) -> Hello:
         """What the robot is, and what it is doing now."""
         return self._robot.hello(boot).model_copy(update={"simulated": True})
@@ -101,7 +105,7 @@ class SimulatedAgent:
             case Hold():
                 self._hold = (command_id, body)
             case Intervene():
-                self._surroundings.intervene_when_due(command_id, body)
+                self._surroundings.intervene_when_due(self.name, command_id, body)
             case Shutdown():
                 self._surroundings.shut_down = True
             case _:
@@ -139,7 +143,7 @@ class SimulatedAgent:
             self._surroundings.told_at_once = True
         if isinstance(body, Looked):
             if body.fulfilled and self._look is not None:
-                self._surroundings.withdraw(self._look.object)
+                self._surroundings.withdraw(self.name, self._look.object)
             self._look = None
         if isinstance(body, Finished) and not body.found_in_place and self._progress is not None:
             self._surroundings.finish(self._progress)

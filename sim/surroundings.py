@@ -29,7 +29,8 @@ class Surroundings:
     """A world and the people in it, as the robots in it have them.
 
     `told_at_once`: the service must see what was reported before more time passes. `tell` reports
-    what people did. `shut_down`: no more time is to pass.
+    what people did as the robot that had asked for it, which nobody has for a scenario's.
+    `shut_down`: no more time is to pass.
     """
 
     def __init__(
@@ -39,7 +40,7 @@ class Surroundings:
         interventions: Sequence[ScriptedIntervention],
     ) -> None:
         self.world = world
-        self.tell: Callable[[Intervened], None] = lambda _: None
+        self.tell: Callable[[str, Intervened], None] = lambda *_: None
         self.told_at_once = False
         self.shut_down = False
         self._robots = robots
@@ -93,16 +94,16 @@ class Surroundings:
         """Whether anybody has still something to do."""
         return self._pending.any_left
 
-    def intervene_when_due(self, command_id: str, command: Intervene) -> None:
-        """Have a person do something, now or when the clock says so."""
+    def intervene_when_due(self, robot: str, command_id: str, command: Intervene) -> None:
+        """Have a person do something for a robot, now or when the clock says so."""
         if command.at is None or command.at <= self.time_s():
-            self._intervene(PersonAction(command.intervention, command.by, command_id))
+            self._intervene(PersonAction(command.intervention, command.by, command_id, robot))
         else:
-            self._pending.queue(command_id, command, command.at)
+            self._pending.queue(robot, command_id, command, command.at)
 
-    def withdraw(self, handled: str | None) -> None:
-        """Nobody still does what a robot has just said that it sees done."""
-        self._pending.withdraw(handled)
+    def withdraw(self, robot: str, handled: str | None) -> None:
+        """Nobody still does for a robot what it has just said that it sees done."""
+        self._pending.withdraw(robot, handled)
 
     def let_people_act(self, progresses: Iterable[TaskProgress | None]) -> None:
         """Let people do what is due at this moment."""
@@ -122,9 +123,9 @@ class Surroundings:
             # What somebody stands in front of would be put down in vain: the robot is to see it.
             step_aside = Intervention(act=Act.RELEASE)
             if not self.world.intervene(step_aside):
-                self.tell(Intervened(intervention=step_aside, by=HELPER))
+                self.tell(deed.robot, Intervened(intervention=step_aside, by=HELPER))
         problem = self.world.intervene(deed.do)
         report = Intervened(
             intervention=deed.do, by=deed.by, ok=not problem, detail=problem, command=deed.command
         )
-        self.tell(report)
+        self.tell(deed.robot, report)

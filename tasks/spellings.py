@@ -1,5 +1,8 @@
 """How names and the like are spelt: the patterns, and in what words each of them is told."""
 
+NODE = r"^/(\d+(/\d+)*)?$"
+"""The path of a node in its tree."""
+
 NAME = r"^[A-Za-z][A-Za-z0-9_\-]{0,63}$"
 SEEN_CHARACTERS = r"^[^\x00-\x1f\x7f]+$"
 SEEN_CHARACTERS_OR_NONE = r"^[^\x00-\x1f\x7f-\x9f\u2028\u2029]*$"
@@ -9,6 +12,7 @@ SHA256 = r"^[0-9a-f]{64}$"
 SHORT_ID = r"^[0-9a-f]{8}$"
 
 SPELLINGS = {
+    NODE: "must be the path of a node: '/', or '/0/2/1' by the numbers of the children",
     NAME: "must be a name: a letter, then at most 63 letters, digits, '_' or '-'",
     SEEN_CHARACTERS: "must have only characters that can be seen",
     SEEN_CHARACTERS_OR_NONE: "must have only characters that can be seen",

@@ -1,9 +1,10 @@
 """A pretend robot for Mend: pick_and_place by timers, after docs/robot_protocol.md alone.
 
-    python examples/robot/robot.py --url ws://127.0.0.1:8080/ws/robot --robot demo
+    python examples/robot/robot.py --robot demo
 
-Needs Python 3.11 and the `websockets` package. With --credential FILE it shows its own credential,
-which it fetches the first time with --code (from `mend access enrol`); else MEND_TOKEN, if set.
+It calls where `mend serve` listens unless told (--url). Needs Python 3.11 and the `websockets`
+package. With --credential FILE it shows its own credential, which it fetches the first time with
+--code (from `mend access enrol`); else MEND_TOKEN, if set.
 """
 
 import argparse
@@ -25,6 +26,7 @@ from websockets.exceptions import InvalidStatus, WebSocketException
 STEPS = ("above pick", "pick", "close gripper", "above pick")
 STEPS += ("above place", "place", "open gripper", "above place")
 OBJECTS = ("green_leg", "pink_bar", "yellow_bar", "blue_leg", "purple_top", "orange_top")
+REST = (0.2, 0.0)  # where its gripper is while it does nothing
 NOTHING_YET = float("inf")  # the service has not said yet which reports it has
 TABLE = "reports (id INTEGER PRIMARY KEY AUTOINCREMENT, boot, seq INTEGER, report)"
 
@@ -35,9 +37,14 @@ class Robot:
         # Everything that it pretends to see, at made-up positions.
         self.poses = {name: {"x": 0.5, "y": 0.15 * i, "z": 0.7} for i, name in enumerate(OBJECTS)}
         self.placed, self.known_commands, self.seq, self.sent = set(), set(), 0, 0
-        self.start, self.step, self.work, self.socket = None, 1, None, None
+        self.start, self.step, self.work, self.socket, self.said = None, 1, None, None, None
         self.outbox = sqlite3.connect(outbox, isolation_level=None)
         self.outbox.execute(f"CREATE TABLE IF NOT EXISTS {TABLE}")
+
+    def say(self, sentence):
+        if sentence != self.said:  # what is tried again and again is told once
+            logging.info("%s: %s", self.name, sentence)
+        self.said = sentence
 
     async def send(self, **message):
         with suppress(WebSocketException):
@@ -92,7 +99,7 @@ class Robot:
         elif kind == "look":
             now, expect = {"yaw": 0.0, "time": time.monotonic()}, body.get("expect")
             seen = {"objects": {name: {**pose, **now} for name, pose in self.poses.items()}}
-            seen["gripper"] = {"x": 0.4, "y": 0.0, "z": 1.0}
+            seen["gripper"] = {"x": REST[0], "y": REST[1], "z": 1.0}
             finished = body.get("finished", [])
             seen["there"] = [each for each in finished if each["object"] in self.placed]
             so = expect and (expect != "at_place" or body["object"] in self.placed)
@@ -103,6 +110,7 @@ class Robot:
     async def say_hello(self):
         about = {"robot": self.name, "boot": self.boot, "cameras": [], "time": time.monotonic()}
         about["reach"] = {"x": 0.0, "y": 0.0, "min_m": 0.2, "max_m": 1.2}
+        about["room"] = {"resting": [REST], "hand_over": (0.4, 0.0), "around_m": 0.1}
         if self.start is not None:
             state = "holding" if self.work.done() else "running"
             about["executing"] = {"execution": self.start["execution"], "state": state}
@@ -116,6 +124,7 @@ class Robot:
 
     async def hear(self, message):
         if message["type"] == "welcome":
+            self.say(f"connected to {self.url}")
             self.forget(self.boot, message["received"])
             self.sent = 0
             beat = self.beat(self.socket, message["heartbeat_s"] / 2)
@@ -124,9 +133,9 @@ class Robot:
         elif message["type"] == "ack":
             self.forget(message.get("boot") or self.boot, message["seq"])
         elif message["type"] == "error" and self.sent == NOTHING_YET:
-            raise SystemExit(message["detail"])
+            raise SystemExit(f"{self.name}: {message['detail']}")
         elif message["type"] == "error":
-            logging.error("the service says: %s", message["detail"])
+            self.say(f"the service says: {message['detail']}")
         elif message["type"] == "command":
             await self.send(type="taken", command=message["id"])
             if message["id"] not in self.known_commands:
@@ -135,6 +144,8 @@ class Robot:
 
     async def run(self, url, token):
         headers = {"Authorization": f"Bearer {token}"} if token else {}
+        self.url = url
+        self.say(f"calling {url}")
         while True:
             try:
                 async with connect(url, additional_headers=headers, compression=None) as socket:
@@ -142,11 +153,17 @@ class Robot:
                     await self.say_hello()
                     async for text in socket:
                         await self.hear(json.loads(text))
+                    self.say("the service has ended the connection. Trying again ...")
             except InvalidStatus as refused:
-                if refused.response.status_code in (401, 403):
-                    raise SystemExit(refused.response.body.decode()) from None
-            except (OSError, WebSocketException):
-                pass  # it is not there, or not any more
+                status = refused.response.status_code
+                if status in (401, 403):
+                    raise SystemExit(f"{url}: {refused.response.body.decode()}") from None
+                self.say(f"{url} answers with HTTP {status}. Trying again ...")
+            except WebSocketException as lost:
+                self.say(f"the connection to {url} is lost: {lost}. Trying again ...")
+            except OSError as error:
+                why = f"{error}: is 'mend serve' running? Trying again ..."
+                self.say(f"nobody answers at {url}: {why}")
             self.socket = None
             await asyncio.sleep(random.uniform(0.1, 1.0))
 
@@ -175,6 +192,8 @@ parser.add_argument(
 )
 parser.add_argument("--code", help="a one-time code, to fetch the credential with")
 told = parser.parse_args()
+logging.basicConfig(level=logging.INFO, format="%(message)s")
+logging.getLogger("websockets").setLevel(logging.ERROR)
 token = os.environ.get("MEND_TOKEN")
 if told.credential:
     token = credential(told.url, told.robot, told.credential, told.code)

@@ -22,7 +22,7 @@ def back_off(work: Work, watch: Watch, way_back: Sequence[ToolPose]) -> Routine[
     """Go back through these poses; where no way leads back, bide a while. Raises `Interruption`."""
     arm = work.arm
     work.progress.move_to(ExecutionState.BACKING_OFF)
-    back = arm.body.plan_path(way_back) if way_back else None
+    back = arm.body.plan_back(way_back) if way_back else None
     if back is None:
         yield from _watched(arm.wait(_BIDE_S), watch)
         return

@@ -5,26 +5,30 @@ from mend.robots.behaviors.findings import Outcome
 from mend.robots.behaviors.search import LOOK_AGAIN_S, LOOKS
 from mend.robots.catalogue import Part
 from mend.robots.link.messages import Location
-from mend.robots.senses import Senses
+from mend.robots.perception import Perception
 from mend.robots.vision.presence import Presence
 
 
-def look_at_outcome(part: Part, target: Location, arm: Arm, senses: Senses) -> Routine[Outcome]:
+def look_at_outcome(
+    part: Part, target: Location, arm: Arm, perception: Perception
+) -> Routine[Outcome]:
     """Leave the head camera's view and look, again while the part is not seen at its place."""
     yield from arm.go_to_neutral()
-    outcome = _look(part, target, senses)
+    outcome = _look(part, target, perception)
     for _ in range(LOOKS - 1):
         if outcome.presence is Presence.THERE:
             break
         yield from arm.wait(LOOK_AGAIN_S)
-        senses.head.doubt()
-        outcome = _look(part, target, senses)
+        perception.head.doubt()
+        outcome = _look(part, target, perception)
     return outcome
 
 
-def _look(part: Part, target: Location, senses: Senses) -> Outcome:
-    image = senses.head.look()
-    blind = senses.head.why_blind(image, (part, target))
+def _look(part: Part, target: Location, perception: Perception) -> Outcome:
+    image = perception.head.look()
+    blind = perception.head.why_blind(image, (part, target))
     if blind is not None:
         return Outcome(image, None, Presence.HIDDEN, blind)
-    return Outcome(image, senses.head.sight(part, image), senses.head.presence(image, part, target))
+    return Outcome(
+        image, perception.head.sight(part, image), perception.head.presence(image, part, target)
+    )

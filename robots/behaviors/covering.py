@@ -4,8 +4,8 @@ from mend.robots.behaviors.assignment import Assignment
 from mend.robots.behaviors.phase import Phase
 from mend.robots.catalogue import Part
 from mend.robots.link.messages import Location
+from mend.robots.perception import Perception
 from mend.robots.result import JudgedResult
-from mend.robots.senses import Senses
 from mend.tasks.footprint import Footprint
 
 LOOK_PERIOD_S = 0.5
@@ -24,9 +24,9 @@ class Covering:
     What it has told of once it does not tell again: whoever was told decides how to go on.
     """
 
-    def __init__(self, assignment: Assignment, senses: Senses) -> None:
-        self._senses = senses
-        self._watched = _covered(assignment, senses)
+    def __init__(self, assignment: Assignment, perception: Perception) -> None:
+        self._perception = perception
+        self._watched = _covered(assignment, perception)
         self._doubted: list[JudgedResult] = []
         self._next_look_s = 0.0
 
@@ -37,7 +37,7 @@ class Covering:
         if now_s < self._next_look_s - 1e-9 and not self._doubted:
             return
         self._next_look_s = now_s + LOOK_PERIOD_S
-        gone = self._senses.head.seen_gone(self._senses.head.look(), self._watched)
+        gone = self._perception.head.seen_gone(self._perception.head.look(), self._watched)
         sure = [each for each in gone if each in self._doubted]
         self._watched = [each for each in self._watched if each not in sure]
         self._doubted = [each for each in gone if each not in sure]
@@ -45,11 +45,11 @@ class Covering:
             raise CoveredResultGone
 
 
-def _covered(assignment: Assignment, senses: Senses) -> list[JudgedResult]:
+def _covered(assignment: Assignment, perception: Perception) -> list[JudgedResult]:
     part, target = assignment.part, assignment.target
     if part is None or target is None:
         return []
-    height_of = senses.catalogue.height_of
+    height_of = perception.catalogue.height_of
     own, bottom_z = _footprint(part, target), height_of(target)
     return [
         each

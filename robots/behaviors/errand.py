@@ -9,7 +9,7 @@ from mend.robots.behaviors.findings import Findings
 from mend.robots.catalogue import Part
 from mend.robots.grasp import Grasp
 from mend.robots.link.messages import Location
-from mend.robots.senses import Senses
+from mend.robots.perception import Perception
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,9 +29,9 @@ class Errand:
     first: Callable[[Sequence[Step]], int] = lambda _: 1
 
 
-def errand_of(assignment: Assignment, senses: Senses, findings: Findings) -> Errand:
+def errand_of(assignment: Assignment, perception: Perception, findings: Findings) -> Errand:
     """What is to be executed, with the object where it was seen."""
-    behavior, seen, grip = assignment.behavior, findings.sighting, senses.hand.grip
+    behavior, seen, grip = assignment.behavior, findings.sighting, perception.hand.grip
     found = None
     if seen is not None and assignment.part is not None:
         found = Location(x=seen.x, y=seen.y, z=seen.z, yaw=seen.yaw)

@@ -15,7 +15,7 @@ from mend.robots.behaviors.work import Work
 from mend.robots.body import ToolPose
 from mend.robots.catalogue import Part
 from mend.robots.link.messages import Finished, Holding, Location, Resumed
-from mend.robots.monitors.monitor import BEFORE_FIRST_STEP, Meanwhile, Monitor
+from mend.robots.monitors.monitor import BEFORE_FIRST_STEP, Monitor, Reaction
 from mend.robots.vision.obstruction import Obstruction
 from mend.robots.vision.presence import Presence
 
@@ -29,7 +29,7 @@ class Execution:
     def __init__(self, work: Work, monitors: Sequence[Monitor[Any]]) -> None:
         self._work = work
         self._assignment, self._progress = work.assignment, work.progress
-        self._arm, self._senses = work.arm, work.senses
+        self._arm, self._perception = work.arm, work.perception
         self._watch = Watch(work, monitors)
         self._walk = StepWalk(work, self._watch)
 
@@ -109,7 +109,7 @@ class Execution:
         return self._retreat(end)
 
     def _retreat(self, end: bool) -> Routine[None]:
-        yield from put_down(self._arm, self._senses, self._progress.picked_at)
+        yield from put_down(self._arm, self._perception, self._progress.picked_at)
         yield from self._arm.go_to_neutral()
         self._arm.be_careful(1.0)
         self._progress.step = BEFORE_FIRST_STEP
@@ -138,7 +138,7 @@ class Execution:
                 there = (yield from self._walk.take_all(plan)) and (yield from self._confirm())
             self._finish(found_in_place=False)
         except Interruption as interruption:
-            yield from self._react(interruption.monitor.meanwhile)
+            yield from self._react(interruption.monitor.reaction)
         except CoveredResultGone:
             # The service has every result looked at before it lets this go on.
             yield from self.retreat(end=False)
@@ -154,7 +154,7 @@ class Execution:
         self._progress.move_to(ExecutionState.CONFIRMING)
         self._arm.be_careful(1.0)
         self._expect_change()
-        outcome = yield from look_at_outcome(part, target, self._arm, self._senses)
+        outcome = yield from look_at_outcome(part, target, self._arm, self._perception)
         self._progress.outcome = outcome
         self._progress.unconfirmed = outcome.blind is not None
         self._watch.check(None)
@@ -172,12 +172,12 @@ class Execution:
         """What was seen where it started, and was carried away, cannot be seen there any more."""
         before = self._progress.seen
         if before.image is not None and before.sighting is not None and self._progress.picked_at:
-            self._senses.head.expect_change(before.image)
+            self._perception.head.expect_change(before.image)
 
-    def _react(self, meanwhile: Meanwhile) -> Routine[None]:
-        if meanwhile is Meanwhile.GO_TO_NEUTRAL:
+    def _react(self, reaction: Reaction) -> Routine[None]:
+        if reaction is Reaction.GO_TO_NEUTRAL:
             # What the fingers may still touch is not theirs to put anywhere any more.
-            self._senses.let_go()
+            self._perception.let_go()
             yield from self.retreat(end=False)
             return
         self._progress.move_to(ExecutionState.HOLDING)

@@ -24,12 +24,12 @@ def make_plan(work: Work) -> Routine[Plan | None]:
     if there is one without it, or if it leaves no room at the place; everything else is a reason
     to refuse.
     """
-    assignment, senses, findings = work.assignment, work.senses, work.progress.seen
+    assignment, perception, findings = work.assignment, work.perception, work.progress.seen
     part = assignment.part
     if part is not None and findings.sighting is None and not findings.carrying:
         return None
-    boxes = others(part, senses.head.seen_boxes(findings.image or senses.head.look()))
-    errand, table = errand_of(assignment, senses, findings), senses.catalogue.table
+    boxes = others(part, perception.head.seen_boxes(findings.image or perception.head.look()))
+    errand, table = errand_of(assignment, perception, findings), perception.catalogue.table
     try:
         found = yield from plan_amid(errand, work.arm.body, table, boxes)
         _judge_way(found.way, work)
@@ -52,12 +52,12 @@ def _bar(
     barred: Barred, errand: Errand, boxes: Sequence[SeenBox], work: Work
 ) -> Routine[Obstruction | None]:
     """What could be taken away so that there is a path. Raises `UngraspableError`."""
-    image, reason = work.progress.seen.image or work.senses.head.look(), barred.reason
+    image, reason = work.progress.seen.image or work.perception.head.look(), barred.reason
     if isinstance(reason, Crowding):
         if not reason.at_place:
             return None
         return replace(obstruction_at(reason.by, image), what=str(reason))
-    body, table = work.arm.body, work.senses.catalogue.table
+    body, table = work.arm.body, work.perception.catalogue.table
     bar = yield from bar_of(
         barred,
         boxes,
@@ -86,12 +86,12 @@ def _name(part: Part | None) -> str:
 
 def _judge_way(way: Sequence[ToolPose], work: Work) -> None:
     """Note what is seen on the way, on the object, or at the place where that is to go."""
-    senses, findings = work.senses, work.progress.seen
+    perception, findings = work.perception, work.progress.seen
     findings.way = way
     findings.obstruction = None
     image, part, target = findings.image, work.assignment.part, work.assignment.target
     if image is not None:
-        findings.obstruction = senses.head.obstruction(image, way, part)
+        findings.obstruction = perception.head.obstruction(image, way, part)
     if findings.obstruction is None and part is not None:
-        image = image or senses.head.look()
-        findings.obstruction = senses.head.occupant(image, part, findings.sighting, target)
+        image = image or perception.head.look()
+        findings.obstruction = perception.head.occupant(image, part, findings.sighting, target)

@@ -23,7 +23,7 @@ def prepare(work: Work, watch: Watch) -> Routine[Plan | None]:
     progress = work.progress
     earlier, before = progress.plan, progress.seen.sighting
     progress.start_again()
-    work.senses.head.want(work.assignment.part)
+    work.perception.head.want(work.assignment.part)
     held = yield from feel_for_object(work)
     progress.seen.carrying = held and _goes_on_carrying(work)
     if progress.seen.carrying:
@@ -50,13 +50,13 @@ def _plan_with_it_held(work: Work, watch: Watch) -> Routine[None]:
     _require_sight(work, watch)
     progress.plan = yield from make_plan(work)
     refused = progress.plan is None and progress.seen.refusal is not None
-    if refused and (yield from set_down(work.arm, work.senses, progress.picked_at)):
+    if refused and (yield from set_down(work.arm, work.perception, progress.picked_at)):
         # Held otherwise it may fit.
         progress.start_again()
 
 
 def _look_with_empty_hands(work: Work, watch: Watch) -> Routine[None]:
-    yield from put_down(work.arm, work.senses, work.progress.picked_at)
+    yield from put_down(work.arm, work.perception, work.progress.picked_at)
     yield from get_out_of_view(work, watch)
     yield from find_object(work)
     _require_sight(work, watch)
@@ -71,7 +71,7 @@ def _plan_to_fetch_it(work: Work, watch: Watch) -> Routine[None]:
     if seen.sighting is None or (progress.plan is not None and not seen.obstruction):
         return
     progress.start_again()
-    work.senses.head.doubt()
+    work.perception.head.doubt()
     yield from work.arm.wait(LOOK_AGAIN_S)
     yield from find_object(work)
     _require_sight(work, watch)
@@ -81,7 +81,7 @@ def _plan_to_fetch_it(work: Work, watch: Watch) -> Routine[None]:
 def _judged(work: Work, watch: Watch) -> Plan:
     """The plan, once the monitors have let it pass. Raises `Interruption`."""
     progress = work.progress
-    watch.check(work.senses.read_grip() if progress.seen.carrying else None)
+    watch.check(work.perception.read_grip() if progress.seen.carrying else None)
     if progress.felt is not None and progress.felt.tries >= len(watch.tries(Phase.PREPARE)):
         # Nothing that is seen explains it.
         watch.judge(progress.felt)
@@ -103,25 +103,25 @@ def _require_sight(work: Work, watch: Watch) -> None:
 
 def _goes_on_carrying(work: Work) -> bool:
     """Whether the behavior has a step at which to go on with its object in the gripper."""
-    assignment, senses = work.assignment, work.senses
-    errand = errand_of(assignment, senses, Findings(carrying=True))
-    table_z = senses.catalogue.table.height
+    assignment, perception = work.assignment, work.perception
+    errand = errand_of(assignment, perception, Findings(carrying=True))
+    table_z = perception.catalogue.table.height
     (situation, *_) = ways_to_grasp(errand, work.arm.body.gripper, table_z, ())
     steps = assignment.behavior.steps(assignment.parameters, situation)
     return assignment.behavior.first_carrying(steps) is not None
 
 
 def _is_in_place(work: Work) -> bool:
-    seen, senses = work.progress.seen, work.senses
+    seen, perception = work.progress.seen, work.perception
     part, target = work.assignment.part, work.assignment.target
     if part is None or target is None or seen.image is None:
         return False
     if seen.sighting is not None and is_at(
-        seen.sighting, part, target, senses.catalogue.height_of(target)
+        seen.sighting, part, target, perception.catalogue.height_of(target)
     ):
         return True
     # What is out of sight at its place since it was seen there needs nobody to fetch it.
-    hidden = senses.head.presence(seen.image, part, target) is Presence.HIDDEN
+    hidden = perception.head.presence(seen.image, part, target) is Presence.HIDDEN
     return work.progress.was_done == "there" and hidden
 
 
@@ -141,4 +141,4 @@ def _is_hidden(work: Work, before: HeadSighting | None) -> bool:
     if seen.sighting is not None or part is None or seen.image is None or before is None:
         return False
     where = Location(x=before.x, y=before.y, z=before.z, yaw=before.yaw)
-    return work.senses.head.presence(seen.image, part, where) is Presence.HIDDEN
+    return work.perception.head.presence(seen.image, part, where) is Presence.HIDDEN

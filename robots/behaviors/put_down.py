@@ -12,7 +12,7 @@ from mend.robots.catalogue import Part
 from mend.robots.clearance import beside, in_the_way
 from mend.robots.grasp import RELEASE_CLEARANCE_M, Grasp
 from mend.robots.gripper import GripperModel
-from mend.robots.senses import Senses
+from mend.robots.perception import Perception
 from mend.robots.vision.seen_box import SeenBox
 from mend.tasks.scene import Table
 
@@ -27,40 +27,40 @@ _APART_M = 0.02
 """What is put down keeps so far away from everything else."""
 
 
-def put_down(arm: Arm, senses: Senses, picked_at: ToolPose | None) -> Routine[None]:
+def put_down(arm: Arm, perception: Perception, picked_at: ToolPose | None) -> Routine[None]:
     """Open the gripper; first take what it holds to where it was picked, or to a free spot.
 
     `picked_at` is the tool pose at which it was picked up, None if a person handed it over.
     """
-    if not (yield from set_down(arm, senses, picked_at)):
-        senses.let_go()
+    if not (yield from set_down(arm, perception, picked_at)):
+        perception.let_go()
         yield from arm.open_gripper()
 
 
-def set_down(arm: Arm, senses: Senses, picked_at: ToolPose | None) -> Routine[bool]:
+def set_down(arm: Arm, perception: Perception, picked_at: ToolPose | None) -> Routine[bool]:
     """Take what the gripper holds to where it was picked, or to a free spot, and let go of it.
 
     Whether that was done: without a way there it is still held.
     """
-    grip = senses.hand.grip
-    if grip is None or not senses.hand.holds():
+    grip = perception.hand.grip
+    if grip is None or not perception.hand.holds():
         return False
     yield from arm.lift()
-    path = _way_down(arm, senses, grip.part, grip.grasp, picked_at)
+    path = _way_down(arm, perception, grip.part, grip.grasp, picked_at)
     if path is None:
         return False
     yield from arm.follow(path, _SPEED)
-    senses.let_go()
+    perception.let_go()
     yield from arm.open_gripper(grip.grasp.opening_m)
     return True
 
 
 def _way_down(
-    arm: Arm, senses: Senses, part: Part, grasp: Grasp, picked_at: ToolPose | None
+    arm: Arm, perception: Perception, part: Part, grasp: Grasp, picked_at: ToolPose | None
 ) -> ArmPath | None:
     """The path to the best spot that the arm can put something down at."""
-    table = senses.catalogue.table
-    boxes = others(part, senses.head.seen_boxes(senses.head.look()))
+    table = perception.catalogue.table
+    boxes = others(part, perception.head.seen_boxes(perception.head.look()))
     spots = [] if picked_at is None else [picked_at]
     here = arm.tool_pose()
     if here is not None:

@@ -35,9 +35,9 @@ class StepWalk:
 
     def __init__(self, work: Work, watch: Watch) -> None:
         self._work = work
-        self._progress, self._arm, self._senses = work.progress, work.arm, work.senses
+        self._progress, self._arm, self._perception = work.progress, work.arm, work.perception
         self._watch = watch
-        self._covering = Covering(work.assignment, work.senses)
+        self._covering = Covering(work.assignment, work.perception)
 
     def take_all(self, plan: Plan) -> Routine[bool]:
         """All steps; False if what they were planned for has to be looked at again.
@@ -70,7 +70,7 @@ class StepWalk:
         for count, each in enumerate(tries[begin:], start=begin + 1):
             felt = yield from self._try(number, each)
             if felt is None:
-                askew = self._senses.hand.has_askew
+                askew = self._perception.hand.has_askew
                 if askew:
                     yield from self._let_go_to_regrasp()
                 return not askew
@@ -87,7 +87,7 @@ class StepWalk:
     def _let_go_to_regrasp(self) -> Routine[None]:
         self._progress.regrasps += 1
         self._progress.move_to(ExecutionState.BACKING_OFF)
-        self._senses.let_go()
+        self._perception.let_go()
         grasp = self._progress.planned.grasp
         yield from self._arm.open_gripper(None if grasp is None else grasp.opening_m)
         yield from self._arm.lift()
@@ -130,10 +130,10 @@ class StepWalk:
         elif step.action.to == "closed":
             if part is not None and step.phase is Phase.GRASP:
                 regrasp = self._progress.regrasps < _MOST_REGRASPS
-                self._senses.hand.watch_grip(part, plan.grasp, regrasp=regrasp)
+                self._perception.hand.watch_grip(part, plan.grasp, regrasp=regrasp)
             self._arm.start_closing()
         else:
-            self._senses.let_go()
+            self._perception.let_go()
             self._arm.start_opening(step.action.opening_m)
 
     def _feel(self, move: Move, contact: ContactWatch, track: Track) -> float | None:

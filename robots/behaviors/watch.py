@@ -12,7 +12,7 @@ from mend.robots.behaviors.work import Work
 from mend.robots.grip import GripReading
 from mend.robots.link.messages import Detection, IssueDetected
 from mend.robots.monitors.monitor import Monitor, MonitorView
-from mend.robots.senses import FOREARM, HEAD
+from mend.robots.perception import FOREARM, HEAD
 from mend.robots.vision.drawing import draw_detection, encode_jpeg
 
 _CAREFUL = 0.5
@@ -56,10 +56,10 @@ class Watch:
         now = self._work.arm.body.time_s()
         if now < self._next_check_s - 1e-9:
             return
-        self._next_check_s = now + self._work.senses.hand.period_s
+        self._next_check_s = now + self._work.perception.hand.period_s
         looking = self._judges_grip(self._progress.phase) and not self._closing()
         self._read_s = now if looking else self._read_s
-        self.check(self._work.senses.read_grip() if looking else None)
+        self.check(self._work.perception.read_grip() if looking else None)
 
     def check(self, grip: GripReading | None) -> None:
         """Let the monitors of this step judge. Raises `Interruption` for the first that must."""
@@ -94,7 +94,7 @@ class Watch:
 
         The last step in which they are looked at ends with one taken after the arm has arrived.
         """
-        grip, plan = self._work.senses.hand.grip, self._progress.plan
+        grip, plan = self._work.perception.hand.grip, self._progress.plan
         if grip is None or plan is None or not self._judges_grip(self._progress.phase):
             return False
         following = plan.steps[self._progress.step : self._progress.step + 1]
@@ -133,7 +133,7 @@ class Watch:
             target=self._work.assignment.target,
             was_done=progress.was_done,
             reach=self._work.arm.body.reach,
-            table_z=self._work.senses.catalogue.table.height,
+            table_z=self._work.perception.catalogue.table.height,
             sighting=progress.seen.sighting,
             refusal=progress.seen.refusal,
             obstruction=progress.seen.obstruction,

@@ -1,4 +1,4 @@
-"""Work: an assignment, how far it has come, and the arm and senses that do it."""
+"""Work: an assignment, how far it has come, and the arm and perception that do it."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -8,7 +8,7 @@ from mend.robots.behaviors.assignment import Assignment
 from mend.robots.behaviors.progress import Progress
 from mend.robots.catalogue import Part
 from mend.robots.link.messages import Location, ReportBody
-from mend.robots.senses import Senses
+from mend.robots.perception import Perception
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,7 +18,7 @@ class Work:
     assignment: Assignment
     progress: Progress
     arm: Arm
-    senses: Senses
+    perception: Perception
     report: Callable[[ReportBody], None]
 
     @property

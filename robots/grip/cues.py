@@ -5,12 +5,13 @@ what is there.
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from mend.robots.grasp import Grasp
-from mend.robots.grip.belief import Between
+from mend.robots.grip.belief import Between, Hypothesis
 from mend.robots.grip.composition import Composition, log_density
+from mend.robots.grip.rivals import RivalReading
 from mend.robots.gripper import GripperModel
 
 
@@ -19,12 +20,14 @@ class HandReading:
     """What the hand's sensors say at one moment; the composition is None where it cannot tell.
 
     `presses`: the fingers press on something; `pushed`: something has pushed against the arm.
+    `rivals` are the known parts that somebody may have put there in its stead.
     """
 
     opening_m: float
     presses: bool
     composition: Composition | None
     pushed: bool = False
+    rivals: Sequence[RivalReading] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,14 +53,19 @@ class CueModel:
 
     def log_likelihoods(
         self, reading: HandReading, grasp: Grasp, gripper: GripperModel
-    ) -> Mapping[Between, float]:
+    ) -> Mapping[Hypothesis, float]:
         """log p(reading | what is between the fingers), for everything that may be there."""
         opening_m, seen = reading.opening_m, reading.composition
         on_something = self._log_pressing(reading.presses, self.presses_on_something)
         on_nothing = self._log_pressing(reading.presses, self.presses_on_nothing)
         right = on_something + _log_looks(seen, "right")
+        rivals: dict[Hypothesis, float] = {
+            number: on_something + self._log_rival(opening_m, each, grasp)
+            for number, each in enumerate(reading.rivals)
+        }
         return {
-            Between.STRAIGHT: right + math.log(self._opening_on(opening_m, grasp)),
+            **rivals,
+            Between.STRAIGHT: right + math.log(self._opening_on(opening_m, grasp.width_m)),
             Between.TURNED: right
             + math.log(self._opening_on_turned(opening_m, grasp, gripper, pushed=reading.pushed)),
             Between.OTHER: on_something
@@ -68,9 +76,9 @@ class CueModel:
             + math.log(self._opening_on_nothing(opening_m, gripper)),
         }
 
-    def _opening_on(self, opening_m: float, grasp: Grasp) -> float:
+    def _opening_on(self, opening_m: float, width_m: float) -> float:
         """Density per metre."""
-        return _normal(opening_m - grasp.width_m, self._sd_m) + self.impossible_per_m
+        return _normal(opening_m - width_m, self._sd_m) + self.impossible_per_m
 
     def _opening_on_turned(
         self, opening_m: float, grasp: Grasp, gripper: GripperModel, *, pushed: bool
@@ -92,6 +100,15 @@ class CueModel:
         sd_m = math.hypot(self.encoder_sd_m, self.closed_sd_m)
         closed = 2.0 * _normal(opening_m, sd_m)
         return (1.0 - self.moving_share) * closed + self.moving_share / gripper.max_opening_m
+
+    def _log_rival(self, opening_m: float, rival: RivalReading, grasp: Grasp) -> float:
+        """Of opening and looks if that is held."""
+        return rival.log_looks + math.log(self._opening_on(opening_m, self._felt_m(rival, grasp)))
+
+    def _felt_m(self, rival: RivalReading, grasp: Grasp) -> float:
+        """A rival's width; the part's own where fingers cannot tell the two."""
+        told_apart = abs(rival.width_m - grasp.width_m) > 2 * self._sd_m
+        return rival.width_m if told_apart else grasp.width_m
 
     def _opening_on_other(self, opening_m: float, gripper: GripperModel, *, pushed: bool) -> float:
         # What is pushed they may have by a corner, narrower than any of its sides.

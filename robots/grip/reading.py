@@ -1,10 +1,12 @@
 """What a reading of the hand says, and the verdict with it."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
 from mend.robots.body import CameraImage
 from mend.robots.grip.composition import Composition
+from mend.robots.grip.rivals import RivalReading
 from mend.robots.vision.blob import Blob
 from mend.tasks.transitions import Transitions
 
@@ -49,7 +51,7 @@ class GripReading:
     which colours the picture shows where the part must be seen; None where the fingers hide it or
     its colour cannot be told. `blob` are the pixels of its colours, `expected` the centre of its
     outline (pixels) and `overhang_px` how far the blob hangs over that, for a picture 160 pixels
-    wide; `tolerance_px` of it are usual.
+    wide; `tolerance_px` of it are usual. `rivals` are the known parts that it may be instead.
     """
 
     name: str
@@ -66,6 +68,7 @@ class GripReading:
     tolerance_px: float
     overhang_px: float | None
     image: CameraImage
+    rivals: Sequence[RivalReading] = ()
 
     @property
     def reason(self) -> str:

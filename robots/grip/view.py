@@ -67,12 +67,16 @@ def visible_region(
     fingers: Sequence[NDArray[np.float64]],
 ) -> Mask:
     """Where the part must be seen and neither its rim nor a finger, or the like, is."""
-    scale = image.bgr.shape[1] / REFERENCE_WIDTH_PX
-    size = 2 * round(_RIM_PX * scale) + 1
-    rim = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (size, size))
+    rim = rim_of(image)
     inside = cv2.erode(outline(image, tool, near), rim)
     hidden = cv2.dilate(outline(image, tool, fingers), rim)
     return np.where((np.asarray(inside) > 0) & (np.asarray(hidden) == 0), 1, 0).astype(np.uint8)
+
+
+def rim_of(image: CameraImage) -> Mask:
+    """As far around each pixel as projections may be off."""
+    size = 2 * round(_RIM_PX * image.bgr.shape[1] / REFERENCE_WIDTH_PX) + 1
+    return np.asarray(cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (size, size)), np.uint8)
 
 
 def in_front(
@@ -82,18 +86,27 @@ def in_front(
 
     `boxes` are in the base frame; one that reaches beside the camera is cut off there.
     """
-    eye, at = image.pose[:3, 3], tool[:3, 3]
-    away_m = float(np.linalg.norm(at - eye))
-    hiding = []
-    for box in boxes:
-        outline = box.corners()
-        corners = np.array([(x, y, z) for x, y in outline for z in (box.bottom_z, box.top_z)])
-        if float(np.linalg.norm(corners.mean(axis=0) - eye)) >= away_m:
-            continue
+    eye = image.pose[:3, 3]
+    away_m = float(np.linalg.norm(tool[:3, 3] - eye))
+    nearer = [each for each in boxes if np.linalg.norm(_corners(each).mean(axis=0) - eye) < away_m]
+    return in_tool(image, tool, nearer)
+
+
+def in_tool(
+    image: CameraImage, tool: Matrix4, boxes: Sequence[SeenBox]
+) -> list[NDArray[np.float64]]:
+    """The corners (n, 3), in the tool frame, of boxes in the base frame, cut off as `in_front`."""
+    eye = image.pose[:3, 3]
+    found = []
+    for corners in map(_corners, boxes):
         ahead = _ahead(corners, (corners - eye) @ image.pose[:3, 2] - NEAR_M)
         if len(ahead) > 0:
-            hiding.append((ahead - at) @ tool[:3, :3])
-    return hiding
+            found.append((ahead - tool[:3, 3]) @ tool[:3, :3])
+    return found
+
+
+def _corners(box: SeenBox) -> NDArray[np.float64]:
+    return np.array([(x, y, z) for x, y in box.corners() for z in (box.bottom_z, box.top_z)])
 
 
 def _ahead(corners: NDArray[np.float64], beyond_m: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -113,9 +126,13 @@ def composition(
 
     What may be the part's own colour is no sign of another part, even of one that has more of it.
     """
+    if name not in model.names:
+        return None
     scale = region.shape[1] / REFERENCE_WIDTH_PX
+    if model.has_hue(name):
+        region = np.where(segmentation.tells(name), region, 0).astype(np.uint8)
     pixels = int(np.count_nonzero(region))
-    if name not in model.names or pixels < _FEWEST_PX * scale * scale:
+    if pixels < _FEWEST_PX * scale * scale:
         return None
     inside = segmentation.within(region)
     own = inside.may_be(name)

@@ -10,14 +10,16 @@ from numpy.typing import NDArray
 from mend.robots.body import CameraImage, Matrix4
 from mend.robots.catalogue import Part
 from mend.robots.grasp import Grasp, corners_in_tool
-from mend.robots.grip.belief import Belief, Between
-from mend.robots.grip.composition import Composition
+from mend.robots.grip.belief import Belief, Between, Hypothesis
+from mend.robots.grip.composition import Composition, likeliest
 from mend.robots.grip.cues import CueModel, HandReading
 from mend.robots.grip.reading import GRIP, GripReading, GripState
+from mend.robots.grip.rivals import Rival, RivalView
 from mend.robots.grip.view import (
     REFERENCE_WIDTH_PX,
     composition,
     in_front,
+    in_tool,
     near_tool,
     outline,
     visible_region,
@@ -74,17 +76,22 @@ class GripWatch:
         cues: CueModel | None = None,
         *,
         regrasp: bool = False,
+        rivals: Sequence[Rival] = (),
     ) -> None:
-        """`regrasp`: what was pushed may be grasped anew, so that it need be no other verdict."""
+        """`regrasp`: what was pushed may be grasped anew, so that it need be no other verdict.
+
+        `rivals` may be there in the part's stead, until the first verdict.
+        """
         self.part = part
         self.grasp = grasp
         self._model = model
         self._gripper = gripper
         self._cues = cues or CueModel()
         self._regrasp = regrasp
+        self._rivals = rivals
         self._boxes = corners_in_tool(part, grasp)
         self._near = near_tool(part, grasp)
-        self._belief = Belief()
+        self._belief = Belief(len(rivals))
         self._state = GripState.UNDECIDED
         self._pushed = False
         """Whether something has pushed against the arm since the fingers closed."""
@@ -115,7 +122,7 @@ class GripWatch:
         if self._read_s is not None:
             self._belief.predict(max(0.0, now_s - self._read_s))
         self._read_s = now_s
-        if reading.pushed and not self._pushed:
+        if hand.contact_n >= _PUSHED_N:
             self._belief.push()
         self._belief.update(self._log_likelihoods(reading))
         self._pushed = reading.pushed
@@ -142,6 +149,10 @@ class GripWatch:
             min_area_px=max(6, round(_LEAST_BLOB_PX * scale * scale)),
             whole=True,
         )
+        hiding = [*hand.fingers, *in_front(image, hand.tool, hand.around)]
+        seen = self._composition(hand, segmentation, hiding)
+        around = in_tool(image, hand.tool, hand.around)
+        rivals = RivalView(image, hand.tool, segmentation, self._model, hiding, around)
         reading = GripReading(
             name=self.part.name,
             state=self._state,
@@ -151,24 +162,38 @@ class GripWatch:
             by_knob=self.part.knob is not None,
             presses=hand.effort_n >= _PRESSES_SHARE * self._gripper.grip_force_n,
             pushed=self._pushed or hand.contact_n >= _PUSHED_N,
-            composition=self._composition(hand, segmentation),
+            composition=seen,
             blob=blob,
             expected=_center(whole, project(image, hand.tool[None, :3, 3])[0]),
             tolerance_px=_OVERHANG_PX * scale,
             overhang_px=None if blob is None else _overhang_px(blob, whole) / scale,
             image=image,
+            rivals=rivals.read(self._rivals_left, self.part.name, self._boxes, seen),
         )
-        alone = Belief()
+        alone = Belief(len(self._rivals_left))
         alone.update(self._log_likelihoods(reading))
         return replace(reading, probability=alone.probability)
 
-    def _composition(self, hand: HandSnapshot, segmentation: Segmentation) -> Composition | None:
-        hiding = [*hand.fingers, *in_front(hand.image, hand.tool, hand.around)]
+    @property
+    def _rivals_left(self) -> Sequence[Rival]:
+        """What is held stays what it is."""
+        return self._rivals if self._state is GripState.UNDECIDED else ()
+
+    def _composition(
+        self,
+        hand: HandSnapshot,
+        segmentation: Segmentation,
+        hiding: Sequence[NDArray[np.float64]],
+    ) -> Composition | None:
         region = visible_region(hand.image, hand.tool, self._near, hiding)
         return composition(region, segmentation, self._model, self.part.name)
 
-    def _log_likelihoods(self, reading: GripReading) -> Mapping[Between, float]:
-        hand = HandReading(reading.opening_m, reading.presses, reading.composition, reading.pushed)
+    def _log_likelihoods(self, reading: GripReading) -> Mapping[Hypothesis, float]:
+        seen = reading.composition
+        if self._state is GripState.HELD and seen is not None and likeliest(seen) == "nothing":
+            # What fingers still press on is hidden, and stays what it is however long.
+            seen = None
+        hand = HandReading(reading.opening_m, reading.presses, seen, reading.pushed, reading.rivals)
         return self._cues.log_likelihoods(hand, self.grasp, self._gripper)
 
     def _judge(self) -> None:
@@ -176,6 +201,7 @@ class GripWatch:
         self._unsure = 0 if sure else self._unsure + 1
         if self._state is GripState.UNDECIDED and (sure or self._unsure >= _LONGEST_DOUBT):
             self._state = GRIP.require(self._state, self._first_verdict())
+            self._belief.forget_rivals()
         elif self._state is GripState.HELD and self.probability <= 1.0 - _SURE:
             self._state = GRIP.require(self._state, GripState.LOST)
 

@@ -449,7 +449,7 @@ class Hello(Message):
 
     `boot` is new at every start of the robot's program. `suitability`: per behavior, in (0, 1].
     `executing`: what it is doing, if anything. `shows`: what its `poses` hold; None if it sends
-    none. `room`: without it a robot keeps out of the way of others by itself.
+    none. `room`: without it no other robot of its run works while its arm does not rest.
     """
 
     type: Literal["hello"] = "hello"

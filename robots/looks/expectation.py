@@ -25,7 +25,7 @@ class AtPlace:
         image = self._looker.look_at_table()
         if image is None:
             return False
-        return self._looker.senses.head.recognize_at(image, self._part, self._target)
+        return self._looker.perception.head.recognize_at(image, self._part, self._target)
 
 
 class ViewClear:

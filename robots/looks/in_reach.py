@@ -32,24 +32,24 @@ class InReach:
     def is_fulfilled(self) -> bool:
         if not can_grasp(self._part, self._looker.arm.body.gripper):
             return False
-        senses, image = self._looker.senses, self._looker.look_at_table()
+        perception, image = self._looker.perception, self._looker.look_at_table()
         if image is None:
             return False
-        before, self._before = self._before, senses.head.sight(self._part, image)
+        before, self._before = self._before, perception.head.sight(self._part, image)
         now = self._before
-        if before is None or now is None or not now.upright(senses.catalogue.table.height):
+        if before is None or now is None or not now.upright(perception.catalogue.table.height):
             return False
         moved_m = math.dist((now.x, now.y, now.z), (before.x, before.y, before.z))
         if moved_m > _STILL_M:
             return False
-        return self._can_lift(now, others(self._part, senses.head.seen_boxes(image)))
+        return self._can_lift(now, others(self._part, perception.head.seen_boxes(image)))
 
     def _can_lift(self, at: HeadSighting, around: Sequence[SeenBox]) -> bool:
         """Whether there is a plan for that; where there was none, only once something has moved."""
         spots = [(None, at.x, at.y, at.z), *((e.name, e.x, e.y, e.top_z) for e in around)]
         if _alike(spots, self._barred):
             return False
-        body, table = self._looker.arm.body, self._looker.senses.catalogue.table
+        body, table = self._looker.arm.body, self._looker.perception.catalogue.table
         errand = Errand(lifting, self._part, Location(x=at.x, y=at.y, z=at.z, yaw=at.yaw), None)
         plan = at_once(plan_amid(errand, body, table, around))
         self._barred = () if isinstance(plan, Plan) else spots

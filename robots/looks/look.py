@@ -3,33 +3,31 @@
 from collections.abc import Callable
 
 from mend.robots.arm import Routine
+from mend.robots.command_resolver import CommandResolver
 from mend.robots.link.messages import Look, Looked
 from mend.robots.looks.expectation import AtPlace, ViewClear, VisualCheck
 from mend.robots.looks.hand_over import take_from_person
 from mend.robots.looks.in_reach import InReach
 from mend.robots.looks.looker import Looker
 from mend.robots.looks.way_clear import WayClear
-from mend.robots.understanding import Understanding
 
 _PERIOD_S = 0.5
 
 
 def look_as_told(
-    looker: Looker, command: str, look: Look, understanding: Understanding
+    looker: Looker, command: str, look: Look, resolver: CommandResolver
 ) -> Routine[Looked]:
     """The routine of a `look` command. Raises `CommandError`."""
     if look.expect is None:
         return look_once(looker, command)
     if look.expect not in ("way_clear", "view_clear"):
-        looker.senses.head.want(understanding.object_of(look))
+        looker.perception.head.want(resolver.object_of(look))
     if look.expect == "in_gripper":
-        part = understanding.object_of(look)
+        part = resolver.object_of(look)
         return take_from_person(looker, command, part, look.within_s)
     make: dict[str, Callable[[], VisualCheck]] = {
-        "at_place": lambda: AtPlace(
-            looker, understanding.object_of(look), understanding.place_of(look)
-        ),
-        "in_reach": lambda: InReach(looker, understanding.object_of(look)),
+        "at_place": lambda: AtPlace(looker, resolver.object_of(look), resolver.place_of(look)),
+        "in_reach": lambda: InReach(looker, resolver.object_of(look)),
         "way_clear": lambda: WayClear(looker),
         "view_clear": lambda: ViewClear(looker),
     }
@@ -53,7 +51,7 @@ def look_until(
         left_s = end_s - looker.arm.body.time_s()
         if left_s <= _PERIOD_S:
             # That nothing changes is not enough to say that it is not so.
-            looker.senses.head.doubt()
+            looker.perception.head.doubt()
         yield from looker.feel_whether_it_is_held()
         fulfilled = expectation.is_fulfilled()
         if fulfilled or left_s <= 1e-9:

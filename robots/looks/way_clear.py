@@ -33,14 +33,14 @@ class WayClear:
         return pressed_n
 
     def _is_seen_clear(self, image: CameraImage, way: list[ToolPose]) -> bool:
-        senses, held = self._looker.senses, self._looker.held
+        perception, held = self._looker.perception, self._looker.held
         before = None if held is None else held.obstruction
         part, target = (None if held is None else held.destination) or (None, None)
-        if before is not None and senses.head.shows_anything(image, before.position, but=part):
+        if before is not None and perception.head.shows_anything(image, before.position, but=part):
             return False
-        if senses.head.obstruction(image, way, part) is not None:
+        if perception.head.obstruction(image, way, part) is not None:
             return False
         if part is None:
             return True
-        sighting = None if senses.hand.holds(part.name) else senses.head.sight(part, image)
-        return senses.head.occupant(image, part, sighting, target) is None
+        sighting = None if perception.hand.holds(part.name) else perception.head.sight(part, image)
+        return perception.head.occupant(image, part, sighting, target) is None

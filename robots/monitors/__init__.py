@@ -1,5 +1,5 @@
 """Fault monitors: each watches for one kind of issue in some phases of some behaviors."""
 
-from mend.robots.monitors.monitor import Meanwhile, Monitor, MonitorView
+from mend.robots.monitors.monitor import Monitor, MonitorView, Reaction
 
-__all__ = ["Meanwhile", "Monitor", "MonitorView"]
+__all__ = ["Monitor", "MonitorView", "Reaction"]

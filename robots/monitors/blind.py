@@ -4,7 +4,7 @@ from typing import ClassVar
 
 from mend.robots.behaviors.phase import Phase
 from mend.robots.link.messages import Detection
-from mend.robots.monitors.monitor import ANY_BEHAVIOR, Meanwhile, Monitor, MonitorView, NoParameters
+from mend.robots.monitors.monitor import ANY_BEHAVIOR, Monitor, MonitorView, NoParameters, Reaction
 from mend.tasks.scene import StrictModel
 
 
@@ -17,7 +17,7 @@ class Blind(Monitor[NoParameters]):
     issue: ClassVar[str] = "blind"
     behaviors: ClassVar[frozenset[str]] = ANY_BEHAVIOR
     phases: ClassVar[frozenset[Phase]] = frozenset({Phase.PREPARE, Phase.CONFIRM})
-    meanwhile: ClassVar[Meanwhile] = Meanwhile.STOP_IN_PLACE
+    reaction: ClassVar[Reaction] = Reaction.STOP_IN_PLACE
     parameters: ClassVar[type[StrictModel]] = NoParameters
 
     def check(self, view: MonitorView) -> Detection | None:

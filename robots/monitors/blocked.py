@@ -10,7 +10,7 @@ from mend.robots.behaviors.contact import Contact, Try
 from mend.robots.behaviors.phase import Phase
 from mend.robots.behaviors.pick_and_place import PickAndPlace
 from mend.robots.link.messages import Detection
-from mend.robots.monitors.monitor import BEFORE_FIRST_STEP, Meanwhile, Monitor, MonitorView
+from mend.robots.monitors.monitor import BEFORE_FIRST_STEP, Monitor, MonitorView, Reaction
 from mend.tasks.scene import StrictModel
 
 PushLimit = Annotated[float, Field(gt=0.0, le=100.0)]
@@ -45,7 +45,7 @@ class Blocked(Monitor[BlockedParameters]):
     issue: ClassVar[str] = "blocked"
     behaviors: ClassVar[frozenset[str]] = frozenset({PickAndPlace.name})
     phases: ClassVar[frozenset[Phase]] = frozenset(Phase) - {Phase.CONFIRM}
-    meanwhile: ClassVar[Meanwhile] = Meanwhile.STOP_IN_PLACE
+    reaction: ClassVar[Reaction] = Reaction.STOP_IN_PLACE
     camera: ClassVar[str | None] = "head"
     parameters: ClassVar[type[StrictModel]] = BlockedParameters
 

@@ -4,7 +4,7 @@ from typing import ClassVar
 
 from mend.robots.grip import GripState
 from mend.robots.link.messages import Detection
-from mend.robots.monitors.monitor import Meanwhile, Monitor, MonitorView, NoParameters
+from mend.robots.monitors.monitor import Monitor, MonitorView, NoParameters, Reaction
 from mend.tasks.scene import StrictModel
 
 
@@ -12,7 +12,7 @@ class GripMonitor(Monitor[NoParameters]):
     """Raises its issue once opening, effort and picture together say that the grip is `state`."""
 
     state: ClassVar[GripState]
-    meanwhile: ClassVar[Meanwhile] = Meanwhile.GO_TO_NEUTRAL
+    reaction: ClassVar[Reaction] = Reaction.GO_TO_NEUTRAL
     camera: ClassVar[str | None] = "forearm"
     parameters: ClassVar[type[StrictModel]] = NoParameters
 

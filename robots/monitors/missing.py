@@ -6,10 +6,10 @@ from mend.robots.behaviors.phase import Phase
 from mend.robots.link.messages import Detection
 from mend.robots.monitors.monitor import (
     ANY_BEHAVIOR,
-    Meanwhile,
     Monitor,
     MonitorView,
     NoParameters,
+    Reaction,
 )
 from mend.tasks.scene import StrictModel
 
@@ -20,7 +20,7 @@ class Missing(Monitor[NoParameters]):
     issue: ClassVar[str] = "missing"
     behaviors: ClassVar[frozenset[str]] = ANY_BEHAVIOR
     phases: ClassVar[frozenset[Phase]] = frozenset({Phase.PREPARE})
-    meanwhile: ClassVar[Meanwhile] = Meanwhile.STOP_IN_PLACE
+    reaction: ClassVar[Reaction] = Reaction.STOP_IN_PLACE
     camera: ClassVar[str | None] = "head"
     parameters: ClassVar[type[StrictModel]] = NoParameters
 

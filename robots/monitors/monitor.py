@@ -29,7 +29,7 @@ class NoParameters(StrictModel):
     """The settings of a monitor that has none."""
 
 
-class Meanwhile(StrEnum):
+class Reaction(StrEnum):
     """What the robot does once the issue is raised."""
 
     GO_TO_NEUTRAL = "go_to_neutral"
@@ -91,7 +91,7 @@ class Monitor(ABC, Generic[P]):
     issue: ClassVar[str]
     behaviors: ClassVar[frozenset[str]]
     phases: ClassVar[frozenset[Phase]]
-    meanwhile: ClassVar[Meanwhile]
+    reaction: ClassVar[Reaction]
     camera: ClassVar[str | None] = None
     parameters: ClassVar[type[StrictModel]]
 
@@ -106,7 +106,7 @@ class Monitor(ABC, Generic[P]):
     @property
     def interrupts(self) -> bool:
         """Whether the behavior does not simply go on."""
-        return self.meanwhile is not Meanwhile.SLOW_DOWN
+        return self.reaction is not Reaction.SLOW_DOWN
 
     def watches(self, behavior: str, phase: Phase) -> bool:
         """Whether it checks in this phase of what is monitored as this behavior."""

@@ -5,7 +5,7 @@ from typing import ClassVar
 from mend.robots.behaviors.phase import Phase
 from mend.robots.behaviors.pick_and_place import PickAndPlace
 from mend.robots.link.messages import Detection
-from mend.robots.monitors.monitor import Meanwhile, Monitor, MonitorView, NoParameters
+from mend.robots.monitors.monitor import Monitor, MonitorView, NoParameters, Reaction
 from mend.tasks.scene import StrictModel
 
 
@@ -15,7 +15,7 @@ class Positioning(Monitor[NoParameters]):
     issue: ClassVar[str] = "positioning"
     behaviors: ClassVar[frozenset[str]] = frozenset({PickAndPlace.name})
     phases: ClassVar[frozenset[Phase]] = frozenset({Phase.CARRY})
-    meanwhile: ClassVar[Meanwhile] = Meanwhile.SLOW_DOWN
+    reaction: ClassVar[Reaction] = Reaction.SLOW_DOWN
     parameters: ClassVar[type[StrictModel]] = NoParameters
 
     def check(self, view: MonitorView) -> Detection | None:

@@ -7,7 +7,7 @@ from pydantic import Field
 
 from mend.robots.behaviors.phase import Phase
 from mend.robots.link.messages import Detection
-from mend.robots.monitors.monitor import ANY_BEHAVIOR, Meanwhile, Monitor, MonitorView
+from mend.robots.monitors.monitor import ANY_BEHAVIOR, Monitor, MonitorView, Reaction
 from mend.robots.monitors.unreachable import why_beyond_reach, why_lying
 from mend.robots.vision.head import HeadSighting
 from mend.robots.vision.presence import AT_PLACE_HEIGHT_M, AT_PLACE_M, Presence, is_at, turned_rad
@@ -31,7 +31,7 @@ class Undone(Monitor[UndoneParameters]):
     issue: ClassVar[str] = "undone"
     behaviors: ClassVar[frozenset[str]] = ANY_BEHAVIOR
     phases: ClassVar[frozenset[Phase]] = frozenset({Phase.PREPARE, Phase.CONFIRM})
-    meanwhile: ClassVar[Meanwhile] = Meanwhile.STOP_IN_PLACE
+    reaction: ClassVar[Reaction] = Reaction.STOP_IN_PLACE
     camera: ClassVar[str | None] = "head"
     parameters: ClassVar[type[StrictModel]] = UndoneParameters
 

@@ -7,7 +7,7 @@ from pydantic import Field
 
 from mend.robots.behaviors.phase import Phase
 from mend.robots.link.messages import Detection
-from mend.robots.monitors.monitor import ANY_BEHAVIOR, Meanwhile, Monitor, MonitorView
+from mend.robots.monitors.monitor import ANY_BEHAVIOR, Monitor, MonitorView, Reaction
 from mend.robots.vision.head import HeadSighting
 from mend.tasks.scene import StrictModel
 
@@ -24,7 +24,7 @@ class Unreachable(Monitor[UnreachableParameters]):
     issue: ClassVar[str] = "unreachable"
     behaviors: ClassVar[frozenset[str]] = ANY_BEHAVIOR
     phases: ClassVar[frozenset[Phase]] = frozenset({Phase.PREPARE})
-    meanwhile: ClassVar[Meanwhile] = Meanwhile.STOP_IN_PLACE
+    reaction: ClassVar[Reaction] = Reaction.STOP_IN_PLACE
     camera: ClassVar[str | None] = "head"
     parameters: ClassVar[type[StrictModel]] = UnreachableParameters
 

@@ -139,6 +139,18 @@ class PathPlanner:
                 return around
         return NoWay(f"would touch {hit.name or 'something unknown'} on the way", hit)
 
+    def plan_back(self, start: Joints, waypoints: Sequence[ToolPose]) -> JointPath | None:
+        """Back in one go through poses that the tool has just passed, in the same posture."""
+        knots, tools, way_m = [start], [self._chain.pose(start)], [0.0]
+        for target in map(pose_matrix, waypoints):
+            joints = self._chain.solve(target, knots[-1], self._preferred, preference=0.0)
+            if joints is None:
+                return None
+            way_m.append(way_m[-1] + float(np.linalg.norm((target - tools[-1])[:3, 3])))
+            knots.append(joints)
+            tools.append(target)
+        return JointPath((PathSegment(JointCurve(knots, way_m), straight=True),))
+
     def plan_to_joints(self, start: Joints, end: Joints) -> JointPath:
         """The straight way in joint space."""
         return JointPath((PathSegment(JointCurve([start, end]), straight=False),))

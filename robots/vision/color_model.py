@@ -20,7 +20,7 @@ from mend.robots.vision.blob import Mask
 
 Histogram = NDArray[np.float32]
 
-FILE_VERSION = 3
+FILE_VERSION = 4
 Tint = tuple[float, float, float]
 """The colour (BGR) of something level over that of the table in the same light."""
 
@@ -70,11 +70,13 @@ class LearnedColor:
     """What one object's pixels are like, over bins of hue and saturation.
 
     `histogram` is that of the pixels that surely have a hue, its peak 1; empty for an object that
-    is too grey or too dark. `shown` are all bins that its pixels fall into at work.
+    is too grey or too dark. `shown` are all bins that its pixels fall into at work; `dark`: in
+    little light some are too dark for any.
     """
 
     histogram: Histogram
     shown: NDArray[np.bool_]
+    dark: bool
 
 
 class Segmentation:
@@ -86,7 +88,8 @@ class Segmentation:
         owned: Mapping[str, NDArray[np.bool_]],
         shown: Mapping[str, NDArray[np.bool_]],
     ) -> None:
-        """`owned` says of each bin, and of 0 for what has no colour, whether an object has it.
+        """`owned` says of each bin, of 0 for what is grey, and of the last for what is too dark to
+        have a colour, whether an object has it.
 
         `shown` says whether the object may show it, though another may have more of it.
         """
@@ -105,6 +108,14 @@ class Segmentation:
     def may_be(self, name: str) -> NDArray[np.bool_]:
         """Which pixels may be an object's, as far as their colour says. Raises as `mask` does."""
         return _of(self._shown, name)[self._bins]
+
+    def tells(self, name: str) -> NDArray[np.bool_]:
+        """Which pixels' colour says whether they are an object's. Raises as `mask` does.
+
+        What is too dark to have one says nothing of an object that may be as dark.
+        """
+        shown = _of(self._shown, name)
+        return np.asarray((self._bins < len(shown) - 1) | ~shown[-1])
 
     def within(self, mask: Mask) -> "Segmentation":
         """The pixels inside a mask alone, in one row."""
@@ -143,7 +154,7 @@ class ColorModel:
         self.tints: Mapping[str, Tint] = dict(tints or {})
         self._owned = self._share_out()
         self._shown = {
-            name: self._owned[name] | np.append(False, each.shown.ravel())
+            name: self._owned[name] | np.r_[False, each.shown.ravel(), each.dark]
             for name, each in learned.items()
         }
 
@@ -156,7 +167,7 @@ class ColorModel:
         either = np.array([np.maximum(each, stack).sum(axis=1) for each in stack])
         same_hue = common >= self._settings.alike * np.maximum(either, 1e-9)
         return {
-            name: np.append(False, (most >= 0) & same_hue[index][most] & (stack[index] > 0))
+            name: np.r_[False, (most >= 0) & same_hue[index][most] & (stack[index] > 0), False]
             for index, name in enumerate(names)
         }
 
@@ -183,6 +194,19 @@ class ColorModel:
         apart = np.abs(np.array(first) - second) / (tint_sigma(first) + tint_sigma(second))
         return bool(apart.max() < _TOLD_APART)
 
+    def may_pass_for(self, one: str, other: str) -> bool:
+        """Whether most of what an object shows may be another's, as far as its hue says.
+
+        What has no hue passes for anything that has none. An object that it does not know may be
+        anything.
+        """
+        if one not in self._learned or other not in self._learned:
+            return True
+        histogram = self._histograms[one].ravel()
+        if not histogram.any() or not self.has_hue(other):
+            return not histogram.any() and not self.has_hue(other)
+        return bool(histogram[self._shown[other][1:-1]].sum() >= histogram.sum() / 2)
+
     @classmethod
     def train(
         cls,
@@ -204,7 +228,8 @@ class ColorModel:
         bins = hue[hsv[:, :, 0]] * np.uint16(self._settings.saturation_bins)
         bins += saturation[hsv[:, :, 1]] + np.uint16(1)
         bins[hsv[:, :, 1] < self._settings.min_saturation] = 0
-        bins[hsv[:, :, 2] < self._settings.min_value] = 0
+        too_dark = self._settings.hue_bins * self._settings.saturation_bins + 1
+        bins[hsv[:, :, 2] < self._settings.min_value] = too_dark
         return Segmentation(bins, self._owned, self._shown)
 
     def save(self, path: Path) -> None:
@@ -217,6 +242,7 @@ class ColorModel:
                 names=np.array(self.names),
                 histograms=np.stack([each.histogram for each in self._learned.values()]),
                 shown=np.stack([each.shown for each in self._learned.values()]),
+                dark=np.array([each.dark for each in self._learned.values()]),
                 limits=np.array(
                     [
                         settings.min_saturation,
@@ -257,8 +283,9 @@ class ColorModel:
                 f"'{path}' is a colour model of version {version}; this reads {FILE_VERSION}"
             )
         names, histograms = arrays["names"].tolist(), arrays["histograms"].astype(np.float32)
-        shown = arrays["shown"].astype(np.bool_)
-        if histograms.ndim != 3 or len(names) != len(histograms) or shown.shape != histograms.shape:
+        shown, dark = arrays["shown"].astype(np.bool_), arrays["dark"].astype(np.bool_)
+        fitting = histograms.ndim == 3 and shown.shape == histograms.shape
+        if not fitting or not len(names) == len(histograms) == len(dark):
             raise WrongInputError(f"'{path}' is not a colour model: its histograms do not fit")
         limits = [int(each) for each in arrays["limits"]]
         _, hue_bins, saturation_bins = histograms.shape
@@ -277,7 +304,7 @@ class ColorModel:
                 arrays["tinted"].tolist(), arrays["tints"], strict=True
             )
         }
-        learned = map(LearnedColor, histograms, shown)
+        learned = map(LearnedColor, histograms, shown, dark.tolist())
         return cls(dict(zip(names, learned, strict=True)), settings, tints)
 
 
@@ -296,7 +323,7 @@ def learn(name: str, samples: Sequence[Sample], settings: ColorSettings) -> Lear
     surely = (0, settings.min_training_saturation, settings.min_training_value)
     at_work = (0, settings.min_saturation, settings.min_value)
     total, shown = np.zeros(bins, np.float32), np.zeros(bins, np.float32)
-    pixels = 0
+    pixels = dark = 0
     rng = np.random.default_rng(_NOISE_SEED)
     for sample in samples:
         if sample.bgr.shape[:2] != sample.mask.shape:
@@ -317,12 +344,14 @@ def learn(name: str, samples: Sequence[Sample], settings: ColorSettings) -> Lear
             total += _histogram(hsv, surely, inside, bins)
             shown += _histogram(hsv, at_work, inside, bins)
             pixels += cv2.countNonZero(inside)
+            dark += int(np.count_nonzero(inside[hsv[:, :, 2] < settings.min_value]))
     shown = _blur(shown)
     may_show = (shown > 0) & (shown >= settings.min_share * shown.max())
+    may_be_dark = dark > settings.min_share * pixels
     if total.sum() <= settings.hued_share * pixels:
-        return LearnedColor(np.zeros(bins, np.float32), may_show)
+        return LearnedColor(np.zeros(bins, np.float32), may_show, may_be_dark)
     smooth = _blur(total)
-    return LearnedColor(np.asarray(smooth / smooth.max(), np.float32), may_show)
+    return LearnedColor(np.asarray(smooth / smooth.max(), np.float32), may_show, may_be_dark)
 
 
 def _histogram(

@@ -63,7 +63,7 @@ DEEDS: frozenset[str] = frozenset(
         "run_started", "run_paused", "run_resumed", "run_aborted", "intervention_accepted",
         "answered", "claimed", "released", "deadline_extended",
         "document_kept", "document_deleted", "signed_in", "sign_in_failed", "signed_out",
-        "access_changed",
+        "access_changed", "site_opened", "site_closed", "node_taken",
     }
 )  # fmt: skip
 """The types of events that are deeds; some of them only where somebody did them."""
@@ -136,6 +136,10 @@ def _what(event: ev.Event) -> str | None:
     match event:
         case ev.RunStarted(tree_name=tree, world=world):
             return f"started a run of '{tree}' in '{world}'"
+        case ev.SiteOpened(scene=scene, world=world):
+            return f"opened a site with '{scene}' in '{world}'"
+        case ev.SiteClosed(site=site):
+            return f"closed the site {site}"
         case ev.RunPaused():
             return "paused the run"
         case ev.RunResumed():
@@ -144,6 +148,8 @@ def _what(event: ev.Event) -> str | None:
             return "aborted the run" + (f": {reason}" if reason else "")
         case ev.InterventionAccepted(act=act, object=part):
             return f"intervened: {act}" + (f" '{part}'" if part else "")
+        case ev.NodeTaken(name=name, helper=helper):
+            return f"took '{name}' as '{helper}', to do it"
         case ev.SignedOut():
             return "signed out"
     return _what_of_dialogue(event) or _what_of_access(event)

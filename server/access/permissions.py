@@ -38,6 +38,7 @@ def _documents(kind: str) -> tuple[Endpoint, ...]:
 
 
 _RUN = "/api/runs/{run}"
+_SITE = "/api/sites/{site}"
 _DIALOGUE = "/api/dialogues/{dialogue}"
 _SPEECH = _DIALOGUE + "/prompts/{prompt}/speech"
 _PRINCIPAL = "/api/access/principals/{name}"
@@ -50,6 +51,11 @@ ENDPOINTS: tuple[Endpoint, ...] = (
     *_documents("scene"),
     *_documents("scenario"),
     Endpoint("list_worlds", "GET", "/api/worlds", Role.VIEWER),
+    Endpoint("list_sites", "GET", "/api/sites", Role.VIEWER),
+    Endpoint("get_site", "GET", _SITE, Role.VIEWER),
+    Endpoint("list_site_events", "GET", _SITE + "/events", Role.VIEWER),
+    Endpoint("open_site", "POST", "/api/sites", Role.OPERATOR),
+    Endpoint("close_site", "DELETE", _SITE, Role.OPERATOR),
     Endpoint("list_runs", "GET", "/api/runs", Role.VIEWER),
     Endpoint("get_run", "GET", _RUN, Role.VIEWER),
     Endpoint("list_events", "GET", _RUN + "/events", Role.VIEWER),
@@ -61,6 +67,8 @@ ENDPOINTS: tuple[Endpoint, ...] = (
     Endpoint("resume_run", "POST", _RUN + "/resume", Role.OPERATOR),
     Endpoint("abort_run", "POST", _RUN + "/abort", Role.OPERATOR),
     Endpoint("intervene", "POST", _RUN + "/interventions", Role.OPERATOR),
+    Endpoint("take_leaf", "POST", _RUN + "/leaves/take", Role.HELPER),
+    Endpoint("give_leaf_back", "POST", _RUN + "/leaves/give_back", Role.HELPER),
     Endpoint("list_dialogues", "GET", "/api/dialogues", Role.VIEWER),
     Endpoint("get_dialogue", "GET", _DIALOGUE, Role.VIEWER),
     Endpoint("answer_prompt", "POST", _DIALOGUE + "/answers", Role.HELPER),

@@ -6,11 +6,17 @@ from uuid import UUID
 from fastapi import APIRouter, Body, Query
 from pydantic import BaseModel, ConfigDict, Field
 
-from mend.errors import WrongInputError
-from mend.server.access.principal import Caller
-from mend.server.api.parts import DialogueId, HelperName, Limit, Offset, WithCaller, WithParts
 from mend.server.api.problems import documented
 from mend.server.api.repeatable import RepeatableRoute
+from mend.server.api.services import (
+    DialogueId,
+    HelperName,
+    Limit,
+    Offset,
+    WithCaller,
+    WithServices,
+    helper_of,
+)
 from mend.server.journal.events import Answered, DeadlineExtended
 from mend.server.runtime.views import DialogueView
 
@@ -55,21 +61,21 @@ class ExtendRequest(BaseModel):
 
 @router.get("", operation_id="list_dialogues", responses=documented(401, 421, 422))
 async def list_dialogues(
-    parts: WithParts,
+    services: WithServices,
     status: Annotated[Literal["open", "closed"] | None, Query()] = None,
     limit: Limit = 100,
     offset: Offset = 0,
 ) -> list[DialogueView]:
     """Dialogues, all or those of one status."""
-    return await parts.runs.dialogues(status, limit, offset)
+    return await services.runs.dialogues(status, limit, offset)
 
 
 @router.get(
     "/{dialogue}", operation_id="get_dialogue", responses=documented(401, 404, 421, 422, 500)
 )
-async def get_dialogue(dialogue: DialogueId, parts: WithParts) -> DialogueView:
+async def get_dialogue(dialogue: DialogueId, services: WithServices) -> DialogueView:
     """One dialogue with its latest prompt."""
-    return await parts.runs.dialogue(dialogue)
+    return await services.runs.dialogue(dialogue)
 
 
 @router.post(
@@ -80,12 +86,12 @@ async def answer_prompt(
     body: Annotated[
         AnswerRequest, Body(examples=[{"prompt": PROMPT, "answer": "yes", "helper": "anna"}])
     ],
-    parts: WithParts,
+    services: WithServices,
     caller: WithCaller,
 ) -> Answered:
     """Answer a prompt. The first answer wins; a later one gets 409 with `answered_by`."""
-    return await parts.runs.answer(
-        dialogue, body.prompt, body.answer, _helper(caller, body.helper), caller.author
+    return await services.runs.answer(
+        dialogue, body.prompt, body.answer, helper_of(caller, body.helper), caller.author
     )
 
 
@@ -93,12 +99,12 @@ async def answer_prompt(
 async def claim_dialogue(
     dialogue: DialogueId,
     body: Annotated[ClaimRequest, Body(examples=[{"helper": "anna"}])],
-    parts: WithParts,
+    services: WithServices,
     caller: WithCaller,
 ) -> DialogueView:
     """Show the other helpers that you are on it; the claim ends with its lease."""
-    return await parts.runs.claim(
-        dialogue, _helper(caller, body.helper), take_over=body.take_over, author=caller.author
+    return await services.runs.claim(
+        dialogue, helper_of(caller, body.helper), take_over=body.take_over, author=caller.author
     )
 
 
@@ -106,12 +112,12 @@ async def claim_dialogue(
 async def extend_deadline(
     dialogue: DialogueId,
     body: Annotated[ExtendRequest, Body(examples=[{"prompt": PROMPT, "helper": "anna"}])],
-    parts: WithParts,
+    services: WithServices,
     caller: WithCaller,
 ) -> DeadlineExtended:
     """Move the open question's deadline by its original length, at most ten times."""
-    return await parts.runs.extend(
-        dialogue, body.prompt, _helper(caller, body.helper), caller.author
+    return await services.runs.extend(
+        dialogue, body.prompt, helper_of(caller, body.helper), caller.author
     )
 
 
@@ -119,17 +125,8 @@ async def extend_deadline(
 async def release_dialogue(
     dialogue: DialogueId,
     body: Annotated[ReleaseRequest, Body(examples=[{"helper": "anna"}])],
-    parts: WithParts,
+    services: WithServices,
     caller: WithCaller,
 ) -> DialogueView:
     """Give up your claim."""
-    return await parts.runs.release(dialogue, _helper(caller, body.helper), caller.author)
-
-
-def _helper(caller: Caller, declared: str | None) -> str:
-    """What the helper is called. Raises `WrongInputError` where nobody says so."""
-    name = caller.helper_name(declared)
-    if name is None:
-        missing = "body.helper: is missing: with this token everybody says who it is"
-        raise WrongInputError(missing, [missing])
-    return name
+    return await services.runs.release(dialogue, helper_of(caller, body.helper), caller.author)

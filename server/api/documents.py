@@ -8,17 +8,17 @@ from fastapi import APIRouter, Query, Request, Response
 
 from mend.server.api.document_upload import DocumentUpload, read_upload
 from mend.server.api.json_answer import json_answer
-from mend.server.api.parts import (
+from mend.server.api.problems import ProblemError, documented
+from mend.server.api.repeatable import RepeatableRoute
+from mend.server.api.services import (
     DocumentName,
     Limit,
     Offset,
-    Parts,
+    Services,
     WithCaller,
-    WithParts,
-    parts_of,
+    WithServices,
+    services_of,
 )
-from mend.server.api.problems import ProblemError, documented
-from mend.server.api.repeatable import RepeatableRoute
 from mend.server.documents import (
     SPOKEN,
     DocumentCheck,
@@ -64,7 +64,7 @@ class Doors:
 
     kind: DocumentKind
     path: str
-    library: Callable[[Parts], DocumentLibrary]
+    library: Callable[[Services], DocumentLibrary]
     summary: type[DocumentSummary]
     example: str
 
@@ -103,9 +103,9 @@ def _add_reading(router: APIRouter, doors: Doors) -> None:
         responses=documented(401, 421, 422),
     )
     async def list_documents(
-        parts: WithParts, limit: Limit = 1000, offset: Offset = 0
+        services: WithServices, limit: Limit = 1000, offset: Offset = 0
     ) -> Sequence[DocumentSummary]:
-        return await doors.library(parts).summaries(offset, limit)
+        return await doors.library(services).summaries(offset, limit)
 
     @router.get(
         f"{doors.path}/{{name}}",
@@ -114,8 +114,8 @@ def _add_reading(router: APIRouter, doors: Doors) -> None:
         description=f"One {what} with its file's text.",
         responses=documented(401, 404, 421, 422),
     )
-    async def get_document(name: DocumentName, parts: WithParts) -> Response:
-        return json_answer((await doors.library(parts).get(name)).json)
+    async def get_document(name: DocumentName, services: WithServices) -> Response:
+        return json_answer((await doors.library(services).get(name)).json)
 
     @router.post(
         f"{doors.path}/check",
@@ -126,9 +126,9 @@ def _add_reading(router: APIRouter, doors: Doors) -> None:
         responses=documented(400, 401, 403, 413, 415, 421, 422),
         openapi_extra=_upload_body(doors),
     )
-    async def check_document(request: Request, parts: WithParts) -> Response:
+    async def check_document(request: Request, services: WithServices) -> Response:
         upload = await _read_upload(request, None)
-        return json_answer((await doors.library(parts).check(upload.text, upload.name)).json)
+        return json_answer((await doors.library(services).check(upload.text, upload.name)).json)
 
 
 def _add_writing(router: APIRouter, doors: Doors) -> None:
@@ -138,8 +138,8 @@ def _add_writing(router: APIRouter, doors: Doors) -> None:
         **documented(400, 401, 403, 409, 413, 415, 421, 422),
     }
 
-    async def keep(upload: DocumentUpload, parts: Parts, author: Author) -> Response:
-        kept = await doors.library(parts).save(upload.name, upload.text, author)
+    async def keep(upload: DocumentUpload, services: Services, author: Author) -> Response:
+        kept = await doors.library(services).save(upload.name, upload.text, author)
         location = {"Location": f"/api{doors.path}/{kept.name}"}
         return json_answer(kept.view.json, status=201 if kept.new else 200, headers=location)
 
@@ -154,11 +154,11 @@ def _add_writing(router: APIRouter, doors: Doors) -> None:
     )
     async def upload_document(
         request: Request,
-        parts: WithParts,
+        services: WithServices,
         caller: WithCaller,
         name: Annotated[Name | None, Query(description="For a YAML body: its name.")] = None,
     ) -> Response:
-        return await keep(await _read_upload(request, name), parts, caller.author)
+        return await keep(await _read_upload(request, name), services, caller.author)
 
     @router.put(
         f"{doors.path}/{{name}}",
@@ -170,9 +170,9 @@ def _add_writing(router: APIRouter, doors: Doors) -> None:
         openapi_extra=_upload_body(doors),
     )
     async def put_document(
-        name: DocumentName, request: Request, parts: WithParts, caller: WithCaller
+        name: DocumentName, request: Request, services: WithServices, caller: WithCaller
     ) -> Response:
-        return await keep(await _read_upload(request, name), parts, caller.author)
+        return await keep(await _read_upload(request, name), services, caller.author)
 
     @router.delete(
         f"{doors.path}/{{name}}",
@@ -181,8 +181,10 @@ def _add_writing(router: APIRouter, doors: Doors) -> None:
         description=f"Delete an uploaded {what}; runs that were started with it go on.",
         responses=documented(401, 403, 404, 409, 421, 422),
     )
-    async def delete_document(name: DocumentName, parts: WithParts, caller: WithCaller) -> None:
-        await doors.library(parts).delete(name, caller.author)
+    async def delete_document(
+        name: DocumentName, services: WithServices, caller: WithCaller
+    ) -> None:
+        await doors.library(services).delete(name, caller.author)
 
 
 async def _read_upload(request: Request, name: str | None) -> DocumentUpload:
@@ -194,7 +196,7 @@ async def _read_upload(request: Request, name: str | None) -> DocumentUpload:
         raise ProblemError(
             415, "send the file as application/json with a 'text', or as application/yaml"
         )
-    upload = await parts_of(request).off_loop.run(len(body), read_upload, body)
+    upload = await services_of(request).off_loop.run(len(body), read_upload, body)
     return upload if name is None else upload.model_copy(update={"name": name})
 
 
@@ -206,12 +208,16 @@ def _decode(body: bytes) -> str:
 
 
 DOORS = (
-    Doors(DocumentKind.TREE, "/trees", lambda parts: parts.trees, DocumentSummary, TREE_EXAMPLE),
-    Doors(DocumentKind.SCENE, "/scenes", lambda parts: parts.scenes, SceneSummary, SCENE_EXAMPLE),
+    Doors(
+        DocumentKind.TREE, "/trees", lambda services: services.trees, DocumentSummary, TREE_EXAMPLE
+    ),
+    Doors(
+        DocumentKind.SCENE, "/scenes", lambda services: services.scenes, SceneSummary, SCENE_EXAMPLE
+    ),
     Doors(
         DocumentKind.SCENARIO,
         "/scenarios",
-        lambda parts: parts.scenarios,
+        lambda services: services.scenarios,
         ScenarioSummary,
         SCENARIO_EXAMPLE,
     ),

@@ -7,40 +7,40 @@ from pydantic import BaseModel
 
 from mend.errors import ConflictError
 from mend.server.api.json_answer import JSON
-from mend.server.api.parts import Parts
+from mend.server.api.services import Services
 from mend.server.documents import DocumentKind, DocumentLibrary
 from mend.server.journal import events as ev
 from mend.server.journal.keyed_request import FirstAnswer
 from mend.server.runtime.journaled_tree import read_without_tree
 
 
-async def answer_of(seq: int, parts: Parts) -> FirstAnswer:
+async def answer_of(seq: int, services: Services) -> FirstAnswer:
     """What a request is answered of which the event `seq` came.
 
     Raises `ConflictError` where that cannot be told any more.
     """
-    records = await parts.journal.read_records(seq - 1, 1)
+    records = await services.journal.read_records(seq - 1, 1)
     if not records or records[0].seq != seq:
         raise _lost()
-    status, json, location = await _of_event(await read_without_tree(records[0]), parts)
+    status, json, location = await _of_event(await read_without_tree(records[0]), services)
     headers = [("content-type", JSON), *([("location", location)] if location else [])]
     return FirstAnswer(status, headers, json)
 
 
-async def _of_event(event: ev.Event, parts: Parts) -> tuple[int, bytes, str | None]:
+async def _of_event(event: ev.Event, services: Services) -> tuple[int, bytes, str | None]:
     if isinstance(event, ev.DocumentKept):
-        kept = await _library(DocumentKind(event.kind), parts).kept(event.name)
+        kept = await _library(DocumentKind(event.kind), services).kept(event.name)
         return 200 if event.replaced else 201, kept.json, f"/api/{event.kind}s/{event.name}"
-    status, view, location = await _view_of(event, parts)
+    status, view, location = await _view_of(event, services)
     return status, view.model_dump_json().encode(), location
 
 
-async def _view_of(event: ev.Event, parts: Parts) -> tuple[int, BaseModel, str | None]:
+async def _view_of(event: ev.Event, services: Services) -> tuple[int, BaseModel, str | None]:
     match event:
         case ev.RunStarted(run=run):
-            return 201, await parts.runs.run_summary(run), f"/api/runs/{run}"
+            return 201, await services.runs.run_summary(run), f"/api/runs/{run}"
         case ev.RunPaused(run=run) | ev.RunResumed(run=run) | ev.RunAborted(run=run):
-            return 200, await parts.runs.run_summary(run), None
+            return 200, await services.runs.run_summary(run), None
         case ev.InterventionAccepted(intervention=intervention):
             return 201, intervention, None
         case ev.Answered():
@@ -48,15 +48,15 @@ async def _view_of(event: ev.Event, parts: Parts) -> tuple[int, BaseModel, str |
         case ev.DeadlineExtended():
             return 200, event, None
         case ev.Claimed(dialogue=dialogue) | ev.Released(dialogue=dialogue):
-            return 200, await parts.runs.dialogue(dialogue), None
+            return 200, await services.runs.dialogue(dialogue), None
     raise _lost()
 
 
-def _library(kind: DocumentKind, parts: Parts) -> DocumentLibrary:
+def _library(kind: DocumentKind, services: Services) -> DocumentLibrary:
     return {
-        DocumentKind.TREE: parts.trees,
-        DocumentKind.SCENE: parts.scenes,
-        DocumentKind.SCENARIO: parts.scenarios,
+        DocumentKind.TREE: services.trees,
+        DocumentKind.SCENE: services.scenes,
+        DocumentKind.SCENARIO: services.scenarios,
     }[kind]
 
 

@@ -6,8 +6,8 @@ from fastapi import APIRouter
 from pydantic import BaseModel
 
 from mend.server.access.roles import Role
-from mend.server.api.parts import ObservedJournal, WithCallerIfKnown, WithParts
 from mend.server.api.problems import ProblemError, documented
+from mend.server.api.services import ObservedJournal, WithCallerIfKnown, WithServices
 from mend.server.journal.journal import JournalReadError, JournalWriteError
 
 router = APIRouter(tags=["health"])
@@ -40,19 +40,19 @@ async def healthz() -> Health:
 
 
 @router.get("/readyz", operation_id="readyz", responses=documented(421, 503))
-async def readyz(parts: WithParts, caller: WithCallerIfKnown) -> Readiness:
+async def readyz(services: WithServices, caller: WithCallerIfKnown) -> Readiness:
     """The journal can be read and written, so runs can be started and watched.
 
     Strangers hear whether that is so; why it is not is told to whoever may view.
     """
     told = caller is not None and caller.principal.role.may(Role.VIEWER)
     try:
-        await _look(parts.journal)
-        unreadable = await parts.journal.index.count_unreadable()
+        await _look(services.journal)
+        unreadable = await services.journal.index.count_unreadable()
     except (JournalReadError, JournalWriteError) as error:
         why = str(error) if told else "the journal cannot be read or written"
         raise ProblemError(503, why) from error
-    events, damage = len(parts.deeds.unreadable), parts.journal.damage
+    events, damage = len(services.deeds.unreadable), services.journal.damage
     return Readiness(
         status="degraded" if unreadable or events or damage else "ok",
         unreadable_runs=unreadable,

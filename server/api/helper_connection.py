@@ -17,8 +17,8 @@ from mend.server.access.permissions import SOCKETS, needed_for_message
 from mend.server.access.principal import Caller
 from mend.server.api.helper_messages import Auth, Error, HelperMessage
 from mend.server.api.mistakes import validation_sentences
-from mend.server.api.parts import HelperName, Parts, parts_of
 from mend.server.api.problems import Problem, forbidden, problem, problem_response
+from mend.server.api.services import HelperName, Services, services_of
 from mend.server.journal.events import Author
 from mend.server.pace import Pace
 
@@ -58,7 +58,7 @@ class HelperConnection(ABC, Generic[Query]):
         self._websocket = websocket
         self._query = query
         self._max_message_chars = max_message_chars
-        self._parts: Parts = parts_of(websocket)
+        self._parts: Services = services_of(websocket)
         held_back = partial(self._parts.refusals.note, "helper_messages_per_s")
         most = self._parts.settings.limits.helper_messages_per_s
         self._pace = Pace(most, time.monotonic, held_back)

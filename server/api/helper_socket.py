@@ -27,8 +27,8 @@ from mend.server.api.helper_messages import (
     TroubleMessage,
     client_message,
 )
-from mend.server.api.parts import MAX_SEQ
 from mend.server.api.problems import count_refusal, problem, problem_of
+from mend.server.api.services import MAX_SEQ
 from mend.server.journal.events import NO_RUN
 from mend.server.journal.journal import JournalClosedError
 from mend.server.journal.subscriptions import PrunedEventsError, SubscriptionOverflowError

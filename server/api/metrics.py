@@ -8,8 +8,8 @@ from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily, Histo
 from prometheus_client.metrics_core import Metric
 from prometheus_client.registry import Collector
 
-from mend.server.api.parts import Parts, WithParts
 from mend.server.api.problems import documented
+from mend.server.api.services import Services, WithServices
 from mend.server.runtime.views import RunStatus
 
 router = APIRouter(tags=["health"])
@@ -18,8 +18,8 @@ router = APIRouter(tags=["health"])
 class ServiceCollector(Collector):
     """Reads the figures where they are, when they are asked for."""
 
-    def __init__(self, parts: Parts, runs: Mapping[RunStatus, int]) -> None:
-        self._parts = parts
+    def __init__(self, services: Services, runs: Mapping[RunStatus, int]) -> None:
+        self._services = services
         self._run_counts = runs
 
     def collect(self) -> Iterator[Metric]:
@@ -35,19 +35,19 @@ class ServiceCollector(Collector):
         yield GaugeMetricFamily(
             "mend_unreadable_events",
             "Events that belong to no run and could not be read when the service started.",
-            value=len(self._parts.deeds.unreadable),
+            value=len(self._services.deeds.unreadable),
         )
         yield GaugeMetricFamily(
             "mend_open_dialogues",
             "Open dialogues.",
-            value=self._parts.runs.count_open_dialogues(),
+            value=self._services.runs.count_open_dialogues(),
         )
-        connected = sum(robot.connected for robot in self._parts.runs.robots())
+        connected = sum(robot.connected for robot in self._services.runs.robots())
         yield GaugeMetricFamily("mend_robots_connected", "Robots connected.", value=connected)
         yield CounterMetricFamily(
             "mend_pose_frames_lost",
             "Frames of poses that were not recorded, as the disk was too slow for them.",
-            value=self._parts.poses.lost,
+            value=self._services.poses.lost,
         )
         yield self._refused()
         yield from self._journal()
@@ -58,12 +58,12 @@ class ServiceCollector(Collector):
             "What was beyond a limit, and so refused, ended or forgotten.",
             labels=["limit"],
         )
-        for limit, count in self._parts.refusals.counts.items():
+        for limit, count in self._services.refusals.counts.items():
             refused.add_metric([limit], count)
         return refused
 
     def _journal(self) -> Iterator[Metric]:
-        journal = self._parts.journal
+        journal = self._services.journal
         yield CounterMetricFamily("mend_events", "Events in the journal.", value=journal.head)
         subscribers = journal.subscribers
         yield GaugeMetricFamily(
@@ -106,9 +106,9 @@ class ServiceCollector(Collector):
         **documented(401, 421),
     },
 )
-async def metrics(parts: WithParts) -> Response:
+async def metrics(services: WithServices) -> Response:
     """The service's figures for Prometheus."""
     registry = CollectorRegistry(auto_describe=False)
-    runs = await parts.runs.count_runs()
-    registry.register(ServiceCollector(parts, runs))
+    runs = await services.runs.count_runs()
+    registry.register(ServiceCollector(services, runs))
     return Response(generate_latest(registry), media_type=CONTENT_TYPE_LATEST)

@@ -6,8 +6,8 @@ from fastapi import APIRouter, Path, Request, Response
 from starlette.concurrency import run_in_threadpool
 from starlette.responses import FileResponse
 
-from mend.server.api.parts import WithParts
 from mend.server.api.problems import documented
+from mend.server.api.services import WithServices
 
 router = APIRouter(prefix="/api/models", tags=["models"])
 
@@ -29,10 +29,10 @@ FileName = Annotated[str, Path(min_length=1, max_length=256, examples=["robot.ur
     },
 )
 async def get_model_file(
-    model: ModelName, file: FileName, request: Request, parts: WithParts
+    model: ModelName, file: FileName, request: Request, services: WithServices
 ) -> Response:
     """A model's description (`robot.urdf`), or a mesh that it names relative to itself."""
-    found = await run_in_threadpool(parts.models.file, model, file)
+    found = await run_in_threadpool(services.models.file, model, file)
     stat = found.stat()
     etag = f'"{stat.st_mtime_ns:x}-{stat.st_size:x}"'
     headers = {"Cache-Control": CACHED, "ETag": etag}

@@ -5,8 +5,8 @@ from uuid import UUID
 from fastapi import APIRouter, Response
 
 from mend.errors import NotFoundError
-from mend.server.api.parts import WithParts
 from mend.server.api.problems import documented
+from mend.server.api.services import WithServices
 
 router = APIRouter(prefix="/api/pictures", tags=["pictures"])
 
@@ -20,9 +20,9 @@ router = APIRouter(prefix="/api/pictures", tags=["pictures"])
         **documented(401, 404, 421, 422),
     },
 )
-async def get_picture(picture: UUID, parts: WithParts) -> Response:
+async def get_picture(picture: UUID, services: WithServices) -> Response:
     """The picture that an event names."""
-    jpeg = await parts.journal.picture(picture)
+    jpeg = await services.journal.picture(picture)
     if jpeg is None:
         raise NotFoundError(f"there is no picture {picture}")
     headers = {"Cache-Control": "private, max-age=31536000, immutable"}

@@ -6,8 +6,8 @@ from typing import Annotated
 from fastapi import APIRouter, Query, Response
 
 from mend.errors import NotFoundError
-from mend.server.api.parts import RunId, WithParts
 from mend.server.api.problems import documented
+from mend.server.api.services import RunId, WithServices
 from mend.server.poses.frame import framed
 from mend.server.poses.layout import Layout
 
@@ -22,10 +22,10 @@ Seconds = Annotated[float, Query(ge=0.0, le=1e9, allow_inf_nan=False)]
 @router.get(
     "/{run}/layout", operation_id="get_layout", responses=documented(401, 404, 421, 422, 500)
 )
-async def get_layout(run: RunId, parts: WithParts) -> Layout:
+async def get_layout(run: RunId, services: WithServices) -> Layout:
     """What the frames of a run hold, in order, and what does not move in it."""
-    await parts.runs.run_summary(run)
-    layout = await parts.poses.layout(run)
+    await services.runs.run_summary(run)
+    layout = await services.poses.layout(run)
     if layout is None:
         raise NotFoundError(f"the robot of run {run} has not shown where anything is")
     return layout
@@ -51,15 +51,15 @@ async def get_layout(run: RunId, parts: WithParts) -> Layout:
 )
 async def get_poses(
     run: RunId,
-    parts: WithParts,
+    services: WithServices,
     from_s: Seconds = 0.0,
     to_s: Seconds | None = None,
     limit: Annotated[int, Query(ge=1, le=MOST_FRAMES)] = MOST_FRAMES,
 ) -> Response:
     """The recorded frames of a span of the run's clock, evenly thinned out to `limit`."""
-    await parts.runs.run_summary(run)
+    await services.runs.run_summary(run)
     until_s = math.inf if to_s is None else to_s
-    recorded = await parts.poses.recorded(run, from_s, until_s, limit)
+    recorded = await services.poses.recorded(run, from_s, until_s, limit)
     headers = {"Cache-Control": "no-store"}
     if recorded.span_s is not None:
         headers[SPAN_HEADER] = " ".join(f"{each:.3f}" for each in recorded.span_s)

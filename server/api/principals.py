@@ -14,9 +14,9 @@ from mend.server.access.deeds import DEEDS, Deed, deed_of
 from mend.server.access.principals_file import PrincipalName, RobotName
 from mend.server.access.roles import Role
 from mend.server.access.tokens import LONGEST_DAYS
-from mend.server.api.parts import After, Limit, Parts, WithCaller, WithParts
 from mend.server.api.problems import ProblemError, documented
 from mend.server.api.repeatable import SecretRoute
+from mend.server.api.services import After, Limit, Services, WithCaller, WithServices
 from mend.server.journal.events import Author
 from mend.server.journal.journal import JournalReadError, JournalWriteError
 from mend.server.journal.subscriptions import Record
@@ -97,9 +97,9 @@ class DeedsPage(View):
 
 
 @router.get("/principals", operation_id="list_principals", responses=documented(401, 403, 421))
-async def list_principals(parts: WithParts) -> list[PrincipalView]:
+async def list_principals(services: WithServices) -> list[PrincipalView]:
     """Every principal and robot that has a token of its own."""
-    now = parts.utc_now()
+    now = services.utc_now()
     return [
         PrincipalView(
             name=each.name,
@@ -108,29 +108,33 @@ async def list_principals(parts: WithParts) -> list[PrincipalView]:
             expires=each.expires,
             valid=each.valid(now),
         )
-        for each in parts.access.principals.all()
+        for each in services.access.principals.all()
     ]
 
 
 @router.post("/principals", operation_id="add_principal", status_code=201, responses=CHANGES)
-async def add_principal(body: NewPrincipal, parts: WithParts, caller: WithCaller) -> TokenView:
+async def add_principal(
+    body: NewPrincipal, services: WithServices, caller: WithCaller
+) -> TokenView:
     """Add a principal, and get its token: it is shown only now."""
     role, days = Role(body.role), body.expires_days
     token = await edited(
-        parts, caller.author, lambda editor: editor.add(body.name, role, parts.utc_now(), days)
+        services,
+        caller.author,
+        lambda editor: editor.add(body.name, role, services.utc_now(), days),
     )
     return TokenView(name=body.name, token=token)
 
 
 @router.post("/principals/{name}/rotate", operation_id="rotate_principal", responses=CHANGES)
 async def rotate_principal(
-    name: Name, body: Rotation, parts: WithParts, caller: WithCaller
+    name: Name, body: Rotation, services: WithServices, caller: WithCaller
 ) -> TokenView:
     """Give a principal a new token; the old one and its sessions end."""
     token = await edited(
-        parts,
+        services,
         caller.author,
-        lambda editor: editor.rotate(name, parts.utc_now(), body.expires_days),
+        lambda editor: editor.rotate(name, services.utc_now(), body.expires_days),
     )
     return TokenView(name=name, token=token)
 
@@ -138,28 +142,30 @@ async def rotate_principal(
 @router.delete(
     "/principals/{name}", operation_id="revoke_principal", status_code=204, responses=CHANGES
 )
-async def revoke_principal(name: Name, parts: WithParts, caller: WithCaller) -> None:
+async def revoke_principal(name: Name, services: WithServices, caller: WithCaller) -> None:
     """End a principal: its token, its sessions and its connections.
 
     That is also done where it cannot be journaled now, and then answered with 503.
     """
-    await _edited(parts, caller.author, lambda editor: editor.revoke(name, parts.utc_now()))
+    await _edited(services, caller.author, lambda editor: editor.revoke(name, services.utc_now()))
 
 
 @router.post("/enrolments", operation_id="open_enrolment", status_code=201, responses=CHANGES)
-async def open_enrolment(body: NewEnrolment, parts: WithParts, caller: WithCaller) -> CodeView:
+async def open_enrolment(
+    body: NewEnrolment, services: WithServices, caller: WithCaller
+) -> CodeView:
     """Make a code with which a robot fetches its own credential, once."""
     code = await edited(
-        parts,
+        services,
         caller.author,
-        lambda editor: editor.open_enrolment(body.robot, parts.utc_now(), body.minutes),
+        lambda editor: editor.open_enrolment(body.robot, services.utc_now(), body.minutes),
     )
     return CodeView(robot=body.robot, code=code)
 
 
 @router.get("/deeds", operation_id="list_deeds", responses=documented(401, 403, 421, 422))
 async def list_deeds(
-    parts: WithParts,
+    services: WithServices,
     after: After = 0,
     limit: Limit = 100,
     who: Annotated[str | None, Query(max_length=128, description="Only this one's.")] = None,
@@ -171,60 +177,64 @@ async def list_deeds(
     deeds: list[Deed] = []
     last = after
     while last - after < MOST_SCANNED:
-        page = await _page_of_deeds(parts, last)
+        page = await _page_of_deeds(services, last)
         for last, deed in page:
             if deed is not None and who in (None, deed.who):
                 deeds.append(deed)
             if len(deeds) == limit:
-                return await _deeds_page(parts, deeds, last)
+                return await _deeds_page(services, deeds, last)
         if not page:
             break
-    return await _deeds_page(parts, deeds, last)
+    return await _deeds_page(services, deeds, last)
 
 
-async def edited(parts: Parts, author: Author, change: Callable[[PrincipalsEditor], Done]) -> Done:
+async def edited(
+    services: Services, author: Author, change: Callable[[PrincipalsEditor], Done]
+) -> Done:
     """Make one change to the file, on behalf of somebody; returns once it is journaled.
 
     Raises `JournalWriteError`: nothing is changed where it is known that it cannot be journaled.
     """
-    if parts.journal.trouble.reason is not None:
-        raise JournalWriteError(parts.journal.trouble.reason)
-    return await _edited(parts, author, change)
+    if services.journal.trouble.reason is not None:
+        raise JournalWriteError(services.journal.trouble.reason)
+    return await _edited(services, author, change)
 
 
-async def _edited(parts: Parts, author: Author, change: Callable[[PrincipalsEditor], Done]) -> Done:
+async def _edited(
+    services: Services, author: Author, change: Callable[[PrincipalsEditor], Done]
+) -> Done:
     """Change the file beside the event loop, know at once what is new in it, and journal it."""
-    path, change_id = parts.settings.principals_path, uuid4()
+    path, change_id = services.settings.principals_path, uuid4()
     editor = PrincipalsEditor(path, author.principal, author.role, author.address, change_id)
-    with parts.deeds.changing(change_id):
+    with services.deeds.changing(change_id):
         try:
             done = await run_in_threadpool(change, editor)
         except OSError as error:
             why = error.strerror or str(error)
             raise ProblemError(503, f"the file of principals cannot be written: {why}") from error
-        await parts.access.look()
+        await services.access.look()
     for made in editor.made:
-        await parts.deeds.access_changed(made, author)
+        await services.deeds.access_changed(made, author)
     return done
 
 
-async def _deeds_page(parts: Parts, deeds: list[Deed], last: int) -> DeedsPage:
+async def _deeds_page(services: Services, deeds: list[Deed], last: int) -> DeedsPage:
     """The deeds as the journal's chain has them; it is looked at where they are alone."""
-    more = last < parts.journal.head
-    seals = await parts.journal.seals([each.seq for each in deeds])
+    more = last < services.journal.head
+    seals = await services.journal.seals([each.seq for each in deeds])
     return DeedsPage(
         deeds=[each.sealed(seals.get(each.seq)) for each in deeds], seq=last, more=more
     )
 
 
-async def _page_of_deeds(parts: Parts, after: int) -> list[tuple[int, Deed | None]]:
+async def _page_of_deeds(services: Services, after: int) -> list[tuple[int, Deed | None]]:
     """The next events, each with the deed that it tells of."""
     try:
-        records = await parts.journal.read_records(after, SCANNED_AT_ONCE)
+        records = await services.journal.read_records(after, SCANNED_AT_ONCE)
         return [(each.seq, await _deed(each)) for each in records]
     except JournalReadError:
         # One that cannot be read is told in its place, and takes no other with it.
-        events = await parts.journal.read_readable(after, SCANNED_AT_ONCE)
+        events = await services.journal.read_readable(after, SCANNED_AT_ONCE)
         return [(each.seq, deed_of(each)) for each in events]
 
 

@@ -27,10 +27,10 @@ from mend.server.access.deed_log import ToldLaterError
 from mend.server.access.principals_file import PrincipalsFileError
 from mend.server.access.roles import Role, with_article
 from mend.server.api.mistakes import MOST_TOLD, validation_sentences
-from mend.server.api.parts import parts_of
 from mend.server.api.safe_headers import SAFE_HEADERS
+from mend.server.api.services import services_of
 from mend.server.descriptors import NO_DESCRIPTOR
-from mend.server.errors import BusyError, LostRaceError
+from mend.server.errors import BusyError, LostRaceError, NotConnectedError
 from mend.server.journal.journal import JournalClosedError, JournalReadError, JournalWriteError
 from mend.server.limits import LimitName
 from mend.server.refusals import Refusals
@@ -58,7 +58,10 @@ SOON = {"Retry-After": "1"}
 
 
 class Problem(BaseModel):
-    """Why a request was refused. `answered_by` on a lost race, `errors` one per mistake."""
+    """Why a request was refused. `answered_by` on a lost race, `errors` one per mistake.
+
+    `not_connected`: the robots that are to come before it can be done.
+    """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
@@ -69,6 +72,7 @@ class Problem(BaseModel):
     answered_by: str | None = None
     prompt: UUID | None = None
     errors: list[str] | None = None
+    not_connected: list[str] | None = None
 
 
 class ProblemError(MendError):
@@ -104,6 +108,8 @@ def problem_of(error: Exception) -> Problem | None:
         return None
     if isinstance(error, LostRaceError):
         return problem(status, str(error), answered_by=error.answered_by, prompt=error.prompt)
+    if isinstance(error, NotConnectedError):
+        return problem(status, str(error), not_connected=error.robots)
     if isinstance(error, WrongInputError):
         return problem(status, str(error), errors=error.sentences or [str(error)])
     return problem(status, str(error))
@@ -171,7 +177,7 @@ async def _validation_error(_request: Request, error: Exception) -> Response:
 
 async def _problem_error(request: Request, error: Exception) -> Response:
     assert isinstance(error, ProblemError)
-    count_refusal(error, parts_of(request).refusals)
+    count_refusal(error, services_of(request).refusals)
     return problem_response(problem(error.status, str(error)), error.headers)
 
 
@@ -179,7 +185,7 @@ async def _mend_error(request: Request, error: Exception) -> Response:
     refusal = problem_of(error)
     if refusal is None:
         return await _defect(request, error)
-    count_refusal(error, parts_of(request).refusals)
+    count_refusal(error, services_of(request).refusals)
     return problem_response(refusal, _retry_after(error))
 
 

@@ -14,8 +14,8 @@ from mend.server.access.principal import Caller
 from mend.server.access.tokens import bytes_of
 from mend.server.api.first_answers import answer_of
 from mend.server.api.idempotency_key import REPLAYED, key_in
-from mend.server.api.parts import parts_of
 from mend.server.api.repeats import Repeats
+from mend.server.api.services import services_of
 from mend.server.api.strict_json import StrictJsonRoute
 from mend.server.household import household_of
 from mend.server.journal.keyed_request import FirstAnswer, KeptRequest, KeyedRequest
@@ -42,7 +42,7 @@ class RepeatableRoute(StrictJsonRoute):
                 return await handle(request)
             body = await request.body()
             keyed = _keyed(request, key, body)
-            with parts_of(request).repeats.under_way(keyed):
+            with services_of(request).repeats.under_way(keyed):
                 return await _once(request, keyed, _with_body(request, keyed, body), handle, secret)
 
         return handle_once
@@ -57,13 +57,13 @@ class SecretRoute(RepeatableRoute):
 async def _once(
     request: Request, keyed: KeyedRequest, again: Request, handle: Handle, secret: bool
 ) -> Response:
-    parts = parts_of(request)
-    repeats: Repeats = parts.repeats
+    services = services_of(request)
+    repeats: Repeats = services.repeats
     found: KeptRequest | None = await repeats.find(keyed)
     if found is not None and found.answer is not None:
         return _replayed(found.answer)
     if found is not None and found.seq:
-        return _replayed(await answer_of(found.seq, parts))
+        return _replayed(await answer_of(found.seq, services))
     response = await handle(again)
     if response.status_code < 300:
         await repeats.keep(keyed, _answer(response), secret=secret)

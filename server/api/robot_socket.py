@@ -82,6 +82,11 @@ class StarletteChannel:
                 raise ChannelClosedError(str(error)) from error
 
 
+def robots_url(url: str) -> str:
+    """Where the robots of the service at an address connect."""
+    return f"ws{url.removeprefix('http')}{ROBOT_PATH}"
+
+
 def add_robot_route(app: FastAPI, registry: RobotRegistry, access: Access) -> None:
     """Serve `/ws/robot`.
 

@@ -6,9 +6,9 @@ from uuid import UUID
 from fastapi import APIRouter, Body, Path, Query, Response
 
 from mend.server.api.json_answer import json_answer
-from mend.server.api.parts import After, Limit, Offset, RunId, WithCaller, WithParts
 from mend.server.api.problems import documented
 from mend.server.api.repeatable import RepeatableRoute
+from mend.server.api.services import After, Limit, Offset, RunId, WithCaller, WithServices
 from mend.server.journal.events import NO_RUN, AnyEvent
 from mend.server.journal.run_index import RunPage
 from mend.server.runtime.requests import RunRequest
@@ -44,18 +44,18 @@ CHANGES = documented(401, 403, 404, 409, 421, 422, 503)
 async def start_run(
     request: Annotated[RunRequest, Body(examples=RUN_EXAMPLES)],
     response: Response,
-    parts: WithParts,
+    services: WithServices,
     caller: WithCaller,
 ) -> RunSummary:
     """Begin a run of a task tree in a world."""
-    run = await parts.runs.start_run(request, caller.author)
+    run = await services.runs.start_run(request, caller.author)
     response.headers["Location"] = f"/api/runs/{run.id}"
     return run
 
 
 @router.get("", operation_id="list_runs", responses=documented(401, 404, 421, 422))
 async def list_runs(
-    parts: WithParts,
+    services: WithServices,
     limit: Limit = 100,
     offset: Offset = 0,
     status: Statuses = None,
@@ -66,7 +66,7 @@ async def list_runs(
     For the next page give the id of the last run as `before`: runs that begin meanwhile move no
     page, as they do with `offset`. A run that cannot be read is listed as `unreadable`.
     """
-    return await parts.runs.runs(RunPage(status, limit, offset, before))
+    return await services.runs.runs(RunPage(status, limit, offset, before))
 
 
 @router.get(
@@ -75,21 +75,21 @@ async def list_runs(
     response_model=RunView,
     responses=documented(401, 404, 421, 422, 500),
 )
-async def get_run(run: RunId, parts: WithParts) -> Response:
+async def get_run(run: RunId, services: WithServices) -> Response:
     """One run: status, every node's state, open dialogues, result."""
-    return json_answer(*await parts.runs.run_json(run))
+    return json_answer(*await services.runs.run_json(run))
 
 
 @router.post("/{run}/pause", operation_id="pause_run", responses=CHANGES)
-async def pause_run(run: RunId, parts: WithParts, caller: WithCaller) -> RunSummary:
+async def pause_run(run: RunId, services: WithServices, caller: WithCaller) -> RunSummary:
     """Stop the robots where they are, until the run is resumed."""
-    return await parts.runs.pause(run, caller.author)
+    return await services.runs.pause(run, caller.author)
 
 
 @router.post("/{run}/resume", operation_id="resume_run", responses=CHANGES)
-async def resume_run(run: RunId, parts: WithParts, caller: WithCaller) -> RunSummary:
+async def resume_run(run: RunId, services: WithServices, caller: WithCaller) -> RunSummary:
     """Go on with a paused run."""
-    return await parts.runs.resume(run, caller.author)
+    return await services.runs.resume(run, caller.author)
 
 
 @router.post(
@@ -104,10 +104,10 @@ async def resume_run(run: RunId, parts: WithParts, caller: WithCaller) -> RunSum
     },
 )
 async def abort_run(
-    run: RunId, parts: WithParts, caller: WithCaller, response: Response
+    run: RunId, services: WithServices, caller: WithCaller, response: Response
 ) -> RunSummary:
     """End a run for good."""
-    view = await parts.runs.abort(run, caller.author)
+    view = await services.runs.abort(run, caller.author)
     if not view.status.ended:
         response.status_code = 202
     return view
@@ -120,13 +120,13 @@ async def abort_run(
     responses=documented(401, 404, 421, 422, 500),
 )
 async def list_events(
-    run: RunId, parts: WithParts, after: After = 0, limit: Limit = 100
+    run: RunId, services: WithServices, after: After = 0, limit: Limit = 100
 ) -> Response:
     """A run's events in order; go on with the last `seq` as `after`, until a page is empty."""
     # What belongs to no run is for admins, at another door.
-    if run == NO_RUN or await parts.journal.index.find(run) is None:
-        await parts.runs.run_summary(run)
-    records = await parts.journal.read_records(after, limit, run)
+    if run == NO_RUN or await services.journal.index.find(run) is None:
+        await services.runs.run_summary(run)
+    records = await services.journal.read_records(after, limit, run)
     # The journal holds the very JSON that clients get.
     body = "[" + ",".join(record.text for record in records) + "]"
     return json_answer(body.encode())
@@ -141,9 +141,9 @@ async def list_events(
         **documented(401, 404, 409, 421, 422),
     },
 )
-async def get_camera_picture(run: RunId, camera: Camera, parts: WithParts) -> Response:
+async def get_camera_picture(run: RunId, camera: Camera, services: WithServices) -> Response:
     """What a robot's camera sees now."""
-    picture = await parts.runs.picture(run, camera)
+    picture = await services.runs.picture(run, camera)
     return Response(picture, media_type="image/jpeg", headers={"Cache-Control": "no-store"})
 
 
@@ -156,9 +156,9 @@ async def get_camera_picture(run: RunId, camera: Camera, parts: WithParts) -> Re
 async def intervene(
     run: RunId,
     intervention: Annotated[Intervention, Body(examples=STEAL_EXAMPLE)],
-    parts: WithParts,
+    services: WithServices,
     caller: WithCaller,
 ) -> Intervention:
     """Have a person do something in a simulated world."""
-    await parts.runs.intervene(run, intervention, caller.author)
+    await services.runs.intervene(run, intervention, caller.author)
     return intervention

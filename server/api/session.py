@@ -9,9 +9,9 @@ from mend.server.access.access import SESSION_COOKIE, address_of
 from mend.server.access.principal import Caller
 from mend.server.access.roles import Role
 from mend.server.access.sessions import SESSION_LIFETIME_S, TooManySessionsError
-from mend.server.api.parts import WithCallerIfKnown, WithParts
 from mend.server.api.problems import ProblemError, documented
 from mend.server.api.repeatable import SecretRoute
+from mend.server.api.services import WithCallerIfKnown, WithServices
 from mend.server.journal.journal import JournalWriteError
 
 router = APIRouter(prefix="/api", tags=["session"], route_class=SecretRoute)
@@ -40,11 +40,11 @@ class SessionView(BaseModel):
 
 
 @router.get("/session", operation_id="get_session", responses=documented(421))
-async def get_session(caller: WithCallerIfKnown, parts: WithParts) -> SessionView:
+async def get_session(caller: WithCallerIfKnown, services: WithServices) -> SessionView:
     """Whether a token is needed, whether this client has shown one, and whose it is."""
     principal = None if caller is None else caller.principal
     return SessionView(
-        required=parts.access.required,
+        required=services.access.required,
         signed_in=principal is not None,
         name=principal.name if principal is not None and principal.named else None,
         role=None if principal is None else principal.role,
@@ -55,9 +55,11 @@ async def get_session(caller: WithCallerIfKnown, parts: WithParts) -> SessionVie
     "/session", operation_id="sign_in", status_code=204,
     responses=documented(400, 401, 403, 413, 421, 422, 429, 503),
 )  # fmt: skip
-async def sign_in(body: SignIn, request: Request, response: Response, parts: WithParts) -> None:
+async def sign_in(
+    body: SignIn, request: Request, response: Response, services: WithServices
+) -> None:
     """Show a token and get a session cookie for it; a session that was there before ends."""
-    admission = parts.access.by_token(body.token, request)
+    admission = services.access.by_token(body.token, request)
     if admission.wait_s:
         raise ProblemError(429, admission.too_many, admission.retry_after)
     if admission.caller is None:
@@ -68,12 +70,12 @@ async def sign_in(body: SignIn, request: Request, response: Response, parts: Wit
     if principal.role is Role.ROBOT:
         raise ProblemError(403, "this is the credential of a robot, and no person's token")
     try:
-        _, cookie = parts.access.sessions.new(principal)
+        _, cookie = services.access.sessions.new(principal)
     except TooManySessionsError as error:
         later = {"Retry-After": f"{math.ceil(error.wait_s)}"}
         raise ProblemError(429, str(error), later, limit="sign_ins") from error
-    await _end_session(request, parts)
-    parts.deeds.signed_in(principal, address_of(request))
+    await _end_session(request, services)
+    services.deeds.signed_in(principal, address_of(request))
     response.set_cookie(
         SESSION_COOKIE,
         cookie,
@@ -87,28 +89,28 @@ async def sign_in(body: SignIn, request: Request, response: Response, parts: Wit
 @router.delete(
     "/session", operation_id="sign_out", status_code=204, responses=documented(403, 421, 503)
 )
-async def sign_out(request: Request, response: Response, parts: WithParts) -> None:
+async def sign_out(request: Request, response: Response, services: WithServices) -> None:
     """End the session: its cookie opens nothing any more, wherever else it may be.
 
     While the journal cannot be written that is refused (503), and the session lasts.
     """
-    await _end_session(request, parts)
+    await _end_session(request, services)
     response.delete_cookie(SESSION_COOKIE, httponly=True, samesite="strict")
 
 
-async def _end_session(request: Request, parts: WithParts) -> None:
-    session = parts.access.session(request)
+async def _end_session(request: Request, services: WithServices) -> None:
+    session = services.access.session(request)
     if session is None:
         return
-    principal = parts.access.of_session(session)
+    principal = services.access.of_session(session)
     assert principal is not None, "a good session is somebody's"
     caller = Caller(principal, address_of(request), session.id)
 
     def end() -> None:
-        parts.access.sessions.end(session.id, session.expires)
-        parts.access.let_go()
+        services.access.sessions.end(session.id, session.expires)
+        services.access.let_go()
 
     try:
-        await parts.deeds.signed_out(session, caller, end)
+        await services.deeds.signed_out(session, caller, end)
     except JournalWriteError as error:
         raise ProblemError(503, f"the session lasts, as it cannot be ended now: {error}") from error

@@ -7,8 +7,8 @@ from fastapi import APIRouter, Path, Response
 from pydantic import BaseModel, ConfigDict
 
 from mend.errors import NotFoundError
-from mend.server.api.parts import DialogueId, Parts, WithParts
 from mend.server.api.problems import ProblemError, documented
+from mend.server.api.services import DialogueId, Services, WithServices
 from mend.server.speech.commands import PHRASES, Command
 from mend.server.speech.ear import NoEars
 from mend.server.speech.phrases import FIXED, effect_text, help_text
@@ -48,9 +48,9 @@ class SpeechView(BaseModel):
 
 
 @router.get("/api/speech", operation_id="get_speech", responses=documented(401, 421))
-async def get_speech(parts: WithParts) -> SpeechView:
+async def get_speech(services: WithServices) -> SpeechView:
     """Whether there is a voice and recognition, or why not; and what can be said."""
-    texts, ears = parts.speech.texts, parts.speech.ears
+    texts, ears = services.speech.texts, services.speech.ears
     return SpeechView(
         voice=Ability(available=False, why_not=texts.why_not)
         if isinstance(texts, NoVoice)
@@ -70,12 +70,12 @@ async def get_speech(parts: WithParts) -> SpeechView:
     responses={**WAV, **REFUSALS},
 )
 async def get_phrase_speech(
-    name: Annotated[str, Path(pattern=PHRASE, examples=["sorry"])], parts: WithParts
+    name: Annotated[str, Path(pattern=PHRASE, examples=["sorry"])], services: WithServices
 ) -> Response:
     """One of the fixed phrases."""
     if name not in FIXED:
         raise NotFoundError(f"there is no phrase '{name}'; there are {', '.join(FIXED)}")
-    return await _sound(parts, FIXED[name])
+    return await _sound(services, FIXED[name])
 
 
 @router.get(
@@ -84,10 +84,12 @@ async def get_phrase_speech(
     response_class=Response,
     responses={**WAV, **REFUSALS},
 )
-async def get_prompt_speech(dialogue: DialogueId, prompt: PromptId, parts: WithParts) -> Response:
+async def get_prompt_speech(
+    dialogue: DialogueId, prompt: PromptId, services: WithServices
+) -> Response:
     """What the robot says or asks with a prompt."""
-    found = await find_prompt(parts.runs, parts.journal, dialogue, prompt)
-    return await _sound(parts, found.text)
+    found = await find_prompt(services.runs, services.journal, dialogue, prompt)
+    return await _sound(services, found.text)
 
 
 @router.get(
@@ -97,13 +99,13 @@ async def get_prompt_speech(dialogue: DialogueId, prompt: PromptId, parts: WithP
     responses={**WAV, **REFUSALS},
 )
 async def get_prompt_help_speech(
-    dialogue: DialogueId, prompt: PromptId, parts: WithParts
+    dialogue: DialogueId, prompt: PromptId, services: WithServices
 ) -> Response:
     """What yes and no will each do."""
-    found = await find_prompt(parts.runs, parts.journal, dialogue, prompt)
+    found = await find_prompt(services.runs, services.journal, dialogue, prompt)
     if not found.answers:
         raise NotFoundError(f"the prompt {prompt} asks nothing")
-    return await _sound(parts, help_text(found.answers))
+    return await _sound(services, help_text(found.answers))
 
 
 @router.get(
@@ -113,18 +115,18 @@ async def get_prompt_help_speech(
     responses={**WAV, **REFUSALS},
 )
 async def get_prompt_effect_speech(
-    dialogue: DialogueId, prompt: PromptId, answer: Literal["yes", "no"], parts: WithParts
+    dialogue: DialogueId, prompt: PromptId, answer: Literal["yes", "no"], services: WithServices
 ) -> Response:
     """What one answer will do; said while it can still be taken back."""
-    found = await find_prompt(parts.runs, parts.journal, dialogue, prompt)
+    found = await find_prompt(services.runs, services.journal, dialogue, prompt)
     for option in found.answers:
         if option.value == answer:
-            return await _sound(parts, effect_text(option))
+            return await _sound(services, effect_text(option))
     raise NotFoundError(f"the prompt {prompt} cannot be answered '{answer}'")
 
 
-async def _sound(parts: Parts, text: str) -> Response:
-    texts = parts.speech.texts
+async def _sound(services: Services, text: str) -> Response:
+    texts = services.speech.texts
     if isinstance(texts, NoVoice):
         raise ProblemError(409, f"this service has no voice: {texts.why_not}")
     try:

@@ -10,8 +10,8 @@ from starlette.responses import Response
 
 from mend.errors import RefusalError
 from mend.server.api.json_text import NotJsonError, TooManyValuesError, may_have, read_json
-from mend.server.api.parts import parts_of
 from mend.server.api.problems import ProblemError
+from mend.server.api.services import services_of
 from mend.server.off_loop import MUCH_CHARS
 
 OTHER_VALUES = 1000
@@ -23,14 +23,14 @@ class StrictJsonRequest(Request):
 
     async def json(self) -> Any:
         body = await self.body()
-        parts = parts_of(self)
-        limits = parts.settings.limits
+        services = services_of(self)
+        limits = services.settings.limits
         most = OTHER_VALUES + limits.answers + limits.world_options
         chars = max(len(body), MUCH_CHARS) if may_have(body, most) else len(body)
         try:
             if chars < MUCH_CHARS:
                 return read_json(body, most)
-            return await parts.off_loop.run(chars, read_json, body, most)
+            return await services.off_loop.run(chars, read_json, body, most)
         except NotJsonError as error:
             raise ProblemError(400, str(error)) from None
         except TooManyValuesError as error:

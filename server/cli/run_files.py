@@ -25,15 +25,13 @@ SUFFIXES = (".yaml", ".yml", ".json")
 class RunFiles:
     """What a run is to name, and the texts of the files that were given for it.
 
-    `scenes` is the folder beside the task file, where its scene may be; `scene_file` is the
-    file of the scene, None where that is built in.
+    `scene_file` is the file of the scene, None where that is built in.
     """
 
     tree: str
     scene: str | None = None
     scenario: Scenario | None = None
     given: GivenFiles = field(default_factory=GivenFiles)
-    scenes: Path | None = None
     scene_file: Path | None = None
 
     def described(self, problems: Sequence[SceneProblem]) -> list[str]:
@@ -53,12 +51,14 @@ def read_run_files(tree: str, scene: str | None, scenario: str | None) -> RunFil
     texts: dict[DocumentKind, dict[str, str]] = {}
     file = _scene_file(scene, tree) if scene else None
     chosen = _read_scene(scene, file, texts) if scene else None
-    name, task, scenes = _read_tree(tree, chosen, texts)
+    name, task = _read_tree(tree, chosen, texts)
     if task is not None and task.definition.scene and not scene:
         file = _scene_file(task.definition.scene, tree)
+        if file is not None:
+            texts[DocumentKind.SCENE] = {task.definition.scene: read_text(file)}
     script = _read_scenario(scenario, task, chosen, texts) if scenario else None
     named = chosen.name if chosen else None
-    return RunFiles(name, named, script, GivenFiles(texts), scenes, file)
+    return RunFiles(name, named, script, GivenFiles(texts), file)
 
 
 def is_file(argument: str) -> bool:
@@ -68,12 +68,12 @@ def is_file(argument: str) -> bool:
 
 def _read_tree(
     argument: str, scene: Scene | None, texts: dict[DocumentKind, dict[str, str]]
-) -> tuple[str, CheckedTask | None, Path | None]:
-    """The tree's name, the tree where it is to be had, and the folder with its scenes."""
+) -> tuple[str, CheckedTask | None]:
+    """The tree's name, and the tree where it is to be had."""
     if not is_file(argument):
         built_in = argument in TREES.names()
         task = check_built_in_task(argument, behavior_parameters()) if built_in else None
-        return argument, task, None
+        return argument, task
     path = Path(argument)
     text = read_text(path)
     task = read_task(path, scene)
@@ -83,8 +83,7 @@ def _read_tree(
             f"'{path}' has the name of a built-in task tree, '{name}': give it another name"
         )
     texts[DocumentKind.TREE] = {name: text}
-    scenes = path.parent / "scenes"
-    return name, task, scenes if scenes.is_dir() else None
+    return name, task
 
 
 def _scene_file(argument: str, tree: str) -> Path | None:

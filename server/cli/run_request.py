@@ -18,16 +18,21 @@ from mend.tasks.scenario import Scenario
 from mend.tasks.validation import what_is_right
 
 
-def settings_of_its_own(journal: Path | None, files: RunFiles) -> Settings:
-    """A service that only this process can use: loopback, a free port, a token of its own."""
-    own = load_settings(
-        host="127.0.0.1",
-        port=0,
-        token=SecretStr(secrets.token_urlsafe(32)),
-        log_level="warning",
-    )
+def settings_of_its_own(
+    journal: Path | None, files: RunFiles, *, takes_robots: bool = False
+) -> Settings:
+    """A service that only this process can use: loopback, a free port, a token of its own.
+
+    With `takes_robots` robots come in as they do with `mend serve`, by the same settings.
+    """
+    closed: dict[str, Any] = {
+        "host": "127.0.0.1",
+        "port": 0,
+        "token": SecretStr(secrets.token_urlsafe(32)),
+    }
+    own = load_settings(log_level="warning", **({} if takes_robots else closed))
     chosen = journal or new_run_journal(own, files.tree)
-    return own.model_copy(update={"journal": chosen, "scenes": files.scenes or own.scenes})
+    return own.model_copy(update={"journal": chosen})
 
 
 def answers_given(text: str | None, scenario: Scenario | None) -> Answers | None:
@@ -44,6 +49,23 @@ def read_speed(text: str) -> Any:
         return float(text)
     except ValueError:
         raise CommandLineError(f"--speed is '{text}'; it has to be a number or max") from None
+
+
+def read_robots(given: list[str]) -> list[str] | dict[str, str]:
+    """Robots by name, or by where each stands in the scene (PLACE=NAME)."""
+    places = [each.partition("=") for each in given]
+    if not any(equals for _, equals, _ in places):
+        return given
+    robots: dict[str, str] = {}
+    for each, (place, equals, name) in zip(given, places, strict=True):
+        if not (place and equals and name):
+            raise CommandLineError(
+                f"--robot is '{each}'; where one robot is PLACE=NAME all have to be"
+            )
+        if place in robots:
+            raise CommandLineError(f"--robot '{place}' is given twice")
+        robots[place] = name
+    return robots
 
 
 def read_options(given: list[str]) -> dict[str, Any]:

@@ -3,21 +3,26 @@
 import asyncio
 import getpass
 import sys
+from collections.abc import Awaitable, Callable
 from typing import Literal
+from uuid import UUID
 
 from mend.errors import ConflictError
 from mend.server.cli.output import EventOutput
 from mend.server.journal import events as ev
-from mend.server.runtime.service import RunService
 
 WORDS: dict[str, Literal["yes", "no"]] = {"y": "yes", "yes": "yes", "n": "no", "no": "no"}
+
+
+AnswerPrompt = Callable[[UUID, UUID, Literal["yes", "no"], str], Awaitable[object]]
+"""Answers a dialogue's prompt by yes or no, for a helper; raises `ConflictError`: too late."""
 
 
 class TerminalHelper:
     """Reads yes or no from the terminal while a question is open."""
 
-    def __init__(self, service: RunService, output: EventOutput) -> None:
-        self._service = service
+    def __init__(self, answer: AnswerPrompt, output: EventOutput) -> None:
+        self._answer_prompt = answer
         self._output = output
         self._name = getpass.getuser()
         self._open: ev.Prompt | None = None
@@ -58,6 +63,6 @@ class TerminalHelper:
 
     async def _answer(self, prompt: ev.Prompt, answer: Literal["yes", "no"]) -> None:
         try:
-            await self._service.answer(prompt.dialogue, prompt.prompt, answer, self._name)
+            await self._answer_prompt(prompt.dialogue, prompt.prompt, answer, self._name)
         except ConflictError as error:
             self._output.note(f"          Too late: {error}.")

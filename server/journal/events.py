@@ -78,8 +78,9 @@ class RunStarted(Event):
     """A run began; everything needed to fold it again is here.
 
     `tree` and `scene` are the checked definitions in their JSON form; `options` the request's
-    remaining fields. `script` is the scenario's definition in its JSON form, None without one and
-    in the journals of an older Mend, whose scenarios are all built in. `author` is None there, too.
+    remaining fields. `site` is where it is, None in a world of its own. `script` is the scenario's
+    definition in its JSON form, None without one and in the journals of an older Mend, whose
+    scenarios are all built in. `author` is None there, too.
     """
 
     type: Literal["run_started"] = "run_started"
@@ -94,6 +95,7 @@ class RunStarted(Event):
     script: dict[str, Any] | None = None
     options: dict[str, Any]
     author: Author | None = None
+    site: UUID | None = None
 
 
 class NodeStarted(NodeEvent):
@@ -108,6 +110,19 @@ class NodeStarted(NodeEvent):
     execution: UUID
     attempt: int
     candidates: list[Candidate]
+
+
+class NodeTaken(NodeEvent):
+    """A person does a leaf themselves, until (the run's clock) it is given back.
+
+    `was_at`: where a robot saw its object last (the scene's frame, metres), None if none had.
+    """
+
+    type: Literal["node_taken"] = "node_taken"
+    helper: str
+    until: float
+    was_at: tuple[float, float, float] | None
+    author: Author | None = None
 
 
 class StepStarted(NodeEvent):
@@ -585,9 +600,55 @@ class AccessChanged(ServiceEvent):
     change: UUID | None = None
 
 
+class SiteEvent(ServiceEvent):
+    """An event of a site, which runs use or not."""
+
+    site: UUID
+
+
+class SiteOpened(SiteEvent):
+    """A simulated world was started, with these robots, to be there until it is closed."""
+
+    type: Literal["site_opened"] = "site_opened"
+    world: str
+    scene: str
+    robots: list[str]
+    seed: int
+    speed: float | Literal["max"]
+    options: dict[str, Any]
+    author: Author | None = None
+
+
+class SiteGivenBack(SiteEvent):
+    """A run has ended, and its robots are the site's again.
+
+    `moved`: what it left at which place.
+    """
+
+    type: Literal["site_given_back"] = "site_given_back"
+    of_run: UUID
+    robots: list[str]
+    moved: dict[str, str]
+
+
+class SiteRestarted(SiteEvent):
+    """A site's world had ended, and is started again where the journal has it."""
+
+    type: Literal["site_restarted"] = "site_restarted"
+    reason: str
+
+
+class SiteClosed(SiteEvent):
+    """A site's world was stopped for good."""
+
+    type: Literal["site_closed"] = "site_closed"
+    author: Author | None = None
+
+
 AnyEvent = Annotated[
     RunStarted
     | NodeStarted
+    | NodeTaken
     | StepStarted
     | IssueRaised
     | ClipRecorded
@@ -628,7 +689,11 @@ AnyEvent = Annotated[
     | SignedIn
     | SignInFailed
     | SignedOut
-    | AccessChanged,
+    | AccessChanged
+    | SiteOpened
+    | SiteGivenBack
+    | SiteRestarted
+    | SiteClosed,
     Field(discriminator="type"),
 ]
 

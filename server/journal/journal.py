@@ -36,7 +36,9 @@ class Document:
 class Entry:
     """What is committed together, all or nothing.
 
-    `world` replaces the run's latest world state (`world_run` says whose); `pictures` are JPEGs.
+    `world` replaces the latest world state of a run, or of a site (`world_run` says whose);
+    `pictures` are JPEGs.
+    `world_forgotten`: of whom no world state is kept any more.
     `tree` is the JSON of the tree of its one event, `run_started`, in which that is left empty: a
     large tree is never made of objects only to be written.
     With events whose author asked under an idempotency key that request is kept.
@@ -49,6 +51,7 @@ class Entry:
     world: Mapping[str, Any] | None = None
     pictures: Mapping[UUID, bytes] = field(default_factory=dict)
     document: Document | None = None
+    world_forgotten: UUID | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,7 +127,7 @@ class Journal(Protocol):
         ...
 
     async def world(self, run: UUID) -> dict[str, Any] | None:
-        """A run's latest world state."""
+        """The latest world state of a run, or of a site."""
         ...
 
     async def picture(self, picture: UUID) -> bytes | None: ...

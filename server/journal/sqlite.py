@@ -255,6 +255,8 @@ class SqliteJournal:
                 "INSERT OR REPLACE INTO worlds (run, state) VALUES (?, ?)",
                 (str(entry.world_run), json.dumps(entry.world, allow_nan=False)),
             )
+        if entry.world_forgotten is not None:
+            connection.execute("DELETE FROM worlds WHERE run = ?", (str(entry.world_forgotten),))
         connection.executemany(
             "INSERT OR REPLACE INTO pictures (id, jpeg) VALUES (?, ?)",
             [(str(picture), jpeg) for picture, jpeg in entry.pictures.items()],

@@ -30,6 +30,8 @@ def _folded(record: RunRecord) -> TaskTree:
         match event:
             case ev.NodeStarted():
                 tree.start(tree.index_of(event.node), event.robot)
+            case ev.NodeTaken():
+                tree.start(tree.index_of(event.node), event.helper)
             case ev.NodeDone() | ev.NodeLeftOut():
                 tree.finish(tree.index_of(event.node))
             case ev.NodeUndone():

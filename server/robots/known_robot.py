@@ -73,7 +73,8 @@ class KnownRobot:
         self._journal = journal
         self._times = times
         self._refusals = refusals
-        self._sink: RobotSink | None = None
+        self._run: RobotSink | None = None
+        self._keeper: RobotSink | None = None
         self._sink_sees_it = False
         self._untaken: OrderedDict[str, Command] = OrderedDict()
         self._pictures: dict[str, asyncio.Future[bytes]] = {}
@@ -93,7 +94,7 @@ class KnownRobot:
 
     @property
     def departed(self) -> bool:
-        """Whether it has no connection, also none that is coming, and no run."""
+        """Whether it has no connection, also none that is coming, and no owner."""
         return self.session is None and self._sink is None and self._coming is None
 
     # --- Its connection -----------------------------------------------------------------------
@@ -223,16 +224,32 @@ class KnownRobot:
 
     # --- Its owner ----------------------------------------------------------------------------
 
-    def assign(self, sink: RobotSink) -> None:
-        if self._sink is not None and self._sink is not sink:
+    @property
+    def _sink(self) -> RobotSink | None:
+        return self._keeper if self._run is None else self._run
+
+    def assign(self, run: RobotSink) -> None:
+        if self._run is not None and self._run is not run:
             raise ConflictError(f"the robot '{self.name}' is busy with another run")
-        self._sink, self._sink_sees_it = sink, False
-        if self.session is not None:
-            self.session.do(self._announce)
+        self._run = run
+        self._introduce()
 
     def unassign(self) -> None:
-        self._sink, self._sink_sees_it = None, False
+        self._run = None
+        self._introduce()
         self.show_poses(0.0)
+
+    def keep(self, keeper: RobotSink | None) -> None:
+        """Who has it whenever no run has it."""
+        self._keeper = keeper
+        if self._run is None:
+            self._introduce()
+
+    def _introduce(self) -> None:
+        """Whoever has it now has yet to see it."""
+        self._sink_sees_it = False
+        if self._sink is not None and self.session is not None:
+            self.session.do(self._announce)
 
     async def _announce(self) -> None:
         if self._sink is not None and self.hello is not None:

@@ -65,6 +65,16 @@ class RobotRegistry:
             self._robots[robot].unassign()
             self._forget(robot)
 
+    def keep(self, robot: str, keeper: RobotSink) -> None:
+        """Say who has a robot whenever no run has it."""
+        self._known(robot).keep(keeper)
+
+    def keep_no_more(self, robot: str) -> None:
+        """Nobody has it then."""
+        if robot in self._robots:
+            self._robots[robot].keep(None)
+            self._forget(robot)
+
     def send(self, robot: str, command_id: str, body: CommandBody, *, renews: bool = True) -> None:
         """Send a command, when connected; again after a reconnect, until the robot has taken it.
 

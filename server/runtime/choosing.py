@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mend.server.journal.events import Candidate
-from mend.server.runtime.robot_side import RobotSide
+from mend.server.runtime.robot_proxy import RobotProxy
 from mend.server.runtime.run_state import RunState
 from mend.server.runtime.team import Team
 from mend.tasks.potential import leaf_potentials
@@ -24,46 +24,46 @@ class Choice:
 
 
 def suitabilities(
-    state: RunState, side: RobotSide, leaves: NDArray[np.int64]
+    state: RunState, proxy: RobotProxy, leaves: NDArray[np.int64]
 ) -> NDArray[np.float64]:
     """How well a robot can do each leaf; 0 where it cannot."""
     nodes = state.tree.nodes
-    by_code = np.array([side.suitability(each) for each in nodes.behaviors], dtype=np.float64)
+    by_code = np.array([proxy.suitability(each) for each in nodes.behaviors], dtype=np.float64)
     suitable = by_code[nodes.behavior_codes[leaves]]
-    team = side.team
+    team = proxy.team
     if team is not None and team.shares:
         for number in np.flatnonzero(suitable).tolist():
-            if team.leaves_to_others(side, state.tree.leaf_definition(int(leaves[number]))):
+            if team.leaves_to_others(proxy, state.tree.leaf_definition(int(leaves[number]))):
                 suitable[number] = 0.0
     return suitable
 
 
 def potentials_for(
-    state: RunState, side: RobotSide, leaves: NDArray[np.int64]
+    state: RunState, proxy: RobotProxy, leaves: NDArray[np.int64]
 ) -> NDArray[np.float64]:
     """The activation potential of each leaf for a robot, from where it last saw the objects."""
-    last_seen = {name: (each.x, each.y, each.z) for name, each in side.seen.items()}
-    suitable = suitabilities(state, side, leaves)
-    return leaf_potentials(state.tree.nodes, leaves, last_seen, side.gripper, suitable)
+    last_seen = {name: (each.x, each.y, each.z) for name, each in proxy.seen.items()}
+    suitable = suitabilities(state, proxy, leaves)
+    return leaf_potentials(state.tree.nodes, leaves, last_seen, proxy.gripper, suitable)
 
 
-def able_mask(state: RunState, side: RobotSide, leaves: NDArray[np.int64]) -> NDArray[np.bool_]:
+def able_mask(state: RunState, proxy: RobotProxy, leaves: NDArray[np.int64]) -> NDArray[np.bool_]:
     """Which of the leaves a robot can do at all and has not tried too often."""
-    able: NDArray[np.bool_] = suitabilities(state, side, leaves) > 0
+    able: NDArray[np.bool_] = suitabilities(state, proxy, leaves) > 0
     if state.exhausted:
         able &= ~np.isin(leaves, list(state.exhausted))
     return able
 
 
-def choose(state: RunState, side: RobotSide) -> Choice | None:
+def choose(state: RunState, proxy: RobotProxy) -> Choice | None:
     """The leaf that a robot takes next; None if there is none that it can do, or do now."""
     leaves = state.tree.eligible_leaves()
-    able = able_mask(state, side, leaves)
-    if side.team is not None and side.team.shares:
-        able &= _free_mask(state, side, side.team, leaves, able)
+    able = able_mask(state, proxy, leaves)
+    if proxy.team is not None and proxy.team.has_company:
+        able &= _free_mask(state, proxy, proxy.team, leaves, able)
     if not able.any():
         return None
-    potentials = potentials_for(state, side, leaves)
+    potentials = potentials_for(state, proxy, leaves)
     leaf = state.tree.choose(leaves, potentials, able)
     if leaf is None:
         return None
@@ -72,7 +72,7 @@ def choose(state: RunState, side: RobotSide) -> Choice | None:
 
 def _free_mask(
     state: RunState,
-    side: RobotSide,
+    proxy: RobotProxy,
     team: Team,
     leaves: NDArray[np.int64],
     able: NDArray[np.bool_],
@@ -80,10 +80,11 @@ def _free_mask(
     """Which of the leaves need no part, no place and no space that another robot has now."""
     theirs = [state.tree.leaf_definition(each.leaf) for each in state.executions.values()]
     used = {name for each in theirs for name in (each.object, each.place) if name is not None}
+    used |= team.handled_by_neighbours()
     free = np.zeros(leaves.size, dtype=np.bool_)
     for number in np.flatnonzero(able).tolist():
         leaf = state.tree.leaf_definition(int(leaves[number]))
-        free[number] = used.isdisjoint({leaf.object, leaf.place}) and team.may_begin(side, leaf)
+        free[number] = used.isdisjoint({leaf.object, leaf.place}) and team.may_begin(proxy, leaf)
     return free
 
 

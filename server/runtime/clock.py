@@ -1,5 +1,6 @@
 """The clock of a run: it never runs backwards, whatever a robot's clock does."""
 
+import math
 from collections.abc import Callable
 from typing import Protocol
 
@@ -33,20 +34,45 @@ class RunClock(Protocol):
     def resume(self) -> None: ...
 
 
+class WorldTime:
+    """How far the clock of one simulated world is, by all that was heard of it (seconds).
+
+    A robot that nobody has told anything says nothing, while others let time pass.
+    """
+
+    def __init__(self) -> None:
+        self._latest_s = -math.inf
+
+    def heard(self, robot_time: float) -> float:
+        """A robot's clock says this, or said it a while ago; returns what it must be by now."""
+        self._latest_s = max(self._latest_s, robot_time)
+        return self._latest_s
+
+    def begin_anew(self) -> None:
+        """The world is rebuilt: what was heard of it is over."""
+        self._latest_s = -math.inf
+
+
 class SimulatedClock:
     """Follows a simulated world's clock, which may start again when the world is rebuilt."""
 
-    def __init__(self, start: float = 0.0) -> None:
+    def __init__(self, start: float = 0.0, world: WorldTime | None = None) -> None:
+        """`world`: the time of the world that it follows, where others follow it too."""
         self._now = start
         self._offset = start
+        self._world = world
 
     def now(self) -> float:
         return self._now
 
     def observe(self, robot_time: float) -> None:
+        if self._world is not None:
+            self._world.heard(robot_time)
         self._now = max(self._now, robot_time + self._offset)
 
     def align(self, robot_time: float) -> None:
+        if self._world is not None:
+            robot_time = self._world.heard(robot_time)
         self._offset = self._now - robot_time
 
     def to_robot(self, time: float) -> float:

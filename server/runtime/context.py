@@ -19,12 +19,14 @@ from mend.server.runtime.run_state import RunState
 class RunSettings:
     """How patient a run is. Seconds of the run's clock, but for `robot_lost_timeout_s` (wall).
 
+    `person_leaf_s`: so long a person may take for a leaf that they do themselves.
     `max_helped_retries`: so often a robot tries one leaf again because somebody has helped.
     `max_times_gone`: so often a leaf is done again whose result was seen gone. Such a leaf has not
     failed, so it is no attempt; the bound is for a person who takes it away each time.
     """
 
     help_window_s: float = 30.0
+    person_leaf_s: float = 120.0
     robot_lost_timeout_s: float = 60.0
     robot_silent_timeout_s: float = 600.0
     max_helped_retries: int = 20
@@ -82,7 +84,7 @@ class RunContext:
         entry = Entry(
             events=events,
             receipt=receipt,
-            world_run=self.state.id if world is not None else None,
+            world_run=self.state.world_kept_as if world is not None else None,
             world=world,
             pictures=pictures or {},
         )

@@ -6,7 +6,7 @@ from mend.server.journal import events as ev
 from mend.server.runtime.context import RunContext
 from mend.server.runtime.dialogue_driver import DialogueDriver
 from mend.server.runtime.report_events import ReportEvents
-from mend.server.runtime.robot_side import Doing, RobotSide
+from mend.server.runtime.robot_proxy import RobotActivity, RobotProxy
 
 
 class CuttingShort:
@@ -15,12 +15,12 @@ class CuttingShort:
     def __init__(
         self,
         context: RunContext,
-        sides: Mapping[str, RobotSide],
+        proxies: Mapping[str, RobotProxy],
         dialogues: DialogueDriver,
         reports: ReportEvents,
     ) -> None:
         self._context = context
-        self._sides = sides
+        self._proxies = proxies
         self._dialogues = dialogues
         self._reports = reports
 
@@ -31,15 +31,15 @@ class CuttingShort:
         for leaf in leaves:
             if dialogue := state.dialogue_of(leaf):
                 events.append(self._dialogues.abort(dialogue))
-            owner = state.tree.owner(leaf) or ""
-            events.append(self._reports.reset(leaf, owner, reason, failed=False))
+            robot = None if leaf in state.people else state.tree.owner(leaf)
+            events.append(self._reports.reset(leaf, robot, reason, failed=False))
         return events
 
     async def commit(self, leaves: Iterable[int], events: Sequence[ev.Event]) -> None:
         """Commit events that put leaves back; then let the robots that held them retreat."""
-        tree = self._context.state.tree
-        owners = [tree.owner(leaf) or "" for leaf in leaves]
+        state = self._context.state
+        owners = [state.tree.owner(leaf) or "" for leaf in leaves if leaf not in state.people]
         await self._context.commit(events)
         for owner in owners:
-            if self._sides[owner].doing is not Doing.ABSENT:
-                self._sides[owner].retreat()
+            if self._proxies[owner].doing is not RobotActivity.ABSENT:
+                self._proxies[owner].retreat()

@@ -26,7 +26,7 @@ from mend.server.runtime.dialogue_looks import DialogueLooks, seen_at
 from mend.server.runtime.dialogue_state import MOST_EXTENSIONS, DialogueState, rehearse
 from mend.server.runtime.outlooks import is_suspect, outlook_at, outlook_now
 from mend.server.runtime.promises import Promises
-from mend.server.runtime.robot_side import Purpose, RobotSide
+from mend.server.runtime.robot_proxy import Purpose, RobotProxy
 from mend.tasks.scenario import Person
 
 SendMail = Callable[[ev.Escalated | ev.SuspectedFalseAlarm, DialogueState], None]
@@ -57,25 +57,25 @@ class DialogueDriver:
         """The world was rebuilt: what a person was about to do has to be asked for again."""
         self._promises.forget()
 
-    def open(self, raised: ev.IssueRaised, side: RobotSide) -> list[ev.Event]:
+    def open(self, raised: ev.IssueRaised, proxy: RobotProxy) -> list[ev.Event]:
         """The events that raise an issue and open a dialogue about it, with its first prompts."""
         state, most = self._context.state, self._context.settings.max_helped_retries
-        raised = raised.model_copy(update={"last_seen": seen_at(side, raised.object)})
-        outlook = outlook_at(state, side, raised, most)
+        raised = raised.model_copy(update={"last_seen": seen_at(proxy, raised.object)})
+        outlook = outlook_at(state, proxy, raised, most)
         raised = raised.model_copy(update={"outlook": outlook})
         make = DialogueEvents(self._context.stamp, uuid4(), raised)
         turns = rehearse(state.scripts[raised.issue], raised, ["open"], outlook)
         said = self._of_turns(make, turns, "", waits=raised.interrupts, stopped=None)
         return [raised, make.opened(), *said]
 
-    async def drive(self, dialogue: DialogueState, side: RobotSide) -> bool:
+    async def drive(self, dialogue: DialogueState, proxy: RobotProxy) -> bool:
         """Do what the dialogue needs now; True if that changed the state."""
         if await self._tell_of_suspicion(dialogue):
             return True
         if dialogue.awaiting is not None:
-            if side.free or side.interruptible:
-                self._promises.have_kept(dialogue, dialogue.awaiting, side)
-            self._looks.watch_for_help(dialogue, dialogue.awaiting, side)
+            if proxy.free or proxy.interruptible:
+                self._promises.have_kept(dialogue, dialogue.awaiting, proxy)
+            self._looks.watch_for_help(dialogue, dialogue.awaiting, proxy)
             return False
         ask = dialogue.open_ask
         if ask is None:
@@ -83,15 +83,15 @@ class DialogueDriver:
         clock = self._context.clock
         scripted = self._scripted(dialogue)
         if scripted is not None and has_come(clock, scripted[1]):
-            await self._take_answer(dialogue, ask, scripted[0], "script", side)
+            await self._take_answer(dialogue, ask, scripted[0], "script", proxy)
             return True
         assert ask.deadline is not None, "every question has a deadline"
         if has_come(clock, ask.deadline):
-            await self._nobody_answered(dialogue, ask, side)
+            await self._nobody_answered(dialogue, ask, proxy)
             return True
-        if side.free:
+        if proxy.free:
             due = min(ask.deadline, scripted[1]) if scripted else ask.deadline
-            self._looks.let_time_pass(dialogue, side, due)
+            self._looks.let_time_pass(dialogue, proxy, due)
         return False
 
     def next_due(self, after: float) -> float | None:
@@ -106,21 +106,21 @@ class DialogueDriver:
         return min((each for each in dues if each > after), default=None)
 
     async def looked(
-        self, dialogue: DialogueState, side: RobotSide, purpose: Purpose, fulfilled: bool
+        self, dialogue: DialogueState, proxy: RobotProxy, purpose: Purpose, fulfilled: bool
     ) -> None:
         """Take the answer of a look that was made for a dialogue."""
         nothing_seen = dialogue.first_look is None or self._looks.awaits_view(dialogue)
         if purpose is Purpose.BASELINE and nothing_seen:
-            await self._looked_first(dialogue, side, fulfilled)
+            await self._looked_first(dialogue, proxy, fulfilled)
         elif purpose is Purpose.WATCH and dialogue.open_ask is not None:
-            await self._watched(dialogue, side, fulfilled)
+            await self._watched(dialogue, proxy, fulfilled)
         elif purpose is Purpose.HELP and dialogue.awaiting is not None:
-            await self._help_looked_for(dialogue, dialogue.awaiting, side, fulfilled)
+            await self._help_looked_for(dialogue, dialogue.awaiting, proxy, fulfilled)
 
     async def _looked_first(
-        self, dialogue: DialogueState, side: RobotSide, fulfilled: bool
+        self, dialogue: DialogueState, proxy: RobotProxy, fulfilled: bool
     ) -> None:
-        first, make = self._looks.first_look(dialogue, side, fulfilled), self._make(dialogue)
+        first, make = self._looks.first_look(dialogue, proxy, fulfilled), self._make(dialogue)
         if dialogue.first_look is not None and first.blind:
             return
         noted = make.first_look(first) if dialogue.first_look is None else make.looked_anew(first)
@@ -129,13 +129,13 @@ class DialogueDriver:
             await self._context.commit([noted])
         else:
             call = f"put_right:{denied.seen}:{denied.change}"
-            await self._converse(dialogue, call, [noted], side)
+            await self._converse(dialogue, call, [noted], proxy)
 
-    async def _watched(self, dialogue: DialogueState, side: RobotSide, fulfilled: bool) -> None:
-        seen = self._looks.put_right(dialogue, side, fulfilled)
+    async def _watched(self, dialogue: DialogueState, proxy: RobotProxy, fulfilled: bool) -> None:
+        seen = self._looks.put_right(dialogue, proxy, fulfilled)
         if seen is not None:
-            await self._converse(dialogue, f"put_right:{seen.seen}:{seen.change}", [], side)
-        elif (undone := self._looks.undone(dialogue, side, fulfilled)) is not None:
+            await self._converse(dialogue, f"put_right:{seen.seen}:{seen.change}", [], proxy)
+        elif (undone := self._looks.undone(dialogue, proxy, fulfilled)) is not None:
             await self._context.commit([self._make(dialogue).looked_anew(undone)])
 
     async def _tell_of_suspicion(self, dialogue: DialogueState) -> bool:
@@ -159,7 +159,7 @@ class DialogueDriver:
         prompt: UUID,
         answer: Literal["yes", "no"],
         helper: str,
-        side: RobotSide,
+        proxy: RobotProxy,
         author: ev.Author | None = None,
     ) -> ev.Answered:
         """Take a live helper's answer; the first one wins.
@@ -176,7 +176,7 @@ class DialogueDriver:
             raise ConflictError(f"this dialogue is closed ({dialogue.closed})")
         if ask is None or ask.prompt != prompt:
             raise ConflictError("this prompt does not wait for an answer")
-        return await self._take_answer(dialogue, ask, answer, helper, side, author)
+        return await self._take_answer(dialogue, ask, answer, helper, proxy, author)
 
     async def extend(
         self,
@@ -235,28 +235,28 @@ class DialogueDriver:
         ask: ev.Prompt,
         answer: Literal["yes", "no"],
         helper: str,
-        side: RobotSide,
+        proxy: RobotProxy,
         author: ev.Author | None = None,
     ) -> ev.Answered:
         make = self._make(dialogue)
         before: list[ev.Event] = [make.answered(ask, answer, helper, author)]
         if dialogue.claim is not None and dialogue.claim.helper != helper:
             before.insert(0, make.released(dialogue.claim.helper, expired=False, author=author))
-        committed = await self._converse(dialogue, answer, before, side, helper)
+        committed = await self._converse(dialogue, answer, before, proxy, helper)
         return next(each for each in committed if isinstance(each, ev.Answered))
 
     async def _nobody_answered(
-        self, dialogue: DialogueState, ask: ev.Prompt, side: RobotSide
+        self, dialogue: DialogueState, ask: ev.Prompt, proxy: RobotProxy
     ) -> None:
         if not dialogue.raised.interrupts:
-            await self._converse(dialogue, "silence", [], side)
+            await self._converse(dialogue, "silence", [], proxy)
             return
         make = self._make(dialogue)
         rung = next_rung(self._policy, ask.version)
         if isinstance(rung, Exhausted):
-            await self._converse(dialogue, "silence", [], side)
+            await self._converse(dialogue, "silence", [], proxy)
             return
-        again = self._ask_again(dialogue, ask, side, rung)
+        again = self._ask_again(dialogue, ask, proxy, rung)
         match rung:
             case Repeat():
                 await self._context.commit([again])
@@ -271,12 +271,12 @@ class DialogueDriver:
         self,
         dialogue: DialogueState,
         ask: ev.Prompt,
-        side: RobotSide,
+        proxy: RobotProxy,
         rung: Repeat | ToHelper | Mail,
     ) -> ev.Prompt:
         """The open question once more, worded as things are now."""
         script = self._context.state.scripts[dialogue.raised.issue]
-        turns = dialogue.turns_after([], script, self._outlook(dialogue, side))
+        turns = dialogue.turns_after([], script, self._outlook(dialogue, proxy))
         worded = next(each for each in turns if isinstance(each, Ask))
         deadline = self._context.clock.now() + rung.answer_within_s
         to = ask.to if isinstance(rung, Mail) else rung.helper
@@ -303,37 +303,37 @@ class DialogueDriver:
         dialogue: DialogueState,
         call: str,
         before: Sequence[ev.Event],
-        side: RobotSide,
+        proxy: RobotProxy,
         helper: str = "",
     ) -> list[ev.Event]:
         """Commit a call to the conversation: the events before it, and what it says to it."""
         script = self._context.state.scripts[dialogue.raised.issue]
-        turns = dialogue.turns_after([call], script, self._outlook(dialogue, side))
+        turns = dialogue.turns_after([call], script, self._outlook(dialogue, proxy))
         make = self._make(dialogue)
-        stopped = self._why_it_cannot_go_on(dialogue, side)
+        stopped = self._why_it_cannot_go_on(dialogue, proxy)
         waits = dialogue.raised.interrupts
         events = self._of_turns(make, turns, helper, waits=waits, stopped=stopped)
         return await self._context.commit([*before, *events])
 
-    def _why_it_cannot_go_on(self, dialogue: DialogueState, side: RobotSide) -> str | None:
+    def _why_it_cannot_go_on(self, dialogue: DialogueState, proxy: RobotProxy) -> str | None:
         """Why a robot cannot go on with what it was doing when it needed help; None if it can."""
         state = self._context.state
         leaf = state.tree.index_of(dialogue.raised.node)
         execution = state.execution_of(leaf)
         has_it = (
             execution is not None
-            and side.hello is not None
-            and execution.boot == side.hello.boot
-            and not side.gone_for_good
+            and proxy.hello is not None
+            and execution.boot == proxy.hello.boot
+            and not proxy.gone_for_good
         )
         return None if has_it else "the robot had lost what it was doing"
 
-    def _outlook(self, dialogue: DialogueState, side: RobotSide) -> Outlook:
+    def _outlook(self, dialogue: DialogueState, proxy: RobotProxy) -> Outlook:
         """What follows, as things are now."""
         state, raised = self._context.state, dialogue.raised
-        begins_anew = self._why_it_cannot_go_on(dialogue, side) is not None
+        begins_anew = self._why_it_cannot_go_on(dialogue, proxy) is not None
         leaf, outlook = state.tree.index_of(raised.node), raised.outlook or Outlook()
-        return outlook_now(state, side, leaf, outlook, begins_anew=begins_anew)
+        return outlook_now(state, proxy, leaf, outlook, begins_anew=begins_anew)
 
     def _of_turns(
         self,
@@ -360,16 +360,16 @@ class DialogueDriver:
         self,
         dialogue: DialogueState,
         awaiting: ev.HelpAwaited,
-        side: RobotSide,
+        proxy: RobotProxy,
         fulfilled: bool,
     ) -> None:
         make = self._make(dialogue)
         if fulfilled:
-            change = self._looks.change_seen(dialogue, side, awaiting.help)
+            change = self._looks.change_seen(dialogue, proxy, awaiting.help)
             verified = make.help_verified(awaiting, change)
-            await self._converse(dialogue, f"seen:{change}", [verified], side, dialogue.helper)
+            await self._converse(dialogue, f"seen:{change}", [verified], proxy, dialogue.helper)
         elif has_come(self._context.clock, awaiting.until):
-            await self._converse(dialogue, "not_seen", [make.help_not_seen(awaiting)], side)
+            await self._converse(dialogue, "not_seen", [make.help_not_seen(awaiting)], proxy)
 
     @property
     def _rate(self) -> float | None:

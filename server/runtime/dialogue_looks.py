@@ -19,7 +19,7 @@ from mend.server.journal import events as ev
 from mend.server.runtime.clock import has_come
 from mend.server.runtime.context import RunContext
 from mend.server.runtime.dialogue_state import DialogueState
-from mend.server.runtime.robot_side import Doing, Purpose, RobotSide
+from mend.server.runtime.robot_proxy import Purpose, RobotActivity, RobotProxy
 
 FIRST_LOOK_S = 1.0
 """So long the first look may take to see whether an object rests within reach."""
@@ -41,37 +41,40 @@ class DialogueLooks:
 
     # --- Which look is next -------------------------------------------------------------------
 
-    def let_time_pass(self, dialogue: DialogueState, side: RobotSide, due: float) -> None:
+    def let_time_pass(self, dialogue: DialogueState, proxy: RobotProxy, due: float) -> None:
         """Until somebody answers, see whether it is put right; let a simulated clock run."""
         if dialogue.raised.interrupts:
-            if self._looks_first(dialogue, side, due):
+            if self._looks_first(dialogue, proxy, due):
                 return
             watched = self._expected(dialogue)
             if watched is not None:
-                self._watch(dialogue, side, watched, due)
+                self._watch(dialogue, proxy, watched, due)
                 return
-        self._hold(side, due)
+        self._hold(proxy, due)
 
     def watch_for_help(
-        self, dialogue: DialogueState, awaiting: ev.HelpAwaited, side: RobotSide
+        self, dialogue: DialogueState, awaiting: ev.HelpAwaited, proxy: RobotProxy
     ) -> None:
         """Look for promised help, once what was so before has been seen."""
         first = dialogue.first_look is None
         by_eye = awaiting.help is not Help.HAND_OVER and self._is_in_time(awaiting.until)
-        looking = side.doing is Doing.LOOKING and side.purpose in (Purpose.BASELINE, Purpose.VIEW)
-        if (looking and (first or by_eye)) or not (side.free or side.interruptible):
+        looking = proxy.doing is RobotActivity.LOOKING and proxy.purpose in (
+            Purpose.BASELINE,
+            Purpose.VIEW,
+        )
+        if (looking and (first or by_eye)) or not (proxy.free or proxy.interruptible):
             return
-        if (first or by_eye) and self._looks_first(dialogue, side, awaiting.until):
+        if (first or by_eye) and self._looks_first(dialogue, proxy, awaiting.until):
             return
         begin = self.help_looked_for_from(dialogue, awaiting)
         if not has_come(self._context.clock, begin):
-            if side.free:
-                self._hold(side, begin)
+            if proxy.free:
+                self._hold(proxy, begin)
             return
-        if awaiting.help is Help.HAND_OVER and not self._may_stretch_out(dialogue, side):
-            self._hold(side, self._context.clock.now() + WATCH_PERIOD_S)
+        if awaiting.help is Help.HAND_OVER and not self._may_stretch_out(dialogue, proxy):
+            self._hold(proxy, self._context.clock.now() + WATCH_PERIOD_S)
             return
-        side.look(
+        proxy.look(
             Purpose.HELP,
             object=dialogue.raised.object,
             place=dialogue.raised.place,
@@ -81,15 +84,15 @@ class DialogueLooks:
             finished=_result_of(dialogue),
         )
 
-    def _may_stretch_out(self, dialogue: DialogueState, side: RobotSide) -> bool:
+    def _may_stretch_out(self, dialogue: DialogueState, proxy: RobotProxy) -> bool:
         """Whether no other robot is where it takes the object and places it; then that is its."""
-        if side.team is None:
+        if proxy.team is None:
             return True
         tree = self._context.state.tree
         leaf = tree.leaf_definition(tree.index_of(dialogue.raised.node))
-        if not side.team.may_begin(side, leaf, handed_over=True):
+        if not proxy.team.may_begin(proxy, leaf, handed_over=True):
             return False
-        side.team.take(side, leaf, handed_over=True)
+        proxy.team.take(proxy, leaf, handed_over=True)
         return True
 
     def help_looked_for_from(self, dialogue: DialogueState, awaiting: ev.HelpAwaited) -> float:
@@ -118,17 +121,17 @@ class DialogueLooks:
         dark = first is not None and first.blind and dialogue.looked_anew is None
         return dark and Expectation.VIEW_CLEAR not in dialogue.conversation.watched_for
 
-    def _looks_first(self, dialogue: DialogueState, side: RobotSide, until: float) -> bool:
+    def _looks_first(self, dialogue: DialogueState, proxy: RobotProxy, until: float) -> bool:
         """Make the look that later ones are compared with, unless there was one that saw anything.
 
         Where the camera shows nothing of the table, that waits until it does, or `until` has come.
         """
         dark = self.awaits_view(dialogue)
-        if dialogue.first_look is None or (dark and side.blind is None):
-            self._look_first(dialogue, side)
+        if dialogue.first_look is None or (dark and proxy.blind is None):
+            self._look_first(dialogue, proxy)
         elif dark and self._is_in_time(until):
             within_s = until - self._context.clock.now()
-            self._look(dialogue, side, Purpose.VIEW, Expectation.VIEW_CLEAR, within_s)
+            self._look(dialogue, proxy, Purpose.VIEW, Expectation.VIEW_CLEAR, within_s)
         else:
             return False
         return True
@@ -136,39 +139,39 @@ class DialogueLooks:
     def _is_in_time(self, until: float) -> bool:
         return not has_come(self._context.clock, until)
 
-    def _look_first(self, dialogue: DialogueState, side: RobotSide) -> None:
+    def _look_first(self, dialogue: DialogueState, proxy: RobotProxy) -> None:
         expect = self._expected_first(dialogue)
         within_s = FIRST_LOOK_S if expect is Expectation.IN_REACH else 0.0
-        self._look(dialogue, side, Purpose.BASELINE, expect, within_s)
+        self._look(dialogue, proxy, Purpose.BASELINE, expect, within_s)
 
     def _watch(
-        self, dialogue: DialogueState, side: RobotSide, watched: Expectation, due: float
+        self, dialogue: DialogueState, proxy: RobotProxy, watched: Expectation, due: float
     ) -> None:
         now = self._context.clock.now()
         base = self._base(dialogue)
         if base is None or watched not in base.fulfilled:
-            self._look(dialogue, side, Purpose.WATCH, watched, max(0.0, due - now))
+            self._look(dialogue, proxy, Purpose.WATCH, watched, max(0.0, due - now))
             return
         begin = self._next_watch.setdefault(dialogue.id, now + WATCH_PERIOD_S)
         if not has_come(self._context.clock, begin):
-            self._hold(side, min(due, begin))
+            self._hold(proxy, min(due, begin))
             return
         self._next_watch[dialogue.id] = now + WATCH_PERIOD_S
-        self._look(dialogue, side, Purpose.WATCH, None, 0.0)
+        self._look(dialogue, proxy, Purpose.WATCH, None, 0.0)
 
     def _look(
         self,
         dialogue: DialogueState,
-        side: RobotSide,
+        proxy: RobotProxy,
         purpose: Purpose,
         expect: Expectation | None,
         within_s: float,
     ) -> None:
         result = _result_of(dialogue)
         if expect is None:
-            side.look(purpose, rate=self._rate, finished=result)
+            proxy.look(purpose, rate=self._rate, finished=result)
             return
-        side.look(
+        proxy.look(
             purpose,
             object=dialogue.raised.object,
             place=dialogue.raised.place,
@@ -178,9 +181,9 @@ class DialogueLooks:
             finished=result,
         )
 
-    def _hold(self, side: RobotSide, until: float) -> None:
-        if side.hello is not None and side.hello.simulated:
-            side.hold(self._context.clock.to_robot(until), self._rate)
+    def _hold(self, proxy: RobotProxy, until: float) -> None:
+        if proxy.hello is not None and proxy.hello.simulated:
+            proxy.hold(self._context.clock.to_robot(until), self._rate)
 
     def _expected(self, dialogue: DialogueState) -> Expectation | None:
         """What a look is asked to wait for; where an object is, every look tells."""
@@ -202,10 +205,12 @@ class DialogueLooks:
 
     # --- What a look saw ----------------------------------------------------------------------
 
-    def first_look(self, dialogue: DialogueState, side: RobotSide, fulfilled: bool) -> LookOutcome:
+    def first_look(
+        self, dialogue: DialogueState, proxy: RobotProxy, fulfilled: bool
+    ) -> LookOutcome:
         """What the first look saw: everything later is compared with it."""
-        first = self._seen(dialogue, side, self._expected_first(dialogue) if fulfilled else None)
-        if side.held is None or side.held != dialogue.raised.object:
+        first = self._seen(dialogue, proxy, self._expected_first(dialogue) if fulfilled else None)
+        if proxy.held is None or proxy.held != dialogue.raised.object:
             return first
         return replace(first, fulfilled=first.fulfilled | {Expectation.IN_GRIPPER})
 
@@ -215,32 +220,32 @@ class DialogueLooks:
         return contradiction(conversation.watched_for, conversation.denied, first)
 
     def put_right(
-        self, dialogue: DialogueState, side: RobotSide, fulfilled: bool
+        self, dialogue: DialogueState, proxy: RobotProxy, fulfilled: bool
     ) -> PutRight | None:
         """Whether a look saw the issue put right since the question was put."""
         base = self._base(dialogue)
         if base is None or self.awaits_view(dialogue):
             return None
-        now = self._seen(dialogue, side, self._expected(dialogue) if fulfilled else None)
+        now = self._seen(dialogue, proxy, self._expected(dialogue) if fulfilled else None)
         return put_right(dialogue.conversation.watched_for, base, now)
 
     def undone(
-        self, dialogue: DialogueState, side: RobotSide, fulfilled: bool
+        self, dialogue: DialogueState, proxy: RobotProxy, fulfilled: bool
     ) -> LookOutcome | None:
         """A look that saw what was right to be so no more: now it can be put right again."""
         base = self._base(dialogue)
-        now = self._seen(dialogue, side, self._expected(dialogue) if fulfilled else None)
+        now = self._seen(dialogue, proxy, self._expected(dialogue) if fulfilled else None)
         if base is None or now.blind or now.fulfilled:
             return None
         return now if _is_elsewhere(base.position, now.position) else None
 
-    def change_seen(self, dialogue: DialogueState, side: RobotSide, helped_with: Help) -> Change:
+    def change_seen(self, dialogue: DialogueState, proxy: RobotProxy, helped_with: Help) -> Change:
         """What a look that saw the promised help saw to change."""
         base = self._base(dialogue)
         if helped_with is Help.HAND_OVER:
             held_before = base is not None and Expectation.IN_GRIPPER in base.fulfilled
             return Change.NONE if held_before else Change.HANDED_OVER
-        now = self._seen(dialogue, side, EXPECTED[helped_with])
+        now = self._seen(dialogue, proxy, EXPECTED[helped_with])
         return change_since(self._earlier(dialogue), now)
 
     def _base(self, dialogue: DialogueState) -> LookOutcome | None:
@@ -258,17 +263,17 @@ class DialogueLooks:
         return looks
 
     def _seen(
-        self, dialogue: DialogueState, side: RobotSide, expected: Expectation | None
+        self, dialogue: DialogueState, proxy: RobotProxy, expected: Expectation | None
     ) -> LookOutcome:
         fulfilled = set() if expected is None else {expected}
-        if self._is_at_place(dialogue, side):
+        if self._is_at_place(dialogue, proxy):
             fulfilled.add(Expectation.AT_PLACE)
-        if side.blind is not None:
+        if proxy.blind is not None:
             return LookOutcome(frozenset(fulfilled), None, blind=True)
-        return LookOutcome(frozenset(fulfilled), seen_at(side, dialogue.raised.object))
+        return LookOutcome(frozenset(fulfilled), seen_at(proxy, dialogue.raised.object))
 
-    def _is_at_place(self, dialogue: DialogueState, side: RobotSide) -> bool:
-        return any(each in side.there for each in _result_of(dialogue))
+    def _is_at_place(self, dialogue: DialogueState, proxy: RobotProxy) -> bool:
+        return any(each in proxy.there for each in _result_of(dialogue))
 
 
 def _result_of(dialogue: DialogueState) -> list[FinishedResult]:
@@ -279,9 +284,9 @@ def _result_of(dialogue: DialogueState) -> list[FinishedResult]:
     return [FinishedResult(object=handled, place=place)]
 
 
-def seen_at(side: RobotSide, name: str | None) -> Point | None:
+def seen_at(proxy: RobotProxy, name: str | None) -> Point | None:
     """Where a robot's last look saw an object, None if it did not."""
-    seen = side.seen.get(name or "")
+    seen = proxy.seen.get(name or "")
     return None if seen is None else (seen.x, seen.y, seen.z)
 
 

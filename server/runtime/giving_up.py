@@ -10,7 +10,7 @@ from mend.server.runtime.context import RunContext
 from mend.server.runtime.cutting_short import CuttingShort
 from mend.server.runtime.failure import fail_run
 from mend.server.runtime.report_events import ReportEvents
-from mend.server.runtime.robot_side import RobotSide
+from mend.server.runtime.robot_proxy import RobotProxy
 
 
 class GivingUp:
@@ -19,12 +19,12 @@ class GivingUp:
     def __init__(
         self,
         context: RunContext,
-        sides: Mapping[str, RobotSide],
+        proxies: Mapping[str, RobotProxy],
         reports: ReportEvents,
         cutting_short: CuttingShort,
     ) -> None:
         self._context = context
-        self._sides = sides
+        self._proxies = proxies
         self._reports = reports
         self._cutting_short = cutting_short
 
@@ -34,7 +34,7 @@ class GivingUp:
             await self._give_up(leaf, reason)
             return True
         for leaf in self._for_nobody():
-            await self._give_up(leaf, "no robot can do it")
+            await self._give_up(leaf, f"no robot can do it{self._who_is_in_the_way(leaf)}")
             return True
         return False
 
@@ -56,14 +56,24 @@ class GivingUp:
 
     def _for_nobody(self) -> list[int]:
         """The first leaf that none of the robots can do, once all of them are known."""
-        state, sides = self._context.state, self._sides.values()
-        if not all(side.hello is not None or side.gone_for_good for side in sides):
+        state, proxies = self._context.state, self._proxies.values()
+        if not all(proxy.hello is not None or proxy.gone_for_good for proxy in proxies):
+            return []
+        if any(proxy.gone_for_good and proxy.owes_a_report for proxy in proxies):
+            # Once its arm rests it is in nobody's way.
             return []
         leaves = state.tree.eligible_leaves()
         anybody = np.zeros(leaves.size, dtype=np.bool_)
-        for side in sides:
-            anybody |= suitabilities(state, side, leaves) > 0
+        for proxy in proxies:
+            anybody |= suitabilities(state, proxy, leaves) > 0
         return [int(leaf) for leaf in leaves[~anybody][:1]]
+
+    def _who_is_in_the_way(self, leaf: int) -> str:
+        team = next(iter(self._proxies.values())).team
+        definition = self._context.state.tree.leaf_definition(leaf)
+        stopped = [] if team is None else team.given_up_in_the_way(definition)
+        names = ", ".join(f"'{each}'" for each in stopped)
+        return f": the arm of {names} may be in the way, which was given up there" if names else ""
 
     async def _give_up(self, leaf: int, reason: str) -> None:
         """Abandon the nearest alternative that holds a leaf, or fail the run."""

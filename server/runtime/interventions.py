@@ -6,7 +6,7 @@ from uuid import uuid4
 from mend.errors import ConflictError
 from mend.server.journal import events as ev
 from mend.server.runtime.context import RunContext
-from mend.server.runtime.robot_side import RobotSide
+from mend.server.runtime.robot_proxy import RobotProxy
 from mend.tasks.intervention import Intervention
 
 MOST_WAITING = 100
@@ -22,9 +22,9 @@ class Interventions:
         self._context = context
 
     async def accept(
-        self, deed: Intervention, by: str, side: RobotSide, author: ev.Author | None = None
+        self, deed: Intervention, by: str, proxy: RobotProxy, author: ev.Author | None = None
     ) -> None:
-        """Have a person do something in the world that `side` is in.
+        """Have a person do something in the world that `proxy` is in.
 
         Raises `ConflictError` while too many others are still to be done.
         """
@@ -44,21 +44,21 @@ class Interventions:
             author=author,
         )
         await self._context.commit([accepted])
-        if side.hello is not None:
-            _tell(accepted, side)
+        if proxy.hello is not None:
+            _tell(accepted, proxy)
 
-    def tell_again(self, side: RobotSide) -> None:
+    def tell_again(self, proxy: RobotProxy) -> None:
         """A world was built (again) as the journal has it: what it has not yet done is to come.
 
         What it did without having reported it is undone by that, so nothing is done twice.
         """
         for accepted in self._context.state.accepted.values():
-            _tell(accepted, side)
+            _tell(accepted, proxy)
 
 
-def _tell(accepted: ev.InterventionAccepted, side: RobotSide) -> None:
+def _tell(accepted: ev.InterventionAccepted, proxy: RobotProxy) -> None:
     try:
-        side.intervene(accepted.command, accepted.intervention, accepted.by, None)
+        proxy.intervene(accepted.command, accepted.intervention, accepted.by, None)
     except ConflictError as error:
         # It is journaled, and so to be done, whatever else waits for the robot: it is told again
         # once it has started anew.

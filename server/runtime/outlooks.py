@@ -11,14 +11,14 @@ from mend.dialogue.script import Expectation
 from mend.server.journal import events as ev
 from mend.server.runtime.choosing import able_mask
 from mend.server.runtime.dialogue_state import DialogueState
-from mend.server.runtime.robot_side import RobotSide
+from mend.server.runtime.robot_proxy import RobotProxy
 from mend.server.runtime.run_state import RunState
 from mend.tasks.definition import NodeKind
 from mend.tasks.task_tree import TaskTree
 
 
 def outlook_at(
-    state: RunState, side: RobotSide, raised: ev.IssueRaised, most_helped: int
+    state: RunState, proxy: RobotProxy, raised: ev.IssueRaised, most_helped: int
 ) -> Outlook:
     """The outlook when an issue is raised; its event is not folded yet.
 
@@ -34,17 +34,17 @@ def outlook_at(
         helped_out=state.helped_retries[leaf] >= most_helped,
         alone=len(state.started.robots) == 1,
     )
-    return outlook_now(state, side, leaf, outlook)
+    return outlook_now(state, proxy, leaf, outlook)
 
 
 def outlook_now(
-    state: RunState, side: RobotSide, leaf: int, outlook: Outlook, *, begins_anew: bool = False
+    state: RunState, proxy: RobotProxy, leaf: int, outlook: Outlook, *, begins_anew: bool = False
 ) -> Outlook:
     """An outlook with what follows as things are now: other robots may have gone on meanwhile."""
     return replace(
         outlook,
-        failed=_sequel(state, side, leaf, failed=True),
-        helped=_sequel(state, side, leaf, failed=False),
+        failed=_sequel(state, proxy, leaf, failed=True),
+        helped=_sequel(state, proxy, leaf, failed=False),
         begins_anew=begins_anew,
     )
 
@@ -101,7 +101,7 @@ def _dialogue_about(state: RunState, raised: ev.IssueRaised) -> DialogueState | 
 # --- What follows ------------------------------------------------------------------------------
 
 
-def _sequel(state: RunState, side: RobotSide, leaf: int, *, failed: bool) -> Sequel:
+def _sequel(state: RunState, proxy: RobotProxy, leaf: int, *, failed: bool) -> Sequel:
     """What the run does next once an active leaf is put back."""
     tree = state.tree.copy()
     tree.running = True
@@ -110,7 +110,7 @@ def _sequel(state: RunState, side: RobotSide, leaf: int, *, failed: bool) -> Seq
     tree.put_back(leaf, failed=failed)
     if failed and tree.attempts(leaf) >= state.request.max_attempts:
         return _after_giving_up(tree, leaf)
-    return _before_the_next_try(state, side, tree, leaf, failed=failed)
+    return _before_the_next_try(state, proxy, tree, leaf, failed=failed)
 
 
 def _after_giving_up(tree: TaskTree, leaf: int) -> Sequel:
@@ -128,14 +128,14 @@ def _after_giving_up(tree: TaskTree, leaf: int) -> Sequel:
 
 
 def _before_the_next_try(
-    state: RunState, side: RobotSide, tree: TaskTree, leaf: int, *, failed: bool
+    state: RunState, proxy: RobotProxy, tree: TaskTree, leaf: int, *, failed: bool
 ) -> Sequel:
     """Leaves with fewer failed attempts go first; alternatives may keep it from being tried.
 
     Where as many have failed elsewhere, too, that may come first, and be the end of it.
     """
     leaves = tree.eligible_leaves()
-    able = leaves[able_mask(state, side, leaves)]
+    able = leaves[able_mask(state, proxy, leaves)]
     others = able[able != leaf]
     attempts, mine = tree.attempts_of(others), tree.attempts(leaf)
     parting = _Parting(tree, leaf, others)

@@ -5,7 +5,7 @@ import numpy as np
 from mend.server.journal import events as ev
 from mend.server.runtime.context import RunContext
 from mend.server.runtime.dialogue_state import DialogueState
-from mend.server.runtime.robot_side import RobotSide
+from mend.server.runtime.robot_proxy import RobotProxy
 from mend.sim.interventions import HELPER
 from mend.sim.person import Promise, deed
 from mend.tasks.scenario import Person
@@ -23,7 +23,9 @@ class Promises:
         """The world was rebuilt: what a person was about to do has to be asked for again."""
         self._sent.clear()
 
-    def have_kept(self, dialogue: DialogueState, awaiting: ev.HelpAwaited, side: RobotSide) -> None:
+    def have_kept(
+        self, dialogue: DialogueState, awaiting: ev.HelpAwaited, proxy: RobotProxy
+    ) -> None:
         """Let the simulated person keep a promise, as reliably as they are; once."""
         state, command = self._context.state, f"{dialogue.id}:{dialogue.helps}"
         known = command in self._sent or command in state.intervened
@@ -41,4 +43,4 @@ class Promises:
         done = deed(promise, self._person, state.scene, others, rng)
         if done is not None:
             at = self._context.clock.to_robot(awaiting.time + done.delay_s)
-            side.intervene(command, done.intervention, HELPER, at)
+            proxy.intervene(command, done.intervention, HELPER, at)

@@ -19,7 +19,7 @@ from mend.server.journal import events as ev
 from mend.server.plain_text import plain
 from mend.server.runtime.context import RunContext
 from mend.server.runtime.dialogue_driver import DialogueDriver
-from mend.server.runtime.robot_side import Doing, RobotSide
+from mend.server.runtime.robot_proxy import RobotActivity, RobotProxy
 from mend.server.runtime.run_state import StartedExecution
 from mend.tasks.resolution import Resolution
 
@@ -33,29 +33,29 @@ class ReportEvents:
         self._context = context
         self._dialogues = dialogues
 
-    def read(self, side: RobotSide, body: ReportBody) -> tuple[list[ev.Event], dict[UUID, bytes]]:
+    def read(self, proxy: RobotProxy, body: ReportBody) -> tuple[list[ev.Event], dict[UUID, bytes]]:
         """The events of a report, and the pictures (JPEG) that they name."""
         pictures: dict[UUID, bytes] = {}
         events: list[ev.Event] = []
         match body:
             case StepStarted():
-                events = self._step_started(side, body)
+                events = self._step_started(proxy, body)
             case IssueDetected():
-                events = self._issue_detected(side, body, pictures)
+                events = self._issue_detected(proxy, body, pictures)
             case ClipTaken():
                 events = self._clip_taken(body, pictures)
             case Finished():
-                events = self._finished(side, body)
+                events = self._finished(proxy, body)
             case Holding():
-                events = [ev.RobotHolding(**self._context.stamp(), robot=side.robot, at=body.at)]
+                events = [ev.RobotHolding(**self._context.stamp(), robot=proxy.robot, at=body.at)]
             case Resumed():
                 events = [
-                    ev.RobotResumed(**self._context.stamp(), robot=side.robot, step=body.step)
+                    ev.RobotResumed(**self._context.stamp(), robot=proxy.robot, step=body.step)
                 ]
             case Intervened():
                 events = [self._intervened(body)]
             case Rejected():
-                events = self._rejected(side, body)
+                events = self._rejected(proxy, body)
         return events, pictures
 
     def node(self, leaf: int) -> dict[str, str]:
@@ -63,7 +63,7 @@ class ReportEvents:
         tree = self._context.state.tree
         return {"node": tree.path_of(leaf), "name": tree.name_of(leaf)}
 
-    def reset(self, leaf: int, robot: str, reason: str, *, failed: bool) -> ev.NodeReset:
+    def reset(self, leaf: int, robot: str | None, reason: str, *, failed: bool) -> ev.NodeReset:
         return ev.NodeReset(
             **self._context.stamp(),
             **self.node(leaf),
@@ -72,20 +72,20 @@ class ReportEvents:
             failed_attempt=failed,
         )
 
-    def _current(self, side: RobotSide, execution: str) -> StartedExecution | None:
+    def _current(self, proxy: RobotProxy, execution: str) -> StartedExecution | None:
         """The robot's execution, if the report is about that and not about an earlier one."""
-        current = self._context.state.executions.get(side.robot)
+        current = self._context.state.executions.get(proxy.robot)
         return current if current is not None and str(current.id) == execution else None
 
-    def _step_started(self, side: RobotSide, body: StepStarted) -> list[ev.Event]:
-        execution = self._current(side, body.execution)
+    def _step_started(self, proxy: RobotProxy, body: StepStarted) -> list[ev.Event]:
+        execution = self._current(proxy, body.execution)
         if execution is None:
             return []
         return [
             ev.StepStarted(
                 **self._context.stamp(),
                 **self.node(execution.leaf),
-                robot=side.robot,
+                robot=proxy.robot,
                 execution=execution.id,
                 step=body.step,
                 step_name=body.name,
@@ -93,9 +93,9 @@ class ReportEvents:
         ]
 
     def _issue_detected(
-        self, side: RobotSide, body: IssueDetected, pictures: dict[UUID, bytes]
+        self, proxy: RobotProxy, body: IssueDetected, pictures: dict[UUID, bytes]
     ) -> list[ev.Event]:
-        execution = self._current(side, body.execution)
+        execution = self._current(proxy, body.execution)
         state = self._context.state
         if execution is None:
             return []
@@ -111,7 +111,7 @@ class ReportEvents:
         raised = ev.IssueRaised(
             **self._context.stamp(),
             **self.node(execution.leaf),
-            robot=side.robot,
+            robot=proxy.robot,
             issue=body.issue,
             object=state.tree.leaf_definition(execution.leaf).object,
             place=state.tree.leaf_definition(execution.leaf).place,
@@ -123,9 +123,9 @@ class ReportEvents:
         )
         if body.issue not in state.scripts:
             reason = f"there is no dialogue script for an issue '{body.issue}'"
-            reset = self.reset(execution.leaf, side.robot, reason, failed=True)
+            reset = self.reset(execution.leaf, proxy.robot, reason, failed=True)
             return [*lapsed, raised, reset] if body.interrupts else [*lapsed, raised]
-        return [*lapsed, *self._dialogues.open(raised, side)]
+        return [*lapsed, *self._dialogues.open(raised, proxy)]
 
     def _clip_taken(self, body: ClipTaken, pictures: dict[UUID, bytes]) -> list[ev.Event]:
         """The clip of an issue that opened a dialogue; of another one it is not kept."""
@@ -162,8 +162,8 @@ class ReportEvents:
             )
         ]
 
-    def _finished(self, side: RobotSide, body: Finished) -> list[ev.Event]:
-        execution = self._current(side, body.execution)
+    def _finished(self, proxy: RobotProxy, body: Finished) -> list[ev.Event]:
+        execution = self._current(proxy, body.execution)
         if execution is None:
             return []
         state = self._context.state
@@ -181,7 +181,7 @@ class ReportEvents:
         done = ev.NodeDone(
             **self._context.stamp(),
             **self.node(execution.leaf),
-            robot=side.robot,
+            robot=proxy.robot,
             by="found" if body.found_in_place else "both" if helped else "robot",
         )
         return [*events, done]
@@ -198,15 +198,19 @@ class ReportEvents:
             command=body.command,
         )
 
-    def _rejected(self, side: RobotSide, body: Rejected) -> list[ev.Event]:
-        execution = self._context.state.executions.get(side.robot)
-        if body.command == side.command:
+    def _rejected(self, proxy: RobotProxy, body: Rejected) -> list[ev.Event]:
+        execution = self._context.state.executions.get(proxy.robot)
+        if body.command == proxy.command:
             # Once for each command: anybody can reject what was never told.
-            log.warning("robot %s rejected a command: %s", side.robot, plain(body.reason))
-        if execution is None or side.doing is not Doing.WORKING or body.command != side.command:
+            log.warning("robot %s rejected a command: %s", proxy.robot, plain(body.reason))
+        if (
+            execution is None
+            or proxy.doing is not RobotActivity.WORKING
+            or body.command != proxy.command
+        ):
             return []
         reason = f"the robot refused: {body.reason}"
-        return [self.reset(execution.leaf, side.robot, reason, failed=True)]
+        return [self.reset(execution.leaf, proxy.robot, reason, failed=True)]
 
 
 def _decode(jpeg: str | None) -> bytes | None:

@@ -7,7 +7,7 @@ from mend.server.journal import events as ev
 from mend.server.runtime.context import RunContext
 from mend.server.runtime.cutting_short import CuttingShort
 from mend.server.runtime.report_events import ReportEvents
-from mend.server.runtime.robot_side import RobotSide
+from mend.server.runtime.robot_proxy import RobotProxy
 from mend.server.runtime.run_state import RunState
 
 
@@ -68,20 +68,20 @@ class Results:
         self._reports = reports
         self._cutting_short = cutting_short
 
-    async def judged(self, side: RobotSide, looked: Looked) -> None:
+    async def judged(self, proxy: RobotProxy, looked: Looked) -> None:
         """Take what a look says of the results that it was to judge."""
         state = self._context.state
         results = results_of(state)
         there = (results[each] for each in looked.there if each in results)
-        returned = [self._returned(leaf, side) for leaf in there if leaf in state.left_out]
+        returned = [self._returned(leaf, proxy) for leaf in there if leaf in state.left_out]
         gone = [results[each] for each in looked.gone if each in results]
         gone = [leaf for leaf in gone if leaf not in state.left_out]
         if gone:
-            await self._take_back(gone, side, returned)
+            await self._take_back(gone, proxy, returned)
         elif returned:
             await self._context.commit(returned)
 
-    async def doubt_last(self, side: RobotSide, blind: str) -> None:
+    async def doubt_last(self, proxy: RobotProxy, blind: str) -> None:
         """Take back what was handled last: of a table that is not seen nobody can say it is done.
 
         The robot looks for it, and asks for its view.
@@ -89,17 +89,17 @@ class Results:
         results = results_of(self._context.state)
         seen = [leaf for leaf in results.values() if leaf not in self._context.state.left_out]
         if seen:
-            await self._take_back(seen[-1:], side, (), blind)
+            await self._take_back(seen[-1:], proxy, (), blind)
 
-    def _returned(self, leaf: int, side: RobotSide) -> ev.NodeReturned:
+    def _returned(self, leaf: int, proxy: RobotProxy) -> ev.NodeReturned:
         return ev.NodeReturned(
-            **self._context.stamp(), **self._reports.node(leaf), robot=side.robot
+            **self._context.stamp(), **self._reports.node(leaf), robot=proxy.robot
         )
 
     async def _take_back(
         self,
         gone: Iterable[int],
-        side: RobotSide,
+        proxy: RobotProxy,
         before: Iterable[ev.Event],
         blind: str | None = None,
     ) -> None:
@@ -114,12 +114,13 @@ class Results:
         put_back = self._cutting_short.put_back(active, "what it comes after is no longer done")
         # What a THEN puts after another leaf is after it in the tree as well.
         undone = [
-            self._undone(leaf, because[leaf], side, blind) for leaf in sorted(because, reverse=True)
+            self._undone(leaf, because[leaf], proxy, blind)
+            for leaf in sorted(because, reverse=True)
         ]
         await self._cutting_short.commit(active, [*before, *put_back, *undone])
 
     def _undone(
-        self, leaf: int, because_of: int, side: RobotSide, blind: str | None
+        self, leaf: int, because_of: int, proxy: RobotProxy, blind: str | None
     ) -> ev.NodeUndone:
         tree = self._context.state.tree
         definition = tree.leaf_definition(leaf)
@@ -130,7 +131,7 @@ class Results:
         return ev.NodeUndone(
             **self._context.stamp(),
             **self._reports.node(leaf),
-            robot=side.robot,
+            robot=proxy.robot,
             reason=(
                 f"it comes after {tree.name_of(because_of)}, which is no longer done"
                 if follows

@@ -4,10 +4,14 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from uuid import UUID
 
-from mend.errors import ConflictError, NotFoundError, WrongInputError
+from mend.errors import ConflictError, WrongInputError
+from mend.server.errors import NotConnectedError
 from mend.server.journal.events import RunStarted
 from mend.server.runtime.ports import Robots
 from mend.server.runtime.run import Run
+
+MOST_NAMED = 20
+"""A sentence about robots names so many of them."""
 
 
 class RobotOwners:
@@ -23,26 +27,35 @@ class RobotOwners:
         """The runs that are being journaled, and get their robots then."""
         return set(self._promised.values())
 
-    def check(self, robots: Sequence[str]) -> None:
+    def check_live(self, robots: Sequence[str]) -> None:
         """Look whether a run in the world 'live' can have these robots.
 
-        Raises `WrongInputError`, `NotFoundError` or `ConflictError`.
+        Raises `WrongInputError`, `NotConnectedError` or `ConflictError`.
         """
         if not robots:
             raise WrongInputError(
-                "a run in the world 'live' needs 'robots': the ids of connected ones"
+                "a run in the world 'live' needs 'robots', the names of connected ones "
+                f"({self._who_is_free()})"
             )
-        twice = next((each for each in robots if robots.count(each) > 1), None)
-        if twice is not None:
-            raise WrongInputError(
-                f"'robots' names the robot '{twice}' more than once; once is enough"
-            )
+        away = [each for each in robots if not self._robots.connected(each)]
+        if away:
+            names = " or ".join(f"'{each}'" for each in away)
+            raise NotConnectedError(f"no robot {names} is connected ({self._who_is_free()})", away)
+        self.check_free(robots)
+
+    def check_free(self, robots: Sequence[str]) -> None:
+        """Raise `ConflictError` where a run has one of these robots, or is about to."""
         busy = self._given | self._promised
         for robot in robots:
-            if not self._robots.connected(robot):
-                raise NotFoundError(f"no robot '{robot}' is connected")
             if robot in busy:
                 raise ConflictError(f"the robot '{robot}' is busy with run {busy[robot]}")
+
+    def _who_is_free(self) -> str:
+        busy = self._given | self._promised
+        known = [each for each in self._robots.known() if self._robots.connected(each)]
+        free = [f"'{each}'" for each in known if each not in busy]
+        more = f" and {len(free) - MOST_NAMED} more" if len(free) > MOST_NAMED else ""
+        return f"connected and free: {', '.join(free[:MOST_NAMED]) or 'none'}{more}"
 
     @contextmanager
     def promised(self, started: RunStarted) -> Iterator[None]:
@@ -59,7 +72,7 @@ class RobotOwners:
         """Give a run all its robots, or none. Raises `ConflictError` if another run has one."""
         given: list[str] = []
         try:
-            for robot in run.sides:
+            for robot in run.proxies:
                 self._robots.assign(robot, run)
                 given.append(robot)
         except ConflictError:
@@ -70,6 +83,6 @@ class RobotOwners:
 
     def take_back(self, run: Run) -> None:
         """A run needs its robots no more."""
-        for robot in run.sides:
+        for robot in run.proxies:
             self._robots.unassign(robot)
             del self._given[robot]

@@ -61,6 +61,8 @@ class RunState:
         self.result: RunResult | None = None
         self.ended: datetime | None = None
         self.executions: dict[str, StartedExecution] = {}
+        self.people: dict[int, ev.NodeTaken] = {}
+        """The leaves that people do themselves."""
         self.dialogues: dict[UUID, DialogueState] = {}
         self.lost: set[str] = set()
         self.accepted: dict[str, ev.InterventionAccepted] = {}
@@ -109,6 +111,11 @@ class RunState:
         return self.started.run
 
     @property
+    def world_kept_as(self) -> UUID:
+        """What the journal keeps the state of its simulated world under."""
+        return self.started.site or self.id
+
+    @property
     def scenario(self) -> Scenario | None:
         """The run's scenario as it was when the run began."""
         if self.started.script is not None:
@@ -117,12 +124,14 @@ class RunState:
 
     @property
     def frames(self) -> dict[str, Frame]:
-        """The base frame of each robot: as the scene has its name, else in the scene's order."""
-        robots, known = self.started.robots, frames_of(self.scene)
-        in_order = list(known.values()) if len(known) == len(robots) else [Frame()] * len(robots)
-        return {
-            robot: known.get(robot, frame) for robot, frame in zip(robots, in_order, strict=True)
-        }
+        """The base frame of each robot, in the scene's order.
+
+        Robots of a scene that does not say where they stand have its frame as their own.
+        """
+        robots, frames = self.started.robots, list(frames_of(self.scene).values())
+        if len(frames) != len(robots):
+            frames = [Frame()] * len(robots)
+        return dict(zip(robots, frames, strict=True))
 
     @property
     def open_dialogues(self) -> list[DialogueState]:
@@ -157,6 +166,17 @@ class RunState:
         self.executions[event.robot] = StartedExecution(
             event.execution, leaf, event.robot, event.boot
         )
+
+    @_apply.register
+    def _(self, event: ev.NodeTaken) -> None:
+        leaf = self.tree.index_of(event.node)
+        self.tree.start(leaf, event.helper)
+        self.results = None
+        if (handled := self.tree.leaf_definition(leaf).object) is not None:
+            self.last_handled[handled] = leaf
+        self.people[leaf] = event
+        self.taken_back.pop(leaf, None)
+        self.progress += 1
 
     @_apply.register
     def _(self, event: ev.StepStarted) -> None:
@@ -281,6 +301,7 @@ class RunState:
             self.exhausted.add(leaf)
 
     def _end_execution(self, leaf: int) -> None:
+        self.people.pop(leaf, None)
         self.executions = {
             robot: each for robot, each in self.executions.items() if each.leaf != leaf
         }

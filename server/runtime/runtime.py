@@ -22,16 +22,17 @@ from mend.server.journal.journal import Entry, Journal
 from mend.server.journal.run_index import UNREADABLE, IndexedRun, RunPage
 from mend.server.refusals import Refusals
 from mend.server.runtime.choosing import potentials_for
-from mend.server.runtime.clock import RunClock, SimulatedClock, WallClock
+from mend.server.runtime.clock import RunClock, SimulatedClock
 from mend.server.runtime.context import RunContext, RunSettings
 from mend.server.runtime.dialogue_driver import DialogueDriver
 from mend.server.runtime.dialogue_state import DialogueState
 from mend.server.runtime.failure import fail_run, why_it_stopped
+from mend.server.runtime.hardware import Hardware
 from mend.server.runtime.new_run import NewRun, NewRuns
 from mend.server.runtime.ports import LIVE, Poses, Preparation, RealRobots, Robots, Worlds
 from mend.server.runtime.requests import RunRequest
 from mend.server.runtime.robot_owners import RobotOwners
-from mend.server.runtime.robot_side import RobotSide
+from mend.server.runtime.robot_proxy import RobotProxy
 from mend.server.runtime.run import Run
 from mend.server.runtime.run_state import RunState
 from mend.server.runtime.run_states import RunStates
@@ -146,9 +147,13 @@ class Runtime:
             raise BusyError("the service is shutting down")
         # Others may have begun meanwhile.
         self._refuse_one_too_many()
-        if request.world == LIVE:
-            await self._wait_until_given_back(request.robots)
-            self._owners.check(request.robots)
+        started = new.started
+        if started.world == LIVE or started.site is not None:
+            await self._wait_until_given_back(started.robots)
+        if started.world == LIVE:
+            self._owners.check_live(started.robots)
+        else:
+            self._owners.check_free(started.robots)
         with self._owners.promised(new.started):
             return await self._begin(new)
 
@@ -183,47 +188,53 @@ class Runtime:
         parting = [
             self._tasks[run]
             for run, each in self._runs.items()
-            if each.context.state.status.ended and not each.sides.keys().isdisjoint(robots)
+            if each.context.state.status.ended and not each.proxies.keys().isdisjoint(robots)
         ]
         if parting:
             await asyncio.wait(parting)
 
     async def _take_up_or_fail(self, state: RunState) -> None:
         """Let a run go on; if that cannot be, it fails and says why."""
-        live = state.started.world == LIVE
-        clock: RunClock = (
-            WallClock(self._monotonic, state.time) if live else SimulatedClock(state.time)
-        )
-        context = RunContext(
-            state, clock, self._journal, self._settings, self._utc_now, self._refusals
-        )
+        context = self._context(state, SimulatedClock(state.time))
         try:
-            self._take_up(context, live=live)
+            hardware = self._hardware_of(state)
+            context = self._context(state, hardware.clock(state.time))
+            self._take_up(context, hardware)
         except Exception as error:
             log.exception("run %s could not be taken up", state.id)
             await fail_run(context, why_it_stopped(error))
 
-    def _take_up(self, context: RunContext, *, live: bool) -> None:
+    def _hardware_of(self, state: RunState) -> Hardware:
+        if state.started.world == LIVE:
+            return RealRobots(self._monotonic)
+        return self._worlds.open(state, lambda: self._runs[state.id])
+
+    def _context(self, state: RunState, clock: RunClock) -> RunContext:
+        return RunContext(
+            state, clock, self._journal, self._settings, self._utc_now, self._refusals
+        )
+
+    def _take_up(self, context: RunContext, hardware: Hardware) -> None:
         state = context.state
-        sides = {
-            robot: RobotSide(robot, self._robots, frame) for robot, frame in state.frames.items()
+        proxies = {
+            robot: RobotProxy(robot, self._robots, frame) for robot, frame in state.frames.items()
         }
         scenario = state.scenario
         dialogues = DialogueDriver(
             context,
             answer_source(state.request, scenario),
             self._policy,
-            None if live else _person_of(state, scenario),
+            _person_of(state, scenario) if hardware.simulated else None,
             partial(self._send_mail, state),
         )
-        hardware = RealRobots() if live else self._worlds.open(state, lambda: self._runs[state.id])
-        run = Run(context, sides, dialogues, hardware, self._poses.open(state))
+        run = Run(context, proxies, dialogues, hardware, self._poses.open(state))
         try:
             self._owners.give(run)
         except ConflictError:
             self._poses.close(state.id)
             raise
         self._runs[state.id] = run
+        hardware.lend()
         task = asyncio.create_task(run.main(), name=f"run {state.id}")
         task.add_done_callback(partial(self._ended, run))
         self._tasks[state.id] = task
@@ -285,8 +296,8 @@ class Runtime:
         leaves = np.asarray(state.tree.leaves, dtype=np.int64)
         potentials = np.zeros(len(state.tree))
         run = self._runs.get(state.id)
-        for side in run.sides.values() if run else ():
-            of_side = potentials_for(state, side, leaves)
+        for proxy in run.proxies.values() if run else ():
+            of_side = potentials_for(state, proxy, leaves)
             potentials[leaves] = np.maximum(potentials[leaves], of_side)
         trouble = self._journal.trouble.reason
         return RunViewing(state, self._time(state), array("d", potentials.tobytes()), trouble)
@@ -337,6 +348,20 @@ class Runtime:
         await running.abort_at_once(author)
         return self._summary(running.context.state)
 
+    async def take_leaf(
+        self, run: UUID, node: str, helper: str, author: ev.Author | None = None
+    ) -> RunSummary:
+        """Have a leaf be a person's, who does it themselves. Raises as `People.take`."""
+        running = await self._running(run)
+        await running.request(lambda: running.people.take(node, helper, author))
+        return self._summary(running.context.state)
+
+    async def give_leaf_back(self, run: UUID, node: str, helper: str) -> RunSummary:
+        """Have it be anybody's again. Raises as `People.give_back`."""
+        running = await self._running(run)
+        await running.request(lambda: running.people.give_back(node, helper))
+        return self._summary(running.context.state)
+
     async def intervene(
         self, run: UUID, intervention: Intervention, author: ev.Author | None = None
     ) -> None:
@@ -351,8 +376,8 @@ class Runtime:
     async def picture(self, run: UUID, camera: str) -> bytes:
         """A camera's picture now, as JPEG. Raises `NotFoundError` or `ConflictError`."""
         running = await self._running(run)
-        for robot, side in running.sides.items():
-            if side.hello is not None and camera in side.hello.cameras:
+        for robot, proxy in running.proxies.items():
+            if proxy.hello is not None and camera in proxy.hello.cameras:
                 return await self._robots.take_picture(robot, camera)
         raise NotFoundError(f"no robot of this run has a camera '{camera}'")
 
@@ -393,9 +418,9 @@ class Runtime:
         found = await self._states.find_dialogue(dialogue)
         try:
             run = await self._running(found.opened.run)
-            side = run.sides[found.opened.robot]
+            proxy = run.proxies[found.opened.robot]
             answered = await run.request(
-                lambda: run.dialogues.answer(found, prompt, answer, helper, side, author)
+                lambda: run.dialogues.answer(found, prompt, answer, helper, proxy, author)
             )
         except ConflictError:
             # Who was first is told also where that answer has ended the run.
@@ -445,7 +470,7 @@ class Runtime:
 
     def robots(self) -> list[RobotView]:
         """Every robot that is or was connected."""
-        owners = {robot: run.context.state for run in self._runs.values() for robot in run.sides}
+        owners = {robot: run.context.state for run in self._runs.values() for robot in run.proxies}
         return [
             robot_view(
                 robot, self._robots.hello(robot), self._robots.connected(robot), owners.get(robot)

@@ -54,6 +54,16 @@ class RunService(Protocol):
 
     async def abort(self, run: UUID, author: Author | None = None) -> RunSummary: ...
 
+    async def take_leaf(
+        self, run: UUID, node: str, helper: str, author: Author | None = None
+    ) -> RunSummary:
+        """A person does a leaf themselves. Raises `ConflictError` if it cannot be begun now."""
+        ...
+
+    async def give_leaf_back(self, run: UUID, node: str, helper: str) -> RunSummary:
+        """They do not after all. Raises `ConflictError` if it is not theirs."""
+        ...
+
     async def intervene(
         self, run: UUID, intervention: Intervention, author: Author | None = None
     ) -> None:

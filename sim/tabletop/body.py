@@ -96,6 +96,10 @@ class TabletopBody:
         """Straight lines through the waypoints; None if one is out of reach or in the table."""
         return self._planner.plan(waypoints)
 
+    def plan_back(self, waypoints: Sequence[ToolPose]) -> StraightPath | None:
+        """As `plan_path`: a gripper that floats has no posture."""
+        return self._planner.plan(waypoints)
+
     def plan_among(self, legs: Sequence[Leg], boxes: Sequence[SeenBox]) -> StraightPath | NoWay:
         """As `plan_path`: a gripper that floats has no arm that could touch anything."""
         return self._planner.plan_among(legs, boxes)

@@ -1,4 +1,4 @@
-"""The PR2 as a `mend.robots.body.Body`: motions of the arm and the gripper, cameras, senses."""
+"""The PR2 as a `mend.robots.body.Body`: motions of the arm and the gripper, cameras, sensing."""
 
 from collections.abc import Callable, Mapping, Sequence
 
@@ -143,6 +143,10 @@ class WorkcellBody:
     def plan_path(self, waypoints: Sequence[ToolPose]) -> ArmPath | None:
         """Plan through all waypoints; each at its yaw, or each at its yaw + pi."""
         return _path(self._planner.plan(self._target, waypoints, self._rng))
+
+    def plan_back(self, waypoints: Sequence[ToolPose]) -> ArmPath | None:
+        """Back through poses that the tool has just passed, in the posture that the arm has."""
+        return self._planner.plan_back(self._target, waypoints)
 
     def plan_among(self, legs: Sequence[Leg], boxes: Sequence[SeenBox]) -> ArmPath | NoWay:
         """Plan through all legs so that nothing touches any of `boxes`."""

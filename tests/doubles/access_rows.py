@@ -33,7 +33,7 @@ def requests() -> list[Request]:
 
 def _filled(path: str) -> str:
     known = {"name": "nothing", "camera": "head", "model": "none", "file": "a.stl", "answer": "yes"}
-    for parameter in ("run", "dialogue", "prompt", "picture"):
+    for parameter in ("run", "site", "dialogue", "prompt", "picture"):
         path = path.replace(f"{{{parameter}}}", str(NOBODY))
     for parameter, value in known.items():
         path = path.replace(f"{{{parameter}}}", value)

@@ -55,6 +55,8 @@ class _Reader:
         match event:
             case ev.NodeStarted():
                 self._started(event)
+            case ev.NodeTaken():
+                self._begin(event, event.helper)
             case ev.NodeDone():
                 self._finish(event)
             case ev.NodeLeftOut():
@@ -141,11 +143,14 @@ class _Reader:
             self._breach(event, f"leaves {len(self._open)} dialogues open")
 
     def _started(self, event: ev.NodeStarted) -> None:
+        if event.robot in self._active.values():
+            self._breach(event, f"gives {event.robot} a second leaf")
+        self._begin(event, event.robot)
+
+    def _begin(self, event: ev.NodeStarted | ev.NodeTaken, owner: str) -> None:
         node = event.node
         if node in self._done or node in self._active:
             self._breach(event, f"starts {node}, which is active or done")
-        if event.robot in self._active.values():
-            self._breach(event, f"gives {event.robot} a second leaf")
         if node in self._open.values():
             self._breach(event, f"starts {node} while there is a dialogue about it")
         child = node
@@ -157,9 +162,11 @@ class _Reader:
                 self._breach(event, f"starts {node} under the abandoned {child}")
             self._check_siblings(event, parent, child)
             child = parent
-        self._active[node] = event.robot
+        self._active[node] = owner
 
-    def _check_siblings(self, event: ev.NodeStarted, parent: str, child: str) -> None:
+    def _check_siblings(
+        self, event: ev.NodeStarted | ev.NodeTaken, parent: str, child: str
+    ) -> None:
         siblings = self._children[parent]
         if self._kinds[parent] == "then":
             for earlier in siblings[: siblings.index(child)]:

@@ -171,6 +171,22 @@ class FakeRuns:
         self._runs[run] = self._runs[run].model_copy(update={"status": status, "result": result})
         return self.run_now(run)
 
+    async def take_leaf(
+        self,
+        run: UUID,
+        node: str,
+        helper: str,
+        author: ev.Author | None = None,
+    ) -> RunSummary:
+        self._expect(run, RunStatus.RUNNING, RunStatus.PAUSED)
+        taken = {"node": node, "name": node, "helper": helper, "until": 120.0, "was_at": None}
+        await self.commit(ev.NodeTaken(**_stamp(run), **taken, author=author))
+        return self.run_now(run)
+
+    async def give_leaf_back(self, run: UUID, node: str, helper: str) -> RunSummary:  # noqa: ARG002
+        self._expect(run, RunStatus.RUNNING, RunStatus.PAUSED)
+        return self.run_now(run)
+
     async def intervene(
         self, run: UUID, intervention: Intervention, author: ev.Author | None = None
     ) -> None:

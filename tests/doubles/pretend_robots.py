@@ -30,6 +30,7 @@ from mend.robots.link.messages import (
     ReportBody,
     Resume,
     Resumed,
+    RoomLimits,
     Sighting,
     Start,
     StepStarted,
@@ -68,6 +69,7 @@ class PretendRobot:
     name: str
     faults: dict[str, list[tuple[str, int]]] = field(default_factory=dict)
     behaviors: tuple[str, ...] = ("pick_and_place",)
+    room: RoomLimits | None = None
     boot: int = 1
     time: float = 0.0
     seq: int = 0
@@ -113,6 +115,7 @@ class PretendRobot:
             reach=ReachLimits(x=0, y=0, min_m=0, max_m=1),
             time=self.time,
             simulated=True,
+            room=self.room,
         )
 
 

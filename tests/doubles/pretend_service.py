@@ -2,29 +2,34 @@
 
 import asyncio
 import time
-from collections.abc import AsyncIterator, Mapping
+from collections.abc import AsyncIterator, Mapping, Sequence
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
+from uuid import UUID
 
 from pretend_robots import PretendRobot, PretendRobots
 
 from mend.dialogue.registry import load_scripts
 from mend.dialogue.script import Script
+from mend.errors import NotFoundError
 from mend.server.dialogues.escalation import EscalationPolicy
 from mend.server.journal import events as ev
 from mend.server.journal.sqlite import SqliteJournal
 from mend.server.journal.trouble import Sleep
 from mend.server.poses.feed import PoseFeed
+from mend.server.runtime.clock import RunClock, SimulatedClock
 from mend.server.runtime.context import RunSettings
 from mend.server.runtime.dialogue_state import DialogueState
-from mend.server.runtime.ports import PreparedRun
+from mend.server.runtime.ports import PreparedRun, SiteOffer
 from mend.server.runtime.requests import RunRequest
+from mend.server.runtime.robot_proxy import RobotProxy
 from mend.server.runtime.run import Run
 from mend.server.runtime.run_state import RunState
 from mend.server.runtime.runtime import Runtime
+from mend.server.runtime.team import Neighbour
 from mend.server.runtime.views import RunView
 from mend.tasks.definition import TaskTreeDefinition
 from mend.tasks.scene import Scene
@@ -38,11 +43,23 @@ class NoHardware:
     def __init__(self, restarted: list[str]) -> None:
         self._restarted = restarted
 
+    def clock(self, start_s: float) -> RunClock:
+        return SimulatedClock(start_s)
+
+    def lend(self) -> None: ...
+
+    async def begin(self, robot: str) -> None:
+        await self.restart(robot)
+
     async def restart(self, robot: str) -> None:
         self._restarted.append(robot)
 
-    def came(self, robot: str) -> None:
-        pass
+    def came(self, proxy: RobotProxy) -> None: ...
+
+    def neighbours(self) -> Sequence[Neighbour]:
+        return ()
+
+    def tell_neighbours(self) -> None: ...
 
     async def release(self) -> None: ...
 
@@ -52,6 +69,9 @@ class PretendWorlds:
     restarted: list[str] = field(default_factory=list)
 
     def check(self, world: str, options: Mapping[str, Any]) -> None: ...
+
+    def offer(self, site: UUID, robots: list[str]) -> SiteOffer:  # noqa: ARG002
+        raise NotFoundError(f"there is no site {site}")
 
     def open(self, state: RunState, run: Any) -> NoHardware:  # noqa: ARG002
         return NoHardware(self.restarted)
@@ -64,7 +84,7 @@ class OneTree:
     definition: TaskTreeDefinition
     scene: Scene = BARE
 
-    async def prepare(self, request: RunRequest) -> PreparedRun:
+    async def prepare(self, request: RunRequest, scene: Scene | None = None) -> PreparedRun:  # noqa: ARG002
         return PreparedRun(request.tree, self.definition.model_dump_json(), self.scene)
 
 

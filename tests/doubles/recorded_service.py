@@ -56,6 +56,9 @@ class RecordedRuns:
         asyncio.get_running_loop().call_soon(self.started)
         return SimpleNamespace(id=self._run)
 
+    def robots(self) -> list[Any]:
+        return []
+
     async def _play(self, events: Sequence[ev.Event]) -> None:
         for event in events:
             moved = event.model_copy(update={"run": self._run, "seq": 0})
@@ -100,6 +103,8 @@ class RecordedService:
         journal = SqliteJournal(settings.journal_path)
         runs = RecordedRuns(journal, self.events, self.stops, self.started, self.requests)
         try:
-            yield SimpleNamespace(runtime=runs, journal=journal, settings=settings)
+            yield SimpleNamespace(
+                runtime=runs, journal=journal, settings=settings, robots_url="ws://here/ws/robot"
+            )
         finally:
             journal.close()

@@ -206,6 +206,9 @@ class ScriptedBody:
         )
         return None if self.unplannable or beyond else ScriptedPath(list(waypoints))
 
+    def plan_back(self, waypoints) -> ScriptedPath | None:
+        return self.plan_path(waypoints)
+
     def plan_among(self, legs, boxes) -> ScriptedPath | NoWay:
         bars = [box for box in boxes[1:] if box.name in self.bars]
         if bars:

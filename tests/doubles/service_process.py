@@ -40,7 +40,7 @@ class ServiceProcess:
         self._program = program
         self._token = token
         self._environment = environment
-        self._port = _free_port()
+        self._port = free_port()
         self._process: asyncio.subprocess.Process | None = None
 
     @property
@@ -176,7 +176,8 @@ async def service_process(
         await service.stop()
 
 
-def _free_port() -> int:
+def free_port() -> int:
+    """A port of this machine that nobody has just now."""
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         return int(probe.getsockname()[1])

@@ -23,17 +23,21 @@ from mend.server.documents import DocumentKind
 from mend.server.fixed_documents import GivenFiles, NamedTexts, fixed_documents
 from mend.server.journal.sqlite import SqliteJournal
 from mend.server.journaled_documents import JournaledDocuments
-from mend.server.library import build_library
-from mend.server.limits import LimitName
+from mend.server.library import Library, build_library
+from mend.server.limits import LimitName, Limits
 from mend.server.listening import listen
 from mend.server.models import RobotModels
 from mend.server.pace import Sleep
 from mend.server.poses.feed import PoseFeed
 from mend.server.poses.record import PoseRecords
 from mend.server.refusals import Refusals
+from mend.server.robots.passes import OwnRobots
+from mend.server.robots.registry import RobotRegistry
 from mend.server.scene_checks import WorldChecks
 from mend.server.serving import Server, serve_config
 from mend.server.settings import Settings
+from mend.server.sites.sites import Sites
+from mend.server.sites.worlds import SimulatedWorlds
 from mend.server.speech.abilities import NO_SPEECH, SpeechAbilities
 
 TOKEN = "correct-horse-battery"
@@ -60,7 +64,7 @@ class ServiceUnderTest:
 
     @property
     def refusals(self) -> Refusals:
-        refusals: Refusals = self.app.state.parts.refusals
+        refusals: Refusals = self.app.state.services.refusals
         return refusals
 
     async def refused(self, limit: LimitName) -> None:
@@ -126,6 +130,7 @@ def build(
         scenes=library.scenes,
         scenarios=library.scenarios,
         worlds=FakeWorlds(),
+        sites=_no_sites(journal, library, utc_now),
         models=RobotModels(models),
         poses=poses,
         access=access,
@@ -137,6 +142,17 @@ def build(
     service = ServiceUnderTest(app, runs, journal, chosen, poses, access, deeds)
     weakref.finalize(service, shutil.rmtree, folder)
     return service
+
+
+def _no_sites(journal: SqliteJournal, library: Library, utc_now: Callable[[], datetime]) -> Sites:
+    """Sites of a service that has no world to open one in."""
+
+    async def launch(*_: object) -> Any:
+        raise AssertionError("there is no world to launch")
+
+    registry = RobotRegistry(journal, time.monotonic)
+    worlds, names = SimulatedWorlds({}), OwnRobots()
+    return Sites(worlds, journal, registry, launch, names, Limits(), library, utc_now=utc_now)
 
 
 @contextlib.asynccontextmanager

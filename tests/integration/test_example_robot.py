@@ -1,5 +1,6 @@
 """The example robot, as a user runs it, against the real endpoint."""
 
+import asyncio
 import time
 from collections.abc import AsyncIterator
 from contextlib import AsyncExitStack
@@ -10,6 +11,7 @@ import pytest
 from example_robot import TOKEN, example_robot
 from loopback import served
 from recording_sink import RecordingSink
+from service_process import free_port
 
 from mend.robots.link.messages import Interrupt, Location, Look, Looked, Resume, Start
 from mend.server.journal.sqlite import SqliteJournal
@@ -115,6 +117,48 @@ async def test_a_later_start_delivers_what_the_earlier_one_left(
     for boot in (first, second):
         seqs = [each.seq for each in sink.receipts if each.boot == boot]
         assert seqs == list(range(1, len(seqs) + 1))
+
+
+async def test_it_says_where_it_calls_and_why_nobody_answers_and_keeps_trying(
+    journal: SqliteJournal,
+) -> None:
+    port = free_port()
+    url = f"ws://127.0.0.1:{port}/ws/robot"
+    async with example_robot(url) as process, asyncio.timeout(60):
+        assert process.stderr is not None
+        calls = (await process.stderr.readline()).decode()
+        fails = (await process.stderr.readline()).decode()
+        registry = RobotRegistry(journal, time.monotonic)
+        async with served(registry, TOKEN, port):
+            comes = (await process.stderr.readline()).decode()
+        says = (await process.stderr.readline()).decode()
+        loses = (await process.stderr.readline()).decode()
+    assert says == "demo: the service says: the service is shutting down\n"
+    assert calls == f"demo: calling {url}\n"
+    assert fails.startswith(f"demo: nobody answers at {url}: ")
+    assert "111" in fails
+    assert fails.endswith("is 'mend serve' running? Trying again ...\n")
+    assert comes == f"demo: connected to {url}\n"
+    assert loses.startswith("demo: ")
+    assert "Trying again" in loses
+
+
+async def test_a_wrong_address_is_told_as_one() -> None:
+    async with asyncio.timeout(60):
+        server = await asyncio.start_server(not_found, "127.0.0.1", 0)
+        port = server.sockets[0].getsockname()[1]
+        async with example_robot(f"ws://127.0.0.1:{port}/ws/robots") as process:
+            assert process.stderr is not None
+            await process.stderr.readline()
+            told = (await process.stderr.readline()).decode()
+        server.close()
+    assert f"ws://127.0.0.1:{port}/ws/robots answers with HTTP 404" in told
+
+
+async def not_found(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+    await reader.readuntil(b"\r\n\r\n")
+    writer.write(b"HTTP/1.1 404 Not Found\r\nContent-Length: 0\r\n\r\n")
+    writer.close()
 
 
 async def test_a_wrong_token_ends_it_with_a_sentence(journal: SqliteJournal) -> None:

@@ -102,7 +102,7 @@ async def test_a_robot_that_reads_nothing_is_ended() -> None:
     async with serving(limits=SOON) as service, client_of(service) as client:
         times = LinkTimes(silence_s=60.0)
         registry = RobotRegistry(service.journal, time.monotonic, times, SOON)
-        add_robot_route(service.app, registry, service.app.state.parts.access)
+        add_robot_route(service.app, registry, service.app.state.services.access)
         await client.upgraded("/ws/robot")
         client.send(text_frame(hello(shows=None).model_dump_json()))
         # Each is answered with what is wrong with it.

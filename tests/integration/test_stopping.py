@@ -127,7 +127,7 @@ async def test_who_reads_nothing_of_a_large_answer_is_not_waited_for(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
     async with faultless(caplog) as service, raw_client(port_of(service.url)) as client:
-        object.__setattr__(service.app.state.parts, "trees", Large())
+        object.__setattr__(service.app.state.services, "trees", Large())
         client.send(GET)
         await client.reader.readuntil(b"\r\n\r\n")
         async with ending(service):
@@ -140,7 +140,7 @@ async def test_an_answer_that_takes_long_is_not_waited_for(
 ) -> None:
     async with faultless(caplog) as service, raw_client(port_of(service.url)) as client:
         library = Stuck()
-        object.__setattr__(service.app.state.parts, "trees", library)
+        object.__setattr__(service.app.state.services, "trees", library)
         client.send(GET)
         await library.asked.wait()
         async with ending(service):
@@ -152,7 +152,7 @@ async def test_who_hangs_up_in_the_middle_of_a_large_answer_is_no_defect(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
     async with faultless(caplog) as service:
-        object.__setattr__(service.app.state.parts, "trees", Large())
+        object.__setattr__(service.app.state.services, "trees", Large())
         async with raw_client(port_of(service.url)) as client:
             client.send(GET)
             await client.reader.readuntil(b"\r\n\r\n")

@@ -42,7 +42,7 @@ class Clock:
 async def guarded(clock: Clock) -> AsyncIterator[ServiceUnderTest]:
     async with serving(token=TOKEN, limits=LIMITS, wall_time_s=clock) as service:
         registry = RobotRegistry(service.journal, clock)
-        add_robot_route(service.app, registry, service.app.state.parts.access)
+        add_robot_route(service.app, registry, service.app.state.services.access)
         yield service
         registry.close()
 

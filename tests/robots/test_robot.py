@@ -10,6 +10,7 @@ from drawn_scene import Resting
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from robot_bench import RobotBench
+from sampled import sample
 from scripted_body import STARTS, ScriptedBody, catalogue, trained_model
 
 from mend.robots.body import NoWay
@@ -31,8 +32,8 @@ from mend.robots.link.messages import (
     StepStarted,
     TakePicture,
 )
+from mend.robots.perception.head import HeadSense
 from mend.robots.robot import Robot
-from mend.robots.senses.head import HeadSense
 from mend.robots.vision.obstruction import Obstruction
 from mend.tasks.plugins import load_plugins
 
@@ -331,7 +332,7 @@ def test_a_push_against_the_arm_holds_it_in_place() -> None:
 
 
 @pytest.mark.slow
-@settings(deadline=None, max_examples=20)
+@settings(deadline=None, max_examples=sample(8, 20))
 @given(cycles=st.integers(0, 300), retreat=st.booleans())
 def test_an_interrupt_stops_all_motion_within_a_cycle(cycles: int, retreat: bool) -> None:
     bench = RobotBench()
@@ -355,7 +356,7 @@ def test_an_interrupt_stops_all_motion_within_a_cycle(cycles: int, retreat: bool
 
 
 @pytest.mark.slow
-@settings(deadline=None, max_examples=20)
+@settings(deadline=None, max_examples=sample(8, 20))
 @given(cycles=st.integers(0, 240))
 def test_a_behavior_interrupted_anywhere_resumes_and_finishes(cycles: int) -> None:
     bench = RobotBench()

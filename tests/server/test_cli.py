@@ -320,7 +320,10 @@ def test_a_task_file_is_run_under_its_own_name(
     file = write_file(tmp_path, TASK)
     assert mend("run", str(file)).code == 0
     assert recorded.requests[0].tree == "just_one"
-    assert recorded.given[0].texts == {DocumentKind.TREE: {"just_one": TASK}}
+    assert recorded.given[0].texts == {
+        DocumentKind.TREE: {"just_one": TASK},
+        DocumentKind.SCENE: {"bench": SCENE},
+    }
 
 
 def test_a_task_file_with_mistakes_is_not_run(

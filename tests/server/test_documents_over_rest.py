@@ -85,7 +85,7 @@ def library(**worlds) -> Library:
 @contextlib.asynccontextmanager
 async def client_of(own: Library) -> AsyncIterator[httpx.AsyncClient]:
     service = build()
-    parts = service.app.state.parts
+    parts = service.app.state.services
     object.__setattr__(parts, "trees", own.trees)
     object.__setattr__(parts, "scenes", own.scenes)
     object.__setattr__(parts, "scenarios", own.scenarios)

@@ -295,7 +295,7 @@ async def test_an_answer_with_a_secret_is_given_again_and_not_in_the_journal(
         ]
     await service.deeds.written()
     # As after a restart: what was in memory is gone.
-    service.app.state.parts.repeats._remembered.clear()
+    service.app.state.services.repeats._remembered.clear()
     async with service.client() as client:
         lost = await Served(service, client).post("/api/access/principals", body, **admin)
     rows = service.journal._write_connection.execute("SELECT body FROM requests").fetchall()
@@ -375,7 +375,7 @@ async def test_the_oldest_keys_of_a_principal_and_the_old_of_all_are_forgotten()
 async def test_a_key_that_is_too_old_is_as_new() -> None:
     now_s = datetime.now(UTC).timestamp()
     service = build(limits=Limits(idempotency_s=60.0))
-    service.app.state.parts.repeats._wall_time_s = lambda: now_s
+    service.app.state.services.repeats._wall_time_s = lambda: now_s
     async with service.client() as client:
         served = Served(service, client)
         first = await served.post("/api/runs", RUN)

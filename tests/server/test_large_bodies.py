@@ -27,7 +27,7 @@ def service() -> ServiceUnderTest:
 async def stranger(service: ServiceUnderTest) -> AsyncIterator[httpx.AsyncClient]:
     async with service.client(headers=JSON) as client:
         yield client
-    service.app.state.parts.off_loop.close()
+    service.app.state.services.off_loop.close()
     service.journal.close()
 
 
@@ -92,7 +92,7 @@ async def test_punctuation_within_a_text_is_no_value(operator: httpx.AsyncClient
 async def test_a_large_body_is_read_beside_the_loop(
     service: ServiceUnderTest, operator: httpx.AsyncClient, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    off_loop, read = service.app.state.parts.off_loop, []
+    off_loop, read = service.app.state.services.off_loop, []
 
     async def run(chars: int, work: Any, *given: Any) -> Any:
         read.append(chars)

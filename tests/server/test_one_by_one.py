@@ -93,7 +93,7 @@ async def test_a_request_asks_for_who_makes_it(monkeypatch: pytest.MonkeyPatch) 
         asked.append(asker.get())
         raise NotFoundError("there is none")
 
-    monkeypatch.setattr(service.app.state.parts.trees, "get", get)
+    monkeypatch.setattr(service.app.state.services.trees, "get", get)
     async with service.client(headers={"Authorization": f"Bearer {TOKEN}"}) as client:
         await client.get("/api/trees/big")
     assert asked == [TOKEN_NAME]

@@ -25,6 +25,10 @@ OF_NO_RUN = {
     "sign_in_failed",
     "signed_in",
     "signed_out",
+    "site_closed",
+    "site_given_back",
+    "site_opened",
+    "site_restarted",
 }
 ADDED_SINCE: dict[str, set[str]] = {
     "v1": {
@@ -35,13 +39,14 @@ ADDED_SINCE: dict[str, set[str]] = {
         "looked_anew",
         "node_left_out",
         "node_returned",
+        "node_taken",
         "node_undone",
         "suspected_false_alarm",
     },
-    "v2": {*OF_NO_RUN, "first_look", "looked_anew", "suspected_false_alarm"},
-    "v3": {*OF_NO_RUN, "looked_anew"},
-    "v4": {*OF_NO_RUN, "looked_anew"},
-    "v5": {*OF_NO_RUN, "looked_anew"},
+    "v2": {*OF_NO_RUN, "node_taken", "first_look", "looked_anew", "suspected_false_alarm"},
+    "v3": {*OF_NO_RUN, "node_taken", "looked_anew"},
+    "v4": {*OF_NO_RUN, "node_taken", "looked_anew"},
+    "v5": {*OF_NO_RUN, "node_taken", "looked_anew"},
 }
 """The types of events that came after a sample was written."""
 

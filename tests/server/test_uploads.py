@@ -132,7 +132,7 @@ async def test_over_rest_it_is_told_when_to_come_back(monkeypatch: pytest.Monkey
     async def refuse(*_: object) -> None:
         raise BusyError("too much waits", limit="waiting_chars")
 
-    monkeypatch.setattr(service.app.state.parts.trees, "save", refuse)
+    monkeypatch.setattr(service.app.state.services.trees, "save", refuse)
     async with service.client() as client:
         refused: httpx.Response = await client.put("/api/trees/x", json={"text": ""})
     assert (refused.status_code, refused.headers["retry-after"]) == (503, "5")

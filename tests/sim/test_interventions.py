@@ -19,6 +19,14 @@ def test_only_who_stands_in_the_way_acts_after_the_robot_saw_it_done(
     do: Intervention, still_done: bool
 ) -> None:
     pending = PendingInterventions([])
-    pending.queue("c1", Intervene(intervention=do, by="helper"), 3.0)
-    pending.withdraw("cup")
+    pending.queue("arm", "c1", Intervene(intervention=do, by="helper"), 3.0)
+    pending.withdraw("arm", "cup")
     assert bool(pending.take_due(3.0, None)) is still_done
+
+
+def test_what_another_robot_was_promised_is_still_done() -> None:
+    pending = PendingInterventions([])
+    do = Intervention(act=Act.PUT_BACK, object="cup")
+    pending.queue("left", "c1", Intervene(intervention=do, by="helper"), 3.0)
+    pending.withdraw("right", "cup")
+    assert [each.robot for each in pending.take_due(3.0, None)] == ["left"]

@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mend.sim.mischief import random_interventions
+from mend.sim.random_interventions import random_interventions
 from mend.tasks.intervention import Act
 from mend.tasks.scenario import ScriptedIntervention
 from mend.tasks.scene import Place, Pose, Scene, SceneObject

@@ -5,6 +5,7 @@ import pytest
 import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from sampled import sample
 
 from mend.robots.catalogue import Part
 from mend.server.behaviors import behavior_parameters
@@ -57,7 +58,7 @@ def _as_text(document: dict) -> str:
 
 
 @given(SEEDS, COUNTS)
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=sample(6, 12), deadline=None)
 def test_a_random_scene_is_a_valid_scene_file_of_so_many_parts(seed, count):
     made = random_scene(seed, count)
     assert check_scene_text(_as_text(scene_document(made.scene))) == made.scene
@@ -65,7 +66,7 @@ def test_a_random_scene_is_a_valid_scene_file_of_so_many_parts(seed, count):
 
 
 @given(SEEDS, COUNTS)
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=sample(6, 12), deadline=None)
 def test_no_two_parts_fill_the_same_space(seed, count):
     scene = random_scene(seed, count).scene
     both = [
@@ -80,7 +81,7 @@ def test_no_two_parts_fill_the_same_space(seed, count):
 
 
 @given(SEEDS, COUNTS)
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=sample(6, 12), deadline=None)
 def test_what_is_above_the_table_stands_on_another_part(seed, count):
     scene = random_scene(seed, count).scene
     for poses in (_starts(scene), _targets(scene)):
@@ -95,7 +96,7 @@ def test_what_is_above_the_table_stands_on_another_part(seed, count):
 
 
 @given(SEEDS, COUNTS)
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=sample(6, 12), deadline=None)
 def test_the_tree_places_every_part_once_and_keeps_to_what_stands_on_what(seed, count):
     made = random_scene(seed, count)
 

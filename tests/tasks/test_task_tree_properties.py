@@ -10,6 +10,7 @@ from full_evaluation import Node, define, trees
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, precondition, rule
+from sampled import sample
 
 from mend.errors import IllegalTransitionError
 from mend.tasks import eligible
@@ -257,7 +258,7 @@ class TreeAgainstFullEvaluation(RuleBasedStateMachine):
 
 TestTreeAgainstFullEvaluation = pytest.mark.slow(TreeAgainstFullEvaluation.TestCase)
 TestTreeAgainstFullEvaluation.settings = settings(
-    max_examples=150, stateful_step_count=50, deadline=None
+    max_examples=sample(50, 150), stateful_step_count=50, deadline=None
 )
 
 

@@ -7,7 +7,7 @@ from pydantic import Field
 from mend.robots.behaviors import Phase
 from mend.robots.grip import GripState
 from mend.robots.link.messages import Detection
-from mend.robots.monitors import Meanwhile, Monitor, MonitorView
+from mend.robots.monitors import Monitor, MonitorView, Reaction
 from mend.tasks.scene import StrictModel
 
 
@@ -24,7 +24,7 @@ class Slipping(Monitor[SlippingParameters]):
     issue: ClassVar[str] = "slipping"
     behaviors: ClassVar[frozenset[str]] = frozenset({"pick_and_place"})
     phases: ClassVar[frozenset[Phase]] = frozenset({Phase.CARRY, Phase.PLACE})
-    meanwhile: ClassVar[Meanwhile] = Meanwhile.SLOW_DOWN
+    reaction: ClassVar[Reaction] = Reaction.SLOW_DOWN
     camera: ClassVar[str | None] = "forearm"
     parameters: ClassVar[type[StrictModel]] = SlippingParameters
 

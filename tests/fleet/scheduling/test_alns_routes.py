@@ -14,6 +14,7 @@ from delivery_problems import HANDED_OVER, corridor, corridor_items, parcel
 from even_clock import EvenClock
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from sampled import sample
 
 from mend.fleet.scheduling.alns.itineraries import Allowed, find_itineraries, follow, unroll
 from mend.fleet.scheduling.alns.problem_arrays import problem_arrays
@@ -65,7 +66,7 @@ def solved(problem: Problem, seconds: float = 6.0, **options: object) -> Solutio
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(16))
+@pytest.mark.parametrize("seed", sample((1, 4, 5, 7, 8, 9, 10, 11), range(16)))
 def test_search_finds_what_the_exact_solver_proves(seed: int) -> None:
     problem = drawn_problem(seed)
     exact = solve_exactly(problem, seconds=600.0, clock=time.perf_counter)

@@ -9,6 +9,7 @@ import pytest
 from benchmark_instances import DATA
 from delivery_problems import corridor, drawn_problem, parcel
 from even_clock import EvenClock
+from sampled import sample
 
 from mend.fleet.scheduling.exact.constraint_search import Effort, search
 from mend.fleet.scheduling.exact.model import Rounding
@@ -49,7 +50,7 @@ def proved_bound(problem: Problem) -> RouteBound:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(16))
+@pytest.mark.parametrize("seed", sample((1, 2, 3, 4, 5, 6, 8, 10), range(16)))
 def test_optimum_is_that_of_constraints_alone(seed: int) -> None:
     problem = drawn_with_distances(seed)
     alone = search(problem, Rounding.UP, EFFORT)

@@ -15,7 +15,7 @@ from mend.robots.link.messages import (
     Resume,
     StepStarted,
 )
-from mend.robots.monitors import Meanwhile, Monitor, MonitorView
+from mend.robots.monitors import Monitor, MonitorView, Reaction
 from mend.robots.monitors.monitor import NoParameters
 from mend.robots.robot import Robot
 from mend.robots.vision.presence import Presence
@@ -29,7 +29,7 @@ class Onlooker(Monitor[NoParameters]):
     issue: ClassVar[str] = "watched"
     behaviors: ClassVar[frozenset[str]] = frozenset({"pick_and_place"})
     phases: ClassVar[frozenset[Phase]] = frozenset({Phase.CONFIRM})
-    meanwhile: ClassVar[Meanwhile] = Meanwhile.STOP_IN_PLACE
+    reaction: ClassVar[Reaction] = Reaction.STOP_IN_PLACE
     camera: ClassVar[str | None] = "head"
     parameters: ClassVar[type[StrictModel]] = NoParameters
     views: ClassVar[list[MonitorView]] = []

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from scripted_body import forearm_pose, tool_matrix
 
 from mend.robots.body import CameraImage, ToolPose
+from mend.robots.grip.composition import Composition, likeliest
 from mend.robots.grip.view import composition, in_front, outline
 from mend.robots.vision.color_model import ColorModel, Sample
 from mend.robots.vision.projection import NEAR_M, project
@@ -44,6 +45,39 @@ def test_a_part_that_hardly_has_a_hue_is_not_taken_for_one_that_has(
     assert swapped is not None
     assert swapped.other > 0.5
     assert swapped.most_other == "green"
+
+
+OLIVE, NAVY = (18.0, 38.0, 46.0), (60.0, 18.0, 14.0)
+"""BGR of two dark parts, which have a hue as long as there is light enough."""
+
+
+def seen_in(light: float, bgr: tuple[float, float, float]) -> Composition | None:
+    """What a picture full of one colour says of the olive part."""
+    model = ColorModel.train({"olive": [sample(OLIVE)], "navy": [sample(NAVY)]})
+    assert model.has_hue("olive")
+    dimmed = tuple(light * each for each in bgr)
+    region = np.full((40, 40), 1, np.uint8)
+    return composition(region, model.segment(picture(dimmed)), model, "olive")
+
+
+@pytest.mark.parametrize("light", [0.55, 0.6, 0.65, 0.7, 1.0])
+def test_a_dark_part_is_not_taken_for_nothing_in_little_light(light: float) -> None:
+    """What is too dark to have a hue, as the part itself may be, is no sign against it."""
+    seen = seen_in(light, OLIVE)
+    assert seen is None or likeliest(seen) == "right"
+    table, other = seen_in(light, (190.0, 200.0, 205.0)), seen_in(light, NAVY)
+    assert table is not None
+    assert likeliest(table) == "nothing"
+    assert other is not None
+    assert likeliest(other) == "other"
+
+
+def test_what_is_too_dark_to_be_a_part_is_a_sign_against_it() -> None:
+    model = ColorModel.train({"green": [sample(GREEN)], "navy": [sample(NAVY)]})
+    region = np.full((40, 40), 1, np.uint8)
+    seen = composition(region, model.segment(picture((8.0, 8.0, 8.0))), model, "green")
+    assert seen is not None
+    assert seen.own == 0.0
 
 
 TOOL = tool_matrix(ToolPose(0.5, 0.1, 0.76, math.pi / 2))

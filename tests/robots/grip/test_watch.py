@@ -255,6 +255,22 @@ def test_a_held_part_is_never_lost_wherever_the_arm_goes(
     assert reading.state is GripState.HELD
 
 
+@pytest.mark.parametrize("name", sorted(PARTS))
+@pytest.mark.parametrize("pushed_at_first", [False, True])
+def test_what_somebody_unknown_hides_and_pushes_askew_is_not_lost(name, pushed_at_first) -> None:
+    hand = ScriptedHand(name)
+    hand.hold()
+    hand.read(pushed=pushed_at_first)
+    for _ in range(60):
+        hand.read(shows=None)
+    wider_m = min(0.006, GRIPPER.max_opening_m - hand.grasp.width_m)
+    for share in np.linspace(0.0, 1.0, 40):
+        reading = hand.read(shows=None, opening_m=hand.grasp.width_m + share * wider_m, pushed=True)
+    assert reading.state is GripState.HELD
+    gone = hand.read(shows=None, opening_m=0.001, presses=False, pushed=True)
+    assert gone.state is GripState.LOST
+
+
 def test_an_uneven_grasp_is_expected_afterwards() -> None:
     hand = ScriptedHand("pink_bar")
     uneven = (0.0, 0.03, 0.0)

@@ -15,7 +15,7 @@ from mend.robots.monitors.blocked import Blocked
 from mend.robots.monitors.dropped import Dropped
 from mend.robots.monitors.missed import Missed
 from mend.robots.monitors.missing import Missing
-from mend.robots.monitors.monitor import Meanwhile, Monitor
+from mend.robots.monitors.monitor import Monitor, Reaction
 from mend.robots.monitors.positioning import Positioning
 from mend.robots.monitors.unreachable import Unreachable
 from mend.robots.vision.obstruction import Obstruction
@@ -44,26 +44,26 @@ def grip(state: GripState) -> GripReading:
 
 
 @pytest.mark.parametrize(
-    ("kind", "phases", "meanwhile"),
+    ("kind", "phases", "reaction"),
     [
-        (Missing, "prepare", Meanwhile.STOP_IN_PLACE),
-        (Unreachable, "prepare", Meanwhile.STOP_IN_PLACE),
-        (Missed, "approach grasp lift", Meanwhile.GO_TO_NEUTRAL),
-        (Dropped, "lift carry", Meanwhile.GO_TO_NEUTRAL),
-        (Positioning, "carry", Meanwhile.SLOW_DOWN),
+        (Missing, "prepare", Reaction.STOP_IN_PLACE),
+        (Unreachable, "prepare", Reaction.STOP_IN_PLACE),
+        (Missed, "approach grasp lift", Reaction.GO_TO_NEUTRAL),
+        (Dropped, "lift carry", Reaction.GO_TO_NEUTRAL),
+        (Positioning, "carry", Reaction.SLOW_DOWN),
         (
             Blocked,
             "prepare approach grasp lift carry place release retreat",
-            Meanwhile.STOP_IN_PLACE,
+            Reaction.STOP_IN_PLACE,
         ),
     ],
 )
-def test_each_is_registered_and_watches_its_phases(kind, phases, meanwhile) -> None:
+def test_each_is_registered_and_watches_its_phases(kind, phases, reaction) -> None:
     assert load_plugins("mend.monitors")[kind.issue] is kind
     monitor: Monitor = kind.create({})
     watched = [phase for phase in Phase if monitor.watches("pick_and_place", phase)]
     assert watched == phases.split()
-    assert monitor.meanwhile is meanwhile
+    assert monitor.reaction is reaction
     assert monitor.interrupts is (kind is not Positioning)
 
 

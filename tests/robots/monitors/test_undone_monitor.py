@@ -10,7 +10,7 @@ from monitor_view import BLOB, SEEN, VIEW
 from mend.robots.behaviors.phase import Phase
 from mend.robots.link.messages import Location
 from mend.robots.monitors.missing import Missing
-from mend.robots.monitors.monitor import Meanwhile, Monitor
+from mend.robots.monitors.monitor import Monitor, Reaction
 from mend.robots.monitors.undone import Undone
 from mend.robots.vision.presence import Presence
 from mend.tasks.plugins import load_plugins
@@ -28,7 +28,7 @@ def test_it_watches_before_the_first_step_and_after_the_last_of_any_behavior() -
         Phase.PREPARE,
         Phase.CONFIRM,
     ]
-    assert monitor.meanwhile is Meanwhile.STOP_IN_PLACE
+    assert monitor.reaction is Reaction.STOP_IN_PLACE
 
 
 @pytest.mark.parametrize("was_done", ["gone", "there"])

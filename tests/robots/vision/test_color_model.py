@@ -71,7 +71,7 @@ def test_red_is_found_on_both_ends_of_the_hue_circle() -> None:
 
 def test_a_saved_model_sees_the_same(tmp_path) -> None:
     settings = ColorSettings(hue_bins=45, saturation_bins=16, min_value=20)
-    colors = {"a": (20, 200, 30), "b": (220, 30, 40)}
+    colors = {"a": (20, 200, 30), "b": (220, 30, 40), "dark": (6, 14, 26)}
     model = ColorModel.train(
         {name: [sample(bgr)] for name, bgr in colors.items()},
         settings,
@@ -80,13 +80,15 @@ def test_a_saved_model_sees_the_same(tmp_path) -> None:
     path = tmp_path / "colors.npz"
     model.save(path)
     loaded = ColorModel.load(path)
-    assert loaded.names == ("a", "b")
+    assert loaded.names == ("a", "b", "dark")
     assert loaded.settings.hue_bins == 45
     assert loaded.settings.min_value == 20
     bgr = DrawnScene({"green_leg": Resting(0.5, 0.0), "blue_leg": Resting(0.6, -0.2)}).picture().bgr
     assert loaded.tints == model.tints == {"a": (0.1, 0.9, 0.2)}
     for name in colors:
         assert np.array_equal(model.segment(bgr).mask(name), loaded.segment(bgr).mask(name))
+        black = loaded.segment(np.zeros_like(bgr))
+        assert black.tells(name).all() == (name != "dark")
 
 
 def test_an_object_it_was_not_trained_for_is_named() -> None:
@@ -156,7 +158,7 @@ def test_a_missing_file_and_another_version_are_told(tmp_path) -> None:
     with pytest.raises(WrongInputError, match="there is no colour model at"):
         ColorModel.load(path)
     np.savez(path, version=np.array(99))
-    with pytest.raises(WrongInputError, match="of version 99; this reads 3"):
+    with pytest.raises(WrongInputError, match="of version 99; this reads 4"):
         ColorModel.load(path)
     np.savez(path, names=np.array(["a"]))
     with pytest.raises(WrongInputError, match="is not a colour model"):

@@ -7,6 +7,7 @@ import pytest
 from drawn_scene import PARTS, TABLE_Z, DrawnScene, Resting
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from sampled import sample
 from scripted_body import view_of
 
 from mend.robots.vision.head import HeadSighting
@@ -37,7 +38,7 @@ def test_parts_are_found_to_a_millimetre(noise: float) -> None:
     assert max(errors_m) < 0.003
 
 
-@settings(deadline=None, max_examples=25)
+@settings(deadline=None, max_examples=sample(12, 25))
 @given(
     name=st.sampled_from(sorted(PARTS)),
     x=st.floats(0.42, 0.7),

@@ -26,10 +26,10 @@ def about_cup(*, blind: bool = False) -> Any:
     )
 
 
-def watch(looks: DialogueLooks, dialogue: Any, side: Any) -> None:
+def watch(looks: DialogueLooks, dialogue: Any, proxy: Any) -> None:
     """A look meanwhile that puts nothing right."""
-    assert looks.put_right(dialogue, side, fulfilled=False) is None
-    if (undone := looks.undone(dialogue, side, fulfilled=False)) is not None:
+    assert looks.put_right(dialogue, proxy, fulfilled=False) is None
+    if (undone := looks.undone(dialogue, proxy, fulfilled=False)) is not None:
         dialogue.looked_anew = SimpleNamespace(fulfilled=[], position=undone.position)
 
 

@@ -207,7 +207,7 @@ async def test_the_audit_and_a_first_answer_pass_over_the_tree_of_a_run() -> Non
         audit, turns = await turns_of_others(lambda: client.get("/api/access/deeds"))
         assert turns >= MANY
     assert [each["deed"] for each in audit.json()["deeds"]] == ["run_started"] * 2
-    answer, turns = await turns_of_others(lambda: answer_of(2, service.app.state.parts))
+    answer, turns = await turns_of_others(lambda: answer_of(2, service.app.state.services))
     assert turns >= MANY
     assert (answer.status, json.loads(answer.body)["id"]) == (201, str(run.id))
     service.journal.close()

@@ -30,6 +30,12 @@ async def holds(robot: ToldRobot, command: str, body: Body) -> None:
         await robot.report(type="holding", execution=body["execution"], at="in_place")
 
 
+async def holds_and_retreats(robot: ToldRobot, command: str, body: Body) -> None:
+    await holds(robot, command, body)
+    if body["type"] == "interrupt":
+        await robot.report(type="holding", execution=None, at="neutral")
+
+
 async def knows_an_unknown_issue(robot: ToldRobot, command: str, body: Body) -> None:
     if body["type"] == "look":
         await robot.look(command)
@@ -162,7 +168,7 @@ async def test_a_robot_reports_no_more_for_being_told_the_same_again(
 
 async def test_another_robot_goes_on_without_one_that_is_given_up() -> None:
     journal = SqliteJournal(":memory:")
-    ended, robot, _ = await end_of(holds, journal, another_obeys=works)
+    ended, robot, _ = await end_of(holds_and_retreats, journal, another_obeys=works)
     journal.close()
     assert ended.status is RunStatus.FINISHED
     assert robot.told <= MOST_FRUITLESS_COMMANDS + len(PARTS) + 5
@@ -289,18 +295,14 @@ async def test_a_leaf_may_be_tried_as_often_as_the_run_says(
 
 
 async def test_a_robot_that_comes_back_after_it_was_given_up_lets_go_of_what_it_has() -> None:
-    started, let_go, go_on = (asyncio.Event() for _ in range(3))
+    gone, let_go, go_on = (asyncio.Event() for _ in range(3))
 
-    async def leaves(robot: ToldRobot, command: str, body: Body) -> None:
+    async def leaves(robot: ToldRobot, _command: str, body: Body) -> None:
         if body["type"] == "look":
-            await robot.look(command, there=body["finished"])
-        elif body["type"] == "start":
-            robot.executing = body["execution"]
-            about = {"execution": robot.executing}
-            await robot.report(type="step_started", step=3, name="close gripper", **about)
             await robot.end()
-            started.set()
+            gone.set()
         elif body["type"] == "interrupt" and body["retreat"]:
+            await robot.report(type="holding", execution=None, at="neutral")
             let_go.set()
 
     async def waits(robot: ToldRobot, command: str, body: Body) -> None:
@@ -316,11 +318,11 @@ async def test_a_robot_that_comes_back_after_it_was_given_up_lets_go_of_what_it_
         settings=RunSettings(robot_lost_timeout_s=0.01),
         times=LinkTimes(absence_s=0.01),
     ) as (service, robot, run):
-        await started.wait()
-        side = service.runtime._runs[run].sides["arm"]
-        while not side.gone_for_good:  # noqa: ASYNC110
+        await gone.wait()
+        proxy = service.runtime._runs[run].proxies["arm"]
+        while not proxy.gone_for_good:  # noqa: ASYNC110
             await asyncio.sleep(0.01)
-        holding = {"execution": robot.executing, "state": "holding", "step": 3}
+        holding = {"execution": "of an earlier run", "state": "holding", "step": 3}
         await robot.connect(leaves, executing=holding)
         await let_go.wait()
         go_on.set()

@@ -11,6 +11,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from pretend_service import NoHardware, PretendService, PretendWorlds, pretend_service
 from random_task import random_task
+from sampled import sample
 from task_documents import definition_of
 
 from mend.errors import ConflictError, NotFoundError, UnreadableError, WrongInputError
@@ -435,7 +436,7 @@ ISSUES = ["missed", "dropped", "unreachable", "positioning", "missing", "blocked
 
 
 @pytest.mark.slow
-@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=sample(30, 60), deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(
     seed=st.integers(0, 2**31 - 1),
     leaves=st.integers(1, 20),

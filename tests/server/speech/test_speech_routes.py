@@ -138,7 +138,7 @@ async def test_a_voice_that_fails_is_a_problem(
 async def test_a_prompt_is_rendered_when_it_is_published(
     service: ServiceUnderTest, voice: ToneVoice
 ) -> None:
-    texts = service.app.state.parts.speech.texts
+    texts = service.app.state.services.speech.texts
     rendering = asyncio.create_task(render_prompts(texts, service.journal))
     run = await service.runs.start_run(RunRequest(tree="eket", world="tabletop", speed="max"))
     async with asyncio.timeout(60):

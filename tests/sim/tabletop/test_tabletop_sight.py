@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from sampled import sample
 
 from mend.robots.catalogue import Catalogue
 from mend.robots.link.messages import Location
-from mend.robots.senses import Senses
+from mend.robots.perception import Perception
 from mend.robots.vision.presence import Presence
 from mend.sim.tabletop.colors import learn_colors
 from mend.sim.tabletop.world import TabletopOptions, TabletopWorld
@@ -33,15 +34,15 @@ def at(x: float, y: float, yaw: float = 0.0, z: float | None = None, **changes) 
 
 
 class Watcher:
-    """A world and the senses of its robot."""
+    """A world and the perception of its robot."""
 
     def __init__(self, scene: Scene, seed: int = 1, options: TabletopOptions = NOISY) -> None:
         self.world = TabletopWorld(scene, seed, options)
         self.catalogue = Catalogue.from_scene(scene)
-        self.senses = Senses(self.world.body, learn_colors(scene, options), self.catalogue)
+        self.perception = Perception(self.world.body, learn_colors(scene, options), self.catalogue)
 
     def seen(self) -> dict[str, tuple[float, float]]:
-        sightings = self.senses.head.sight_all(self.senses.head.look())
+        sightings = self.perception.head.sight_all(self.perception.head.look())
         return {name: (each.x, each.y) for name, each in sightings.items()}
 
     def do(self, act: Act, name: str, **more) -> None:
@@ -51,7 +52,7 @@ class Watcher:
         self, name: str, x: float, y: float, z: float | None = None, yaw: float = 0.0
     ) -> Presence:
         part, at = self.catalogue.parts[name], Location(x=x, y=y, z=z, yaw=yaw)
-        return self.senses.head.presence(self.senses.head.look(), part, at)
+        return self.perception.head.presence(self.perception.head.look(), part, at)
 
 
 def near(one: tuple[float, float], other: tuple[float, float], within_m: float = 0.004) -> bool:
@@ -67,7 +68,8 @@ def test_every_part_of_the_shipped_scenes_is_seen_where_it_is(name: str) -> None
         assert truth is not None
         assert near(seen[part], (truth.x, truth.y)), part
     assert all(
-        box.name is not None for box in watcher.senses.head.seen_boxes(watcher.senses.head.look())
+        box.name is not None
+        for box in watcher.perception.head.seen_boxes(watcher.perception.head.look())
     )
 
 
@@ -108,7 +110,7 @@ def test_of_equals_that_are_gone_the_one_that_is_wanted_is_brought_back(
     for gone in ("bolt_1", "bolt_3"):
         watcher.do(Act.STEAL, gone)
     assert set(watcher.seen()) == {"bolt_0", "bolt_2", "bolt_4"}
-    watcher.senses.head.want(watcher.catalogue.parts[wanted])
+    watcher.perception.head.want(watcher.catalogue.parts[wanted])
     watcher.do(Act.MOVE, brought, to=Pose(x=0.6, y=0.1))
     seen = watcher.seen()
     assert near(seen.pop(wanted), (0.6, 0.1))
@@ -121,13 +123,13 @@ def test_what_is_wanted_takes_no_equal_from_where_that_stands() -> None:
     watcher = Watcher(scene_of({name: at(*spot) for name, spot in spots.items()}))
     watcher.seen()
     watcher.do(Act.STEAL, "bolt_2")
-    watcher.senses.head.want(watcher.catalogue.parts["bolt_2"])
+    watcher.perception.head.want(watcher.catalogue.parts["bolt_2"])
     seen = watcher.seen()
     assert set(seen) == set(spots) - {"bolt_2"}
     assert all(near(where, spots[name]) for name, where in seen.items())
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=sample(6, 15), deadline=None)
 @given(
     moves=st.lists(st.tuples(st.integers(0, 4), st.integers(0, 11)), min_size=1, max_size=6),
     seed=st.integers(0, 1000),
@@ -192,7 +194,7 @@ def test_a_tower_of_equal_parts_is_seen_from_the_top() -> None:
         "high": at(0.5, -0.2, 0.5, table_z + 0.03, size=(0.03, 0.04, 0.03)),
     }
     watcher = Watcher(scene_of(parts))
-    sightings = watcher.senses.head.sight_all(watcher.senses.head.look())
+    sightings = watcher.perception.head.sight_all(watcher.perception.head.look())
     assert sightings["high"].z == pytest.approx(table_z + 0.03, abs=0.002)
     assert sightings["low"].z == pytest.approx(table_z, abs=0.002)
     assert near((sightings["low"].x, sightings["low"].y), (0.5, -0.2))
@@ -210,15 +212,15 @@ def test_of_equal_parts_the_one_that_stands_at_a_place_is_the_one_that_belongs_t
             }
         )
     )
-    senses, target = watcher.senses, Location(x=0.57, y=-0.35, yaw=0.9)
+    perception, target = watcher.perception, Location(x=0.57, y=-0.35, yaw=0.9)
     high = watcher.catalogue.parts["high"]
     watcher.seen()
-    assert not senses.head.recognize_at(senses.head.look(), high, target)
+    assert not perception.head.recognize_at(perception.head.look(), high, target)
     watcher.do(Act.MOVE, "high", to=Pose(x=0.57, y=-0.35, yaw=0.9))
-    assert senses.head.recognize_at(senses.head.look(), high, target)
+    assert perception.head.recognize_at(perception.head.look(), high, target)
     assert near(watcher.seen()["high"], (0.57, -0.35))
     watcher.do(Act.STEAL, "high")
-    assert not senses.head.recognize_at(senses.head.look(), high, target)
+    assert not perception.head.recognize_at(perception.head.look(), high, target)
 
 
 def test_a_part_that_is_seen_elsewhere_is_not_hidden_at_its_place() -> None:
@@ -243,12 +245,14 @@ def test_something_unknown_is_a_box_without_a_name() -> None:
     scene = scene_of({"known": at(0.5, -0.2), "stranger": at(0.6, 0.0, size=(0.05, 0.09, 0.06))})
     watcher = Watcher(scene)
     known = {"known": watcher.catalogue.parts["known"]}
-    senses = Senses(
+    perception = Perception(
         watcher.world.body,
         learn_colors(scene, NOISY),
         Catalogue(known, {}, scene.table, watcher.catalogue.starts),
     )
-    (stranger,) = [box for box in senses.head.seen_boxes(senses.head.look()) if box.name is None]
+    (stranger,) = [
+        box for box in perception.head.seen_boxes(perception.head.look()) if box.name is None
+    ]
     assert near((stranger.x, stranger.y), (0.6, 0.0))
     assert sorted(stranger.size) == pytest.approx([0.05, 0.06, 0.09], abs=0.003)
 
@@ -278,7 +282,7 @@ def test_presence_tells_there_gone_and_hidden() -> None:
     assert watcher.presence("part", 0.6, 0.0) is Presence.THERE
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=sample(10, 20), deadline=None)
 @given(
     x=st.floats(0.42, 0.68),
     y=st.floats(-0.55, 0.15),

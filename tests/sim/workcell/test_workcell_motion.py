@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 from workcell_hands import TABLE_M, Hands
 
+from mend.robots.arm import Arm
+from mend.robots.behaviors.contact import Track
 from mend.robots.body import ToolPose
 from mend.sim.workcell.world import WorkcellWorld
 
@@ -83,6 +85,41 @@ def test_a_stopped_segment_can_be_followed_to_its_end(hands: Hands) -> None:
     hands.wait(0.1)
     hands.follow(path, 1, 1.0)
     assert np.allclose(hands.body.tool_pose()[:3, 3], (LOW.x, LOW.y, LOW.z), atol=5e-4)
+
+
+@pytest.mark.parametrize("yaw", [-1.4, 0.0, 1.4])
+def test_what_was_met_on_the_way_is_left_as_it_was_come_to(hands: Hands, yaw: float) -> None:
+    """A hand that turned on its way back would wedge what it holds against what it met."""
+    path, track, arm = hands.plan(HIGH, replace(FAR_LEFT, yaw=yaw)), Track(), Arm(hands.body)
+    hands.follow(path, 0, 1.0)
+    came = []
+
+    def note() -> bool:
+        pose = arm.tool_pose()
+        track.note(pose)
+        came.append(pose)
+        return hands.body.progress > 0.6
+
+    hands.follow(path, 1, 1.0, note)
+    hands.body.stop()
+    back = hands.body.plan_back(track.way_back())
+    assert back is not None
+    begin = arm.tool_pose()
+
+    def check() -> bool:
+        here = arm.tool_pose()
+        assert min(apart(here, pose) for pose in came) < 0.01
+        return False
+
+    for segment in range(back.segments):
+        hands.follow(back, segment, 0.3, check)
+    assert 0.1 <= apart(arm.tool_pose(), begin) < 0.15
+
+
+def apart(one: ToolPose, other: ToolPose) -> float:
+    """In metres, with 0.1 m for a radian."""
+    turn = 0.1 * math.remainder(one.yaw - other.yaw, 2 * math.pi)
+    return math.hypot(one.x - other.x, one.y - other.y, one.z - other.z, turn)
 
 
 def test_half_speed_takes_about_twice_as_long(hands: Hands) -> None:

@@ -4,6 +4,7 @@ import json
 
 import numpy as np
 import pytest
+from sampled import sample
 
 from mend.robots.behaviors.behavior import Situation, Step
 from mend.robots.behaviors.errand import Errand
@@ -79,7 +80,7 @@ def drawn(seed: int) -> tuple[Scene, TaskTreeDefinition]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", [3, 4])
+@pytest.mark.parametrize("seed", sample([4], [3, 4]))
 def test_the_arm_has_a_plan_for_every_part_of_an_accepted_scene_as_it_may_be_seen(
     seed: int,
 ) -> None:

@@ -101,6 +101,8 @@ function applied(state: RunState, event: Event): RunState {
   switch (event.type) {
     case "node_started":
       return start(state, event);
+    case "node_taken":
+      return withLeaf(state, event.node, (leaf) => ({ ...leaf, status: "active", owner: event.helper }));
     case "step_started":
       return withExecution(state, event.robot, (execution) =>
         execution.id === event.execution

@@ -122,6 +122,8 @@ export function linesOf(event: Event): Line[] {
       return line("failed", `The run was aborted: ${event.reason || by(event.author).trim() || "by a person"}.`);
     case "node_started":
       return line("choice", `starts ${plain(event.name)}${attempt(event)}${comparison(event)}.`, event.robot);
+    case "node_taken":
+      return line("choice", `takes ${plain(event.name)}, to do it.`, event.helper);
     case "step_started":
       return [
         {

@@ -144,6 +144,7 @@ export const worlds = () => call<WorldView[]>("GET", "/api/worlds");
 export const scenarios = () => call<ScenarioSummary[]>("GET", "/api/scenarios");
 export const trees = () => call<DocumentSummary[]>("GET", "/api/trees");
 export const tree = (name: string) => call<DocumentView>("GET", `/api/trees/${segment(name)}`);
+export const scene = (name: string) => call<DocumentView>("GET", `/api/scenes/${segment(name)}`);
 export const saveTree = (text: string, name?: string) =>
   call<DocumentView>("POST", "/api/trees", name === undefined ? { text } : { name, text });
 /** Check a task file without keeping it. */

@@ -1,6 +1,7 @@
 // The choices that say what they mean: in which world, and who answers.
 import { Mistake } from "./field";
 import type { Choices, Filled } from "./filled";
+import { LiveRobots } from "./live_robots";
 import type { StartMistakes } from "./start_mistakes";
 
 interface PartProps {
@@ -10,8 +11,6 @@ interface PartProps {
 }
 
 export function WorldChoice({ choices, filled, fill, mistakes }: PartProps & { choices: Choices }) {
-  const toggle = (robot: string, wanted: boolean) =>
-    fill({ robots: wanted ? [...filled.robots, robot] : filled.robots.filter((each) => each !== robot) });
   return (
     <fieldset class="panel" aria-describedby="start-world-mistake">
       <legend>Where</legend>
@@ -27,23 +26,7 @@ export function WorldChoice({ choices, filled, fill, mistakes }: PartProps & { c
         ))}
       </div>
       <Mistake field="world" mistakes={mistakes} />
-      {filled.world === "live" && (
-        <fieldset class="start-robots" aria-describedby="start-robots-mistake">
-          <legend>Robots</legend>
-          {choices.robots.filter((each) => !each.simulated).length === 0 && <p class="quiet">No robot is connected.</p>}
-          {choices.robots
-            .filter((each) => !each.simulated)
-            .map(({ robot, state }) => (
-              <label key={robot} class="choice">
-                <input type="checkbox" checked={filled.robots.includes(robot)} onChange={(event) => toggle(robot, event.currentTarget.checked)} />
-                <span>
-                  <strong>{robot}</strong>
-                  <span class="small quiet">{state}</span>
-                </span>
-              </label>
-            ))}
-        </fieldset>
-      )}
+      {filled.world === "live" && <LiveRobots known={choices.robots} filled={filled} fill={fill} />}
       <Mistake field="robots" mistakes={mistakes} />
     </fieldset>
   );

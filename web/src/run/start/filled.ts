@@ -1,6 +1,7 @@
 // What can be chosen for a new run, what is filled in, and the request that it makes.
 import * as rest from "../../wire/rest";
 import type { RobotView, RunRequest, ScenarioSummary, DocumentSummary, WorldView } from "../../wire/types";
+import { robotsOfRequest } from "./standing";
 
 const LARGEST_SEED = 2 ** 31;
 const PREFERRED_WORLD = "workcell";
@@ -17,6 +18,9 @@ export interface Filled {
   tree: string;
   world: string;
   robots: readonly string[];
+  /** The robots of the tree's own scene, and which connected one each of them is to be. */
+  places: readonly string[];
+  standing: Readonly<Record<string, string>>;
   scenario: string;
   speed: string;
   seed: string;
@@ -50,6 +54,8 @@ export function firstFilled(tree: string | null, { trees, worlds }: Choices): Fi
     tree: tree ?? trees[0]?.name ?? "",
     world: world?.name ?? "",
     robots: [],
+    places: [],
+    standing: {},
     scenario: "",
     speed: "1",
     seed: String(Math.floor(Math.random() * LARGEST_SEED)),
@@ -75,7 +81,7 @@ export function request(filled: Filled): RunRequest {
   return {
     tree: filled.tree,
     world: filled.world,
-    robots: filled.world === "live" ? [...filled.robots] : [],
+    robots: filled.world === "live" ? robotsOfRequest(filled.robots, filled.standing, filled.places) : [],
     scenario: filled.scenario || null,
     speed: filled.speed === "max" ? "max" : Number(filled.speed),
     // An empty field is no number: the service says so at it.

@@ -72,6 +72,9 @@ export function lanesOf(events: readonly Event[], now: number): Lane[] {
       case "node_reset":
         endExecution(running, event);
         break;
+      case "node_taken":
+        lanes.people.push(point(event, "takes", `${event.helper} takes ${plain(event.name)}`, "deed", event.node));
+        break;
       case "node_undone":
         lanes.faults.push(point(event, "undone", `${plain(event.name)} is done no longer: ${event.reason}`, "fault", event.node));
         break;

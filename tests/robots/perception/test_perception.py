@@ -4,9 +4,9 @@ import pytest
 from drawn_scene import PARTS, TABLE_Z, DrawnScene
 from scripted_body import STARTS, ScriptedBody, catalogue, trained_model
 
-import mend.robots.senses.understanding
+import mend.robots.perception.table_understanding
 from mend.robots.body import CameraImage
-from mend.robots.senses import Senses
+from mend.robots.perception import Perception
 from mend.robots.vision.table_view import TableView, view_table
 
 
@@ -19,7 +19,7 @@ def understood(monkeypatch: pytest.MonkeyPatch) -> list[CameraImage]:
         pictures.append(image)
         return view_table(image, *rest)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(mend.robots.senses.understanding, "view_table", view)
+    monkeypatch.setattr(mend.robots.perception.table_understanding, "view_table", view)
     return pictures
 
 
@@ -31,28 +31,28 @@ def picture(seed: int) -> CameraImage:
 def test_noise_alone_is_no_reason_to_understand_a_picture_anew(
     understood: list[CameraImage],
 ) -> None:
-    senses = Senses(ScriptedBody(STARTS), trained_model(), catalogue())
+    perception = Perception(ScriptedBody(STARTS), trained_model(), catalogue())
     for seed in range(3):
-        assert senses.head.sight(PARTS["pink_bar"], picture(seed)) is not None
+        assert perception.head.sight(PARTS["pink_bar"], picture(seed)) is not None
     assert len(understood) == 1
 
 
 def test_what_is_doubted_is_understood_anew_once(understood: list[CameraImage]) -> None:
-    senses = Senses(ScriptedBody(STARTS), trained_model(), catalogue())
-    senses.head.sight(PARTS["pink_bar"], picture(0))
-    senses.head.doubt()
+    perception = Perception(ScriptedBody(STARTS), trained_model(), catalogue())
+    perception.head.sight(PARTS["pink_bar"], picture(0))
+    perception.head.doubt()
     for seed in (1, 2):
-        senses.head.sight(PARTS["pink_bar"], picture(seed))
+        perception.head.sight(PARTS["pink_bar"], picture(seed))
     assert len(understood) == 2
 
 
 def test_the_very_same_picture_shows_the_same_however_much_it_is_doubted(
     understood: list[CameraImage],
 ) -> None:
-    senses = Senses(ScriptedBody(STARTS), trained_model(), catalogue())
+    perception = Perception(ScriptedBody(STARTS), trained_model(), catalogue())
     for _ in range(2):
-        senses.head.sight(PARTS["pink_bar"], picture(0))
-        senses.head.doubt()
+        perception.head.sight(PARTS["pink_bar"], picture(0))
+        perception.head.doubt()
     assert len(understood) == 1
 
 
@@ -60,21 +60,21 @@ BEFORE_PINK = [((0.36, -0.25, TABLE_Z), (0.05, 0.2, 0.2))]
 """Something tall between the camera and the pink bar."""
 
 
-def names_seen(senses: Senses, *, without: str = "", hidden: bool) -> set[str | None]:
+def names_seen(perception: Perception, *, without: str = "", hidden: bool) -> set[str | None]:
     parts = {name: each.matrix() for name, each in STARTS.items() if name != without}
     image = DrawnScene(parts, grey_boxes=BEFORE_PINK if hidden else []).picture()
-    return {box.name for box in senses.head.seen_boxes(image)}
+    return {box.name for box in perception.head.seen_boxes(image)}
 
 
 def test_what_is_hidden_is_taken_to_stand_where_it_was_seen() -> None:
-    senses = Senses(ScriptedBody(STARTS), trained_model(), catalogue())
-    assert names_seen(senses, hidden=True) == (set(STARTS) - {"pink_bar"}) | {None}
-    assert names_seen(senses, hidden=False) == set(STARTS)
-    assert names_seen(senses, hidden=True) == set(STARTS) | {None}
+    perception = Perception(ScriptedBody(STARTS), trained_model(), catalogue())
+    assert names_seen(perception, hidden=True) == (set(STARTS) - {"pink_bar"}) | {None}
+    assert names_seen(perception, hidden=False) == set(STARTS)
+    assert names_seen(perception, hidden=True) == set(STARTS) | {None}
 
 
 def test_what_is_seen_gone_is_not_recalled_any_more() -> None:
-    senses = Senses(ScriptedBody(STARTS), trained_model(), catalogue())
-    names_seen(senses, hidden=False)
-    assert "pink_bar" not in names_seen(senses, without="pink_bar", hidden=False)
-    assert "pink_bar" not in names_seen(senses, without="pink_bar", hidden=True)
+    perception = Perception(ScriptedBody(STARTS), trained_model(), catalogue())
+    names_seen(perception, hidden=False)
+    assert "pink_bar" not in names_seen(perception, without="pink_bar", hidden=False)
+    assert "pink_bar" not in names_seen(perception, without="pink_bar", hidden=True)

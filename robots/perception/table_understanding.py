@@ -6,8 +6,8 @@ from dataclasses import dataclass, field, replace
 from mend.robots.body import CameraImage, ToolPose
 from mend.robots.catalogue import Catalogue, Part
 from mend.robots.link.messages import Location
-from mend.robots.senses.hand import HandSense
-from mend.robots.senses.own_arm import OwnArm
+from mend.robots.perception.hand import HandSense
+from mend.robots.perception.own_arm import OwnArm
 from mend.robots.vision.blindness import why_blind
 from mend.robots.vision.color_model import ColorModel
 from mend.robots.vision.obstruction import Obstruction

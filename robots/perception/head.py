@@ -9,9 +9,9 @@ import numpy as np
 from mend.robots.body import Body, CameraImage, ToolPose
 from mend.robots.catalogue import Part
 from mend.robots.link.messages import Location, Sighting
+from mend.robots.perception.own_arm import OwnArm
+from mend.robots.perception.table_understanding import TableUnderstanding
 from mend.robots.result import JudgedResult
-from mend.robots.senses.own_arm import OwnArm
-from mend.robots.senses.understanding import TableUnderstanding
 from mend.robots.vision.blindness import why_frozen, why_outdated
 from mend.robots.vision.blob import Blob
 from mend.robots.vision.carriers import unseen_carriers

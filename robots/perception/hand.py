@@ -1,12 +1,13 @@
 """What is between the fingers, by what the hand feels and by what its camera shows."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 from mend.robots.body import Body, CameraImage
 from mend.robots.catalogue import Part
 from mend.robots.clip import Clip
 from mend.robots.grasp import Grasp, grasp_of
 from mend.robots.grip.reading import GripState
+from mend.robots.grip.rivals import Rival, rivals_of
 from mend.robots.grip.watch import GripWatch, HandSnapshot
 from mend.robots.link.messages import Position
 from mend.robots.vision.color_model import ColorModel
@@ -57,12 +58,17 @@ class HandSense:
         return held is not None and name in (None, held)
 
     def new_watch(
-        self, part: Part, grasp: Grasp | None = None, *, regrasp: bool = False
+        self,
+        part: Part,
+        grasp: Grasp | None = None,
+        *,
+        regrasp: bool = False,
+        rivals: Sequence[Rival] = (),
     ) -> GripWatch:
         """A grip watch that knows nothing yet; without `grasp`, for the best one."""
         gripper = self._body.gripper
         grasp = grasp or grasp_of(part, gripper)
-        return GripWatch(part, grasp, self._model, gripper, regrasp=regrasp)
+        return GripWatch(part, grasp, self._model, gripper, regrasp=regrasp, rivals=rivals)
 
     def watch_grip(self, part: Part, grasp: Grasp | None = None, *, regrasp: bool = False) -> None:
         """The fingers have closed on a part: follow it from now on.
@@ -70,6 +76,11 @@ class HandSense:
         `regrasp`: where it is found askew it can be grasped anew.
         """
         self.grip = self.new_watch(part, grasp, regrasp=regrasp)
+
+    def watch_handed(self, part: Part, known: Iterable[Part]) -> None:
+        """The fingers have closed on what a person put there, which may be any `known` part."""
+        rivals = rivals_of(part, known, self._model, self._body.gripper)
+        self.grip = self.new_watch(part, rivals=rivals)
 
     def feel(self, around: Sequence[SeenBox]) -> HandSnapshot:
         """The hand as it is now; `around` is what the head camera saw there last."""

@@ -6,16 +6,16 @@ from mend.robots.body import Body
 from mend.robots.catalogue import Catalogue
 from mend.robots.grip.reading import GripReading
 from mend.robots.grip.watch import GripWatch
-from mend.robots.senses.hand import HandSense
-from mend.robots.senses.head import HeadSense
-from mend.robots.senses.own_arm import OwnArm
-from mend.robots.senses.understanding import TableUnderstanding
+from mend.robots.perception.hand import HandSense
+from mend.robots.perception.head import HeadSense
+from mend.robots.perception.own_arm import OwnArm
+from mend.robots.perception.table_understanding import TableUnderstanding
 from mend.robots.vision.color_model import ColorModel
 from mend.robots.vision.picture_memory import keep_picture_memory
 from mend.robots.vision.seen_box import SeenBox
 
 
-class Senses:
+class Perception:
     """A body's cameras with the colour model that understands their pictures, and its hand."""
 
     def __init__(self, body: Body, model: ColorModel, catalogue: Catalogue) -> None:

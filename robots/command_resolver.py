@@ -16,7 +16,7 @@ class CommandError(MendError):
     """A command cannot be carried out; the message says why."""
 
 
-class Understanding:
+class CommandResolver:
     """A robot's behaviors, and the parts and places that it knows."""
 
     def __init__(

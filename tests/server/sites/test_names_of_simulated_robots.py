@@ -1,6 +1,5 @@
 """The names of simulated robots are kept for as long as their runs last."""
 
-from types import SimpleNamespace
 from typing import Any
 from uuid import uuid4
 
@@ -8,7 +7,7 @@ import pytest
 
 from mend.server.journal.sqlite import SqliteJournal
 from mend.server.robots.passes import OwnRobots
-from mend.server.runtime.worlds import SimulatedHardware
+from mend.server.sites.running_world import RunningWorld
 
 
 class Handle:
@@ -23,7 +22,7 @@ class Handle:
 
 
 class Setup:
-    robots = ("r",)
+    robots = ("sim-1",)
 
     def model_copy(self, update: Any) -> "Setup":  # noqa: ARG002
         return self
@@ -40,22 +39,18 @@ async def test_a_name_is_kept_while_its_robot_is_started_again_and_free_after_it
         names.withdraw(names.issue("sim-1"))
         return handles.pop(0)
 
-    state: Any = SimpleNamespace(
-        id=uuid4(), started=SimpleNamespace(robots=["sim-1"], world="tabletop")
-    )
     setup: Any = Setup()
-    unused: Any = None
-    names.reserve(["sim-1", "sim-2"])
-    hardware = SimulatedHardware(launch, journal, names, setup, state, unused)
-    await hardware.restart("sim-1")
+    names.reserve(["sim-2"])
+    world = RunningWorld(launch, journal, names, "tabletop", uuid4(), setup, lambda *_: None)
+    await world.restart("sim-1")
     assert "sim-1" in names
-    await hardware.restart("sim-1")
+    await world.restart("sim-1")
     assert "sim-1" in names
     if error is None:
-        await hardware.release()
+        await world.stop()
     else:
         with pytest.raises(OSError, match="does not end"):
-            await hardware.release()
+            await world.stop()
     assert "sim-1" not in names
     assert "sim-2" in names
     journal.close()

@@ -11,6 +11,7 @@ from fastapi import Depends, Path, Query
 from pydantic import Field
 from starlette.requests import HTTPConnection
 
+from mend.errors import WrongInputError
 from mend.robots.link.shown_name import SHOWN
 from mend.server.access.access import Access
 from mend.server.access.deed_log import DeedLog
@@ -26,11 +27,12 @@ from mend.server.refusals import Refusals
 from mend.server.runtime.service import RunService
 from mend.server.runtime.views import WorldView
 from mend.server.settings import Settings
+from mend.server.sites.sites import Sites
 from mend.server.speech.abilities import NO_SPEECH, SpeechAbilities
 from mend.tasks.spellings import NAME, SEEN_CHARACTERS
 
 if TYPE_CHECKING:
-    # It refuses with problem documents, which know the parts.
+    # It refuses with problem documents, which know them.
     from mend.server.api.repeats import Repeats
 
 MAX_SEQ = 2**63 - 1
@@ -54,8 +56,8 @@ class WorldList(Protocol):
 
 
 @dataclass(frozen=True, slots=True)
-class Parts:
-    """The parts of one service; `app.state.parts` holds them."""
+class Services:
+    """The parts of one service; `app.state.services` holds them."""
 
     runs: RunService
     journal: ObservedJournal
@@ -63,6 +65,7 @@ class Parts:
     scenes: DocumentLibrary
     scenarios: DocumentLibrary
     worlds: WorldList
+    sites: Sites
     models: RobotModels
     poses: PoseSource
     settings: Settings
@@ -79,9 +82,9 @@ class Parts:
         return datetime.fromtimestamp(self.wall_time_s(), UTC)
 
 
-def parts_of(connection: HTTPConnection) -> Parts:
-    parts: Parts = connection.app.state.parts
-    return parts
+def services_of(connection: HTTPConnection) -> Services:
+    services: Services = connection.app.state.services
+    return services
 
 
 def known_caller(connection: HTTPConnection) -> Caller:
@@ -98,9 +101,10 @@ def caller_if_known(connection: HTTPConnection) -> Caller | None:
 
 WithCaller = Annotated[Caller, Depends(known_caller)]
 WithCallerIfKnown = Annotated[Caller | None, Depends(caller_if_known)]
-WithParts = Annotated[Parts, Depends(parts_of)]
+WithServices = Annotated[Services, Depends(services_of)]
 
 RunId = Annotated[UUID, Path(description="The run's id.")]
+SiteId = Annotated[UUID, Path(description="The site's id.")]
 DialogueId = Annotated[UUID, Path(description="The dialogue's id.")]
 DocumentName = Annotated[str, Path(pattern=NAME, examples=["eket"])]
 After = Annotated[int, Query(ge=0, le=MAX_SEQ, description="Only what comes after this `seq`.")]
@@ -117,3 +121,12 @@ HelperName = Annotated[
     ),
     SHOWN,
 ]
+
+
+def helper_of(caller: Caller, declared: str | None) -> str:
+    """What the helper is called. Raises `WrongInputError` where nobody says so."""
+    name = caller.helper_name(declared)
+    if name is None:
+        missing = "body.helper: is missing: with this token everybody says who it is"
+        raise WrongInputError(missing, [missing])
+    return name

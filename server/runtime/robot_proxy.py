@@ -20,19 +20,20 @@ from mend.robots.link.messages import (
     Look,
     Looked,
     Resume,
+    RoomLimits,
     Sighting,
     Start,
     WasDone,
 )
 from mend.server.runtime.livelock import Livelock
 from mend.server.runtime.run_state import StartedExecution
-from mend.server.runtime.team import Team
+from mend.server.runtime.team import EVERYWHERE, Team
 from mend.tasks.frames import Frame
 from mend.tasks.intervention import Intervention
 from mend.tasks.potential import Point
 
 
-class Doing(StrEnum):
+class RobotActivity(StrEnum):
     """What a robot is busy with."""
 
     ABSENT = "absent"
@@ -51,11 +52,12 @@ class Purpose(StrEnum):
     WATCH = "watch"
     VIEW = "view"
     HELP = "help"
+    PERSON = "person"
     RESUME = "resume"
     LAST = "last"
 
 
-JUDGING = (Purpose.CHOOSE, Purpose.BASELINE, Purpose.RESUME, Purpose.LAST)
+JUDGING = (Purpose.CHOOSE, Purpose.BASELINE, Purpose.RESUME, Purpose.PERSON, Purpose.LAST)
 """Looks before something is built or asked: they judge what is finished as well."""
 
 
@@ -72,7 +74,7 @@ class CommandSender(Protocol):
 
 
 @dataclass(slots=True)
-class RobotSide:
+class RobotProxy:
     """A robot's activity; nothing here is durable, all of it follows from its next reports.
 
     What it sees and where it is told to place is in its own base frame on the link, and in the
@@ -83,9 +85,11 @@ class RobotSide:
     link: CommandSender
     frame: Frame = field(default_factory=Frame)
     team: Team | None = None
+    stands_somewhere: bool = True
+    """Whether the scene says where it stands."""
     area: BaseGeometry | None = None
     """What space it has beyond where its arm rests; `Team` says when it may have it."""
-    doing: Doing = Doing.ABSENT
+    doing: RobotActivity = RobotActivity.ABSENT
     hello: Hello | None = None
     gone_for_good: bool = False
     restarts: int = 0
@@ -110,23 +114,35 @@ class RobotSide:
     """Why the last look saw nothing of the table."""
 
     @property
+    def room(self) -> RoomLimits | None:
+        """What room its arm takes, from where it stands; None: nobody knows."""
+        return self.hello.room if self.hello is not None and self.stands_somewhere else None
+
+    @property
     def free(self) -> bool:
         """Whether it may be told something new without cutting short what it does."""
-        return self.doing is Doing.IDLE
+        return self.doing is RobotActivity.IDLE
 
     @property
     def interruptible(self) -> bool:
         """Whether it only lets time pass, so that a new command may replace what it does."""
-        return self.doing is Doing.WAITING or (
-            self.doing is Doing.LOOKING
-            and self.purpose in (Purpose.BASELINE, Purpose.WATCH, Purpose.VIEW)
+        return self.doing is RobotActivity.WAITING or (
+            self.doing is RobotActivity.LOOKING
+            and self.purpose in (Purpose.BASELINE, Purpose.WATCH, Purpose.VIEW, Purpose.PERSON)
         )
 
     @property
     def owes_a_report(self) -> bool:
-        """Whether it was told something of which a report is still to come."""
-        busy = self.doing in (Doing.LOOKING, Doing.WORKING, Doing.RETREATING)
-        return busy and not self.gone_for_good
+        """Whether it was told something of which a report is still to come.
+
+        Of one that was given up only that its arm rests, where others wait for that.
+        """
+        busy = self.doing in (
+            RobotActivity.LOOKING,
+            RobotActivity.WORKING,
+            RobotActivity.RETREATING,
+        )
+        return busy and (not self.gone_for_good or self.area is not None)
 
     def suitability(self, behavior: str) -> float:
         """How well it can do a behavior; 0 if it cannot."""
@@ -142,30 +158,32 @@ class RobotSide:
         self.holds_execution = executing is not None and executing.state == "holding"
         if executing is None:
             self.area = None
+        elif self.area is None:
+            self.area = EVERYWHERE
         if executing is None or self.holds_execution:
-            self.doing = Doing.IDLE
+            self.doing = RobotActivity.IDLE
         elif executing.state == "retreating":
-            self.doing = Doing.RETREATING
+            self.doing = RobotActivity.RETREATING
         else:
-            self.doing = Doing.WORKING
+            self.doing = RobotActivity.WORKING
 
     def hold_execution(self, holding: Holding) -> None:
         """It has stopped; away from neutral it keeps what it was executing."""
         self.holds_execution = holding.execution is not None and holding.at != "neutral"
         if holding.at == "neutral":
             self.area = None
-        if self.doing in (Doing.WORKING, Doing.RETREATING):
-            self.doing = Doing.IDLE
+        if self.doing in (RobotActivity.WORKING, RobotActivity.RETREATING):
+            self.doing = RobotActivity.IDLE
 
     def finish(self) -> None:
         """It is through with what it was executing, and its arm rests."""
-        self.doing = Doing.IDLE
+        self.doing = RobotActivity.IDLE
         self.area = None
 
     def disconnect(self) -> None:
-        self.doing = Doing.ABSENT
+        self.doing = RobotActivity.ABSENT
 
-    def _tell(self, doing: Doing, command: str, body: CommandBody) -> None:
+    def _tell(self, doing: RobotActivity, command: str, body: CommandBody) -> None:
         self.doing, self.command = doing, command
         self.silent_since = None
         self.link.send(self.robot, command, body, renews=self.livelock.tell())
@@ -175,7 +193,7 @@ class RobotSide:
         self.purpose = purpose
         if purpose in JUDGING:
             fields["finished"] = [*fields.get("finished", ()), *self.finished]
-        self._tell(Doing.LOOKING, str(uuid4()), Look(**fields))
+        self._tell(RobotActivity.LOOKING, str(uuid4()), Look(**fields))
 
     def looked_just_now(self, now: float) -> bool:
         """Whether what it saw and judged last still holds."""
@@ -183,7 +201,7 @@ class RobotSide:
 
     def hold(self, until: float, rate: float | None) -> None:
         """Simulated worlds: let time pass until `until` (the robot's clock)."""
-        self._tell(Doing.WAITING, str(uuid4()), Hold(until=until, rate=rate))
+        self._tell(RobotActivity.WAITING, str(uuid4()), Hold(until=until, rate=rate))
 
     def start(
         self,
@@ -199,7 +217,7 @@ class RobotSide:
         self.looked_at = None
         self.holds_execution = False
         self._tell(
-            Doing.WORKING,
+            RobotActivity.WORKING,
             str(execution.id),
             Start(
                 execution=str(execution.id),
@@ -215,16 +233,16 @@ class RobotSide:
 
     def resume(self, execution: StartedExecution) -> None:
         self.holds_execution = False
-        self._tell(Doing.WORKING, str(uuid4()), Resume(execution=str(execution.id)))
+        self._tell(RobotActivity.WORKING, str(uuid4()), Resume(execution=str(execution.id)))
 
     def stop(self) -> None:
         """Stop where it is."""
-        self._tell(Doing.RETREATING, str(uuid4()), Interrupt(retreat=False))
+        self._tell(RobotActivity.RETREATING, str(uuid4()), Interrupt(retreat=False))
 
     def retreat(self) -> None:
         """Stop, let go and move to neutral; ends what it was executing."""
         self.holds_execution = False
-        self._tell(Doing.RETREATING, str(uuid4()), Interrupt(retreat=True))
+        self._tell(RobotActivity.RETREATING, str(uuid4()), Interrupt(retreat=True))
 
     def intervene(self, command: str, deed: Intervention, by: str, at: float | None) -> None:
         """Simulated worlds: a person does something, now or at `at` (the robot's clock)."""
@@ -242,9 +260,9 @@ class RobotSide:
             *self.frame.to_scene(looked.gripper.x, looked.gripper.y),
             looked.gripper.z,
         )
-        if looked.command != self.command or self.doing is not Doing.LOOKING:
+        if looked.command != self.command or self.doing is not RobotActivity.LOOKING:
             return None
-        self.doing = Doing.IDLE
+        self.doing = RobotActivity.IDLE
         if self.purpose in JUDGING:
             self.looked_at = time
         return self.purpose

@@ -5,14 +5,8 @@ from typing import Any
 import pytest
 
 from mend.errors import WrongInputError
-from mend.server.journal.sqlite import SqliteJournal
-from mend.server.robots.passes import OwnRobots
-from mend.server.runtime.worlds import SimulatedWorlds
+from mend.server.sites.worlds import SimulatedWorlds
 from mend.tasks.plugins import load_plugins
-
-
-async def _launch(*_: Any) -> Any:
-    raise AssertionError("nothing is to be started")
 
 
 @pytest.mark.parametrize("world", ["tabletop", "workcell"])
@@ -27,9 +21,7 @@ async def _launch(*_: Any) -> Any:
 def test_options_are_checked_beforehand(world: str, options: dict[str, Any], sentence: str) -> None:
     if world == "workcell":
         pytest.importorskip("pybullet")
-    journal = SqliteJournal(":memory:")
-    worlds = SimulatedWorlds(load_plugins("mend.worlds"), journal, _launch, OwnRobots())
+    worlds = SimulatedWorlds(load_plugins("mend.worlds"))
     worlds.check(world, {"depth_noise": 0.5})
     with pytest.raises(WrongInputError, match=sentence):
         worlds.check(world, options)
-    journal.close()

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mend.robots.body import Body
-from mend.robots.senses.hand import FOREARM, HandSense
+from mend.robots.perception.hand import FOREARM, HandSense
 from mend.robots.vision.obstruction import near
 from mend.robots.vision.projection import Points
 

@@ -1,0 +1,33 @@
+"""The tests that do only a sample in the suite, with everything that they can draw or repeat.
+
+python benchmarks/whole_samples.py [arguments for pytest]
+"""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "doubles"))
+
+from sampled import EVERYTHING
+
+ROOT = Path(__file__).parents[1]
+
+
+def sampled_files() -> list[str]:
+    """The test files of which any test is a sample."""
+    tests = (ROOT / "tests").rglob("test_*.py")
+    return sorted(str(each) for each in tests if "from sampled import" in each.read_text("utf-8"))
+
+
+def main() -> int:
+    return subprocess.run(
+        [sys.executable, "-m", "pytest", "-q", *sampled_files(), *sys.argv[1:]],
+        cwd=ROOT,
+        env=os.environ | {EVERYTHING: "1"},
+    ).returncode
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,50 @@
+"""Leaves that people do themselves, over REST: taking one, and giving it back."""
+
+from typing import Annotated
+
+from fastapi import APIRouter, Body
+from pydantic import BaseModel, ConfigDict, Field
+
+from mend.server.api.problems import documented
+from mend.server.api.repeatable import RepeatableRoute
+from mend.server.api.services import HelperName, RunId, WithCaller, WithServices, helper_of
+from mend.server.runtime.views import RunSummary
+from mend.tasks.spellings import NODE
+
+router = APIRouter(prefix="/api/runs/{run}/leaves", tags=["runs"], route_class=RepeatableRoute)
+
+ANSWERS = documented(400, 401, 403, 404, 409, 413, 421, 422, 503)
+EXAMPLES = [{"node": "/0/1", "helper": "anna"}]
+
+
+class LeafRequest(BaseModel):
+    """Which leaf, by its path, and who says so; a principal's name is that of its token."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+
+    node: Annotated[str, Field(pattern=NODE, max_length=400)]
+    helper: HelperName | None = None
+
+
+@router.post("/take", operation_id="take_leaf", responses=ANSWERS)
+async def take_leaf(
+    run: RunId,
+    body: Annotated[LeafRequest, Body(examples=EXAMPLES)],
+    services: WithServices,
+    caller: WithCaller,
+) -> RunSummary:
+    """Do a leaf yourself: no robot begins it, and one that sees it done says so."""
+    helper = helper_of(caller, body.helper)
+    return await services.runs.take_leaf(run, body.node, helper, caller.author)
+
+
+@router.post("/give_back", operation_id="give_leaf_back", responses=ANSWERS)
+async def give_leaf_back(
+    run: RunId,
+    body: Annotated[LeafRequest, Body(examples=EXAMPLES)],
+    services: WithServices,
+    caller: WithCaller,
+) -> RunSummary:
+    """Do not do it after all: it is anybody's again."""
+    helper = helper_of(caller, body.helper)
+    return await services.runs.give_leaf_back(run, body.node, helper)

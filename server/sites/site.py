@@ -1,0 +1,202 @@
+"""One site: a simulated world with its robots, which runs borrow and give back."""
+
+import asyncio
+import logging
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING
+from uuid import UUID
+
+from mend.errors import ConflictError
+from mend.robots.link.messages import Hello, Holding, Poses, Report
+from mend.server.journal.journal import Entry, Journal, Receipt
+from mend.server.robots.registry import RobotRegistry
+from mend.server.runtime.robot_proxy import RobotActivity, RobotProxy
+from mend.server.runtime.team import Neighbour
+from mend.server.sites.running_world import RunningWorld
+from mend.tasks.frames import Frame
+
+if TYPE_CHECKING:
+    from mend.server.runtime.run import Run
+
+log = logging.getLogger(__name__)
+
+MAX_RESTARTS = 20
+"""So often a world is started again by itself without a report of any robot since."""
+
+
+class Site:
+    """The robots of one world: who has them, and which nobody has.
+
+    Implements `mend.server.robots.sink.RobotSink` and `mend.server.runtime.team.Neighbour` for the
+    robots that no run has: it has each go to rest, and keeps what it reports. `restarted` is told
+    why the world was started again while no run had a robot.
+    """
+
+    def __init__(
+        self,
+        site: UUID,
+        robots: Mapping[str, Frame],
+        open_world: Callable[[Callable[[str, str], None]], RunningWorld],
+        registry: RobotRegistry,
+        journal: Journal,
+        restarted: Callable[[str], None],
+    ) -> None:
+        """`open_world` makes the world, given what is to be told of a robot that is lost."""
+        self.id = site
+        self.world = open_world(self._lost)
+        self._registry = registry
+        self._journal = journal
+        self._restarted = restarted
+        self._frames = dict(robots)
+        self._resting = {name: self._at_rest(name) for name in robots}
+        self._handed_over: dict[str, RobotProxy] = {}
+        self._runs: dict[UUID, Run] = {}
+        self.forgotten = False
+        """Whether its world's state is kept no more, as it is being closed."""
+        self._restarts = 0
+        self._tasks: set[asyncio.Task[None]] = set()
+
+    def _at_rest(self, robot: str) -> RobotProxy:
+        return RobotProxy(robot, self._registry, self._frames[robot])
+
+    @property
+    def used(self) -> bool:
+        """Whether any run has a robot of it."""
+        return bool(self._runs)
+
+    def run_of(self, robot: str) -> UUID | None:
+        """Which run has a robot."""
+        return next((run for run, each in self._runs.items() if robot in each.proxies), None)
+
+    # --- Its world ----------------------------------------------------------------------------
+
+    async def start(self) -> None:
+        """Start the world, and keep its robots. Raises `WrongInputError` if it cannot run here."""
+        for robot in self._frames:
+            self._registry.keep(robot, self)
+        await self.world.start()
+
+    async def stop(self) -> None:
+        """Stop the world for good."""
+        for task in tuple(self._tasks):
+            task.cancel()
+        await asyncio.gather(*self._tasks, return_exceptions=True)
+        for robot in self._frames:
+            self._registry.keep_no_more(robot)
+        await self.world.stop()
+
+    def _lost(self, robot: str, reason: str) -> None:
+        """The world has ended: whoever has a robot starts it again."""
+        run = self.run_of(robot)
+        if run is not None:
+            self._runs[run].tell_lost(robot, reason)
+        else:
+            self._spawn_restart(robot, reason)
+
+    def _spawn_restart(self, robot: str, reason: str) -> None:
+        task = asyncio.create_task(self._restart(robot, reason))
+        self._tasks.add(task)
+        task.add_done_callback(self._tasks.discard)
+
+    async def _restart(self, robot: str, reason: str) -> None:
+        proxy = self._resting.get(robot)
+        if proxy is None:
+            return
+        proxy.disconnect()
+        proxy.area = None
+        self._restarts += 1
+        if self._restarts > MAX_RESTARTS:
+            log.error("site %s: its world keeps ending: %s", self.id, reason)
+            return
+        if await self.world.restart(robot):
+            self._restarted(reason)
+
+    # --- Its robots, while no run has them (RobotSink) ----------------------------------------
+
+    async def robot_connected(self, robot: str, hello: Hello) -> None:
+        """A robot is there, with nobody who has work for it."""
+        proxy = self._resting.get(robot)
+        if proxy is None:
+            return
+        area, was_there = proxy.area, proxy.hello is not None and proxy.hello.boot == hello.boot
+        proxy.connect(hello)
+        self.world.came(robot)
+        self.world.time.heard(hello.time)
+        if was_there or hello.executing is not None:
+            # What it was about for a run is over; until it rests it has its space.
+            proxy.area = area
+            proxy.retreat()
+
+    async def robot_reported(self, robot: str, report: Report, receipt: Receipt) -> None:
+        """Keep what a robot reports that comes to rest."""
+        self._restarts = 0
+        self.world.time.heard(report.time)
+        world = None if self.forgotten else report.world
+        entry = Entry(receipt=receipt, world_run=None if world is None else self.id, world=world)
+        await self._journal.append(entry, patient=True)
+        proxy = self._resting.get(robot)
+        if proxy is not None and isinstance(report.body, Holding):
+            proxy.hold_execution(report.body)
+            self.tell_neighbours(None)
+
+    def robot_posed(self, robot: str, poses: Poses) -> None:
+        """Nobody watches a robot that no run has."""
+
+    async def robot_lost(self, robot: str, reason: str) -> None:
+        """A robot's connection is gone and has not come back."""
+        await self._restart(robot, reason)
+
+    # --- Who has them -------------------------------------------------------------------------
+
+    def lend(self, run: "Run") -> None:
+        """A run has its robots from now on."""
+        self._runs[run.context.state.id] = run
+        for robot in run.proxies:
+            self._handed_over[robot] = self._resting.pop(robot)
+
+    def came(self, proxy: RobotProxy) -> None:
+        """A robot of a run has connected: it goes to rest first if it had not yet."""
+        self.world.came(proxy.robot)
+        before = self._handed_over.pop(proxy.robot, None)
+        if before is not None and before.doing is RobotActivity.RETREATING:
+            proxy.area = before.area
+            proxy.retreat()
+
+    def take_back(self, run: "Run") -> None:
+        """A run has ended: its robots are the site's again, each with its space until it rests."""
+        if self._runs.pop(run.context.state.id, None) is None:
+            return
+        for robot, proxy in run.proxies.items():
+            self._handed_over.pop(robot, None)
+            resting = self._at_rest(robot)
+            resting.hello, resting.area = proxy.hello, proxy.area
+            self._resting[robot] = resting
+        self.tell_neighbours(run)
+
+    def require_free(self, robots: Sequence[str]) -> None:
+        """Raises `ConflictError` where a run has one of these robots."""
+        for robot in robots:
+            run = self.run_of(robot)
+            if run is not None:
+                raise ConflictError(f"the robot '{robot}' is busy with run {run}")
+
+    # --- Who else is there (Neighbour) --------------------------------------------------------
+
+    @property
+    def proxies(self) -> Mapping[str, RobotProxy]:
+        return self._resting
+
+    def handled(self) -> set[str]:
+        """Nothing: who has no run handles nothing."""
+        return set()
+
+    def neighbours_of(self, run: "Run") -> list[Neighbour]:
+        """Who else has robots here."""
+        others = [each for each in self._runs.values() if each is not run]
+        return [*others, self]
+
+    def tell_neighbours(self, run: "Run | None") -> None:
+        """Something has changed: what others waited for may be free."""
+        for each in self._runs.values():
+            if each is not run:
+                each.look_again()

@@ -1,0 +1,226 @@
+"""`mend run --world live`, as a user calls it, on example robots."""
+
+import asyncio
+import os
+import signal
+import sys
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+from example_robot import example_robot
+from service_process import ServiceProcess, free_port, service_process
+
+from mend.server.client import MendClient
+from mend.server.journal import events as ev
+
+pytestmark = pytest.mark.slow(6)
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+MEND = str(Path(sys.executable).with_name("mend"))
+PATIENCE_S = 120.0
+
+
+@dataclass
+class Command:
+    """A `mend run` that goes on."""
+
+    process: asyncio.subprocess.Process
+
+    async def says(self, text: str) -> str:
+        """Wait for a line with a text in it."""
+        assert self.process.stdout is not None
+        async for line in self.process.stdout:
+            if text in line.decode():
+                return line.decode()
+        _, complaints = await self.process.communicate()
+        raise AssertionError(f"it ended without saying '{text}': {complaints.decode()}")
+
+    async def outcome(self) -> tuple[int | None, str, str]:
+        told, complaints = await self.process.communicate()
+        return self.process.returncode, told.decode(), complaints.decode()
+
+
+@asynccontextmanager
+async def mend_run(folder: Path, *options: str, **environment: str) -> AsyncIterator[Command]:
+    """A run that nobody at a terminal answers, with bounded patience."""
+    kept = {name: value for name, value in os.environ.items() if not name.startswith("MEND_")}
+    process = await asyncio.create_subprocess_exec(
+        MEND, "run", *options,
+        env={**kept, "MEND_DATA_DIR": str(folder), **environment},
+        stdin=asyncio.subprocess.DEVNULL, stdout=asyncio.subprocess.PIPE,
+        stderr=asyncio.subprocess.PIPE,
+    )  # fmt: skip
+    try:
+        async with asyncio.timeout(PATIENCE_S):
+            yield Command(process)
+    finally:
+        if process.returncode is None:
+            process.kill()
+            await process.communicate()
+
+
+def door_of(service: ServiceProcess) -> str:
+    return f"ws://127.0.0.1:{service.port}/ws/robot"
+
+
+LIVE = ("eket", "--world", "live")
+
+
+async def test_without_a_service_it_opens_the_door_and_waits_for_its_robots(
+    tmp_path: Path,
+) -> None:
+    port = free_port()
+    door = f"ws://127.0.0.1:{port}/ws/robot"
+    report = tmp_path / "report.html"
+    async with mend_run(
+        tmp_path, *LIVE, "--robot", "demo", "--report", str(report), MEND_PORT=str(port)
+    ) as run:
+        waits = await run.says("Waiting for")
+        assert f"Waiting for demo at {door}: no robot 'demo' is connected" in waits
+        assert "After 60 s this gives up" in waits
+        async with example_robot(door):
+            code, told, complaints = await run.outcome()
+    assert (code, complaints) == (0, "")
+    assert "purple_top" in told or "orange_top" in told
+    assert told.splitlines()[-2].endswith("the run has finished: the task is done")
+    assert "eket" in report.read_text()
+
+
+async def test_it_says_that_another_service_has_the_port(tmp_path: Path) -> None:
+    async with (
+        service_process(tmp_path) as service,
+        mend_run(tmp_path, *LIVE, "--robot", "demo", MEND_PORT=str(service.port)) as run,
+    ):
+        code, _, complaints = await run.outcome()
+    assert code == 2
+    assert f"cannot listen on 127.0.0.1:{service.port}" in complaints
+    assert "give its address with --url" in complaints
+
+
+async def test_a_service_that_is_there_does_it(tmp_path: Path) -> None:
+    async with (
+        service_process(tmp_path) as service,
+        example_robot(door_of(service)),
+        mend_run(tmp_path, *LIVE, "--robot", "demo", "--url", service.url) as run,
+    ):
+        code, told, complaints = await run.outcome()
+        async with MendClient(service.url) as client:
+            (kept,) = await client.runs()
+    assert (code, complaints) == (0, "")
+    assert (kept.world, kept.robots, kept.status) == ("live", ["demo"], "finished")
+    assert told.endswith("the run has finished: the task is done\n")
+
+
+async def test_own_files_and_reports_go_with_a_service_too(tmp_path: Path) -> None:
+    shelf = EXAMPLES / "tasks" / "shelf.yaml"
+    report = tmp_path / "report.html"
+    async with (
+        service_process(tmp_path) as service,
+        mend_run(
+            tmp_path, str(shelf), "--world", "tabletop", "--speed", "max", "--url", service.url,
+            "--report", str(report), "--answers", "random",
+        ) as run,
+    ):  # fmt: skip
+        code, _, complaints = await run.outcome()
+        async with MendClient(service.url) as client:
+            assert "shelf" in [each.name for each in await client.scenes()]
+    assert (code, complaints) == (0, "")
+    assert "shelf" in report.read_text()
+
+
+async def test_robots_that_are_not_there_are_told_with_those_that_are(tmp_path: Path) -> None:
+    async with (
+        service_process(tmp_path) as service,
+        example_robot(door_of(service)),
+        MendClient(service.url) as client,
+    ):
+        while not await client.robots():  # noqa: ASYNC110
+            await asyncio.sleep(0.05)
+        at = ("--url", service.url)
+        async with mend_run(tmp_path, *LIVE, *at) as unnamed:
+            nobody = await unnamed.outcome()
+        async with mend_run(tmp_path, *LIVE, *at, "--robot", "dmo", "--wait", "0") as misspelt:
+            wrong = await misspelt.outcome()
+        async with mend_run(tmp_path, "ekett", "--world", "live", "--robot", "dmo", *at) as other:
+            tree = await other.outcome()
+    assert nobody[0] == wrong[0] == tree[0] == 2
+    assert nobody[2] == (
+        "mend: --world live needs --robot NAME, once for each robot; connected and free: 'demo'\n"
+    )
+    assert "mend: no robot 'dmo' is connected (connected and free: 'demo'); " in wrong[2]
+    # What no waiting would mend is told at once.
+    assert tree[2] == "mend: there is no task tree 'ekett'\n"
+
+
+KIT = ("kit", "--scene", str(EXAMPLES / "two_arms" / "kit_for_two.yaml"), "--world", "live")
+
+
+@pytest.mark.parametrize("through_a_service", [False, True])
+async def test_two_robots_stand_where_the_scene_says_and_share_the_work(
+    tmp_path: Path, *, through_a_service: bool
+) -> None:
+    async with service_process(tmp_path) as service:
+        port = free_port()
+        at = ("--url", service.url) if through_a_service else ()
+        door = door_of(service) if through_a_service else f"ws://127.0.0.1:{port}/ws/robot"
+        robots = ("--robot", "right=demo-2", "--robot", "left=demo-1")
+        async with (
+            example_robot(door, name="demo-1"),
+            example_robot(door, name="demo-2"),
+            mend_run(tmp_path, *KIT, *robots, *at, "--json", MEND_PORT=str(port)) as run,
+        ):
+            code, told, _ = await run.outcome()
+    assert code == 0
+    started, *events = [ev.any_event.validate_json(each) for each in told.splitlines()]
+    assert isinstance(started, ev.RunStarted)
+    assert started.robots == ["demo-1", "demo-2"]
+    assert list(started.scene["robots"]) == ["left", "right"]
+    begun = [each.robot for each in events if isinstance(each, ev.NodeStarted)]
+    assert len(begun) == 20
+    assert set(begun) == {"demo-1", "demo-2"}
+    finished = events[-1]
+    assert isinstance(finished, ev.RunFinished)
+    assert (finished.missing, finished.unseen) == ([], [])
+
+
+async def test_who_stands_nowhere_in_the_scene_is_told_before_anybody_is_waited_for(
+    tmp_path: Path,
+) -> None:
+    port = str(free_port())
+    async with mend_run(tmp_path, *KIT, "--robot", "lft=demo", MEND_PORT=port) as misplaced:
+        wrong = await misplaced.outcome()
+    async with mend_run(tmp_path, *KIT, "--robot", "demo", MEND_PORT=port) as alone:
+        lacking = await alone.outcome()
+    async with mend_run(tmp_path, *KIT, "--robot", "left=a", "--robot", "b") as mixed:
+        both = await mixed.outcome()
+    assert [each[:2] for each in (wrong, lacking, both)] == [(2, "")] * 3
+    assert "the scene 'kit_for_two' has no robot 'lft'; it has 'left', 'right'" in wrong[2]
+    assert "'robots' lists 1, but in the scene 'kit_for_two' stand 'left', 'right'" in lacking[2]
+    assert "--robot is 'b'; where one robot is PLACE=NAME all have to be" in both[2]
+
+
+@pytest.mark.parametrize("through_a_service", [False, True])
+async def test_ctrl_c_aborts_it_and_ends_the_waiting(
+    tmp_path: Path, *, through_a_service: bool
+) -> None:
+    async with service_process(tmp_path) as service:
+        port = free_port()
+        at = ("--url", service.url) if through_a_service else ()
+        door = door_of(service) if through_a_service else f"ws://127.0.0.1:{port}/ws/robot"
+        options = (*LIVE, "--robot", "demo", *at)
+        async with mend_run(tmp_path, *options, MEND_PORT=str(port)) as waiting:
+            await waiting.says("Waiting for")
+            waiting.process.send_signal(signal.SIGINT)
+            assert (await waiting.outcome())[0] == 130
+        async with (
+            mend_run(tmp_path, *options, MEND_PORT=str(port)) as running,
+            example_robot(door, "--step-s", "60"),
+        ):
+            await running.says("green_leg")
+            running.process.send_signal(signal.SIGINT)
+            code, told, _ = await running.outcome()
+    assert code == 130
+    assert "aborted" in told
