@@ -16,7 +16,12 @@ from scipy.optimize import linprog
 from scipy.sparse import csc_array
 
 from mend.fleet.scheduling.exact.robot_states import RobotStates, states_of
-from mend.fleet.scheduling.exact.route_costs import Staircases, routes_below, staircases
+from mend.fleet.scheduling.exact.route_costs import (
+    PricedMoves,
+    Staircases,
+    routes_below,
+    staircases,
+)
 from mend.fleet.scheduling.exact.state_expansion import Floats, Integers
 from mend.fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit
 from mend.fleet.scheduling.tolerance import CHECK_S, error, safe_bound
@@ -85,12 +90,12 @@ class RouteBound:
         found: list[list[RobotRoute]] = []
         left = most
         for robot in self._robots:
-            move_cost = robot.move_cost(self._prices, self._items, self._places)
-            stairs = robot.staircases(move_cost)
+            priced = robot.priced(self._prices, self._items, self._places)
+            stairs = robot.staircases(priced)
             if not len(stairs.first):
                 return None
             least = robot.cheapest(stairs)
-            rows, _ = robot.routes_below(stairs, move_cost, least + spare, left + 1)
+            rows, _ = robot.routes_below(stairs, priced, least + spare, left + 1)
             if len(rows) > left:
                 return None
             left -= len(rows)
@@ -127,15 +132,15 @@ class RouteBound:
         minus infinity where there was not enough room for it."""
         bound, added = float(prices @ self._sides), 0
         for number, robot in enumerate(self._robots):
-            move_cost = robot.move_cost(prices, self._items, self._places)
-            stairs = robot.staircases(move_cost)
+            priced = robot.priced(prices, self._items, self._places)
+            stairs = robot.staircases(priced)
             if not len(stairs.first):
                 return 0, -inf
             own = len(self._sides) - len(self._robots) + number
             least = robot.cheapest(stairs)
             bound += least - float(prices[own])
             below = float(prices[own]) - error(0.0)
-            rows, costs = robot.routes_below(stairs, move_cost, below, MOST_PRICED)
+            rows, costs = robot.routes_below(stairs, priced, below, MOST_PRICED)
             for index in np.argsort(costs, kind="stable")[:MOST_ADDED]:
                 added += self._add(number, own, rows[index])
         return added, bound
@@ -177,7 +182,7 @@ class _Robot:
         ends = self._end_cost[np.isfinite(self._end_cost)]
         self.dearest_move = float(max(self._cost.max(initial=0.0), ends.max(initial=0.0)))
 
-    def move_cost(self, prices: Floats, items: int, places: int) -> Floats:
+    def priced(self, prices: Floats, items: int, places: int) -> PricedMoves:
         """What the moves cost less what they earn."""
         moves, cost = self._states.moves, self._cost.copy()
         visits = moves.node < 2 * items
@@ -186,11 +191,11 @@ class _Robot:
         for item in range(items):
             signs = ((moves.gives[~visits] >> item) & 1) - ((moves.takes[~visits] >> item) & 1)
             cost[~visits] -= signs * prices[2 * items + item * places + at]
-        return cost
+        return PricedMoves(cost, self._end_cost)
 
-    def staircases(self, move_cost: Floats) -> Staircases:
+    def staircases(self, priced: PricedMoves) -> Staircases:
         """What the rest of a route costs from every state."""
-        return staircases(self._states, move_cost, self._end_cost, MOST_STEPS_IN_ALL)
+        return staircases(self._states, priced, MOST_STEPS_IN_ALL)
 
     def cheapest(self, stairs: Staircases) -> float:
         """What the cheapest route costs."""
@@ -199,12 +204,10 @@ class _Robot:
         return float(costs.min(initial=inf))
 
     def routes_below(
-        self, stairs: Staircases, move_cost: Floats, ceiling: float, most: int
+        self, stairs: Staircases, priced: PricedMoves, ceiling: float, most: int
     ) -> tuple[Integers, Floats]:
         """Routes that cost no more than a ceiling, by their moves."""
-        return routes_below(
-            self._states, move_cost, self._end_cost, stairs, ceiling, most, self._longest
-        )
+        return routes_below(self._states, priced, stairs, ceiling, most, self._longest)
 
     def route(self, row: Integers) -> RobotRoute:
         """The route of some moves."""

@@ -16,6 +16,13 @@ MOST_STEPS = 4096
 """On one state's staircase."""
 
 
+class PricedMoves(NamedTuple):
+    """What a robot's moves cost less what they earn, and by state what it costs to end there."""
+
+    move_cost: Floats
+    end_cost: Floats
+
+
 class Staircases(NamedTuple):
     """By state, from `first[state]` to `first[state] + steps[state]`, cheapest first: who leaves
     until `leave_by_s` can end for `cost`. Nothing at all where there was not enough room."""
@@ -42,7 +49,7 @@ def add_step(by_s: Floats, cost: Floats, count: int, new_by_s: float, new_cost: 
 
 
 @compiled
-def staircases(robot: RobotStates, move_cost: Floats, end_cost: Floats, most: int) -> Staircases:
+def staircases(robot: RobotStates, priced: PricedMoves, most: int) -> Staircases:
     """What the rest of a route costs, for all states, from the last to the first."""
     moves, count = robot.moves, len(robot.end_s)
     first, steps = np.zeros(count, np.int64), np.zeros(count, np.int64)
@@ -53,14 +60,14 @@ def staircases(robot: RobotStates, move_cost: Floats, end_cost: Floats, most: in
         found = 0
         if robot.end_s[state] < np.inf:
             home_by_s = robot.ends_by_s - robot.end_s[state]
-            found = add_step(by_s, costs, found, home_by_s, end_cost[state])
+            found = add_step(by_s, costs, found, home_by_s, priced.end_cost[state])
         for move in range(robot.first_move[state], robot.first_move[state + 1]):
             after = moves.target[move]
             for step in range(first[after], first[after] + steps[after]):
                 if moves.over_from_s[move] > leave_by_s[step] + CHECK_S:
                     continue
                 arrive_s = min(moves.arrives_by_s[move], leave_by_s[step] - moves.lasts_s[move])
-                whole = move_cost[move] + cost[step]
+                whole = priced.move_cost[move] + cost[step]
                 found = add_step(by_s, costs, found, arrive_s - robot.travel_s[move], whole)
                 if found == MOST_STEPS:
                     return Staircases(first[:0], steps[:0], leave_by_s[:0], cost[:0])
@@ -85,14 +92,9 @@ def rest_of(stairs: Staircases, state: int, leaves_s: float) -> float:
 
 @compiled
 def routes_below(
-    robot: RobotStates,
-    move_cost: Floats,
-    end_cost: Floats,
-    stairs: Staircases,
-    ceiling: float,
-    most: int,
+    robot: RobotStates, priced: PricedMoves, stairs: Staircases, ceiling: float, most: int,
     longest: int,
-) -> tuple[Integers, Floats]:
+) -> tuple[Integers, Floats]:  # fmt: skip
     """Routes that cost no more than a ceiling: their moves (-1 after the last), and their costs.
 
     At most `most` routes of at most `longest` moves, in the order of the moves.
@@ -107,7 +109,7 @@ def routes_below(
         here = state[depth]
         if entered:
             next_move[depth] = robot.first_move[here]
-            whole = spent[depth] + end_cost[here]
+            whole = spent[depth] + priced.end_cost[here]
             home_s = leaves_s[depth] + robot.end_s[here]
             if whole <= ceiling and home_s <= robot.ends_by_s + CHECK_S:
                 if found == most:
@@ -125,7 +127,7 @@ def routes_below(
             continue
         over_s = max(arrives_s + moves.lasts_s[move], moves.over_from_s[move])
         after = moves.target[move]
-        cost = spent[depth] + move_cost[move]
+        cost = spent[depth] + priced.move_cost[move]
         if cost + rest_of(stairs, after, over_s) <= ceiling:
             route[depth] = move
             depth += 1
