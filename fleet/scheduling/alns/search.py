@@ -1,7 +1,7 @@
 """How a search goes on in time: everything placed, robots freed, rounds of cooling."""
 
 from collections.abc import Callable
-from math import inf
+from math import inf, log
 from typing import NamedTuple
 
 import numpy as np
@@ -24,18 +24,22 @@ TRIES = 2000
 """How many sets of items, per item, one attempt to free a robot may try to eject."""
 
 
-class Cooling(NamedTuple):
-    """The temperatures of a round, in units of what an item costs on average; how many steps per
-    item it should have; every how many rounds begin with the best plan."""
+WORSE = 0.05
+"""A round begins so warm that a plan which is worse by this share is accepted every other time
+(Ropke and Pisinger 2006, as is the next)."""
+COOLED = 0.99975**25000
+"""The last temperature of a round, as a share of the first."""
 
-    warm: float
-    cool: float
+
+class Rounds(NamedTuple):
+    """How many steps per item a round should have; every how many of them begin with the best plan."""
+
     steps: int
     restart: int
 
 
-ALONE = Cooling(0.5, 0.005, 1500, 1)
-SHARED = Cooling(0.3, 0.002, 3000, 2)
+ALONE = Rounds(1500, 1)
+SHARED = Rounds(3000, 2)
 """While no item may change robots, and while items may."""
 
 
@@ -78,19 +82,19 @@ class Search:
             return
         if not transfers and self.best is not None:
             self.free_robots(min(ends_s, self._clock() + FREEING * seconds))
-        cooling = SHARED if transfers else ALONE
+        each = SHARED if transfers else ALONE
         steps, begun_s = 10, self._clock()
-        self.take_steps(steps, transfers, cooling, (0.0, 0.0))
+        self.take_steps(steps, transfers, (0.0, 0.0))
         pace = steps / max(self._clock() - begun_s, 1e-6)
         left_s = ends_s - self._clock()
-        rounds = max(1, round(pace * left_s / (cooling.steps * self.problem.items.size)))
+        rounds = max(1, round(pace * left_s / (each.steps * self.problem.items.size)))
         for number in range(rounds):
             until_s = ends_s - left_s * (rounds - number - 1) / rounds
-            if number % cooling.restart == 0:
+            if number % each.restart == 0:
                 self._go_back()
             if not transfers and self.best is not None:
                 self.free_robots(self._clock() + FREEING * (until_s - self._clock()))
-            pace = self._cool(until_s, transfers, cooling, pace)
+            pace = self._cool(until_s, transfers, pace)
 
     def begin_with(self, plan: Plan) -> None:
         """Go on from another plan where it is better than the best."""
@@ -128,19 +132,17 @@ class Search:
             else:
                 self._go_back()
 
-    def take_steps(
-        self, steps: int, transfers: int, cooling: Cooling, span: tuple[float, float]
-    ) -> None:
+    def take_steps(self, steps: int, transfers: int, span: tuple[float, float]) -> None:
         """Anneal through a part of a round, which lasts from 0 to 1."""
-        unit, fall = self._unit() * cooling.warm, cooling.cool / cooling.warm
-        temperatures = (unit * fall ** span[0], unit * fall ** span[1])
+        warm = self._warm()
+        temperatures = (warm * COOLED ** span[0], warm * COOLED ** span[1])
         anneal(
             self.problem, self.state, self._operators, self._rng, transfers,
             (steps, *temperatures),
         )  # fmt: skip
         self._report()
 
-    def _cool(self, ends_s: float, transfers: int, cooling: Cooling, pace: float) -> float:
+    def _cool(self, ends_s: float, transfers: int, pace: float) -> float:
         """One round until a time of the clock; `pace` and what is returned: steps a second."""
         begun_s = now_s = self._clock()
         length_s = ends_s - begun_s
@@ -148,7 +150,7 @@ class Search:
             slice_s = min(SLICE_S, ends_s - now_s)
             steps = max(1, int(pace * slice_s))
             spent = (now_s - begun_s) / length_s
-            self.take_steps(steps, transfers, cooling, (spent, spent + slice_s / length_s))
+            self.take_steps(steps, transfers, (spent, spent + slice_s / length_s))
             before_s, now_s = now_s, self._clock()
             pace = _pace(pace, steps, now_s - before_s)
         return pace
@@ -183,13 +185,13 @@ class Search:
         self.state.value[CURRENT] = self.state.value[BEST]
         copy_plan(self.state.best, self.state.current)
 
-    def _unit(self) -> float:
-        """What one item costs on average, undelivered ones and robots aside."""
+    def _warm(self) -> float:
+        """The temperature at which a round begins; undelivered items and robots aside."""
         problem, plan = self.problem, self.state.best
         banked = int((plan.transfers == BANKED).sum())
         robots = problem.weight_robots * float((plan.rows.length[:-1] > 2).sum())
         spent = float(self.state.value[BEST]) - banked * problem.penalty - robots
-        return max(spent / max(1, plan.transfers.size - banked), 1e-6)
+        return max(WORSE * spent / log(2), 1e-6)
 
     def _report(self) -> None:
         value = float(self.state.value[BEST])

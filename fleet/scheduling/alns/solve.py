@@ -8,7 +8,7 @@ from math import inf
 
 from mend.fleet.scheduling.alns.problem_arrays import problem_arrays
 from mend.fleet.scheduling.alns.routes import CHAIN, longest_chain, plan_of, routes_in
-from mend.fleet.scheduling.alns.search import ALONE, SHARED, Search
+from mend.fleet.scheduling.alns.search import Search
 from mend.fleet.scheduling.checker import require_valid
 from mend.fleet.scheduling.objective import cost
 from mend.fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit, Weights
@@ -74,8 +74,8 @@ def prepare() -> None:
     search = Search(problem_arrays(small, CHAIN), 0, lambda: float(next(ticks)))
     search.place(inf)
     search.free_robots(3.0)
-    search.take_steps(2, 0, ALONE, (0.0, 1.0))
-    search.take_steps(2, CHAIN, SHARED, (0.0, 1.0))
+    search.take_steps(2, 0, (0.0, 1.0))
+    search.take_steps(2, CHAIN, (0.0, 1.0))
 
 
 def _solution(problem: Problem, search: Search, start: Schedule | None, seconds: float) -> Solution:
