@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 
 from mend.fleet.scheduling.building_travel import travel_in
-from mend.fleet.scheduling.contradictions import contradictions
 from mend.fleet.scheduling.delivery_document import (
     DeliveryDocument,
     GraphEntry,
@@ -20,6 +19,7 @@ from mend.fleet.scheduling.delivery_document import (
     VisitEntry,
 )
 from mend.fleet.scheduling.delivery_references import find_mistakes, place_names
+from mend.fleet.scheduling.infeasibility import infeasibilities
 from mend.fleet.scheduling.problem import (
     Item,
     Problem,
@@ -47,10 +47,10 @@ class DeliveryFileError(InvalidFileError):
 
 @dataclass(frozen=True, slots=True)
 class Delivery:
-    """A delivery file without mistakes: its problem, and what contradicts itself in it."""
+    """A delivery file without mistakes: its problem, and what makes it infeasible."""
 
     problem: Problem
-    contradictions: tuple[Mistake, ...]
+    infeasibilities: tuple[Mistake, ...]
 
 
 def read_delivery_file(path: Path) -> Delivery:
@@ -88,12 +88,12 @@ def read_delivery_text(text: str, *, source: str = "delivery") -> Delivery:
     except TravelError as error:
         line = find_line(content, ("travel",))
         raise DeliveryFileError(source, [Mistake(line, None, str(error))]) from error
-    return Delivery(problem, tuple(_contradictions(problem, content)))
+    return Delivery(problem, tuple(_infeasibilities(problem, content)))
 
 
-def _contradictions(problem: Problem, content: LinedMapping) -> list[Mistake]:
+def _infeasibilities(problem: Problem, content: LinedMapping) -> list[Mistake]:
     found = []
-    for each in contradictions(problem):
+    for each in infeasibilities(problem):
         where = ("items", each.item) if each.item is not None else ("robots", each.robot or 0)
         found.append(Mistake(find_line(content, where), None, each.sentence))
     return found

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from mend.fleet.scheduling.contradictions import contradictions
+from mend.fleet.scheduling.infeasibility import infeasibilities
 from mend.fleet.scheduling.instances.li_lim import read_li_lim
 from mend.fleet.scheduling.instances.numbers import InstanceError
 from mend.fleet.scheduling.instances.transfer_benchmark import HEADER, read_transfer_benchmark
@@ -27,7 +27,7 @@ class ReadFile:
 
     path: Path
     problem: Problem
-    contradictions: tuple[str, ...]
+    infeasibilities: tuple[str, ...]
     robots_first: bool
 
 
@@ -45,7 +45,7 @@ def read_delivery(path: Path, format_name: str, *, transfers: bool) -> ReadFile:
     if kind == "problem":
         delivery = read_delivery_file(path)
         if transfers:
-            told = tuple(each.describe(str(path)) for each in delivery.contradictions)
+            told = tuple(each.describe(str(path)) for each in delivery.infeasibilities)
             return ReadFile(path, delivery.problem, told, robots_first=False)
         problem = delivery.problem
     else:
@@ -54,7 +54,7 @@ def read_delivery(path: Path, format_name: str, *, transfers: bool) -> ReadFile:
         except (InstanceError, ProblemError) as error:
             raise CommandLineError(f"{path}: {error}") from error
     problem = problem if transfers else problem.without_transfers()
-    told = tuple(f"{path}: {each.sentence}" for each in contradictions(problem))
+    told = tuple(f"{path}: {each.sentence}" for each in infeasibilities(problem))
     return ReadFile(path, problem, told, robots_first=kind == "li_lim")
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from rich.console import Console
 
-from mend.fleet.scheduling.exact.clash import clash_words
+from mend.fleet.scheduling.exact.infeasible_subset import infeasible_subset_words
 from mend.fleet.scheduling.methods import solve
 from mend.fleet.scheduling.no_place import left_over_words
 from mend.fleet.scheduling.solution import Solution, Status, UnsupportedError
@@ -33,8 +33,8 @@ def searched(
 
     Raises `CommandLineError` where the method cannot do the problem, and on Ctrl-C.
     """
-    if read.contradictions:
-        return Solution(Status.INFEASIBLE, None, None, None, 0.0), read.contradictions
+    if read.infeasibilities:
+        return Solution(Status.INFEASIBLE, None, None, None, 0.0), read.infeasibilities
     console = Console(stderr=True, highlight=False, soft_wrap=True)
     try:
         with output.ProgressOutput(measure, console) as progress:
@@ -62,7 +62,7 @@ def _explained(read: ReadFile, measure: output.Measure, search: Search, solution
     """What clashes, where that is proved; else an item for which no place was found."""
     seconds = min(search.seconds, EXPLAINING_S)
     if solution.status is Status.INFEASIBLE:
-        return clash_words(read.problem, seconds=seconds, clock=time.monotonic)
+        return infeasible_subset_words(read.problem, seconds=seconds, clock=time.monotonic)
     left_over = left_over_words(read.problem, seconds=seconds, clock=time.monotonic)
     summary = output.summary(measure, solution)
     return summary if left_over is None else f"{summary}; {left_over}"

@@ -75,7 +75,7 @@ def delivery_mistakes(path: Path, worlds: WorldChecks) -> Checked:  # noqa: ARG0
         delivery = read_delivery_file(path)
     except InvalidFileError as error:
         return Checked(str(error).splitlines())
-    return Checked([each.describe(str(path)) for each in delivery.contradictions])
+    return Checked([each.describe(str(path)) for each in delivery.infeasibilities])
 
 
 CHECKERS: Mapping[str, Callable[[Path, WorldChecks], Checked]] = {

@@ -60,33 +60,33 @@ def corridor_items(draw: st.DrawFn) -> tuple[Item, ...]:
 
 def drawn_problem(seed: int) -> Problem:
     """Two or three items in a corridor; windows, loads, ends and what counts differ by seed."""
-    dice = random.Random(seed)
+    rng = random.Random(seed)
 
     def window() -> Window:
-        if dice.random() < 0.5:
+        if rng.random() < 0.5:
             return Window()
-        begin_s = dice.randint(0, 60)
-        return Window(float(begin_s), float(begin_s + dice.randint(60, 200)))
+        begin_s = rng.randint(0, 60)
+        return Window(float(begin_s), float(begin_s + rng.randint(60, 200)))
 
     items = [
         Item(
             f"item{number}",
-            float(dice.randint(1, 2)),
-            Visit(dice.randrange(5), window(), due_s=40.0, service_s=float(dice.randint(0, 3))),
-            Visit(dice.randrange(5), window()),
-            max_on_board_s=dice.choice((inf, 120.0)),
+            float(rng.randint(1, 2)),
+            Visit(rng.randrange(5), window(), due_s=40.0, service_s=float(rng.randint(0, 3))),
+            Visit(rng.randrange(5), window()),
+            max_on_board_s=rng.choice((inf, 120.0)),
         )
-        for number in range(dice.randint(2, 3))
+        for number in range(rng.randint(2, 3))
     ]
-    if dice.random() < 0.3:
+    if rng.random() < 0.3:
         items[0] = replace(items[0], aboard=0)
     robots = tuple(
-        Robot(f"robot{number}", place, dice.choice((place, None)), 2.0, Window(0.0, 300.0),
-              speed=dice.choice((1.0, 2.0)))
+        Robot(f"robot{number}", place, rng.choice((place, None)), 2.0, Window(0.0, 300.0),
+              speed=rng.choice((1.0, 2.0)))
         for number, place in enumerate((0, 4))
     )  # fmt: skip
-    transfers = Transfers((2, 3), dice.random() < 0.3, float(dice.randint(0, 4)))
-    weights = dice.choice(
+    transfers = Transfers((2, 3), rng.random() < 0.3, float(rng.randint(0, 4)))
+    weights = rng.choice(
         (Weights(), Weights(0.5, 1.0), Weights(1.0, 0.0, 0.5), Weights(1.0, 0.0, 0.0, 3.0, 20.0))
     )
     return replace(

@@ -32,7 +32,7 @@ COOLED = 0.99975**25000
 
 
 class Rounds(NamedTuple):
-    """How many steps per item a round should have; every how many of them begin with the best plan."""
+    """How many steps per item a round should have; every how many begin with the best plan."""
 
     steps: int
     restart: int

@@ -8,7 +8,11 @@ from mend.fleet.scheduling.problem import Problem
 from mend.fleet.scheduling.replanning.events import EventError
 from mend.fleet.scheduling.replanning.item_state import ItemState, TrackedItem
 from mend.fleet.scheduling.replanning.open_ways import OpenWays
-from mend.fleet.scheduling.replanning.rest import Building, Rest, rest_of
+from mend.fleet.scheduling.replanning.residual_problem import (
+    Building,
+    ResidualProblem,
+    residual_problem,
+)
 from mend.fleet.scheduling.replanning.robot_state import TrackedRobot
 from mend.fleet.scheduling.schedule import Action, Route, Schedule
 from mend.fleet.scheduling.travel import Travel
@@ -71,9 +75,11 @@ class FleetState:
             raise EventError("the ways between the places are not known, only how long they take")
         return self.ways
 
-    def rest(self) -> Rest | None:
+    def residual_problem(self) -> ResidualProblem | None:
         """What remains to be done; None where no robot works."""
-        return rest_of(self.building, self.travel, self.robots, self.items, self.routes, self.now_s)
+        return residual_problem(
+            self.building, self.travel, self.robots, self.items, self.routes, self.now_s
+        )
 
     def retry(self) -> list[int]:
         """The items that have no place for now, which are to be tried again."""

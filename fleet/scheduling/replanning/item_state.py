@@ -83,7 +83,7 @@ class TrackedItem:
         back = Visit(self.item.pickup.place, service_s=self.item.pickup.service_s)
         self.item = replace(self.item, delivery=back, max_on_board_s=inf)
 
-    def rest(self, robot: int | None, handling_s: float) -> Item:
+    def residual(self, robot: int | None, handling_s: float) -> Item:
         """What remains to be done as an item by itself; `robot`: the number of whoever has it."""
         item = without_deadline(self.item) if self.overdue else self.item
         if not self.under_way:

@@ -8,7 +8,7 @@ from mend.fleet.scheduling.constraint import Constraint, ConstraintKind
 from mend.fleet.scheduling.problem import Problem
 from mend.fleet.scheduling.replanning.fleet_state import Done, FleetState
 from mend.fleet.scheduling.replanning.item_state import ItemState
-from mend.fleet.scheduling.replanning.rest import Rest, is_given
+from mend.fleet.scheduling.replanning.residual_problem import ResidualProblem, is_given
 from mend.fleet.scheduling.replanning.robot_state import TrackedRobot, Trip
 from mend.fleet.scheduling.schedule import Action, Schedule, Task
 from mend.fleet.scheduling.timing import TimedRoutes, service_s
@@ -32,22 +32,22 @@ class LivePlan:
     Raises `ScheduleError` where the plan is not valid.
     """
 
-    def __init__(self, state: FleetState, rest: Rest) -> None:
+    def __init__(self, state: FleetState, residual: ResidualProblem) -> None:
         self._state = state
-        self._rest = rest
-        self._timed = TimedRoutes(rest.problem, rest.routes)
+        self._residual = residual
+        self._timed = TimedRoutes(residual.problem, residual.routes)
         self._made = [0] * len(state.robots)
         self._departed: set[int] = set()
         self._task_of = {
             event: task
-            for events, route in zip(self._timed.begins, rest.routes, strict=True)
+            for events, route in zip(self._timed.begins, residual.routes, strict=True)
             for event, task in zip(events, route, strict=True)
         }
         self.checked()
 
     def checked(self) -> tuple[Problem, Schedule]:
         """The problem and its schedule, which the checker has passed just now."""
-        return self._rest.problem, require_valid(self._rest.problem, self._timed.schedule())
+        return self._residual.problem, require_valid(self._residual.problem, self._timed.schedule())
 
     def stops(self) -> dict[str, tuple[NextStop, ...]]:
         """What every robot is still to do, with the slack of each stop."""
@@ -67,7 +67,7 @@ class LivePlan:
                     strict=True,
                 )
             )
-            for number, robot in enumerate(self._rest.robots)
+            for number, robot in enumerate(self._residual.robots)
         }
 
     # --- time goes by -----------------------------------------------------------------------------
@@ -75,7 +75,7 @@ class LivePlan:
     def carry_out(self) -> None:
         """Make the stops that are due, and leave for the next ones."""
         self._make_stops()
-        for number in self._rest.robots:
+        for number in self._residual.robots:
             self._set_out(number)
 
     def _make_stops(self) -> None:
@@ -83,11 +83,11 @@ class LivePlan:
         goes_on = True
         while goes_on:
             goes_on = False
-            for number, robot in enumerate(self._rest.robots):
+            for number, robot in enumerate(self._residual.robots):
                 while self._is_due(number, robot):
                     at = self._made[robot]
                     begin_s = self._timed.network.earliest_s(self._timed.begins[number][at])
-                    lasts_s = service_s(self._rest.problem, self._rest.routes[number][at])
+                    lasts_s = service_s(self._residual.problem, self._residual.routes[number][at])
                     self._make_stop(robot, begin_s, begin_s + lasts_s)
                     goes_on = True
 
@@ -130,11 +130,11 @@ class LivePlan:
             return
         leaves_s = robot.free_s
         if self._made[number] == 0:
-            leaves = self._timed.leaves[self._rest.robots.index(number)]
+            leaves = self._timed.leaves[self._residual.robots.index(number)]
             leaves_s = max(leaves_s, self._timed.network.earliest_s(leaves))
         if leaves_s > now_s:
             return
-        place, travel = self._state.routes[number][0].place, self._rest.problem.travel
+        place, travel = self._state.routes[number][0].place, self._residual.problem.travel
         arrival_s = travel.trip(robot.place, place, leaves_s, robot.robot.speed).arrival_s
         robot.trip, robot.place, robot.free_s = Trip(robot.place, leaves_s), place, arrival_s
         robot.left_s = leaves_s if robot.left_s is None else robot.left_s
@@ -156,22 +156,22 @@ class LivePlan:
 
         None, and the network as it was, where a constraint breaks.
         """
-        place, robot = self._rest.robots.index(number), self._state.robots[number]
+        place, robot = self._residual.robots.index(number), self._state.robots[number]
         event, task = self._timed.leaves[place], None
         if self._made[number] > 0 or number in self._departed:
             if not self._state.routes[number]:
                 return set()
             event = self._timed.begins[place][self._made[number]]
-            task = self._rest.routes[place][self._made[number]]
+            task = self._residual.routes[place][self._made[number]]
         network, reason = self._timed.network, Constraint(ConstraintKind.TRAVEL, place, task)
         mark = network.mark()
         if network.not_before(event, robot.free_s, reason) is not None:
             return None
         return {
-            self._rest.items[moved.item]
+            self._residual.items[moved.item]
             for at in network.moved_since(mark)
             if (moved := self._task_of.get(at)) is not None
-            and network.earliest_s(at) > _due_s(self._rest.problem, moved) + CHECK_S
+            and network.earliest_s(at) > _due_s(self._residual.problem, moved) + CHECK_S
         }
 
 

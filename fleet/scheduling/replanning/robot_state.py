@@ -72,7 +72,7 @@ class TrackedRobot:
             f"before {needed_s:g} s"
         )
 
-    def rest(self, travel: Travel, now_s: float, stuck_load: float) -> Robot:
+    def residual(self, travel: Travel, now_s: float, stuck_load: float) -> Robot:
         """What the robot can do from now on, with `stuck_load` on board that stays there."""
         free_s = self.free_s if self.trip else max(self.free_s, now_s)
         home_s = self.home_s(travel, free_s)

@@ -30,9 +30,9 @@ from mend.fleet.scheduling.replanning.item_state import ItemState, TrackedItem
 from mend.fleet.scheduling.replanning.live_plan import LivePlan, NextStop
 from mend.fleet.scheduling.replanning.on_the_way import stand_still, turn_before
 from mend.fleet.scheduling.replanning.open_ways import OpenWays
-from mend.fleet.scheduling.replanning.rest import Rest
+from mend.fleet.scheduling.replanning.plan_repair import PlanRepair
+from mend.fleet.scheduling.replanning.residual_problem import ResidualProblem
 from mend.fleet.scheduling.replanning.robot_state import TrackedRobot
-from mend.fleet.scheduling.replanning.settling import Settling
 from mend.fleet.scheduling.schedule import Route, Schedule
 from mend.fleet.scheduling.tolerance import CHECK_S
 
@@ -282,40 +282,40 @@ class RunningFleet:
         """Make the rest hold with some items sold; `again`: items offered where that is cheaper."""
         state = self._state
         longer = state.stay_longer()
-        rest = state.rest()
-        if rest is None:
+        residual = state.residual_problem()
+        if residual is None:
             self._plan = None
             return self._outcome(new, put_off=dict.fromkeys(selling, NOBODY))
-        number_of = {fleet: number for number, fleet in enumerate(rest.items)}
-        under_way = [state.items[n].under_way for n in rest.items]
-        settling = Settling(rest.problem, rest.routes, rest.held, under_way)
+        number_of = {fleet: number for number, fleet in enumerate(residual.items)}
+        under_way = [state.items[n].under_way for n in residual.items]
+        repair = PlanRepair(residual.problem, residual.routes, residual.held, under_way)
         for item in selling:
-            settling.resell(number_of[item])
-        settling.settle()
-        settling.reconsider([number_of[n] for n in again if n in number_of][:RECONSIDERED])
-        self._take_over(rest, settling)
-        late = {rest.items[n]: why for n, why in settling.late.items()}
-        put_off = {rest.items[n]: why for n, why in settling.put_off.items()}
-        for number, why in settling.overtime.items():
-            longer[rest.problem.robots[number].name] = why
+            repair.resell(number_of[item])
+        repair.repair()
+        repair.reconsider([number_of[n] for n in again if n in number_of][:RECONSIDERED])
+        self._take_over(residual, repair)
+        late = {residual.items[n]: why for n, why in repair.late.items()}
+        put_off = {residual.items[n]: why for n, why in repair.put_off.items()}
+        for number, why in repair.overtime.items():
+            longer[residual.problem.robots[number].name] = why
         outcome = self._outcome(new, put_off, late, longer)
-        left = state.rest()
+        left = state.residual_problem()
         assert left is not None, "somebody works"
         self._plan = LivePlan(state, left)
         return outcome
 
-    def _take_over(self, rest: Rest, settling: Settling) -> None:
-        """Let robots and items know what was settled."""
+    def _take_over(self, residual: ResidualProblem, repair: PlanRepair) -> None:
+        """Let robots and items know what was repaired."""
         state = self._state
-        state.routes = rest.fleet_routes(settling.routes, len(state.robots))
-        for number, robot in enumerate(rest.robots):
-            if not settling.held[number]:
+        state.routes = residual.fleet_routes(repair.routes, len(state.robots))
+        for number, robot in enumerate(residual.robots):
+            if not repair.held[number]:
                 state.robots[robot].let_go()
-            if number in settling.overtime:
-                ends_s = settling.problem.robots[number].shift.latest_s
+            if number in repair.overtime:
+                ends_s = repair.problem.robots[number].shift.latest_s
                 state.robots[robot].overtime_until_s = ends_s
-        for number in settling.late:
-            state.items[rest.items[number]].overdue = True
+        for number in repair.late:
+            state.items[residual.items[number]].overdue = True
 
     def _outcome(
         self,

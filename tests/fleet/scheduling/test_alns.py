@@ -35,29 +35,29 @@ def handed_over(problem: Problem) -> Schedule:
 
 def drawn_problem(seed: int) -> Problem:
     """Three items, two or three robots; windows, shifts and what counts differ by seed."""
-    dice = random.Random(seed)
+    rng = random.Random(seed)
 
     def window(length_s: int) -> Window:
-        begin_s = dice.randint(0, 60)
-        return Window(float(begin_s), float(begin_s + dice.randint(40, length_s)))
+        begin_s = rng.randint(0, 60)
+        return Window(float(begin_s), float(begin_s + rng.randint(40, length_s)))
 
     items = tuple(
         Item(
             f"item{number}",
-            float(dice.randint(1, 2)),
-            Visit(dice.randrange(5), window(200), due_s=50.0, service_s=float(dice.randint(0, 3))),
-            Visit(dice.randrange(5), window(300)),
-            max_on_board_s=float(dice.randint(40, 200)),
+            float(rng.randint(1, 2)),
+            Visit(rng.randrange(5), window(200), due_s=50.0, service_s=float(rng.randint(0, 3))),
+            Visit(rng.randrange(5), window(300)),
+            max_on_board_s=float(rng.randint(40, 200)),
         )
         for number in range(3)
     )
     robots = tuple(
-        Robot(f"robot{number}", place, dice.choice((place, None)), 2.0, Window(0.0, 300.0),
-              max_duration_s=float(dice.randint(80, 300)))
-        for number, place in enumerate((0, 4, 2)[: dice.randint(2, 3)])
+        Robot(f"robot{number}", place, rng.choice((place, None)), 2.0, Window(0.0, 300.0),
+              max_duration_s=float(rng.randint(80, 300)))
+        for number, place in enumerate((0, 4, 2)[: rng.randint(2, 3)])
     )  # fmt: skip
-    transfers = Transfers((2, 3), together=seed % 3 == 0, service_s=float(dice.randint(0, 4)))
-    weights = dice.choice(
+    transfers = Transfers((2, 3), together=seed % 3 == 0, service_s=float(rng.randint(0, 4)))
+    weights = rng.choice(
         (Weights(), Weights(0.5, 1.0), Weights(1.0, 0.0, 0.5), Weights(1.0, 0.0, 0.0, 3.0, 20.0))
     )
     return replace(corridor(items=items, robots=robots, transfers=transfers), weights=weights)

@@ -40,22 +40,22 @@ def drawn_problem(seed: int, items: int = 4, spare_s: float = 0.0) -> Problem:
 
     `spare_s`: how much later everything may be than where hardly all is possible.
     """
-    dice = random.Random(seed)
-    points = tuple((dice.uniform(0, 50), dice.uniform(0, 50)) for _ in range(8))
+    rng = random.Random(seed)
+    points = tuple((rng.uniform(0, 50), rng.uniform(0, 50)) for _ in range(8))
 
     def visit() -> Visit:
-        begin_s = dice.randint(0, 100)
-        window = Window(float(begin_s), begin_s + dice.randint(60, 200) + spare_s)
-        return Visit(dice.randrange(8), window, service_s=float(dice.randint(0, 5)))
+        begin_s = rng.randint(0, 100)
+        window = Window(float(begin_s), begin_s + rng.randint(60, 200) + spare_s)
+        return Visit(rng.randrange(8), window, service_s=float(rng.randint(0, 5)))
 
-    drawn = tuple(Item(f"item{n}", float(dice.randint(1, 2)), visit(), visit())
+    drawn = tuple(Item(f"item{n}", float(rng.randint(1, 2)), visit(), visit())
                   for n in range(items))  # fmt: skip
     robots = tuple(
-        Robot(f"robot{n}", 0, dice.choice((0, 0, None)), float(dice.randint(2, 4)),
-              Window(0.0, dice.randint(250, 400) + spare_s), speed=dice.choice((1.0, 2.0)))
+        Robot(f"robot{n}", 0, rng.choice((0, 0, None)), float(rng.randint(2, 4)),
+              Window(0.0, rng.randint(250, 400) + spare_s), speed=rng.choice((1.0, 2.0)))
         for n in range(3)
     )  # fmt: skip
-    weights = Weights(dice.choice((1.0, 0.5)), robots=dice.choice((0.0, 20.0, 1000.0)))
+    weights = Weights(rng.choice((1.0, 0.5)), robots=rng.choice((0.0, 20.0, 1000.0)))
     names = tuple(f"p{n}" for n in range(8))
     return Problem("drawn", names, Travel.euclidean(points), robots, drawn, weights=weights)
 
@@ -81,18 +81,23 @@ def test_search_finds_what_the_exact_solver_proves(seed: int) -> None:
     assert found.cost.total <= exact.cost.total + 0.05
 
 
-@given(items=corridor_items(), seed=st.integers(0, 99), weight=st.sampled_from((0.0, 5.0, 1e6)))
+@given(
+    items=corridor_items(),
+    seed=st.integers(0, 99),
+    weight=st.sampled_from((0.0, 5.0, 1e6)),
+    transfers=st.booleans(),
+)
 @settings(deadline=None, max_examples=40)
 def test_schedule_found_passes_the_checker(
-    items: tuple[Item, ...], seed: int, weight: float
+    items: tuple[Item, ...], seed: int, weight: float, transfers: bool
 ) -> None:
     problem = replace(corridor(items=items), weights=Weights(robots=weight))
-    found = solved(problem, seconds=1.0, seed=seed)
+    found = solved(problem, seconds=1.0, seed=seed, transfers=transfers)
     if found.schedule is None:
         assert found.status is Status.UNKNOWN
         return
     assert check(problem, found.schedule) == []
-    assert found.schedule.transfers == 0
+    assert transfers or found.schedule.transfers == 0
     assert found.cost == cost(problem, found.schedule)
 
 

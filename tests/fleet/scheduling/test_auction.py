@@ -12,7 +12,7 @@ from mend.fleet.scheduling.growing_routes import GrowingRoutes
 from mend.fleet.scheduling.objective import cost
 from mend.fleet.scheduling.partial_routes import part_schedule, without_items
 from mend.fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit, Weights, Window
-from mend.fleet.scheduling.replanning.settling import Settling
+from mend.fleet.scheduling.replanning.plan_repair import PlanRepair
 from mend.fleet.scheduling.schedule import Action, Task
 
 ROBOTS = (Robot("left", 0, 0, 2.0, max_duration_s=260.0), Robot("right", 4, None, 2.0))
@@ -93,13 +93,13 @@ def test_what_is_sold_is_never_worse_than_without_transfers(
     problem = problem_with(items, transfers, weights)
     totals = []
     for each in (problem, problem.without_transfers()):
-        settling = Settling(each, ((), ()), (0, 0), [False] * len(items))
+        repair = PlanRepair(each, ((), ()), (0, 0), [False] * len(items))
         for item in range(len(items)):
-            settling.resell(item)
-        settling.settle()
-        timed = part_schedule(settling.problem, settling.routes)
+            repair.resell(item)
+        repair.repair()
+        timed = part_schedule(repair.problem, repair.routes)
         assert timed is not None
-        totals.append((len(settling.put_off), cost(*timed).total))
+        totals.append((len(repair.put_off), cost(*timed).total))
     (put_off, total), (put_off_alone, alone) = totals
     assert put_off <= put_off_alone
     if put_off == put_off_alone:

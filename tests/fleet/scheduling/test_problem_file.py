@@ -168,11 +168,11 @@ def test_what_is_no_delivery_file_is_refused(text: str) -> None:
     assert told(text)
 
 
-def test_contradictions_are_told_with_the_line_of_their_item() -> None:
+def test_infeasibilities_are_told_with_the_line_of_their_item() -> None:
     text = TEXT.replace("window_s: [10, null]", "window_s: [10, 30]")
-    (contradiction,) = read_delivery_text(text).contradictions
-    assert contradiction.line == 17
-    assert "to drop post at lab must begin by 30 s" in contradiction.message
+    (infeasibility,) = read_delivery_text(text).infeasibilities
+    assert infeasibility.line == 17
+    assert "to drop post at lab must begin by 30 s" in infeasibility.message
 
 
 def test_door_in_a_file_opens_and_closes() -> None:
@@ -192,7 +192,7 @@ def test_schema_accepts_the_examples_and_refuses_what_is_unknown() -> None:
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
 def test_examples_can_be_solved(path: Path) -> None:
     delivery = read_delivery_file(path)
-    assert delivery.contradictions == ()
+    assert delivery.infeasibilities == ()
     found = solve(delivery.problem, "insertion", seconds=60.0, clock=TickingClock())
     assert found.schedule is not None
     assert check(delivery.problem, found.schedule) == []
@@ -201,7 +201,7 @@ def test_examples_can_be_solved(path: Path) -> None:
 def test_example_in_the_documentation_is_a_delivery_file() -> None:
     document = (Path(__file__).parents[3] / "docs/scheduling.md").read_text()
     example = document.split("```yaml\n")[1].split("```")[0]
-    assert read_delivery_text(example).contradictions == ()
+    assert read_delivery_text(example).infeasibilities == ()
 
 
 def test_example_of_the_corridor_needs_a_transfer() -> None:
@@ -252,7 +252,7 @@ def test_absurd_values_are_told_or_make_sense(text: str, changes: list[tuple[int
         delivery = read_delivery_text(text)
     except DeliveryFileError:
         return
-    if not delivery.contradictions:
+    if not delivery.infeasibilities:
         found = solve(delivery.problem, "greedy", seconds=60.0, clock=TickingClock())
         if found.schedule is not None:
             assert check(delivery.problem, found.schedule) == []

@@ -28,17 +28,17 @@ EFFORT = Effort(600.0, 1, 2)
 
 def drawn_with_distances(seed: int) -> Problem:
     """Windows, loads, ends, shifts and durations differ by seed; only distance and robots cost."""
-    problem, dice = drawn_problem(seed), random.Random(seed)
+    problem, rng = drawn_problem(seed), random.Random(seed)
     robots = tuple(
         replace(
             robot,
-            capacity=float(dice.randint(1, 4)),
-            max_duration_s=dice.choice((inf, inf, 150.0)),
-            shift=Window(float(dice.randint(0, 20)), float(dice.randint(60, 300))),
+            capacity=float(rng.randint(1, 4)),
+            max_duration_s=rng.choice((inf, inf, 150.0)),
+            shift=Window(float(rng.randint(0, 20)), float(rng.randint(60, 300))),
         )
         for robot in problem.robots
     )
-    weights = dice.choice((Weights(lateness=0.0), Weights(2.0, lateness=0.0, robots=15.0)))
+    weights = rng.choice((Weights(lateness=0.0), Weights(2.0, lateness=0.0, robots=15.0)))
     return replace(problem, robots=robots, weights=weights)
 
 

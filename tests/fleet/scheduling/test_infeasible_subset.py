@@ -6,7 +6,7 @@ from dataclasses import replace
 from delivery_problems import corridor, parcel
 from ticking_clock import TickingClock
 
-from mend.fleet.scheduling.exact.clash import clash_words
+from mend.fleet.scheduling.exact.infeasible_subset import infeasible_subset_words
 from mend.fleet.scheduling.exact.solve import solve_exactly
 from mend.fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit, Window
 from mend.fleet.scheduling.solution import Status
@@ -26,7 +26,7 @@ def words(problem: Problem, seconds: float = 60.0) -> str:
         solve_exactly(problem, seconds=PATIENCE_S, clock=time.perf_counter).status
         is Status.INFEASIBLE
     )
-    return clash_words(problem, seconds=seconds, clock=TickingClock(0.01))
+    return infeasible_subset_words(problem, seconds=seconds, clock=TickingClock(0.01))
 
 
 def test_only_what_clashes_is_named() -> None:

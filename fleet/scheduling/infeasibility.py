@@ -20,7 +20,7 @@ from mend.fleet.scheduling.travel import Matrix, Travel
 
 
 @dataclass(frozen=True, slots=True)
-class Contradiction:
+class Infeasibility:
     """One sentence that says what cannot hold, and the item or robot that it is about."""
 
     sentence: str
@@ -28,7 +28,7 @@ class Contradiction:
     robot: int | None = None
 
 
-def contradictions(problem: Problem) -> list[Contradiction]:
+def infeasibilities(problem: Problem) -> list[Infeasibility]:
     """Everything that certainly cannot hold; empty where only a search could tell."""
     found = [*_robots(problem)]
     nearest = _Nearest(problem.travel.time_s)
@@ -38,7 +38,7 @@ def contradictions(problem: Problem) -> list[Contradiction]:
             problem, number, nearest.time_s
         )
         if why:
-            found.append(Contradiction(why, item=number))
+            found.append(Infeasibility(why, item=number))
     return found
 
 
@@ -59,17 +59,17 @@ class _Nearest:
         return self._over_stops_s
 
 
-def _robots(problem: Problem) -> Iterator[Contradiction]:
+def _robots(problem: Problem) -> Iterator[Infeasibility]:
     """Even a robot that has nothing to do goes to its end, with what it has aboard."""
     for number, robot in enumerate(problem.robots):
         alone = replace(problem, robots=(robot,), items=(), transfers=Transfers())
         conflict = TimedRoutes(alone, ((),)).conflict
         if conflict is not None:
             why = _conflict_words(alone, conflict)
-            yield Contradiction(f"robot '{robot.name}' cannot get to its end: {why}", robot=number)
+            yield Infeasibility(f"robot '{robot.name}' cannot get to its end: {why}", robot=number)
         load = sum(item.load for item in problem.items if item.aboard == number)
         if load > robot.capacity:
-            yield Contradiction(
+            yield Infeasibility(
                 f"robot '{robot.name}' has a load of {load:g} aboard, but carries only "
                 f"{robot.capacity:g}",
                 robot=number,

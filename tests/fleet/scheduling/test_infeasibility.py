@@ -1,4 +1,4 @@
-"""Contradictions: one sentence for what cannot hold, and never one for what can."""
+"""What is infeasible: one sentence for what cannot hold, and never one for what can."""
 
 import time
 from dataclasses import replace
@@ -11,8 +11,8 @@ from delivery_problems import CORRIDOR, corridor, corridor_items, parcel
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mend.fleet.scheduling.contradictions import contradictions
 from mend.fleet.scheduling.exact.solve import solve_exactly
+from mend.fleet.scheduling.infeasibility import infeasibilities
 from mend.fleet.scheduling.instances.li_lim import read_li_lim
 from mend.fleet.scheduling.instances.transfer_benchmark import read_transfer_benchmark
 from mend.fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit, Window
@@ -21,7 +21,7 @@ from mend.fleet.scheduling.travel import Epoch, Travel
 
 
 def sentences(problem: Problem) -> list[str]:
-    return [each.sentence for each in contradictions(problem)]
+    return [each.sentence for each in infeasibilities(problem)]
 
 
 def test_problem_that_can_be_solved_has_none() -> None:
@@ -71,7 +71,7 @@ def test_several_constraints_that_clash_are_all_named() -> None:
     assert "10 s more" in told
 
 
-def test_transfer_that_makes_it_possible_is_no_contradiction() -> None:
+def test_transfer_that_makes_it_possible_is_not_infeasible() -> None:
     robots = tuple(
         replace(robot, max_duration_s=45.0) for robot in corridor(items=(parcel(),)).robots
     )
@@ -82,7 +82,7 @@ def test_transfer_that_makes_it_possible_is_no_contradiction() -> None:
 
 def test_robot_that_cannot_get_home() -> None:
     robots = (Robot("left", 0, 4, 2.0, Window(0.0, 30.0)), Robot("right", 4, 4, 2.0))
-    (told,) = contradictions(corridor(items=(parcel("p", 3, 4),), robots=robots))
+    (told,) = infeasibilities(corridor(items=(parcel("p", 3, 4),), robots=robots))
     assert told.robot == 0
     assert told.sentence.startswith("robot 'left' cannot get to its end: ")
     assert "the shift of left ends at 30 s" in told.sentence
@@ -121,7 +121,7 @@ def test_detour_may_be_quicker_in_a_matrix() -> None:
     st.sampled_from((inf, 90.0, 50.0)),
 )
 @settings(deadline=None, max_examples=40)
-def test_nothing_that_can_be_solved_is_called_contradictory(
+def test_nothing_that_can_be_solved_is_called_infeasible(
     items: tuple[Item, ...], transfers: Transfers, duration_s: float
 ) -> None:
     robots = (
@@ -129,7 +129,7 @@ def test_nothing_that_can_be_solved_is_called_contradictory(
         Robot("right", 4, None, 1.0, Window(10.0, 200.0), duration_s, 1.5),
     )
     problem = corridor(items=items[:2], robots=robots, transfers=transfers)
-    if contradictions(problem):
+    if infeasibilities(problem):
         found = solve_exactly(problem, seconds=5.0, workers=1, clock=time.perf_counter)
         assert found.status in (Status.INFEASIBLE, Status.UNKNOWN)
 
@@ -137,9 +137,9 @@ def test_nothing_that_can_be_solved_is_called_contradictory(
 @pytest.mark.skipif(not DATA.is_dir(), reason="the benchmark instances are not here")
 def test_published_instances_are_judged() -> None:
     for name in ("lc101", "lr101"):
-        assert contradictions(read_li_lim(next(DATA.rglob(f"{name}.txt")).read_text())) == []
+        assert infeasibilities(read_li_lim(next(DATA.rglob(f"{name}.txt")).read_text())) == []
     feasible = read_transfer_benchmark(next(DATA.rglob("4R-4K-4T-300L-0.txt")).read_text())
-    assert contradictions(feasible) == []
+    assert infeasibilities(feasible) == []
     items = (replace(feasible.items[0], load=1e6), *feasible.items[1:])
-    (told,) = contradictions(replace(feasible, items=items))
+    (told,) = infeasibilities(replace(feasible, items=items))
     assert told.item == 0

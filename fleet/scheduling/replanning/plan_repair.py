@@ -10,7 +10,7 @@ from math import inf
 
 from mend.fleet.scheduling.auction import Sale, sell
 from mend.fleet.scheduling.constraint import Constraint, ConstraintKind
-from mend.fleet.scheduling.contradictions import contradictions
+from mend.fleet.scheduling.infeasibility import infeasibilities
 from mend.fleet.scheduling.no_place import conflict_words, no_place_words
 from mend.fleet.scheduling.objective import cost
 from mend.fleet.scheduling.partial_routes import part_schedule, without_items
@@ -27,8 +27,8 @@ JUDGED_ALONE = 2
 """Up to how many items at once are also judged as if there were no other: it takes a while."""
 
 
-class Settling:
-    """Routes that may not hold, and items to be sold; `settle` makes them hold.
+class PlanRepair:
+    """Routes that may not hold, and items to be sold; `repair` makes them hold.
 
     `held`: by robot, how many of its first tasks are what it does next. `late`, `put_off`: by item,
     why it goes late or has no place; `overtime`: by robot, why its shift is longer than it was.
@@ -74,7 +74,7 @@ class Settling:
 
     # --- making it hold ---------------------------------------------------------------------------
 
-    def settle(self) -> None:
+    def repair(self) -> None:
         """Make the routes hold and sell what is to be sold."""
         self._give_way()
         self._end_overtime()
@@ -293,7 +293,7 @@ class Settling:
         described = self.problem.items[item]
         if len(self._selling) <= JUDGED_ALONE:
             alone = replace(self.problem, items=(described,))
-            for each in contradictions(alone):
+            for each in infeasibilities(alone):
                 if each.item == 0:
                     return each.sentence
         return no_place_words(self.problem, item, conflict)

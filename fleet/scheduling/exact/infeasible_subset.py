@@ -1,5 +1,5 @@
-"""Why items that could each be delivered cannot all be: the fewest of them that already clash, and
-the constraints that do not hold together. What is left out one by one is proved not to be needed.
+"""Why items that could each be delivered cannot all be: an infeasible subset that no smaller one is
+part of, and the constraints that do not hold together. What is left out is proved not to be needed.
 """
 
 from collections.abc import Callable, Iterator
@@ -26,10 +26,10 @@ class Limit:
     lifted: Callable[[Problem], Problem]
 
 
-def clash_words(problem: Problem, *, seconds: float, clock: Callable[[], float]) -> str:
+def infeasible_subset_words(problem: Problem, *, seconds: float, clock: Callable[[], float]) -> str:
     """One sentence for a problem that is proved infeasible.
 
-    Where the time is over before everything was tried, it may name more than clashes.
+    Where the time is over before everything was tried, it may name more than is in the subset.
     """
     began_s = clock()
 
@@ -52,7 +52,7 @@ def clash_words(problem: Problem, *, seconds: float, clock: Callable[[], float])
 
 
 def _fewest_items(problem: Problem, infeasible: Callable[[Problem], bool]) -> Problem:
-    """The problem with as few of its items as clash; halves go first, then one by one."""
+    """The problem with an infeasible subset of its items; halves go first, then one by one."""
     items, size = problem.items, len(problem.items) // 2
     while size > 0:
         at = 0

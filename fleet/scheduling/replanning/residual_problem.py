@@ -21,7 +21,7 @@ class Building:
 
 
 @dataclass(frozen=True, slots=True)
-class Rest:
+class ResidualProblem:
     """The remaining problem with its routes; `robots` and `items` are the fleet's numbers.
 
     `held`: by robot, how many of its first tasks are what it does next.
@@ -34,7 +34,7 @@ class Rest:
     held: tuple[int, ...]
 
     def fleet_routes(self, routes: Sequence[Route], count: int) -> list[Route]:
-        """Routes of the rest with the fleet's numbers, for `count` robots."""
+        """Routes of the residual problem with the fleet's numbers, for `count` robots."""
         numbered: list[Route] = [()] * count
         for robot, route in zip(self.robots, routes, strict=True):
             numbered[robot] = tuple(self._fleet_task(task) for task in route)
@@ -45,15 +45,15 @@ class Rest:
         return replace(task, item=self.items[task.item], partner=partner)
 
 
-def rest_of(
+def residual_problem(
     building: Building,
     travel: Travel,
     robots: Sequence[TrackedRobot],
     items: Sequence[TrackedItem],
     routes: Sequence[Route],
     now_s: float,
-) -> Rest | None:
-    """The rest at a time; items that were put off are not in it. None where no robot works."""
+) -> ResidualProblem | None:
+    """What remains at a time; items that were put off are not in it. None where no robot works."""
     working = tuple(number for number, robot in enumerate(robots) if robot.works)
     if not working:
         return None
@@ -65,7 +65,7 @@ def rest_of(
         if item.put_off is not None and item.robot is not None:
             stuck[item.robot] += item.item.load
 
-    def rest_task(robot: int, task: Task) -> Task:
+    def residual_task(robot: int, task: Task) -> Task:
         number = item_number[task.item]
         if task.action is Action.TAKE and is_given(routes, robot, task):
             return Task(task.place, Action.PICK, number)
@@ -76,16 +76,18 @@ def rest_of(
         building.name,
         building.places,
         travel,
-        tuple(robots[k].rest(travel, now_s, stuck[k]) for k in working),
-        tuple(_rest_item(items[n], robot_number, building.transfers.service_s) for n in planned),
+        tuple(robots[k].residual(travel, now_s, stuck[k]) for k in working),
+        tuple(
+            _residual_item(items[n], robot_number, building.transfers.service_s) for n in planned
+        ),
         building.transfers,
         building.weights,
     )
-    return Rest(
+    return ResidualProblem(
         problem,
         working,
         planned,
-        tuple(tuple(rest_task(k, task) for task in routes[k]) for k in working),
+        tuple(tuple(residual_task(k, task) for task in routes[k]) for k in working),
         tuple(1 if robots[k].held and routes[k] else 0 for k in working),
     )
 
@@ -99,6 +101,6 @@ def is_given(routes: Sequence[Route], robot: int, take: Task) -> bool:
     )
 
 
-def _rest_item(item: TrackedItem, robot_number: dict[int, int], handling_s: float) -> Item:
+def _residual_item(item: TrackedItem, robot_number: dict[int, int], handling_s: float) -> Item:
     robot = None if item.robot is None else robot_number[item.robot]
-    return item.rest(robot, handling_s)
+    return item.residual(robot, handling_s)
