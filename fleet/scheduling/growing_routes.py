@@ -114,10 +114,10 @@ class GrowingRoutes:
         pick = Task(described.pickup.place, Action.PICK, item)
         drop = Task(described.delivery.place, Action.DROP, item)
         tasks = (pick, drop) if carrier is None else (drop,)
-        conflicts = []
+        routes, conflicts = self.routes, []
         for robot in range(len(self.problem.robots)) if carrier is None else (carrier,):
             if self.problem.robots[robot].capacity >= described.load:
-                longer = list(self.routes)
+                longer = _bound_to(routes, robot)
                 longer[robot] = (*longer[robot], *tasks)
                 conflicts.append(self._timed(longer, item).conflict)
         known = [conflict for conflict in conflicts if conflict is not None]
@@ -137,3 +137,13 @@ class GrowingRoutes:
     def _timed(self, routes: Sequence[Route], item: int | None = None) -> TimedRoutes:
         whole = [each for each in items_in(routes) if each == item or each not in self.begun]
         return TimedRoutes(self.problem, routes, whole)
+
+
+def _bound_to(routes: Sequence[Route], robot: int) -> list[Route]:
+    """The routes of a robot and of all whose times depend on its own; the others' empty."""
+    bound, found = {robot}, [robot]
+    while found:
+        partners = {task.partner for task in routes[found.pop()] if task.partner is not None}
+        found.extend(partners - bound)
+        bound |= partners
+    return [route if each in bound else () for each, route in enumerate(routes)]
