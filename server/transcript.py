@@ -207,7 +207,7 @@ class Transcript:
 
     @lines.register
     def _(self, event: ev.NodeTaken) -> list[Line]:
-        return [_line(event, event.helper, f"takes {event.name}, to do it", Tone.CHOICE)]
+        return [_line(event, event.helper, f"has taken {event.name}, to do it", Tone.CHOICE)]
 
     @lines.register
     def _(self, event: ev.StepStarted) -> list[Line]:

@@ -5,6 +5,7 @@ from uuid import UUID
 
 from console_in_browser import OpenPage
 from playwright.async_api import Page, expect
+from two_boxes import BENCH, BOTH
 
 from mend.server.composition import Service
 from mend.server.runtime.requests import RunRequest
@@ -75,6 +76,28 @@ async def live_run(service: Service, open_page: OpenPage) -> Page:
     page = await open_page(f"/runs/{run}")
     await expect(page.get_by_role("link", name="Questions 1")).to_be_visible(timeout=PATIENCE_MS)
     await expect(page.get_by_role("main").get_by_text("Loading …")).to_have_count(0)
+    return page
+
+
+async def begin_two_boxes(service: Service) -> UUID:
+    """Start a run whose robot is at one box for a while, so that a person can take the other."""
+    await service.library.scenes.save("small_bench", BENCH)
+    await service.library.trees.save("both", BOTH)
+    request = RunRequest(tree="both", world="tabletop", speed=1.0, seed=2)
+    return (await service.runtime.start_run(request)).id
+
+
+async def taken_leaf(service: Service, open_page: OpenPage) -> Page:
+    """A person does one of the boxes, and has been told that the other is the robot's."""
+    page = await open_page(f"/runs/{await begin_two_boxes(service)}")
+    red_box = page.get_by_role("treeitem", name="red box")
+    await expect(red_box).to_have_attribute("data-state", "active", timeout=PATIENCE_MS)
+    words = page.get_by_label("Choose a leaf that waits, or say it")
+    for said in ("I do the blue box", "I do the red box"):
+        await words.fill(said)
+        await page.get_by_role("button", name="Say it").click()
+    await expect(page.get_by_text("'red_box' cannot be taken now")).to_be_visible()
+    await expect(page.get_by_text("You are doing blue box")).to_be_visible()
     return page
 
 
@@ -160,6 +183,7 @@ SITUATIONS: dict[str, Situation] = {
         no_runs,
         runs,
         live_run,
+        taken_leaf,
         finished_run,
         trees,
         wrong_tree,

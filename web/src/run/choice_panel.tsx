@@ -2,7 +2,7 @@
 import { KIND_MEANINGS, plain } from "../tree/words";
 import type { NodeStarted, NodeView } from "../wire/types";
 import { whyChosen } from "./choice";
-import { clock } from "./run_header";
+import { clock } from "./run_words";
 import "./choice_panel.css";
 
 const SHOWN_AT_MOST = 12;

@@ -6,6 +6,7 @@ import type {
   HelpAwaited,
   IssueRaised,
   NodeStarted,
+  NodeTaken,
   NodeView,
   Prompt,
   Resolved,
@@ -61,6 +62,8 @@ export interface RunState {
   readonly potentials: ReadonlyMap<number, number>;
   readonly choice: NodeStarted | null;
   readonly executions: ReadonlyMap<string, Execution>;
+  /** The leaves that people do themselves, by path. */
+  readonly people: ReadonlyMap<string, NodeTaken>;
   readonly dialogues: ReadonlyMap<string, OpenDialogue>;
   readonly raised: IssueRaised | null;
   readonly resolutions: readonly Resolved[];
@@ -84,6 +87,7 @@ export function begin(started: RunStarted): RunState {
     potentials: new Map(),
     choice: null,
     executions: new Map(),
+    people: new Map(),
     dialogues: new Map(),
     raised: null,
     resolutions: [],
@@ -102,7 +106,10 @@ function applied(state: RunState, event: Event): RunState {
     case "node_started":
       return start(state, event);
     case "node_taken":
-      return withLeaf(state, event.node, (leaf) => ({ ...leaf, status: "active", owner: event.helper }));
+      return {
+        ...withLeaf(state, event.node, (leaf) => ({ ...leaf, status: "active", owner: event.helper })),
+        people: new Map(state.people).set(event.node, event),
+      };
     case "step_started":
       return withExecution(state, event.robot, (execution) =>
         execution.id === event.execution
@@ -120,13 +127,13 @@ function applied(state: RunState, event: Event): RunState {
     }
     case "node_done":
     case "node_left_out":
-      return endExecution(withLeaf(state, event.node, (leaf) => ({ ...leaf, status: "done", owner: null })), event.node);
+      return endWork(withLeaf(state, event.node, (leaf) => ({ ...leaf, status: "done", owner: null })), event.node);
     case "node_undone":
       return withLeaf(state, event.node, (leaf) => ({ ...leaf, status: "idle", owner: null }));
     case "node_reset": {
       const failed = event.failed_attempt ? 1 : 0;
       const put = (leaf: LeafState): LeafState => ({ status: "idle", owner: null, attempts: leaf.attempts + failed });
-      return endExecution(withLeaf(state, event.node, put), event.node);
+      return endWork(withLeaf(state, event.node, put), event.node);
     }
     case "node_abandoned":
       return { ...state, abandoned: new Set(state.abandoned).add(indexOf(state, event.node)) };
@@ -185,9 +192,11 @@ function withExecution(state: RunState, robot: string, change: (execution: Execu
   return { ...state, executions: new Map(state.executions).set(robot, change(execution)) };
 }
 
-function endExecution(state: RunState, path: string): RunState {
+/** Nobody is at a leaf any more, neither a robot nor a person. */
+function endWork(state: RunState, path: string): RunState {
   const left = [...state.executions].filter(([, execution]) => execution.node !== path);
-  return { ...state, executions: new Map(left) };
+  const people = [...state.people].filter(([node]) => node !== path);
+  return { ...state, executions: new Map(left), people: new Map(people) };
 }
 
 function end(state: RunState, status: RunStatus, result: RunResult): RunState {

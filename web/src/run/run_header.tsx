@@ -6,6 +6,7 @@ import { plain } from "../tree/words";
 import * as rest from "../wire/rest";
 import { ended, type RunState } from "./fold";
 import type { Moment } from "./moment";
+import { clock } from "./run_words";
 import "./run_header.css";
 
 const STATUS_WORDS = {
@@ -103,12 +104,4 @@ function RunControls({ run, paused }: { run: string; paused: boolean }) {
       )}
     </div>
   );
-}
-
-/** A time of the run's clock as people read it: 7.4 s, 2:07.4. */
-export function clock(time: number): string {
-  const tenths = Math.round(time * 10);
-  if (tenths < 600) return `${(tenths / 10).toFixed(1)} s`;
-  const seconds = tenths % 600;
-  return `${Math.floor(tenths / 600)}:${(seconds / 10).toFixed(1).padStart(4, "0")}`;
 }

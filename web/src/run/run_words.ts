@@ -48,3 +48,11 @@ export function ago(then: number, now: number): string {
 export function moment(then: number): string {
   return MOMENT.format(then);
 }
+
+/** A time of the run's clock as people read it: 7.4 s, 2:07.4. */
+export function clock(time: number): string {
+  const tenths = Math.round(time * 10);
+  if (tenths < 600) return `${(tenths / 10).toFixed(1)} s`;
+  const seconds = tenths % 600;
+  return `${Math.floor(tenths / 600)}:${(seconds / 10).toFixed(1).padStart(4, "0")}`;
+}

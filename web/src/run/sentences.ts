@@ -123,7 +123,7 @@ export function linesOf(event: Event): Line[] {
     case "node_started":
       return line("choice", `starts ${plain(event.name)}${attempt(event)}${comparison(event)}.`, event.robot);
     case "node_taken":
-      return line("choice", `takes ${plain(event.name)}, to do it.`, event.helper);
+      return line("choice", `has taken ${plain(event.name)}, to do it.`, event.helper);
     case "step_started":
       return [
         {

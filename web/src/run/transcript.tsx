@@ -1,7 +1,7 @@
 // The transcript: everything that was said and done, with the moment that is shown marked in it.
 import { useEffect, useMemo, useRef } from "preact/hooks";
 import type { Event } from "../wire/types";
-import { clock } from "./run_header";
+import { clock } from "./run_words";
 import { joined, type Line, linesOf } from "./sentences";
 import "./transcript.css";
 

@@ -5,6 +5,7 @@ import type {
   Event,
   Intervention,
   Layout,
+  LeafSaid,
   Problem as ProblemDocument,
   RobotView,
   RunRequest,
@@ -102,6 +103,13 @@ export const resumeRun = (id: string) => call<RunSummary>("POST", `/api/runs/${s
 export const abortRun = (id: string) => call<RunSummary>("POST", `/api/runs/${segment(id)}/abort`);
 export const intervene = (id: string, intervention: Intervention) =>
   call<Intervention>("POST", `/api/runs/${segment(id)}/interventions`, intervention);
+
+const leaf = <T>(id: string, what: "take" | "give_back" | "say", body: object) =>
+  call<T>("POST", `/api/runs/${segment(id)}/leaves/${what}`, body);
+export const takeLeaf = (id: string, node: string, helper: string) => leaf<RunSummary>(id, "take", { node, helper });
+export const giveLeafBack = (id: string, node: string, helper: string) =>
+  leaf<RunSummary>(id, "give_back", { node, helper });
+export const sayOfLeaf = (id: string, words: string, helper: string) => leaf<LeafSaid>(id, "say", { words, helper });
 
 const EVENTS_AT_ONCE = 1000;
 
