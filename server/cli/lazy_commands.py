@@ -23,6 +23,7 @@ SUMMARIES = {
     "map": "Build and clean up vector maps.",
     "journal": "Check, prune, back up and restore a journal.",
     "scene": "Make up scenes.",
+    "site": "Open, list, show and close worlds that stay.",
 }
 """Each `some-name` is the group `app` of its module `some_name`, or its function `some_name`."""
 

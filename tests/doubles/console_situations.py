@@ -9,6 +9,7 @@ from two_boxes import BENCH, BOTH
 
 from mend.server.composition import Service
 from mend.server.runtime.requests import RunRequest
+from mend.server.sites.requests import SiteRequest
 from mend.tasks.intervention import Intervention
 from mend.tasks.scenario import Person
 
@@ -138,7 +139,8 @@ async def delete_tree(service: Service, open_page: OpenPage) -> Page:
     return page
 
 
-async def start_run(_: Service, open_page: OpenPage) -> Page:
+async def start_run(service: Service, open_page: OpenPage) -> Page:
+    await service.sites.open_site(SiteRequest(scene="kit", world="tabletop"))
     page = await open_page("/start/eket")
     await page.get_by_role("spinbutton", name="Seed").fill("-1")
     await page.get_by_role("button", name="Start the run").click()

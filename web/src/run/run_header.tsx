@@ -6,7 +6,7 @@ import { plain } from "../tree/words";
 import * as rest from "../wire/rest";
 import { ended, type RunState } from "./fold";
 import type { Moment } from "./moment";
-import { clock } from "./run_words";
+import { clock, siteName } from "./run_words";
 import "./run_header.css";
 
 const STATUS_WORDS = {
@@ -32,6 +32,7 @@ export function RunHeader({ newest, moment }: { newest: RunState; moment: Moment
           <span class="quiet">
             {started.robots.map((robot) => (newest.lost.has(robot) ? `${robot} (lost)` : robot)).join(", ")}
           </span>
+          {started.site != null && <span class="quiet">at the site {siteName({ id: started.site, scene: sceneOf(started) })}</span>}
           {started.scenario !== null && <span class="quiet">scenario {plain(started.scenario)}</span>}
         </p>
         {result !== null && (status !== "finished" || result.missing.length > 0) && (
@@ -104,4 +105,8 @@ function RunControls({ run, paused }: { run: string; paused: boolean }) {
       )}
     </div>
   );
+}
+
+function sceneOf({ scene }: RunState["started"]): string {
+  return typeof scene.name === "string" ? scene.name : "";
 }

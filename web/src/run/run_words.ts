@@ -1,4 +1,5 @@
 // How the console says what state a run is in, and when something was.
+import { plain } from "../tree/words";
 import type { RunStatus, RunSummary } from "../wire/types";
 
 export const STATUS_WORDS: Readonly<Record<RunStatus, string>> = {
@@ -24,6 +25,11 @@ export const STATUS_SIGNS: Readonly<Record<RunStatus, string>> = {
 export function outcome({ result }: RunSummary): string {
   if (result === null) return "";
   return result.reason.charAt(0).toUpperCase() + result.reason.slice(1);
+}
+
+/** A site as people call it: by its scene, and the beginning of its id. */
+export function siteName({ id, scene }: { id: string; scene: string }): string {
+  return `${plain(scene)} (${id.slice(0, 8)})`;
 }
 
 const UNITS: readonly (readonly [Intl.RelativeTimeFormatUnit, number])[] = [

@@ -14,6 +14,7 @@ import type {
   RunView,
   ScenarioSummary,
   SessionView,
+  SiteView,
   SpeechView,
   DocumentCheck,
   DocumentSummary,
@@ -148,6 +149,7 @@ export const promptSoundPath = (id: string, prompt: string) =>
 export const phraseSoundPath = (name: string) => `/api/speech/phrases/${segment(name)}`;
 
 export const robots = () => call<RobotView[]>("GET", "/api/robots");
+export const sites = () => call<SiteView[]>("GET", "/api/sites");
 export const worlds = () => call<WorldView[]>("GET", "/api/worlds");
 export const scenarios = () => call<ScenarioSummary[]>("GET", "/api/scenarios");
 export const trees = () => call<DocumentSummary[]>("GET", "/api/trees");
