@@ -1,10 +1,12 @@
 // What the console says of leaves that people do, and which of them it offers.
 import { describe, expect, it } from "vitest";
 import { begin, fold, nodeViews } from "../src/run/fold";
-import { beingDone, canBeTaken, doersOf, sentence } from "../src/run/leaf_words";
+import { beingDone, canBeTaken, doersOf } from "../src/run/leaf_words";
+import { sentence } from "../src/run/run_words";
 import { nodesOfRun } from "../src/tree/tree_node";
 import { described } from "../src/tree/words";
-import type { Event, NodeTaken, NodeView, RunStarted } from "../src/wire/types";
+import type { Told } from "../src/wire/told";
+import type { NodeTaken, NodeView, RunStarted } from "../src/wire/types";
 
 const LEAF = { kind: "behavior", behavior: "pick_and_place", parent: 0 } as const;
 const STARTED = {
@@ -20,8 +22,8 @@ const STARTED = {
     ],
   },
 } as unknown as RunStarted;
-const TAKEN = { type: "node_taken", seq: 2, time: 1, node: "/1", name: "blue_box", helper: "anna", until: 121 } as NodeTaken;
-const DONE = { type: "node_done", seq: 3, time: 9, node: "/1", name: "blue_box", robot: "pr2-1", by: "human" } as Event;
+const TAKEN = { type: "node_taken", seq: 2, time: 1, node: "/1", name: "blue_box", helper: "anna", until: 121, lines: [] } as unknown as NodeTaken & Told;
+const DONE = { type: "node_done", seq: 3, time: 9, node: "/1", name: "blue_box", robot: "pr2-1", by: "human", lines: [] } as unknown as Told;
 
 describe("a leaf that a person does", () => {
   const taken = fold(begin(STARTED), TAKEN);

@@ -14,8 +14,9 @@ import type {
   RunStarted,
   RunStatus,
 } from "../wire/types";
-import { finishedWords } from "./sentences";
+import type { Told } from "../wire/told";
 import { activationOf, type LeafStatus } from "./activation";
+import { lastOf } from "./transcript_lines";
 import { shapeOf, type TreeShape } from "./tree_shape";
 
 export interface LeafState {
@@ -96,12 +97,12 @@ export function begin(started: RunStarted): RunState {
 }
 
 /** The state after one more event; events come in order of `seq`. */
-export function fold(state: RunState, event: Event): RunState {
+export function fold(state: RunState, event: Told): RunState {
   const seq = Math.max(state.seq, event.seq);
   return { ...applied(state, event), seq, time: Math.max(state.time, event.time) };
 }
 
-function applied(state: RunState, event: Event): RunState {
+function applied(state: RunState, event: Told): RunState {
   switch (event.type) {
     case "node_started":
       return start(state, event);
@@ -143,7 +144,7 @@ function applied(state: RunState, event: Event): RunState {
       return { ...state, status: "running" };
     case "run_finished":
       return end(state, "finished", {
-        reason: finishedWords(event),
+        reason: lastOf(event),
         node: null,
         missing: event.missing,
         unseen: event.unseen,

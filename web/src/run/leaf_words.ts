@@ -21,12 +21,6 @@ export function whatWasSaid({ deed, name }: LeafSaid): string {
   return deed === "take" ? `You have taken ${plain(name)}.` : `You have given ${plain(name)} back.`;
 }
 
-/** A refusal of the service as a sentence. */
-export function sentence(message: string): string {
-  const text = message.charAt(0).toUpperCase() + message.slice(1);
-  return /[.!?]$/.test(text) ? text : `${text}.`;
-}
-
 /** Who of the people is doing something with which object. */
 export function doersOf({ people, shape }: RunState): ReadonlyMap<string, string> {
   const doers = new Map<string, string>();

@@ -5,7 +5,8 @@ import { helperName } from "../state/preferences";
 import { plain } from "../tree/words";
 import * as rest from "../wire/rest";
 import type { NodeTaken, NodeView } from "../wire/types";
-import { beingDone, canBeTaken, sentence, whatWasSaid } from "./leaf_words";
+import { beingDone, canBeTaken, whatWasSaid } from "./leaf_words";
+import { sentence } from "./run_words";
 import "./leaves.css";
 
 interface LeavesProps {

@@ -6,7 +6,7 @@ import { plain } from "../tree/words";
 import * as rest from "../wire/rest";
 import { ended, type RunState } from "./fold";
 import type { Moment } from "./moment";
-import { clock, siteName } from "./run_words";
+import { clock, sentence, siteName } from "./run_words";
 import "./run_header.css";
 
 const STATUS_WORDS = {
@@ -36,10 +36,10 @@ export function RunHeader({ newest, moment }: { newest: RunState; moment: Moment
           {started.scenario !== null && <span class="quiet">scenario {plain(started.scenario)}</span>}
         </p>
         {result !== null && (status !== "finished" || result.missing.length > 0) && (
-          <p class="mistake">{result.reason}</p>
+          <p class="mistake">{sentence(result.reason)}</p>
         )}
         {result !== null && status === "finished" && result.missing.length === 0 && result.unseen.length > 0 && (
-          <p class="quiet">{result.reason}</p>
+          <p class="quiet">{sentence(result.reason)}</p>
         )}
       </div>
       {!ended(status) && <RunControls run={started.run} paused={status === "paused"} />}

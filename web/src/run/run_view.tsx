@@ -7,6 +7,7 @@ import { awaitingHelp, questions, together } from "../state/questions";
 import { TreeDrawing } from "../tree/tree_drawing";
 import { nodesOfRun } from "../tree/tree_node";
 import { plain } from "../tree/words";
+import type { Told } from "../wire/told";
 import type { NodeStarted, NodeView } from "../wire/types";
 import { Cameras } from "./cameras";
 import { ChoicePanel } from "./choice_panel";
@@ -245,7 +246,7 @@ function useChoices(feed: RunFeed, state: RunState, selected: string | null): re
   return useMemo(() => {
     if (selected === null) return state.choice === null ? [] : [state.choice];
     return feed.history.events.filter(
-      (event): event is NodeStarted =>
+      (event): event is Extract<Told, NodeStarted> =>
         event.type === "node_started" && event.node === selected && event.seq <= state.seq,
     );
   }, [feed, state, selected]);

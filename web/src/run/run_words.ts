@@ -62,3 +62,9 @@ export function clock(time: number): string {
   const seconds = tenths % 600;
   return `${Math.floor(tenths / 600)}:${(seconds / 10).toFixed(1).padStart(4, "0")}`;
 }
+
+/** What the service says, as a sentence. */
+export function sentence(message: string): string {
+  const text = message.charAt(0).toUpperCase() + message.slice(1);
+  return /[.!?]$/.test(text) ? text : `${text}.`;
+}

@@ -2,7 +2,6 @@
 import type {
   Answered,
   DialogueView,
-  Event,
   Intervention,
   Layout,
   LeafSaid,
@@ -21,6 +20,7 @@ import type {
   DocumentView,
   WorldView,
 } from "./types";
+import type { Told } from "./told";
 
 /** The service refused: what it said in its problem document (RFC 9457). */
 export class Refusal extends Error {
@@ -115,11 +115,11 @@ export const sayOfLeaf = (id: string, words: string, helper: string) => leaf<Lea
 const EVENTS_AT_ONCE = 1000;
 
 /** All events of a run after `after`, in order. */
-export async function events(id: string, after = 0): Promise<Event[]> {
-  const all: Event[] = [];
+export async function events(id: string, after = 0): Promise<Told[]> {
+  const all: Told[] = [];
   for (;;) {
-    const path = `/api/runs/${segment(id)}/events?after=${after}&limit=${EVENTS_AT_ONCE}`;
-    const some = await call<Event[]>("GET", path);
+    const path = `/api/runs/${segment(id)}/events?after=${after}&limit=${EVENTS_AT_ONCE}&told=true`;
+    const some = await call<Told[]>("GET", path);
     all.push(...some);
     const last = some.at(-1);
     // A page of long events holds fewer than were asked for.
