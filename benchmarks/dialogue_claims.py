@@ -173,9 +173,11 @@ def _next_try(record: RunRecord, index: int, event: ev.Prompt, said: re.Match[st
 
 
 def _is_begun(event: ev.Event, names: str) -> bool:
-    """Whether one of the parts of a sentence is begun with."""
+    """Whether one of the parts of a sentence is begun with; of "another part" any will do."""
+    if not isinstance(event, ev.NodeStarted):
+        return False
     named = re.findall(r"the ([\w ]+?)(?=,| or |$)", names)
-    return isinstance(event, ev.NodeStarted) and event.name.replace("_", " ") in named
+    return "another part" in names or event.name.replace("_", " ") in named
 
 
 def _then_with(record: RunRecord, index: int, event: ev.Prompt, said: re.Match[str]) -> str | None:

@@ -20,19 +20,25 @@ class Between(StrEnum):
     TURNED = "turned"
     """The right part, another way round or askew."""
     OTHER = "other"
-    """Something else."""
+    """Something else that is none of the rivals."""
     NOTHING = "nothing"
 
 
+Hypothesis = Between | int
+"""What may be there; a number is that of a rival, a known part that may be there in its stead."""
+
 HELD = frozenset({Between.STRAIGHT, Between.TURNED})
 
-_AT_FIRST: Mapping[Between, float] = {
+_AT_FIRST: Mapping[Hypothesis, float] = {
     Between.STRAIGHT: 0.485,
     Between.TURNED: 0.015,
     Between.OTHER: 0.25,
     Between.NOTHING: 0.25,
 }
 """Even odds that the part is held; of 100 held ones 3 are turned."""
+
+_KNOWN_SHARE = 0.75
+"""So often something else is one of the rivals, where there are any, each as often."""
 
 _LOST_PER_S = 0.02
 _TURNS_PER_S = 0.005
@@ -46,10 +52,18 @@ _LEAST = math.exp(-7.0)
 
 
 class Belief:
-    """Starts at even odds; `probability` is that of holding the part."""
+    """Starts at even odds; `probability` is that of holding the part.
 
-    def __init__(self) -> None:
-        self._shares = dict(_AT_FIRST)
+    Of `rivals` each is a hypothesis of its own: one that fits reading after reading is not held
+    against by all those that do not.
+    """
+
+    def __init__(self, rivals: int = 0) -> None:
+        self._shares: dict[Hypothesis, float] = {**_AT_FIRST}
+        if rivals:
+            other = self._shares[Between.OTHER]
+            self._shares[Between.OTHER] = (1.0 - _KNOWN_SHARE) * other
+            self._shares |= dict.fromkeys(range(rivals), _KNOWN_SHARE * other / rivals)
 
     @property
     def probability(self) -> float:
@@ -58,6 +72,12 @@ class Belief:
     def of(self, between: Between) -> float:
         """How likely it is that this is between the fingers."""
         return self._shares[between]
+
+    def forget_rivals(self) -> None:
+        """What is there now is no rival, or is of no interest: they are something else."""
+        rivals = sum(share for each, share in self._all() if isinstance(each, int))
+        self._shares = {each: self._shares[each] for each in Between}
+        self._shares[Between.OTHER] += rivals
 
     def predict(self, elapsed_s: float) -> None:
         """Time has passed in which it may have been lost or have turned."""
@@ -75,7 +95,7 @@ class Belief:
         self._shares[Between.STRAIGHT] -= turns
         self._shares[Between.TURNED] += turns
 
-    def update(self, log_likelihoods: Mapping[Between, float]) -> None:
+    def update(self, log_likelihoods: Mapping[Hypothesis, float]) -> None:
         """Take a reading into account: log p(reading | what is there)."""
         most = max(log_likelihoods.values())
         shares = {
@@ -86,5 +106,5 @@ class Belief:
         total = sum(shares.values())
         self._shares = {each: share / total for each, share in shares.items()}
 
-    def _all(self) -> list[tuple[Between, float]]:
+    def _all(self) -> list[tuple[Hypothesis, float]]:
         return list(self._shares.items())

@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from mend.robots.grasp import Grasp
-from mend.robots.grip.belief import Between
+from mend.robots.grip.belief import Between, Hypothesis
 from mend.robots.grip.composition import Composition, log_density
 from mend.robots.grip.rivals import RivalReading
 from mend.robots.gripper import GripperModel
@@ -39,8 +39,7 @@ class CueModel:
     the other way round or is jammed askew: flat fingers turn it straight unless the line between
     the two corners that they touch is within the angle of their `friction`, or something pushed.
     Fingers that closed on nothing are apart by the noise alone, in `moving_share` of the cases they
-    are still on their way. Of other things that somebody puts between them `known_share`
-    are known parts, each as often.
+    are still on their way.
     """
 
     encoder_sd_m: float = 0.0003
@@ -51,21 +50,27 @@ class CueModel:
     impossible_per_m: float = 1e-3
     presses_on_something: float = 0.9999
     presses_on_nothing: float = 0.3
-    known_share: float = 0.75
 
     def log_likelihoods(
         self, reading: HandReading, grasp: Grasp, gripper: GripperModel
-    ) -> Mapping[Between, float]:
+    ) -> Mapping[Hypothesis, float]:
         """log p(reading | what is between the fingers), for everything that may be there."""
         opening_m, seen = reading.opening_m, reading.composition
         on_something = self._log_pressing(reading.presses, self.presses_on_something)
         on_nothing = self._log_pressing(reading.presses, self.presses_on_nothing)
         right = on_something + _log_looks(seen, "right")
+        rivals: dict[Hypothesis, float] = {
+            number: on_something + self._log_rival(opening_m, each, grasp)
+            for number, each in enumerate(reading.rivals)
+        }
         return {
+            **rivals,
             Between.STRAIGHT: right + math.log(self._opening_on(opening_m, grasp.width_m)),
             Between.TURNED: right
             + math.log(self._opening_on_turned(opening_m, grasp, gripper, pushed=reading.pushed)),
-            Between.OTHER: on_something + math.log(self._other(reading, grasp, gripper)),
+            Between.OTHER: on_something
+            + _log_looks(seen, "other")
+            + math.log(self._opening_on_other(opening_m, gripper, pushed=reading.pushed)),
             Between.NOTHING: on_nothing
             + _log_looks(seen, "nothing")
             + math.log(self._opening_on_nothing(opening_m, gripper)),
@@ -96,18 +101,9 @@ class CueModel:
         closed = 2.0 * _normal(opening_m, sd_m)
         return (1.0 - self.moving_share) * closed + self.moving_share / gripper.max_opening_m
 
-    def _other(self, reading: HandReading, grasp: Grasp, gripper: GripperModel) -> float:
-        """The density of opening and looks if something else is held."""
-        opening_m, rivals = reading.opening_m, reading.rivals
-        opening = self._opening_on_other(opening_m, gripper, pushed=reading.pushed)
-        anything = math.exp(_log_looks(reading.composition, "other")) * opening
-        if not rivals:
-            return anything
-        known = sum(
-            math.exp(each.log_looks) * self._opening_on(opening_m, self._felt_m(each, grasp))
-            for each in rivals
-        )
-        return (1.0 - self.known_share) * anything + self.known_share * known / len(rivals)
+    def _log_rival(self, opening_m: float, rival: RivalReading, grasp: Grasp) -> float:
+        """Of opening and looks if that is held."""
+        return rival.log_looks + math.log(self._opening_on(opening_m, self._felt_m(rival, grasp)))
 
     def _felt_m(self, rival: RivalReading, grasp: Grasp) -> float:
         """A rival's width; the part's own where fingers cannot tell the two."""

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from mend.robots.body import CameraImage, Matrix4
 from mend.robots.catalogue import Part
 from mend.robots.grasp import Grasp, corners_in_tool
-from mend.robots.grip.belief import Belief, Between
+from mend.robots.grip.belief import Belief, Between, Hypothesis
 from mend.robots.grip.composition import Composition, likeliest
 from mend.robots.grip.cues import CueModel, HandReading
 from mend.robots.grip.reading import GRIP, GripReading, GripState
@@ -91,7 +91,7 @@ class GripWatch:
         self._rivals = rivals
         self._boxes = corners_in_tool(part, grasp)
         self._near = near_tool(part, grasp)
-        self._belief = Belief()
+        self._belief = Belief(len(rivals))
         self._state = GripState.UNDECIDED
         self._pushed = False
         """Whether something has pushed against the arm since the fingers closed."""
@@ -170,7 +170,7 @@ class GripWatch:
             image=image,
             rivals=rivals.read(self._rivals_left, self.part.name, self._boxes, seen),
         )
-        alone = Belief()
+        alone = Belief(len(self._rivals_left))
         alone.update(self._log_likelihoods(reading))
         return replace(reading, probability=alone.probability)
 
@@ -188,7 +188,7 @@ class GripWatch:
         region = visible_region(hand.image, hand.tool, self._near, hiding)
         return composition(region, segmentation, self._model, self.part.name)
 
-    def _log_likelihoods(self, reading: GripReading) -> Mapping[Between, float]:
+    def _log_likelihoods(self, reading: GripReading) -> Mapping[Hypothesis, float]:
         seen = reading.composition
         if self._state is GripState.HELD and seen is not None and likeliest(seen) == "nothing":
             # What fingers still press on is hidden, and stays what it is however long.
@@ -201,6 +201,7 @@ class GripWatch:
         self._unsure = 0 if sure else self._unsure + 1
         if self._state is GripState.UNDECIDED and (sure or self._unsure >= _LONGEST_DOUBT):
             self._state = GRIP.require(self._state, self._first_verdict())
+            self._belief.forget_rivals()
         elif self._state is GripState.HELD and self.probability <= 1.0 - _SURE:
             self._state = GRIP.require(self._state, GripState.LOST)
 

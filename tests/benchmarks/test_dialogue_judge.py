@@ -288,6 +288,16 @@ def test_the_next_attempt_is_counted_and_must_come() -> None:
     assert miscounted.wrong() == ["2 attempts have failed"]
 
 
+def test_whichever_other_part_was_promised_may_come_instead_of_the_next_attempt() -> None:
+    text = "I try again (attempt 2 of 3), or I take the part 8, the part 9 or another part instead."
+    never = told().say(text).close().reset(failed=True)
+    assert never.wrong() == ["it was never tried again"]
+    assert never.start("/1", "part_2").wrong() == []
+    only = text.replace(", the part 9 or another part", "")
+    unsaid = told().say(only).close().reset(failed=True).start("/1", "part_2")
+    assert unsaid.wrong() == ["it was never tried again"]
+
+
 def test_what_answers_lead_to_names_the_attempt_that_it_is() -> None:
     option = ev.AnswerOption(value="yes", effect="You put it back; I pick it up (attempt 2 of 3).")
     first = told().say("Hm?", answers=[option])

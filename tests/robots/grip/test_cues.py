@@ -11,6 +11,7 @@ from mend.robots.grasp import Grasp
 from mend.robots.grip.belief import Belief, Between
 from mend.robots.grip.composition import Composition
 from mend.robots.grip.cues import CueModel, HandReading
+from mend.robots.grip.rivals import RivalReading
 
 CUES = CueModel()
 WIDTHS = st.floats(GRIPPER.min_width_m + 0.002, GRIPPER.max_width_m)
@@ -127,3 +128,26 @@ def test_fingers_that_close_tell_that_it_is_gone_even_while_something_pushes(wid
         closed = HandReading(0.0, False, None, pushed=True)
         belief.update(CUES.log_likelihoods(closed, grasp(width_m), GRIPPER))
     assert belief.probability < 0.01
+
+
+@pytest.mark.parametrize("rivals", [1, 3, 10])
+def test_a_rival_that_fits_each_reading_is_believed_however_many_others_there_are(
+    rivals: int,
+) -> None:
+    knob, other = grasp(0.015, 0.024), 0.022
+    widths = [other, *(0.040 + 0.002 * each for each in range(rivals - 1))]
+    reading = HandReading(other, True, None, rivals=[RivalReading(each, 0.0) for each in widths])
+    belief = Belief(rivals)
+    for _ in range(12):
+        belief.update(CUES.log_likelihoods(reading, knob, GRIPPER))
+    assert belief.probability < 0.05
+
+
+def test_rivals_that_are_forgotten_are_something_else() -> None:
+    reading = HandReading(0.03, True, None, rivals=[RivalReading(0.03, 0.0)])
+    belief = Belief(1)
+    belief.update(CUES.log_likelihoods(reading, grasp(0.015), GRIPPER))
+    before = belief.probability
+    belief.forget_rivals()
+    assert belief.probability == pytest.approx(before)
+    assert belief.of(Between.OTHER) > 0.5
