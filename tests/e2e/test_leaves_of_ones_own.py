@@ -34,11 +34,13 @@ async def test_what_somebody_takes_is_done_when_it_is_seen(
     await expect(log.get_by_text("has taken blue box")).to_be_visible()
     await expect(page.locator(".scene-name", has_text="blue box · anna")).to_have_count(1)
     await expect(page.get_by_role("button", name="I do this")).to_have_count(0)
+    await expect(page.get_by_text("anna has taken it.")).to_be_visible()
     await expect(log.get_by_text("blue box is done")).to_have_count(0)
     await service.runtime.intervene(run, PLACE)
     await expect(log.get_by_text("blue box is done by the human")).to_be_visible()
     await expect(blue_box(page)).to_have_attribute("data-state", "done")
     await expect(page.get_by_text("You are doing blue box")).to_have_count(0)
+    await expect(page.get_by_text("Done, and no robot has started it.")).to_be_visible()
     assert next(each for each in (await service.runtime.run(run)).nodes if each.node == BLUE).done
 
 

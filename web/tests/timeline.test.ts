@@ -71,6 +71,7 @@ describe("transcript", () => {
     for (const line of events.slice(0, 11).flatMap(linesOf)) joined(lines, line);
     const steps = lines.filter((line) => line.tone === "step");
     expect(steps).toHaveLength(1);
+    expect(steps[0]?.speaker).toBe("green leg");
     expect(steps[0]?.text).toMatch(/^1 above pick · 2 pick · .* · 8 above place$/);
   });
 

@@ -11,7 +11,14 @@ export interface Line extends TranscriptLine {
 
 /** The lines of an event; none for those that others already tell. */
 export function linesOf({ seq, time, lines }: Told): Line[] {
-  return lines.map((line) => ({ ...line, seq, time, text: plain(line.text) }));
+  return lines.map((line) => ({
+    ...line,
+    seq,
+    time,
+    // Only a behavior has a name of the task file; robots and people are called as they are.
+    speaker: line.tone === "step" ? plain(line.speaker) : line.speaker,
+    text: plain(line.text),
+  }));
 }
 
 /** The text of an event's last line, which says what it comes to. */
