@@ -10,8 +10,8 @@ from fault_trial import AFTER_DONE, LAST_STEP, NEVER, NotNowError, Said, Trial
 from plain_watch import PlainWatch, SharedSenses
 
 from mend.errors import WrongInputError
+from mend.robots.arm.grasp import grasp_of
 from mend.robots.catalogue import Catalogue, Part
-from mend.robots.grasp import grasp_of
 from mend.robots.link.messages import (
     Finished,
     FinishedResult,

@@ -5,16 +5,21 @@ from dataclasses import dataclass
 from typing import Any
 
 from mend.robots.agent import Emit, EmitPicture
-from mend.robots.arm import Arm, Routine
-from mend.robots.behaviors.behavior import Behavior
-from mend.robots.behaviors.execution import Execution
-from mend.robots.behaviors.execution_state import ExecutionState
-from mend.robots.behaviors.progress import Progress
-from mend.robots.behaviors.work import Work
-from mend.robots.body import Body, CameraImage
+from mend.robots.arm.arm import Arm, Routine
+from mend.robots.arm.behaviors.behavior import Behavior
+from mend.robots.arm.behaviors.execution import Execution
+from mend.robots.arm.behaviors.execution_state import ExecutionState
+from mend.robots.arm.behaviors.progress import Progress
+from mend.robots.arm.behaviors.work import Work
+from mend.robots.arm.body import ArmBody
+from mend.robots.arm.command_resolver import CommandError, CommandResolver
+from mend.robots.arm.looks import Looker, look_as_told
+from mend.robots.arm.monitors.monitor import BEFORE_FIRST_STEP, Monitor
+from mend.robots.arm.perception import FOREARM, Perception
+from mend.robots.arm.result import JudgedResult
+from mend.robots.body import CameraImage
 from mend.robots.catalogue import Catalogue
 from mend.robots.clip import encode_clip
-from mend.robots.command_resolver import CommandError, CommandResolver
 from mend.robots.link.messages import (
     PROTOCOL_VERSION,
     ActiveExecution,
@@ -40,10 +45,6 @@ from mend.robots.link.messages import (
     Start,
     TakePicture,
 )
-from mend.robots.looks import Looker, look_as_told
-from mend.robots.monitors.monitor import BEFORE_FIRST_STEP, Monitor
-from mend.robots.perception import FOREARM, Perception
-from mend.robots.result import JudgedResult
 from mend.robots.showing import PoseDisplay
 from mend.robots.task_progress import TaskProgress
 from mend.robots.vision.color_model import ColorModel
@@ -78,7 +79,7 @@ class Robot:
     def __init__(
         self,
         name: str,
-        body: Body,
+        body: ArmBody,
         model: ColorModel,
         catalogue: Catalogue,
         behaviors: Mapping[str, type[Behavior]],

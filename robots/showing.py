@@ -6,9 +6,11 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from mend.robots.body import Body, Matrix4
+from mend.robots.arm.body import ArmBody
+from mend.robots.arm.grasp import part_in_tool
+from mend.robots.arm.perception import Perception
+from mend.robots.body import Matrix4
 from mend.robots.catalogue import Catalogue, Part
-from mend.robots.grasp import part_in_tool
 from mend.robots.link.messages import (
     PoseLayout,
     Poses,
@@ -17,7 +19,6 @@ from mend.robots.link.messages import (
     ShownPose,
     Sighting,
 )
-from mend.robots.perception import Perception
 
 
 @runtime_checkable
@@ -42,7 +43,7 @@ class JointedBody(Protocol):
 class PoseDisplay:
     """What is shown of one robot: its joints and tool, and the parts where it located them."""
 
-    def __init__(self, body: Body, catalogue: Catalogue, perception: Perception) -> None:
+    def __init__(self, body: ArmBody, catalogue: Catalogue, perception: Perception) -> None:
         self._body = body
         self._jointed = body if isinstance(body, JointedBody) else None
         self._catalogue = catalogue

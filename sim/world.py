@@ -8,7 +8,7 @@ from pydantic import BaseModel
 
 from mend.errors import UnavailableError
 from mend.robots.agent import AgentGroup
-from mend.robots.body import Reach
+from mend.robots.arm.body import Reach
 from mend.robots.link.messages import ShownObject, ShownPose
 from mend.robots.vision.color_model import ColorModel
 from mend.tasks.definition import BehaviorNode, GoalNode

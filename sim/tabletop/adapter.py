@@ -2,10 +2,10 @@
 
 from collections.abc import Iterable, Sequence
 
-from mend.robots.body import Reach
+from mend.robots.arm.body import Reach
+from mend.robots.arm.feasibility.check import check_scene
+from mend.robots.arm.feasibility.robots import check_for_each_robot
 from mend.robots.catalogue import Catalogue
-from mend.robots.feasibility.check import check_scene
-from mend.robots.feasibility.robots import check_for_each_robot
 from mend.robots.robot import Robot
 from mend.robots.vision.color_model import ColorModel
 from mend.robots.vision.lookalikes import find_lookalikes

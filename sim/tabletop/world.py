@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import ConfigDict, Field
 
-from mend.robots.body import Reach
+from mend.robots.arm.body import Reach
 from mend.robots.link.messages import ShownObject, ShownPose
 from mend.sim.camera_cover import CoverableCamera
 from mend.sim.depth_noise import DepthNoise

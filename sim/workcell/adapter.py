@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from pathlib import Path
 
+from mend.robots.arm.feasibility.check import check_scene
 from mend.robots.catalogue import Catalogue
-from mend.robots.feasibility.check import check_scene
 from mend.robots.robot import Robot
 from mend.robots.vision.color_model import ColorModel
 from mend.robots.vision.lookalikes import find_lookalikes

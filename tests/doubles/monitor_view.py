@@ -3,9 +3,9 @@
 import numpy as np
 from drawn_scene import PARTS, TABLE_Z
 
-from mend.robots.behaviors.phase import Phase
-from mend.robots.body import Reach
-from mend.robots.monitors.monitor import MonitorView
+from mend.robots.arm.behaviors.phase import Phase
+from mend.robots.arm.body import Reach
+from mend.robots.arm.monitors.monitor import MonitorView
 from mend.robots.vision.blob import Blob
 from mend.robots.vision.head import HeadSighting
 

@@ -13,7 +13,8 @@ from robot_bench import RobotBench
 from sampled import sample
 from scripted_body import STARTS, ScriptedBody, catalogue, trained_model
 
-from mend.robots.body import NoWay
+from mend.robots.arm.body import NoWay
+from mend.robots.arm.perception.head import HeadSense
 from mend.robots.link.messages import (
     Finished,
     Hold,
@@ -32,7 +33,6 @@ from mend.robots.link.messages import (
     StepStarted,
     TakePicture,
 )
-from mend.robots.perception.head import HeadSense
 from mend.robots.robot import Robot
 from mend.robots.vision.obstruction import Obstruction
 from mend.tasks.plugins import load_plugins

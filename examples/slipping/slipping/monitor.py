@@ -4,10 +4,10 @@ from typing import ClassVar
 
 from pydantic import Field
 
-from mend.robots.behaviors import Phase
-from mend.robots.grip import GripState
+from mend.robots.arm.behaviors import Phase
+from mend.robots.arm.grip import GripState
+from mend.robots.arm.monitors import Monitor, MonitorView, Reaction
 from mend.robots.link.messages import Detection
-from mend.robots.monitors import Monitor, MonitorView, Reaction
 from mend.tasks.scene import StrictModel
 
 
