@@ -1,17 +1,10 @@
-"""Moving a body: routines that take many control cycles.
-
-A routine is a generator; each `yield` lets one control cycle pass. Whoever drops a routine
-before its end calls `Arm.stop`.
-"""
+"""An arm and its gripper: moving them, in routines that take many control cycles."""
 
 import math
-from collections.abc import Generator
-from typing import TypeVar
 
 from mend.robots.arm.body import ArmBody, ArmPath, ToolPose
-
-T = TypeVar("T")
-Routine = Generator[None, None, T]
+from mend.robots.execution.effector import Effector
+from mend.robots.execution.routine import Routine
 
 _CLEAR_HEIGHTS_M = (0.14, 0.10, 0.06, 0.03)
 """How far the tool point is raised before it leaves sideways: the first that is within reach."""
@@ -19,48 +12,18 @@ _RETREAT_SPEED = 0.6
 _POINTS_DOWN = -0.97
 
 
-class Arm:
-    """An arm and its gripper, with how fast they may go at the moment."""
+class Arm(Effector[ArmBody]):
+    """An arm and its gripper; it is at rest at neutral."""
 
     def __init__(self, body: ArmBody) -> None:
-        self.body = body
-        self.at_neutral = False
-        self._slow_down = 1.0
-        self._caution = 1.0
-        self._speed = 1.0
+        super().__init__(body)
         self._opened_m = 0.0
         """How wide the gripper was last told to open; 0 since it was told to close."""
 
-    def slow_down(self, factor: float) -> None:
-        """Scale all motion from now on, as the service commanded."""
-        self._slow_down = factor
-        self._apply_speed()
-
-    def be_careful(self, factor: float) -> None:
-        """Scale all motion from now on because a person's hands are near; 1 when they are not."""
-        self._caution = factor
-        self._apply_speed()
-
     def start(self, path: ArmPath, segment: int, speed: float) -> None:
         """Start one segment of a path."""
-        self.at_neutral = False
-        self._speed = speed
-        self.body.follow(path, segment, self._scaled(speed))
-
-    def stop(self) -> None:
-        """Stop within one control cycle."""
-        self.body.stop()
-
-    def settle(self) -> Routine[None]:
-        """Wait until nothing moves any more."""
-        while self.body.moving:
-            yield
-
-    def wait(self, duration_s: float) -> Routine[None]:
-        """Let time pass."""
-        end = self.body.time_s() + duration_s
-        while self.body.time_s() < end - 1e-9:
-            yield
+        self.at_rest = False
+        self.body.follow(path, segment, self._at_speed(speed))
 
     def follow(self, path: ArmPath, speed: float) -> Routine[None]:
         """Go through a whole path."""
@@ -94,11 +57,11 @@ class Arm:
 
     def go_to_neutral(self) -> Routine[None]:
         """Leave upwards, then move to where the arm hides nothing from the head camera."""
-        if self.at_neutral:
+        if self.at_rest:
             return
         yield from self.lift()
         yield from self.follow(self.body.plan_neutral(), _RETREAT_SPEED)
-        self.at_neutral = True
+        self.at_rest = True
 
     def go_to_hand_over(self) -> Routine[None]:
         """Move to where a person hands something to the robot."""
@@ -115,7 +78,7 @@ class Arm:
 
     def lift(self) -> Routine[None]:
         """Raise the tool point straight up before it leaves sideways, where that is possible."""
-        pose = None if self.at_neutral else self.tool_pose()
+        pose = None if self.at_rest else self.tool_pose()
         if pose is None:
             return
         for height_m in _CLEAR_HEIGHTS_M:
@@ -127,10 +90,3 @@ class Arm:
 
     def _opening(self, opening_m: float | None) -> float:
         return self.body.gripper.max_opening_m if opening_m is None else opening_m
-
-    def _scaled(self, speed: float) -> float:
-        return speed * self._slow_down * self._caution
-
-    def _apply_speed(self) -> None:
-        if self.body.moving:
-            self.body.set_speed(self._scaled(self._speed))

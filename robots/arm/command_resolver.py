@@ -1,27 +1,22 @@
-"""What commands mean to one robot: which behavior, part and place their names stand for."""
+"""What commands mean to an arm: which behavior, part and place their names stand for."""
 
 from collections.abc import Collection, Iterable, Mapping
 
-from pydantic import ValidationError
-
-from mend.errors import MendError
 from mend.robots.arm.behaviors.assignment import Assignment
-from mend.robots.arm.behaviors.behavior import Behavior
+from mend.robots.arm.behaviors.behavior import ArmBehavior
 from mend.robots.arm.result import JudgedResult
 from mend.robots.catalogue import Catalogue, Part
+from mend.robots.execution.behavior import read_parameters
+from mend.robots.execution.command_error import CommandError
 from mend.robots.link.messages import FinishedResult, Location, Look, Start
 
 
-class CommandError(MendError):
-    """A command cannot be carried out; the message says why."""
-
-
 class CommandResolver:
-    """A robot's behaviors, and the parts and places that it knows."""
+    """An arm's behaviors, and the parts and places that it knows."""
 
     def __init__(
         self,
-        behaviors: Mapping[str, type[Behavior]],
+        behaviors: Mapping[str, type[ArmBehavior]],
         catalogue: Catalogue,
         known_colors: Collection[str],
     ) -> None:
@@ -30,17 +25,9 @@ class CommandResolver:
         self._known_colors = known_colors
 
     def assign(self, start: Start) -> Assignment:
-        """What a start command asks for. Raises `CommandError`."""
-        behavior = self._behaviors.get(start.behavior)
-        if behavior is None:
-            known = ", ".join(sorted(self._behaviors))
-            raise CommandError(f"behavior '{start.behavior}' is unknown; this robot has {known}")
-        try:
-            parameters = behavior.parameters.model_validate(start.parameters)
-        except ValidationError as error:
-            first = error.errors()[0]
-            where = ".".join(str(each) for each in first["loc"]) or "parameters"
-            raise CommandError(f"{start.behavior}: {where}: {first['msg']}") from error
+        """What a start command of one of its behaviors asks for. Raises `CommandError`."""
+        behavior = self._behaviors[start.behavior]
+        parameters = read_parameters(behavior, start)
         part = self.part(getattr(parameters, "object", None), start.size)
         target = start.target or self.target(getattr(parameters, "place", None))
         needs_help = bool(getattr(parameters, "needs_help", False))

@@ -5,6 +5,7 @@ from collections.abc import Iterable, Sequence
 from mend.robots.arm.body import Reach
 from mend.robots.arm.feasibility.check import check_scene
 from mend.robots.arm.feasibility.robots import check_for_each_robot
+from mend.robots.arm.subsystem import ArmSubsystem
 from mend.robots.catalogue import Catalogue
 from mend.robots.robot import Robot
 from mend.robots.vision.color_model import ColorModel
@@ -79,12 +80,17 @@ class TabletopAdapter:
             Robot(
                 name,
                 body,
-                colors,
-                Catalogue.from_scene(frame.scene_to_robot(setup.scene)),
-                load_plugins("mend.behaviors"),
-                load_plugins("mend.monitors"),
-                # As fast as possible, nobody watches: what no monitor needs costs only time.
-                films=setup.speed is not None,
+                [
+                    ArmSubsystem(
+                        body,
+                        colors,
+                        Catalogue.from_scene(frame.scene_to_robot(setup.scene)),
+                        load_plugins("mend.behaviors"),
+                        load_plugins("mend.monitors"),
+                        # As fast as possible, nobody watches: what no monitor needs costs time.
+                        films=setup.speed is not None,
+                    )
+                ],
             )
             for name, frame, body in zip(setup.robots, frames, world.bodies, strict=True)
         ]

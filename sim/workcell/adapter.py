@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from mend.robots.arm.feasibility.check import check_scene
+from mend.robots.arm.subsystem import ArmSubsystem
 from mend.robots.catalogue import Catalogue
 from mend.robots.robot import Robot
 from mend.robots.vision.color_model import ColorModel
@@ -58,12 +59,17 @@ class WorkcellAdapter:
         robot = Robot(
             name,
             world.body,
-            learn_colors(setup.scene, options.camera_noise),
-            Catalogue.from_scene(setup.scene),
-            load_plugins("mend.behaviors"),
-            load_plugins("mend.monitors"),
-            # As fast as possible, nobody watches: a picture that no monitor needs costs only time.
-            films=setup.speed is not None,
+            [
+                ArmSubsystem(
+                    world.body,
+                    learn_colors(setup.scene, options.camera_noise),
+                    Catalogue.from_scene(setup.scene),
+                    load_plugins("mend.behaviors"),
+                    load_plugins("mend.monitors"),
+                    # As fast as possible, nobody watches: a picture for no monitor costs only time.
+                    films=setup.speed is not None,
+                )
+            ],
         )
         return SharedWorld(
             world,

@@ -1,6 +1,5 @@
-"""What a robot can do: behaviors as lists of steps, and the execution that walks them."""
+"""What an arm can do: behaviors as lists of steps, and the execution that walks them."""
 
-from mend.robots.arm.behaviors.behavior import Behavior, Move, SetGripper, Situation, Step
-from mend.robots.arm.behaviors.phase import Phase
+from mend.robots.arm.behaviors.behavior import ArmBehavior, Move, SetGripper, Situation, Step
 
-__all__ = ["Behavior", "Move", "Phase", "SetGripper", "Situation", "Step"]
+__all__ = ["ArmBehavior", "Move", "SetGripper", "Situation", "Step"]

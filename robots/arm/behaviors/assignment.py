@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from mend.robots.arm.behaviors.behavior import Behavior
+from mend.robots.arm.behaviors.behavior import ArmBehavior
 from mend.robots.arm.result import JudgedResult
 from mend.robots.catalogue import Part
 from mend.robots.link.messages import Location, WasDone
@@ -18,7 +18,7 @@ class Assignment:
     """
 
     execution: str
-    behavior: Behavior
+    behavior: ArmBehavior
     parameters: StrictModel
     part: Part | None
     target: Location | None

@@ -4,21 +4,21 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 
-from mend.robots.arm.arm import Routine
 from mend.robots.arm.behaviors.contact import Contact, ContactWatch
-from mend.robots.arm.behaviors.execution_state import ExecutionState
-from mend.robots.arm.behaviors.phase import Phase
 from mend.robots.arm.behaviors.planning import waypoints_of
-from mend.robots.arm.behaviors.watch import Watch
+from mend.robots.arm.behaviors.watch import ArmWatch
 from mend.robots.arm.behaviors.work import Work
 from mend.robots.arm.body import ToolPose
+from mend.robots.execution.execution_state import ExecutionState
+from mend.robots.execution.phase import Phase
+from mend.robots.execution.routine import Routine
 
 _SPEED = 0.3
 _BIDE_S = 0.5
 """Who pulls at what the fingers hold has it in three times this, or has let go of it."""
 
 
-def back_off(work: Work, watch: Watch, way_back: Sequence[ToolPose]) -> Routine[None]:
+def back_off(work: Work, watch: ArmWatch, way_back: Sequence[ToolPose]) -> Routine[None]:
     """Go back through these poses; where no way leads back, bide a while. Raises `Interruption`."""
     arm = work.arm
     work.progress.move_to(ExecutionState.BACKING_OFF)
@@ -31,14 +31,14 @@ def back_off(work: Work, watch: Watch, way_back: Sequence[ToolPose]) -> Routine[
         yield from _watched(arm.settle(), watch)
 
 
-def _watched(routine: Routine[None], watch: Watch) -> Routine[None]:
+def _watched(routine: Routine[None], watch: ArmWatch) -> Routine[None]:
     """A routine during which the monitors look as ever. Raises `Interruption`."""
     for _ in routine:
         watch.check_if_due()
         yield
 
 
-def try_again(work: Work, watch: Watch, contact: Contact, *, last: bool) -> None:
+def try_again(work: Work, watch: ArmWatch, contact: Contact, *, last: bool) -> None:
     """Plan the way on; after the last try, or where none leads on, judge what was felt.
 
     Raises `Interruption`.
@@ -52,7 +52,7 @@ def try_again(work: Work, watch: Watch, contact: Contact, *, last: bool) -> None
     progress.move_to(ExecutionState.RUNNING)
 
 
-def get_out_of_view(work: Work, watch: Watch) -> Routine[None]:
+def get_out_of_view(work: Work, watch: ArmWatch) -> Routine[None]:
     """Get out of the head camera's view; an arm that felt something goes feeling its way.
 
     Raises `Interruption`.

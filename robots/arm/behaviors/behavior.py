@@ -1,15 +1,16 @@
-"""A behavior: a name, a model of its parameters and the list of its steps."""
+"""A behavior of an arm: the list of its steps, and what it may know when it lays them out."""
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar, Literal
 
-from mend.robots.arm.behaviors.phase import Phase
 from mend.robots.arm.body import ToolPose
 from mend.robots.arm.grasp import Grasp
 from mend.robots.arm.gripper import GripperModel
 from mend.robots.catalogue import Part
+from mend.robots.execution.behavior import Behavior
+from mend.robots.execution.phase import Phase
 from mend.robots.link.messages import Location
 from mend.tasks.scene import StrictModel
 
@@ -68,27 +69,15 @@ class Situation:
     lift_m: float
 
 
-class Behavior(ABC):
-    """One kind of behavior. A package adds its own under the entry point `mend.behaviors`.
+class ArmBehavior(Behavior):
+    """What an arm does, as a list of steps.
 
-    `parameters` is the pydantic model of its parameters in task files and commands. A behavior
-    whose parameters have an `object` is given that part, with a `place` that target.
-    `monitored_as` is the behavior whose monitors watch it: its own name unless it says otherwise.
+    A behavior whose parameters have an `object` is given that part, with a `place` that target.
     `carry_from` is the step (from 1) at which to go on with the object already in the gripper;
-    None for the first that carries. `step_count` is how many steps it always has; None where that
-    depends on its parameters or on the situation.
+    None for the first that carries.
     """
 
-    name: ClassVar[str]
-    parameters: ClassVar[type[StrictModel]]
-    monitored_as: ClassVar[str]
     carry_from: ClassVar[int | None] = None
-    step_count: ClassVar[int | None] = None
-
-    def __init_subclass__(cls, **given: object) -> None:
-        super().__init_subclass__(**given)
-        if not hasattr(cls, "monitored_as") and hasattr(cls, "name"):
-            cls.monitored_as = cls.name
 
     @abstractmethod
     def steps(self, parameters: StrictModel, situation: Situation) -> Sequence[Step]:

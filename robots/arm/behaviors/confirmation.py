@@ -1,10 +1,11 @@
 """After the last step: whether the object is seen where the behavior was to bring it."""
 
-from mend.robots.arm.arm import Arm, Routine
+from mend.robots.arm.arm import Arm
 from mend.robots.arm.behaviors.findings import Outcome
 from mend.robots.arm.behaviors.search import LOOK_AGAIN_S, LOOKS
 from mend.robots.arm.perception import Perception
 from mend.robots.catalogue import Part
+from mend.robots.execution.routine import Routine
 from mend.robots.link.messages import Location
 from mend.robots.vision.presence import Presence
 

@@ -1,10 +1,12 @@
 """Finished results that a behavior covers: whether they are there until nobody can see them."""
 
 from mend.robots.arm.behaviors.assignment import Assignment
-from mend.robots.arm.behaviors.phase import Phase
 from mend.robots.arm.perception import Perception
 from mend.robots.arm.result import JudgedResult
 from mend.robots.catalogue import Part
+from mend.robots.execution.monitor import Reaction
+from mend.robots.execution.phase import Phase
+from mend.robots.execution.watch import Interruption
 from mend.robots.link.messages import Location
 from mend.tasks.footprint import Footprint
 
@@ -14,8 +16,11 @@ _PHASES = frozenset({Phase.LIFT, Phase.CARRY, Phase.PLACE})
 _ON_TOP_M = 0.01
 
 
-class CoveredResultGone(Exception):  # noqa: N818 - control flow, not an error
+class CoveredResultGone(Interruption):
     """Something that the object is to be put on is seen gone."""
+
+    def __init__(self) -> None:
+        super().__init__(Reaction.GO_TO_NEUTRAL, "a result that is about to be covered is gone")
 
 
 class Covering:

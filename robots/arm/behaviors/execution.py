@@ -1,69 +1,50 @@
-"""The execution of one behavior: its steps walked on a body, watched by monitors."""
+"""The execution of one behavior of an arm: what is looked for, planned, walked and confirmed."""
 
 from collections.abc import Sequence
-from typing import Any
 
-from mend.robots.arm.arm import Routine
 from mend.robots.arm.behaviors.confirmation import look_at_outcome
 from mend.robots.arm.behaviors.covering import CoveredResultGone
-from mend.robots.arm.behaviors.execution_state import EXECUTION, ExecutionState
 from mend.robots.arm.behaviors.preparation import prepare
 from mend.robots.arm.behaviors.put_down import put_down
 from mend.robots.arm.behaviors.step_walk import StepWalk
-from mend.robots.arm.behaviors.watch import Interruption, Watch
+from mend.robots.arm.behaviors.watch import ArmWatch
 from mend.robots.arm.behaviors.work import Work
 from mend.robots.arm.body import ToolPose
-from mend.robots.arm.monitors.monitor import BEFORE_FIRST_STEP, Monitor, Reaction
 from mend.robots.catalogue import Part
-from mend.robots.link.messages import Finished, Holding, Location, Resumed
+from mend.robots.execution.execution import Execution
+from mend.robots.execution.execution_state import ExecutionState
+from mend.robots.execution.monitor import AnyMonitor, Reaction
+from mend.robots.execution.routine import Routine
+from mend.robots.execution.watch import Interruption
+from mend.robots.link.messages import Location, Resumed
 from mend.robots.vision.obstruction import Obstruction
 from mend.robots.vision.presence import Presence
 
 
-class Execution:
-    """Walks one behavior's steps; `run`, `resume` and `retreat` give the routines to drive.
+class ArmExecution(Execution):
+    """Walks one behavior of an arm."""
 
-    Only one of them may be under way.
-    """
-
-    def __init__(self, work: Work, monitors: Sequence[Monitor[Any]]) -> None:
-        self._work = work
-        self._assignment, self._progress = work.assignment, work.progress
+    def __init__(self, work: Work, monitors: Sequence[AnyMonitor]) -> None:
+        super().__init__(work.assignment.execution, work.progress, work.arm, work.report)
+        self._work, self._assignment = work, work.assignment
         self._arm, self._perception = work.arm, work.perception
-        self._watch = Watch(work, monitors)
-        self._walk = StepWalk(work, self._watch)
+        self._watch = ArmWatch(work, monitors)
+        self._steps = StepWalk(work, self._watch)
 
     @property
-    def id(self) -> str:
-        return self._assignment.execution
-
-    @property
-    def part(self) -> Part | None:
-        return self._assignment.part
-
-    @property
-    def state(self) -> ExecutionState:
-        return self._progress.state
-
-    @property
-    def step(self) -> int:
-        """The step under way, counted from 1; 0 before the first."""
-        return self._progress.step
-
-    @property
-    def over(self) -> bool:
-        """Whether nothing can follow."""
-        return EXECUTION.is_last(self.state)
+    def object(self) -> str | None:
+        part = self._assignment.part
+        return None if part is None else part.name
 
     @property
     def way(self) -> list[ToolPose]:
         """The poses that the steps still to come lead through."""
-        return self._progress.way
+        return self._work.progress.way
 
     @property
     def obstruction(self) -> Obstruction | None:
         """What was last seen to be in that way."""
-        return self._progress.seen.obstruction
+        return self._work.progress.seen.obstruction
 
     @property
     def destination(self) -> tuple[Part, Location | None] | None:
@@ -76,72 +57,42 @@ class Execution:
         """The object and its place, if it was placed there and that could not be seen."""
         return self._work.unconfirmed
 
-    # --- Routines -----------------------------------------------------------------------------
+    # --- What it does -------------------------------------------------------------------------
 
-    def run(self) -> Routine[None]:
-        """Look, plan and walk all steps."""
-        return self._attempt(resumed=False)
+    def _walk(self, *, resumed: bool) -> Routine[bool]:
+        """Look, plan, walk all steps and look again. Raises `Interruption`."""
+        progress = self._work.progress
+        progress.felt, progress.inexact = None, False
+        progress.regrasps = 0
+        progress.as_found &= not resumed
+        there = False
+        while not there:
+            plan = yield from prepare(self._work, self._watch)
+            if plan is None:
+                own = not progress.as_found and (progress.inexact or progress.unconfirmed)
+                return not own
+            progress.unconfirmed = progress.as_found = False
+            progress.move_to(ExecutionState.RUNNING)
+            if resumed:
+                self._report(Resumed(execution=self.id, step=plan.first))
+                resumed = False
+            there = (yield from self._steps.take_all(plan)) and (yield from self._confirm())
+        return False
 
-    def resume(self) -> Routine[None]:
-        """Go on after a hold, where the hands allow it. Raises `IllegalTransitionError`."""
-        self._progress.move_to(ExecutionState.PREPARING)
-        return self._attempt(resumed=True)
-
-    def hold(self) -> None:
-        """Stop within one control cycle and hold. Raises `IllegalTransitionError`."""
-        self._arm.stop()
-        if self.state is not ExecutionState.HOLDING:
-            self._progress.move_to(ExecutionState.HOLDING)
-
-    def end(self) -> None:
-        """Another execution takes its place. Raises `IllegalTransitionError`."""
-        self._arm.be_careful(1.0)
-        self._progress.move_to(ExecutionState.ENDED)
-
-    def retreat(self, end: bool) -> Routine[None]:
-        """Put down or let go what is held, move to neutral, and hold there (or `end`).
-
-        Raises `IllegalTransitionError`.
-        """
-        if self.state is not ExecutionState.RETREATING:
-            self._progress.move_to(ExecutionState.RETREATING)
-        self._arm.stop()
-        return self._retreat(end)
-
-    def _retreat(self, end: bool) -> Routine[None]:
-        yield from put_down(self._arm, self._perception, self._progress.picked_at)
+    def _go_to_rest(self) -> Routine[None]:
+        """Put down or let go what is held, and move to neutral."""
+        yield from put_down(self._arm, self._perception, self._work.progress.picked_at)
         yield from self._arm.go_to_neutral()
-        self._arm.be_careful(1.0)
-        self._progress.step = BEFORE_FIRST_STEP
-        self._progress.move_to(ExecutionState.ENDED if end else ExecutionState.HOLDING)
-        self._work.report(Holding(execution=self.id, at="neutral"))
 
-    def _attempt(self, resumed: bool) -> Routine[None]:
-        self._progress.felt, self._progress.inexact = None, False
-        self._progress.regrasps = 0
-        self._progress.as_found &= not resumed
-        try:
-            there = False
-            while not there:
-                plan = yield from prepare(self._work, self._watch)
-                if plan is None:
-                    own = not self._progress.as_found and (
-                        self._progress.inexact or self._progress.unconfirmed
-                    )
-                    self._finish(found_in_place=not own)
-                    return
-                self._progress.unconfirmed = self._progress.as_found = False
-                self._progress.move_to(ExecutionState.RUNNING)
-                if resumed:
-                    self._work.report(Resumed(execution=self.id, step=plan.first))
-                    resumed = False
-                there = (yield from self._walk.take_all(plan)) and (yield from self._confirm())
-            self._finish(found_in_place=False)
-        except Interruption as interruption:
-            yield from self._react(interruption.monitor.reaction)
-        except CoveredResultGone:
+    def _react(self, interruption: Interruption) -> Routine[None]:
+        if isinstance(interruption, CoveredResultGone):
             # The service has every result looked at before it lets this go on.
             yield from self.retreat(end=False)
+            return
+        if interruption.reaction is Reaction.GO_TO_NEUTRAL:
+            # The arm is to put nowhere what the fingers may still touch.
+            self._perception.let_go()
+        yield from super()._react(interruption)
 
     def _confirm(self) -> Routine[bool]:
         """Whether the object is at its place, as far as is seen; if not, it is to be placed again.
@@ -155,36 +106,25 @@ class Execution:
         self._arm.be_careful(1.0)
         self._expect_change()
         outcome = yield from look_at_outcome(part, target, self._arm, self._perception)
-        self._progress.outcome = outcome
-        self._progress.unconfirmed = outcome.blind is not None
+        self._work.progress.outcome = outcome
+        self._work.progress.unconfirmed = outcome.blind is not None
         self._watch.check(None)
         if outcome.presence is not Presence.GONE:
-            if self._progress.inexact or not outcome.is_inexact(part, target):
+            if self._work.progress.inexact or not outcome.is_inexact(part, target):
                 return True
-            self._progress.inexact = True
+            self._work.progress.inexact = True
         else:
-            self._progress.inexact = False
+            self._work.progress.inexact = False
         self._watch.start_again()
         self._progress.move_to(ExecutionState.PREPARING)
         return False
 
     def _expect_change(self) -> None:
         """What was seen where it started, and was carried away, cannot be seen there any more."""
-        before = self._progress.seen
-        if before.image is not None and before.sighting is not None and self._progress.picked_at:
+        before = self._work.progress.seen
+        if (
+            before.image is not None
+            and before.sighting is not None
+            and self._work.progress.picked_at
+        ):
             self._perception.head.expect_change(before.image)
-
-    def _react(self, reaction: Reaction) -> Routine[None]:
-        if reaction is Reaction.GO_TO_NEUTRAL:
-            # What the fingers may still touch is not theirs to put anywhere any more.
-            self._perception.let_go()
-            yield from self.retreat(end=False)
-            return
-        self._progress.move_to(ExecutionState.HOLDING)
-        at_neutral = self._arm.at_neutral
-        self._work.report(Holding(execution=self.id, at="neutral" if at_neutral else "in_place"))
-
-    def _finish(self, found_in_place: bool) -> None:
-        self._arm.be_careful(1.0)
-        self._progress.move_to(ExecutionState.FINISHED)
-        self._work.report(Finished(execution=self.id, found_in_place=found_in_place))

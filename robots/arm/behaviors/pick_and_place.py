@@ -4,10 +4,10 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import ClassVar
 
-from mend.robots.arm.behaviors.behavior import Behavior, Move, SetGripper, Situation, Step
-from mend.robots.arm.behaviors.phase import Phase
+from mend.robots.arm.behaviors.behavior import ArmBehavior, Move, SetGripper, Situation, Step
 from mend.robots.arm.body import ToolPose
 from mend.robots.arm.grasp import RELEASE_CLEARANCE_M, Grasp, half_turn
+from mend.robots.execution.phase import Phase
 from mend.robots.link.messages import Location
 from mend.tasks.scene import Name, StrictModel
 
@@ -22,7 +22,7 @@ class PickAndPlaceParameters(StrictModel):
     needs_help: bool = False
 
 
-class PickAndPlace(Behavior):
+class PickAndPlace(ArmBehavior):
     """Take an object from where it lies and put it to its place."""
 
     name: ClassVar[str] = "pick_and_place"

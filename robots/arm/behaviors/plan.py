@@ -4,7 +4,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 
-from mend.robots.arm.arm import Routine
 from mend.robots.arm.behaviors.errand import Errand, errand_of
 from mend.robots.arm.behaviors.grasp_choice import Crowding, others
 from mend.robots.arm.behaviors.planning import Barred, Plan, bar_of, plan_amid
@@ -12,6 +11,7 @@ from mend.robots.arm.behaviors.work import Work
 from mend.robots.arm.body import ToolPose
 from mend.robots.arm.grasp import UngraspableError
 from mend.robots.catalogue import Part
+from mend.robots.execution.routine import Routine
 from mend.robots.vision.carriers import bears
 from mend.robots.vision.obstruction import Obstruction, obstruction_at
 from mend.robots.vision.seen_box import SeenBox

@@ -4,7 +4,6 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
-from mend.robots.arm.arm import Routine, T
 from mend.robots.arm.behaviors.behavior import Move, Step
 from mend.robots.arm.behaviors.errand import Errand
 from mend.robots.arm.behaviors.grasp_choice import (
@@ -20,6 +19,7 @@ from mend.robots.arm.behaviors.legs import legs_of, table_box
 from mend.robots.arm.body import ArmPath, Leg, NoWay, ToolPose
 from mend.robots.arm.grasp import Grasp
 from mend.robots.arm.gripper import GripperModel
+from mend.robots.execution.routine import Routine, T
 from mend.robots.vision.seen_box import SeenBox
 from mend.tasks.scene import Table
 

@@ -1,24 +1,24 @@
 """Before the first step: what is seen and held, and the plan to walk that follows from it."""
 
 from mend.errors import IllegalTransitionError
-from mend.robots.arm.arm import Routine
 from mend.robots.arm.behaviors.backing_off import get_out_of_view
 from mend.robots.arm.behaviors.errand import errand_of
 from mend.robots.arm.behaviors.findings import Findings, is_inexact
 from mend.robots.arm.behaviors.grasp_choice import ways_to_grasp
-from mend.robots.arm.behaviors.phase import Phase
 from mend.robots.arm.behaviors.plan import make_plan
 from mend.robots.arm.behaviors.planning import Plan
 from mend.robots.arm.behaviors.put_down import put_down, set_down
 from mend.robots.arm.behaviors.search import LOOK_AGAIN_S, feel_for_object, find_object, find_table
-from mend.robots.arm.behaviors.watch import Watch
+from mend.robots.arm.behaviors.watch import ArmWatch
 from mend.robots.arm.behaviors.work import Work
+from mend.robots.execution.phase import Phase
+from mend.robots.execution.routine import Routine
 from mend.robots.link.messages import Location
 from mend.robots.vision.head import HeadSighting
 from mend.robots.vision.presence import Presence, is_at
 
 
-def prepare(work: Work, watch: Watch) -> Routine[Plan | None]:
+def prepare(work: Work, watch: ArmWatch) -> Routine[Plan | None]:
     """The plan to walk; None if there is nothing left to do. Raises `Interruption`."""
     progress = work.progress
     earlier, before = progress.plan, progress.seen.sighting
@@ -43,7 +43,7 @@ def prepare(work: Work, watch: Watch) -> Routine[Plan | None]:
     return _judged(work, watch)
 
 
-def _plan_with_it_held(work: Work, watch: Watch) -> Routine[None]:
+def _plan_with_it_held(work: Work, watch: ArmWatch) -> Routine[None]:
     """Go on from where it is held; what cannot be placed as it is held is set down instead."""
     progress = work.progress
     yield from find_table(work)
@@ -55,14 +55,14 @@ def _plan_with_it_held(work: Work, watch: Watch) -> Routine[None]:
         progress.start_again()
 
 
-def _look_with_empty_hands(work: Work, watch: Watch) -> Routine[None]:
+def _look_with_empty_hands(work: Work, watch: ArmWatch) -> Routine[None]:
     yield from put_down(work.arm, work.perception, work.progress.picked_at)
     yield from get_out_of_view(work, watch)
     yield from find_object(work)
     _require_sight(work, watch)
 
 
-def _plan_to_fetch_it(work: Work, watch: Watch) -> Routine[None]:
+def _plan_to_fetch_it(work: Work, watch: ArmWatch) -> Routine[None]:
     """Plan for what is seen, twice if there is no way: what one picture shows may be wrong."""
     progress = work.progress
     progress.picked_at = None
@@ -78,7 +78,7 @@ def _plan_to_fetch_it(work: Work, watch: Watch) -> Routine[None]:
     progress.plan = yield from make_plan(work)
 
 
-def _judged(work: Work, watch: Watch) -> Plan:
+def _judged(work: Work, watch: ArmWatch) -> Plan:
     """The plan, once the monitors have let it pass. Raises `Interruption`."""
     progress = work.progress
     watch.check(work.perception.read_grip() if progress.seen.carrying else None)
@@ -92,7 +92,7 @@ def _judged(work: Work, watch: Watch) -> Plan:
     return progress.plan
 
 
-def _require_sight(work: Work, watch: Watch) -> None:
+def _require_sight(work: Work, watch: ArmWatch) -> None:
     """Raises `Interruption` where the head camera shows nothing of the table."""
     blind = work.progress.seen.blind
     if blind is not None:

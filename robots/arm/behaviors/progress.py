@@ -1,23 +1,24 @@
-"""How far one execution has come: its state, its step, and what was planned and seen for it."""
+"""How far an arm's execution has come, and what was planned and seen for it."""
 
 from dataclasses import dataclass, field
 
 from mend.errors import IllegalTransitionError
 from mend.robots.arm.behaviors.contact import Contact
-from mend.robots.arm.behaviors.execution_state import EXECUTION, ExecutionState
 from mend.robots.arm.behaviors.findings import Findings, Outcome
-from mend.robots.arm.behaviors.phase import Phase
 from mend.robots.arm.behaviors.planning import Plan, waypoints_of
 from mend.robots.arm.body import ToolPose
-from mend.robots.arm.monitors.monitor import BEFORE_FIRST_STEP
+from mend.robots.execution.execution_state import ExecutionState
+from mend.robots.execution.monitor import BEFORE_FIRST_STEP
+from mend.robots.execution.phase import Phase
+from mend.robots.execution.progress import Progress
 from mend.robots.link.messages import WasDone
 
 
-@dataclass(slots=True)
-class Progress:
-    """What walks an execution's steps and what watches them both go by.
+@dataclass(slots=True, kw_only=True)
+class ArmProgress(Progress):
+    """What walks the steps of an arm and what watches them both go by.
 
-    `step` counts from 1 and is 0 before the first; `contact` is what the monitors are to judge,
+    `contact` is what the monitors are to judge,
     `felt` what the empty hand felt last on its way to the object. `as_found`: neither the robot nor
     anybody whom it asked has done anything to it; `inexact`: the object is at its place, but so far
     off that it is to be placed better; `unconfirmed`: it was let go of there, and nothing could be
@@ -27,8 +28,6 @@ class Progress:
     """
 
     was_done: WasDone | None
-    state: ExecutionState = ExecutionState.PREPARING
-    step: int = BEFORE_FIRST_STEP
     plan: Plan | None = None
     seen: Findings = field(default_factory=Findings)
     outcome: Outcome | None = None
@@ -39,10 +38,6 @@ class Progress:
     unconfirmed: bool = False
     regrasps: int = 0
     picked_at: ToolPose | None = None
-
-    def move_to(self, state: ExecutionState) -> None:
-        """Become this. Raises `IllegalTransitionError`."""
-        self.state = EXECUTION.require(self.state, state)
 
     def start_again(self) -> None:
         """Forget what was planned and seen: the first step is still to come."""

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from mend.robots.arm.arm import Arm, Routine
+from mend.robots.arm.arm import Arm
 from mend.robots.arm.behaviors.grasp_choice import MARGIN_M, others
 from mend.robots.arm.behaviors.legs import held_boxes, table_box
 from mend.robots.arm.body import ArmPath, Leg, NoWay, ToolPose
@@ -13,6 +13,7 @@ from mend.robots.arm.grasp import RELEASE_CLEARANCE_M, Grasp
 from mend.robots.arm.gripper import GripperModel
 from mend.robots.arm.perception import Perception
 from mend.robots.catalogue import Part
+from mend.robots.execution.routine import Routine
 from mend.robots.vision.seen_box import SeenBox
 from mend.tasks.scene import Table
 

@@ -1,7 +1,7 @@
 """Before a plan is made: whether the object is held, and where it is."""
 
-from mend.robots.arm.arm import Routine
 from mend.robots.arm.behaviors.work import Work
+from mend.robots.execution.routine import Routine
 
 LOOKS = 3
 """So often a part that is not wholly seen is looked for before that is believed."""

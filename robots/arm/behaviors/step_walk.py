@@ -5,7 +5,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from mend.errors import IllegalTransitionError
-from mend.robots.arm.arm import Routine
 from mend.robots.arm.behaviors.backing_off import back_off, try_again
 from mend.robots.arm.behaviors.behavior import Move, Step
 from mend.robots.arm.behaviors.contact import (
@@ -17,12 +16,13 @@ from mend.robots.arm.behaviors.contact import (
     is_arrival,
 )
 from mend.robots.arm.behaviors.covering import Covering
-from mend.robots.arm.behaviors.execution_state import ExecutionState
-from mend.robots.arm.behaviors.phase import Phase
 from mend.robots.arm.behaviors.planning import Plan
-from mend.robots.arm.behaviors.watch import Watch
+from mend.robots.arm.behaviors.watch import ArmWatch
 from mend.robots.arm.behaviors.work import Work
 from mend.robots.arm.body import ToolPose
+from mend.robots.execution.execution_state import ExecutionState
+from mend.robots.execution.phase import Phase
+from mend.robots.execution.routine import Routine
 from mend.robots.link.messages import StepStarted
 
 _MOST_REGRASPS = 2
@@ -40,7 +40,7 @@ class _Felt:
 class StepWalk:
     """Walks the steps of the plan in an execution's progress, one at a time."""
 
-    def __init__(self, work: Work, watch: Watch) -> None:
+    def __init__(self, work: Work, watch: ArmWatch) -> None:
         self._work = work
         self._progress, self._arm, self._perception = work.progress, work.arm, work.perception
         self._watch = watch

@@ -1,55 +1,48 @@
-"""The monitors of one execution: what they are shown, and what they report."""
+"""The monitors of an arm's execution: when they check, and what they are shown."""
 
 import math
 from collections.abc import Sequence
-from typing import Any, NoReturn
+from typing import NoReturn
 
 from mend.errors import IllegalTransitionError
 from mend.robots.arm.behaviors.behavior import SetGripper
 from mend.robots.arm.behaviors.contact import Contact, Try
-from mend.robots.arm.behaviors.phase import Phase
 from mend.robots.arm.behaviors.work import Work
 from mend.robots.arm.grip import GripReading
-from mend.robots.arm.monitors.monitor import Monitor, MonitorView
+from mend.robots.arm.monitors.monitor import ArmMonitor, ArmView
 from mend.robots.arm.perception import FOREARM, HEAD
-from mend.robots.link.messages import Detection, IssueDetected
-from mend.robots.vision.drawing import draw_detection, encode_jpeg
-
-_CAREFUL = 0.5
-"""While a person's hands are near, motion is scaled by this."""
-
-
-class Interruption(Exception):  # noqa: N818 - control flow, not an error
-    """A monitor's issue ends the walk through the steps."""
-
-    def __init__(self, monitor: Monitor[Any]) -> None:
-        super().__init__(monitor.issue)
-        self.monitor = monitor
+from mend.robots.body import CameraImage
+from mend.robots.execution.monitor import AnyMonitor
+from mend.robots.execution.phase import Phase
+from mend.robots.execution.watch import Watch
 
 
-class Watch:
+class ArmWatch(Watch[ArmView]):
     """Lets the monitors of the step under way judge what is seen and felt."""
 
-    def __init__(self, work: Work, monitors: Sequence[Monitor[Any]]) -> None:
-        self._work = work
-        self._progress = work.progress
-        self._monitors = monitors
-        self._raised: set[str] = set()
+    def __init__(self, work: Work, monitors: Sequence[AnyMonitor]) -> None:
+        assignment = work.assignment
+        super().__init__(
+            assignment.execution,
+            assignment.behavior.monitored_as,
+            work.progress,
+            work.arm,
+            monitors,
+            work.report,
+        )
+        self._work, self._arm_progress = work, work.progress
         self._forces_n: list[float] = []
         self._next_check_s = -math.inf
         self._read_s = -math.inf
 
     def tries(self, phase: Phase) -> Sequence[Try]:
         """The tries of the first monitor of a phase to which it matters what is felt."""
-        return next((each.tries for each in self._watching(phase) if each.tries), ())
+        arms = (each for each in self.watching(phase) if isinstance(each, ArmMonitor))
+        return next((each.tries for each in arms if each.tries), ())
 
     def note_force(self, force_n: float) -> None:
         """The arm felt this; it is shown at the next check."""
         self._forces_n.append(force_n)
-
-    def start_again(self) -> None:
-        """What did not interrupt the steps may be reported again."""
-        self._raised.clear()
 
     def check_if_due(self) -> None:
         """Check at the forearm camera's period. Raises `Interruption`."""
@@ -57,7 +50,7 @@ class Watch:
         if now < self._next_check_s - 1e-9:
             return
         self._next_check_s = now + self._work.perception.hand.period_s
-        looking = self._judges_grip(self._progress.phase) and not self._closing()
+        looking = self._judges_grip(self._arm_progress.phase) and not self._closing()
         self._read_s = now if looking else self._read_s
         self.check(self._work.perception.read_grip() if looking else None)
 
@@ -65,66 +58,47 @@ class Watch:
         """Let the monitors of this step judge. Raises `Interruption` for the first that must."""
         view = self._view(grip)
         self._forces_n.clear()
-        for monitor in self._watching(self._progress.phase):
-            if monitor.issue in self._raised:
-                continue
-            if view.blind is not None and monitor.camera == HEAD:
-                continue
-            detection = monitor.check(view)
-            if detection is None:
-                continue
-            if monitor.interrupts:
-                self._work.arm.stop()
-            else:
-                self._raised.add(monitor.issue)
-                self._work.arm.be_careful(_CAREFUL)
-            self._report_issue(monitor, detection, view)
-            if monitor.interrupts:
-                raise Interruption(monitor)
+        self.show(view)
 
     def judge(self, contact: Contact) -> NoReturn:
         """Let the monitors judge what was felt. Raises `Interruption`."""
-        self._progress.contact = contact
+        self._arm_progress.contact = contact
         self.check(None)
         expected = f"an issue of {contact.force_n:.0f} N against the arm"
-        raise IllegalTransitionError("the execution", self._progress.state, "none", expected)
+        raise IllegalTransitionError("the execution", self._arm_progress.state, "none", expected)
 
     def grip_is_open_question(self, arrived_s: float) -> bool:
         """Whether the pictures have yet to show what the gripper holds.
 
         The last step in which they are looked at ends with one taken after the arm has arrived.
         """
-        grip, plan = self._work.perception.hand.grip, self._progress.plan
-        if grip is None or plan is None or not self._judges_grip(self._progress.phase):
+        grip, plan = self._work.perception.hand.grip, self._arm_progress.plan
+        if grip is None or plan is None or not self._judges_grip(self._arm_progress.phase):
             return False
-        following = plan.steps[self._progress.step : self._progress.step + 1]
+        following = plan.steps[self._arm_progress.step : self._arm_progress.step + 1]
         if following and self._judges_grip(following[0].phase):
             return grip.in_doubt
         return grip.in_doubt or self._read_s < arrived_s
 
     def _judges_grip(self, phase: Phase) -> bool:
-        return any(each.camera == FOREARM for each in self._watching(phase))
-
-    def _watching(self, phase: Phase) -> list[Monitor[Any]]:
-        name = self._work.assignment.behavior.monitored_as
-        return [each for each in self._monitors if each.watches(name, phase)]
+        return any(each.camera == FOREARM for each in self.watching(phase))
 
     def _closing(self) -> bool:
         """Whether the fingers are still on their way together."""
-        plan = self._progress.plan
+        plan = self._arm_progress.plan
         if plan is None or not self._work.arm.body.moving:
             return False
-        return plan.steps[self._progress.step - 1].action == SetGripper("closed")
+        return plan.steps[self._arm_progress.step - 1].action == SetGripper("closed")
 
-    def _view(self, grip: GripReading | None) -> MonitorView:
-        progress = self._progress
+    def _view(self, grip: GripReading | None) -> ArmView:
+        progress = self._arm_progress
         pictures, outcome = {}, progress.outcome
         seen = progress.seen if outcome is None else outcome
         if seen.image is not None:
             pictures[HEAD] = seen.image
         if grip is not None:
             pictures[FOREARM] = grip.image
-        return MonitorView(
+        return ArmView(
             time_s=self._work.arm.body.time_s(),
             step=progress.step,
             phase=progress.phase,
@@ -146,20 +120,12 @@ class Watch:
             pictures=pictures,
         )
 
-    def _report_issue(self, monitor: Monitor[Any], detection: Detection, view: MonitorView) -> None:
-        image = view.pictures.get(detection.camera)
+    def _may_judge(self, monitor: AnyMonitor, view: ArmView) -> bool:
+        return view.blind is None or monitor.camera != HEAD
+
+    def _picture(self, camera: str, view: ArmView) -> CameraImage | None:
+        image = view.pictures.get(camera)
         fresh = view.phase in (Phase.PREPARE, Phase.CONFIRM)
-        if image is None or (detection.camera == HEAD and not fresh):
-            image = self._work.arm.body.cameras[detection.camera].capture()
-        height, width = image.bgr.shape[:2]
-        detection = detection.model_copy(update={"size_px": (width, height)})
-        self._work.report(
-            IssueDetected(
-                execution=self._work.assignment.execution,
-                issue=monitor.issue,
-                step=view.step,
-                interrupts=monitor.interrupts,
-                detection=detection,
-                jpeg=encode_jpeg(draw_detection(image.bgr, detection)),
-            )
-        )
+        if image is None or (camera == HEAD and not fresh):
+            image = self._work.arm.body.cameras[camera].capture()
+        return image

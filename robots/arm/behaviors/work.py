@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from mend.robots.arm.arm import Arm
 from mend.robots.arm.behaviors.assignment import Assignment
-from mend.robots.arm.behaviors.progress import Progress
+from mend.robots.arm.behaviors.progress import ArmProgress
 from mend.robots.arm.perception import Perception
 from mend.robots.catalogue import Part
 from mend.robots.link.messages import Location, ReportBody
@@ -16,7 +16,7 @@ class Work:
     """What all that prepares, walks and watches one execution shares; reports go to `report`."""
 
     assignment: Assignment
-    progress: Progress
+    progress: ArmProgress
     arm: Arm
     perception: Perception
     report: Callable[[ReportBody], None]

@@ -2,12 +2,12 @@
 
 import math
 
-from mend.robots.arm.arm import Routine
 from mend.robots.arm.grasp import can_grasp
 from mend.robots.arm.grip import GripState
 from mend.robots.arm.grip.composition import likeliest
 from mend.robots.arm.looks.looker import Looker
 from mend.robots.catalogue import Part
+from mend.robots.execution.routine import Routine
 from mend.robots.link.messages import Holding, Looked
 
 _STEADY_S = 0.3

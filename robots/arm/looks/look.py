@@ -2,13 +2,13 @@
 
 from collections.abc import Callable
 
-from mend.robots.arm.arm import Routine
 from mend.robots.arm.command_resolver import CommandResolver
 from mend.robots.arm.looks.expectation import AtPlace, ViewClear, VisualCheck
 from mend.robots.arm.looks.hand_over import take_from_person
 from mend.robots.arm.looks.in_reach import InReach
 from mend.robots.arm.looks.looker import Looker
 from mend.robots.arm.looks.way_clear import WayClear
+from mend.robots.execution.routine import Routine
 from mend.robots.link.messages import Look, Looked
 
 _PERIOD_S = 0.5

@@ -3,12 +3,13 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
-from mend.robots.arm.arm import Arm, Routine
-from mend.robots.arm.behaviors.execution import Execution
+from mend.robots.arm.arm import Arm
+from mend.robots.arm.behaviors.execution import ArmExecution
 from mend.robots.arm.behaviors.search import LOOK_AGAIN_S, LOOKS
 from mend.robots.arm.perception import Perception
 from mend.robots.arm.result import JudgedResult
 from mend.robots.body import CameraImage
+from mend.robots.execution.routine import Routine
 from mend.robots.link.messages import FinishedResult, Looked, ReportBody
 from mend.robots.vision.presence import Presence
 
@@ -24,7 +25,7 @@ class Looker:
     arm: Arm
     perception: Perception
     report: Callable[[ReportBody], None]
-    held: Execution | None
+    held: ArmExecution | None
     may_move: bool
     finished: Sequence[JudgedResult] = ()
 
@@ -53,7 +54,7 @@ class Looker:
         well: a hand may pass by. With the arm in view it judges none.
         """
         image = self.perception.head.look()
-        results = self.finished if self.arm.at_neutral else ()
+        results = self.finished if self.arm.at_rest else ()
         verdicts = self._judge(image, results)
         doubted = [each for each in results if verdicts[each.message] is Presence.GONE]
         blind = self._why_blind(image) is not None

@@ -20,7 +20,7 @@ class WayClear:
         way, here = [] if held is None else held.way, arm.tool_pose()
         if self._pressed_n(here, way) > _CLEAR_FORCE_N:
             return False
-        if here is not None and not arm.at_neutral:
+        if here is not None and not arm.at_rest:
             way = [here, *way]
         image = self._looker.look_at_table()
         return image is not None and self._is_seen_clear(image, way)

@@ -1,5 +1,5 @@
-"""Fault monitors: each watches for one kind of issue in some phases of some behaviors."""
+"""Fault monitors of an arm: each watches for one kind of issue in some phases of some behaviors."""
 
-from mend.robots.arm.monitors.monitor import Monitor, MonitorView, Reaction
+from mend.robots.arm.monitors.monitor import ArmMonitor, ArmView
 
-__all__ = ["Monitor", "MonitorView", "Reaction"]
+__all__ = ["ArmMonitor", "ArmView"]

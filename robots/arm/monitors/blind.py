@@ -2,19 +2,14 @@
 
 from typing import ClassVar
 
-from mend.robots.arm.behaviors.phase import Phase
-from mend.robots.arm.monitors.monitor import (
-    ANY_BEHAVIOR,
-    Monitor,
-    MonitorView,
-    NoParameters,
-    Reaction,
-)
+from mend.robots.arm.monitors.monitor import ArmMonitor, ArmView
+from mend.robots.execution.monitor import ANY_BEHAVIOR, NoParameters, Reaction
+from mend.robots.execution.phase import Phase
 from mend.robots.link.messages import Detection
 from mend.tasks.scene import StrictModel
 
 
-class Blind(Monitor[NoParameters]):
+class Blind(ArmMonitor[NoParameters]):
     """Raises `blind` before step 1 and after the last step of any behavior.
 
     It judges the camera itself, and not what that shows.
@@ -26,7 +21,7 @@ class Blind(Monitor[NoParameters]):
     reaction: ClassVar[Reaction] = Reaction.STOP_IN_PLACE
     parameters: ClassVar[type[StrictModel]] = NoParameters
 
-    def check(self, view: MonitorView) -> Detection | None:
+    def check(self, view: ArmView) -> Detection | None:
         if view.blind is None:
             return None
         return Detection(camera="head", explanation=view.blind)

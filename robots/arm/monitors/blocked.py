@@ -7,9 +7,10 @@ from typing import Annotated, ClassVar, Self
 from pydantic import Field, model_validator
 
 from mend.robots.arm.behaviors.contact import Contact, Try
-from mend.robots.arm.behaviors.phase import Phase
 from mend.robots.arm.behaviors.pick_and_place import PickAndPlace
-from mend.robots.arm.monitors.monitor import BEFORE_FIRST_STEP, Monitor, MonitorView, Reaction
+from mend.robots.arm.monitors.monitor import ArmMonitor, ArmView
+from mend.robots.execution.monitor import BEFORE_FIRST_STEP, Reaction
+from mend.robots.execution.phase import Phase
 from mend.robots.link.messages import Detection
 from mend.tasks.scene import StrictModel
 
@@ -36,7 +37,7 @@ class BlockedParameters(StrictModel):
         return self
 
 
-class Blocked(Monitor[BlockedParameters]):
+class Blocked(ArmMonitor[BlockedParameters]):
     """Raises `blocked` before step 1 (by what is seen) and in every step (by what is felt).
 
     What is felt counts only once the gentlest try has felt it too.
@@ -44,7 +45,7 @@ class Blocked(Monitor[BlockedParameters]):
 
     issue: ClassVar[str] = "blocked"
     behaviors: ClassVar[frozenset[str]] = frozenset({PickAndPlace.name})
-    phases: ClassVar[frozenset[Phase]] = frozenset(Phase) - {Phase.CONFIRM}
+    phases: ClassVar[frozenset[Phase]] = frozenset(Phase) - {Phase.TRAVEL, Phase.CONFIRM}
     reaction: ClassVar[Reaction] = Reaction.STOP_IN_PLACE
     camera: ClassVar[str | None] = "head"
     parameters: ClassVar[type[StrictModel]] = BlockedParameters
@@ -54,7 +55,7 @@ class Blocked(Monitor[BlockedParameters]):
         pairs = zip(self.settings.limits_n, self.settings.speeds, strict=True)
         return [Try(limit_n, speed) for limit_n, speed in pairs]
 
-    def check(self, view: MonitorView) -> Detection | None:
+    def check(self, view: ArmView) -> Detection | None:
         if view.contact is not None:
             return Detection(camera="head", felt=True, explanation=_felt(view.contact))
         if view.step == BEFORE_FIRST_STEP and view.obstruction is not None:

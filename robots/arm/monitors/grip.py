@@ -3,12 +3,13 @@
 from typing import ClassVar
 
 from mend.robots.arm.grip import GripState
-from mend.robots.arm.monitors.monitor import Monitor, MonitorView, NoParameters, Reaction
+from mend.robots.arm.monitors.monitor import ArmMonitor, ArmView
+from mend.robots.execution.monitor import NoParameters, Reaction
 from mend.robots.link.messages import Detection
 from mend.tasks.scene import StrictModel
 
 
-class GripMonitor(Monitor[NoParameters]):
+class GripMonitor(ArmMonitor[NoParameters]):
     """Raises its issue once opening, effort and picture together say that the grip is `state`."""
 
     state: ClassVar[GripState]
@@ -16,7 +17,7 @@ class GripMonitor(Monitor[NoParameters]):
     camera: ClassVar[str | None] = "forearm"
     parameters: ClassVar[type[StrictModel]] = NoParameters
 
-    def check(self, view: MonitorView) -> Detection | None:
+    def check(self, view: ArmView) -> Detection | None:
         grip = view.grip
         if grip is None or grip.state is not self.state:
             return None

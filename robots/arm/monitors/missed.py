@@ -2,10 +2,10 @@
 
 from typing import ClassVar
 
-from mend.robots.arm.behaviors.phase import Phase
 from mend.robots.arm.behaviors.pick_and_place import PickAndPlace
 from mend.robots.arm.grip import GripState
 from mend.robots.arm.monitors.grip import GripMonitor
+from mend.robots.execution.phase import Phase
 
 
 class Missed(GripMonitor):

@@ -2,19 +2,14 @@
 
 from typing import ClassVar
 
-from mend.robots.arm.behaviors.phase import Phase
-from mend.robots.arm.monitors.monitor import (
-    ANY_BEHAVIOR,
-    Monitor,
-    MonitorView,
-    NoParameters,
-    Reaction,
-)
+from mend.robots.arm.monitors.monitor import ArmMonitor, ArmView
+from mend.robots.execution.monitor import ANY_BEHAVIOR, NoParameters, Reaction
+from mend.robots.execution.phase import Phase
 from mend.robots.link.messages import Detection
 from mend.tasks.scene import StrictModel
 
 
-class Missing(Monitor[NoParameters]):
+class Missing(ArmMonitor[NoParameters]):
     """Raises `missing` before step 1 of any behavior."""
 
     issue: ClassVar[str] = "missing"
@@ -24,7 +19,7 @@ class Missing(Monitor[NoParameters]):
     camera: ClassVar[str | None] = "head"
     parameters: ClassVar[type[StrictModel]] = NoParameters
 
-    def check(self, view: MonitorView) -> Detection | None:
+    def check(self, view: ArmView) -> Detection | None:
         if view.part is None or view.sighting is not None or view.grip is not None:
             return None
         if view.was_done is not None:

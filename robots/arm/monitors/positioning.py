@@ -2,14 +2,15 @@
 
 from typing import ClassVar
 
-from mend.robots.arm.behaviors.phase import Phase
 from mend.robots.arm.behaviors.pick_and_place import PickAndPlace
-from mend.robots.arm.monitors.monitor import Monitor, MonitorView, NoParameters, Reaction
+from mend.robots.arm.monitors.monitor import ArmMonitor, ArmView
+from mend.robots.execution.monitor import NoParameters, Reaction
+from mend.robots.execution.phase import Phase
 from mend.robots.link.messages import Detection
 from mend.tasks.scene import StrictModel
 
 
-class Positioning(Monitor[NoParameters]):
+class Positioning(ArmMonitor[NoParameters]):
     """Raises `positioning` when the object is carried; the robot goes on slowly."""
 
     issue: ClassVar[str] = "positioning"
@@ -18,7 +19,7 @@ class Positioning(Monitor[NoParameters]):
     reaction: ClassVar[Reaction] = Reaction.SLOW_DOWN
     parameters: ClassVar[type[StrictModel]] = NoParameters
 
-    def check(self, view: MonitorView) -> Detection | None:
+    def check(self, view: ArmView) -> Detection | None:
         if not view.needs_help or view.part is None:
             return None
         return Detection(

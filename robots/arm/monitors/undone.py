@@ -5,9 +5,10 @@ from typing import ClassVar
 
 from pydantic import Field
 
-from mend.robots.arm.behaviors.phase import Phase
-from mend.robots.arm.monitors.monitor import ANY_BEHAVIOR, Monitor, MonitorView, Reaction
+from mend.robots.arm.monitors.monitor import ArmMonitor, ArmView
 from mend.robots.arm.monitors.unreachable import why_beyond_reach, why_lying
+from mend.robots.execution.monitor import ANY_BEHAVIOR, Reaction
+from mend.robots.execution.phase import Phase
 from mend.robots.link.messages import Detection
 from mend.robots.vision.head import HeadSighting
 from mend.robots.vision.presence import AT_PLACE_HEIGHT_M, AT_PLACE_M, Presence, is_at, turned_rad
@@ -22,7 +23,7 @@ class UndoneParameters(StrictModel):
     again: int = Field(default=1, ge=0, le=10)
 
 
-class Undone(Monitor[UndoneParameters]):
+class Undone(ArmMonitor[UndoneParameters]):
     """Raises `undone` before step 1 of what was done before, and after the last step.
 
     Where it sees the object stand in reach the robot goes on by itself; else somebody has to help.
@@ -46,7 +47,7 @@ class Undone(Monitor[UndoneParameters]):
         """Whether the robot cannot place it again by itself."""
         return not self._goes_on
 
-    def check(self, view: MonitorView) -> Detection | None:
+    def check(self, view: ArmView) -> Detection | None:
         if view.part is None:
             return None
         if view.phase is Phase.CONFIRM:
@@ -55,7 +56,7 @@ class Undone(Monitor[UndoneParameters]):
             return None
         return self._before_the_first_step(view.part.name, view)
 
-    def _before_the_first_step(self, name: str, view: MonitorView) -> Detection | None:
+    def _before_the_first_step(self, name: str, view: ArmView) -> Detection | None:
         if view.sighting is not None and (
             view.refusal is not None or why_lying(name, view.sighting, view) is not None
         ):
@@ -67,7 +68,7 @@ class Undone(Monitor[UndoneParameters]):
         self._asked = True
         return _detection(f"{name} is no longer at its place", view.sighting, view)
 
-    def _after_the_last_step(self, name: str, view: MonitorView) -> Detection | None:
+    def _after_the_last_step(self, name: str, view: ArmView) -> Detection | None:
         if view.presence is not Presence.GONE:
             return None
         graspable = view.placed is not None and why_beyond_reach(name, view.placed, view) is None
@@ -77,25 +78,25 @@ class Undone(Monitor[UndoneParameters]):
         return _detection(f"{name} was placed, but is not at its place", view.placed, view)
 
 
-def _stands_on_the_table(sighting: HeadSighting | None, view: MonitorView) -> bool:
+def _stands_on_the_table(sighting: HeadSighting | None, view: ArmView) -> bool:
     """Whether it stands free: what hangs on others may hide that one of them is gone."""
     return sighting is not None and abs(sighting.z - view.table_z) <= AT_PLACE_HEIGHT_M
 
 
-def _target_z(view: MonitorView) -> float:
+def _target_z(view: ArmView) -> float:
     """How high (m) the bottom of the object is at its place."""
     target_z = None if view.target is None else view.target.z
     return view.table_z if target_z is None else target_z
 
 
-def _is_at_place(sighting: HeadSighting, view: MonitorView) -> bool:
+def _is_at_place(sighting: HeadSighting, view: ArmView) -> bool:
     part, target = view.part, view.target
     if part is None or target is None:
         return False
     return is_at(sighting, part, target, _target_z(view))
 
 
-def _detection(what: str, sighting: HeadSighting | None, view: MonitorView) -> Detection:
+def _detection(what: str, sighting: HeadSighting | None, view: ArmView) -> Detection:
     if sighting is None:
         return Detection(camera="head", explanation=f"{what} and nowhere in the head picture")
     return Detection(
@@ -106,7 +107,7 @@ def _detection(what: str, sighting: HeadSighting | None, view: MonitorView) -> D
     )
 
 
-def _what_differs(sighting: HeadSighting, view: MonitorView) -> str:
+def _what_differs(sighting: HeadSighting, view: ArmView) -> str:
     """In what it is seen to be otherwise than at its place, as the end of a clause."""
     at = f"at ({sighting.x:.2f}, {sighting.y:.2f})"
     if not sighting.upright(view.table_z):

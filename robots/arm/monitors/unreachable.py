@@ -5,8 +5,9 @@ from typing import ClassVar
 
 from pydantic import Field
 
-from mend.robots.arm.behaviors.phase import Phase
-from mend.robots.arm.monitors.monitor import ANY_BEHAVIOR, Monitor, MonitorView, Reaction
+from mend.robots.arm.monitors.monitor import ArmMonitor, ArmView
+from mend.robots.execution.monitor import ANY_BEHAVIOR, Reaction
+from mend.robots.execution.phase import Phase
 from mend.robots.link.messages import Detection
 from mend.robots.vision.head import HeadSighting
 from mend.tasks.scene import StrictModel
@@ -18,7 +19,7 @@ class UnreachableParameters(StrictModel):
     margin_m: float = Field(default=0.0, ge=0.0, le=0.5)
 
 
-class Unreachable(Monitor[UnreachableParameters]):
+class Unreachable(ArmMonitor[UnreachableParameters]):
     """Raises `unreachable` before step 1 of any behavior."""
 
     issue: ClassVar[str] = "unreachable"
@@ -28,7 +29,7 @@ class Unreachable(Monitor[UnreachableParameters]):
     camera: ClassVar[str | None] = "head"
     parameters: ClassVar[type[StrictModel]] = UnreachableParameters
 
-    def check(self, view: MonitorView) -> Detection | None:
+    def check(self, view: ArmView) -> Detection | None:
         reason = self._reason(view)
         if reason is None:
             return None
@@ -40,7 +41,7 @@ class Unreachable(Monitor[UnreachableParameters]):
             explanation=reason,
         )
 
-    def _reason(self, view: MonitorView) -> str | None:
+    def _reason(self, view: ArmView) -> str | None:
         name = "the place" if view.part is None else view.part.name
         margin_m = self.settings.margin_m
         # What stands in the way can be cleared, and is told as that.
@@ -53,7 +54,7 @@ class Unreachable(Monitor[UnreachableParameters]):
 
 
 def why_beyond_reach(
-    name: str, sighting: HeadSighting, view: MonitorView, margin_m: float = 0.0
+    name: str, sighting: HeadSighting, view: ArmView, margin_m: float = 0.0
 ) -> str | None:
     """Why the arm can hardly grasp what is seen there, as far as distance and posture tell.
 
@@ -67,7 +68,7 @@ def why_beyond_reach(
     return why_lying(name, sighting, view)
 
 
-def why_lying(name: str, sighting: HeadSighting, view: MonitorView) -> str | None:
+def why_lying(name: str, sighting: HeadSighting, view: ArmView) -> str | None:
     """Why the arm cannot grasp what is seen there as it lies."""
     if not sighting.upright(view.table_z):
         return f"{name} has toppled over; the arm grasps it standing only"

@@ -3,12 +3,12 @@
 from typing import Any, ClassVar
 
 import pytest
-from robot_bench import MODEL, RobotBench
-from scripted_body import STARTS, catalogue
+from robot_bench import RobotBench
+from scripted_body import STARTS
 
-from mend.robots.arm.behaviors import Phase
-from mend.robots.arm.monitors import Monitor, MonitorView, Reaction
-from mend.robots.arm.monitors.monitor import NoParameters
+from mend.robots.arm.monitors import ArmMonitor, ArmView
+from mend.robots.execution.monitor import NoParameters, Reaction
+from mend.robots.execution.phase import Phase
 from mend.robots.link.messages import (
     Detection,
     Finished,
@@ -17,13 +17,11 @@ from mend.robots.link.messages import (
     Resume,
     StepStarted,
 )
-from mend.robots.robot import Robot
 from mend.robots.vision.presence import Presence
-from mend.tasks.plugins import load_plugins
 from mend.tasks.scene import StrictModel
 
 
-class Onlooker(Monitor[NoParameters]):
+class Onlooker(ArmMonitor[NoParameters]):
     """Raises nothing, but keeps what it is shown after the last step."""
 
     issue: ClassVar[str] = "watched"
@@ -32,28 +30,16 @@ class Onlooker(Monitor[NoParameters]):
     reaction: ClassVar[Reaction] = Reaction.STOP_IN_PLACE
     camera: ClassVar[str | None] = "head"
     parameters: ClassVar[type[StrictModel]] = NoParameters
-    views: ClassVar[list[MonitorView]] = []
+    views: ClassVar[list[ArmView]] = []
 
-    def check(self, view: MonitorView) -> Detection | None:
+    def check(self, view: ArmView) -> Detection | None:
         self.views.append(view)
         return None
 
 
 def bench_that_looks_on(**body: Any) -> RobotBench:
     Onlooker.views.clear()
-    bench = RobotBench(**body)
-    bench.robot = Robot(
-        "r1",
-        bench.body,
-        MODEL,
-        catalogue(),
-        load_plugins("mend.behaviors"),
-        {Onlooker.issue: Onlooker, **load_plugins("mend.monitors")},
-    )
-    bench.robot.attach(
-        lambda body, time_s, _: bench.reports.append((time_s, body)), bench.pictures.append
-    )
-    return bench
+    return RobotBench(**body, monitors={Onlooker.issue: Onlooker})
 
 
 def test_the_arm_is_out_of_view_and_the_part_seen_at_its_place_before_it_is_finished() -> None:

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from robot_bench import RobotBench
 
 from mend.robots.arm.behaviors.contact import ContactWatch, Track, hindering_n, is_arrival
-from mend.robots.arm.behaviors.execution_state import ExecutionState
 from mend.robots.arm.body import ToolPose
+from mend.robots.execution.execution_state import ExecutionState
 from mend.robots.link.messages import Finished, Holding, IssueDetected, Resume
 
 PERIOD_S = 1 / 240

@@ -21,12 +21,12 @@ from mend.robots.arm.behaviors.grasp_choice import (
     ways_to_grasp,
 )
 from mend.robots.arm.behaviors.legs import held_boxes, legs_of
-from mend.robots.arm.behaviors.phase import Phase
 from mend.robots.arm.body import ToolPose
 from mend.robots.arm.clearance import ROOM_M
 from mend.robots.arm.grasp import grasp_of, half_turn
 from mend.robots.arm.gripper import GripperModel
 from mend.robots.catalogue import Part
+from mend.robots.execution.phase import Phase
 from mend.robots.link.messages import IssueDetected, Location, Look, Looked
 from mend.robots.vision.seen_box import SeenBox
 

@@ -1,18 +1,16 @@
 """Which monitors watch a behavior that another package adds."""
 
 from collections.abc import Sequence
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import pytest
-from robot_bench import MODEL, RobotBench
-from scripted_body import catalogue
+from robot_bench import RobotBench
 
-from mend.robots.arm.behaviors import Behavior, Move, Phase, SetGripper, Situation, Step
+from mend.robots.arm.behaviors import ArmBehavior, Move, SetGripper, Situation, Step
 from mend.robots.arm.behaviors.pick_and_place import PickAndPlace
 from mend.robots.arm.body import ToolPose
+from mend.robots.execution.phase import Phase
 from mend.robots.link.messages import Finished, Interrupt, IssueDetected, Start, StepStarted
-from mend.robots.robot import Robot
-from mend.tasks.plugins import load_plugins
 from mend.tasks.scene import Name, StrictModel
 
 
@@ -20,7 +18,7 @@ class PushParameters(StrictModel):
     object: Name
 
 
-class Push(Behavior):
+class Push(ArmBehavior):
     """Pushes its object with an empty, closed gripper."""
 
     name: ClassVar[str] = "push"
@@ -46,25 +44,17 @@ class PushWatchedAsPicking(Push):
     monitored_as: ClassVar[str] = "pick_and_place"
 
 
-def bench_with(kind: type[Behavior]) -> RobotBench:
-    bench = RobotBench()
-    behaviors: dict[str, Any] = {**load_plugins("mend.behaviors"), kind.name: kind}
-    bench.robot = Robot(
-        "r1", bench.body, MODEL, catalogue(), behaviors, load_plugins("mend.monitors")
-    )
-    bench.robot.attach(
-        lambda body, time_s, _: bench.reports.append((time_s, body)), bench.pictures.append
-    )
-    return bench
+def bench_with(kind: type[ArmBehavior]) -> RobotBench:
+    return RobotBench(behaviors={kind.name: kind})
 
 
-def start(bench: RobotBench, kind: type[Behavior]) -> None:
+def start(bench: RobotBench, kind: type[ArmBehavior]) -> None:
     parameters = {"object": "pink_bar"}
     bench.send(Start(execution="e1", node="/0", behavior=kind.name, parameters=parameters))
 
 
 @pytest.mark.parametrize("kind", [Push, PushWatchedAsPicking])
-def test_a_push_with_an_empty_gripper_has_missed_nothing(kind: type[Behavior]) -> None:
+def test_a_push_with_an_empty_gripper_has_missed_nothing(kind: type[ArmBehavior]) -> None:
     bench = bench_with(kind)
     start(bench, kind)
     bench.run()

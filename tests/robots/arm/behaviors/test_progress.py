@@ -5,12 +5,12 @@ from drawn_scene import DrawnScene
 
 from mend.errors import IllegalTransitionError
 from mend.robots.arm.behaviors.behavior import Move, SetGripper, Step
-from mend.robots.arm.behaviors.execution_state import ExecutionState
 from mend.robots.arm.behaviors.findings import Outcome
-from mend.robots.arm.behaviors.phase import Phase
 from mend.robots.arm.behaviors.planning import Plan
-from mend.robots.arm.behaviors.progress import Progress
+from mend.robots.arm.behaviors.progress import ArmProgress
 from mend.robots.arm.body import ToolPose
+from mend.robots.execution.execution_state import ExecutionState
+from mend.robots.execution.phase import Phase
 from mend.robots.vision.presence import Presence
 
 PICK, PLACE = ToolPose(0.5, -0.4, 0.725, 0.0), ToolPose(0.5, 0.0, 0.725, 0.0)
@@ -21,9 +21,9 @@ STEPS = (
 )
 
 
-def under_way(step: int, first: int = 1) -> Progress:
+def under_way(step: int, first: int = 1) -> ArmProgress:
     plan = Plan(STEPS, first, None, None)
-    return Progress(None, ExecutionState.RUNNING, step, plan)
+    return ArmProgress(was_done=None, state=ExecutionState.RUNNING, step=step, plan=plan)
 
 
 @pytest.mark.parametrize("step", [1, 2, 3])

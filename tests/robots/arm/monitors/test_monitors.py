@@ -9,15 +9,15 @@ from monitor_view import BLOB, SEEN, VIEW
 from pydantic import ValidationError
 
 from mend.robots.arm.behaviors.contact import Contact
-from mend.robots.arm.behaviors.phase import Phase
 from mend.robots.arm.grip import GripReading, GripState
 from mend.robots.arm.monitors.blocked import Blocked
 from mend.robots.arm.monitors.dropped import Dropped
 from mend.robots.arm.monitors.missed import Missed
 from mend.robots.arm.monitors.missing import Missing
-from mend.robots.arm.monitors.monitor import Monitor, Reaction
 from mend.robots.arm.monitors.positioning import Positioning
 from mend.robots.arm.monitors.unreachable import Unreachable
+from mend.robots.execution.monitor import Reaction
+from mend.robots.execution.phase import Phase
 from mend.robots.vision.obstruction import Obstruction
 from mend.tasks.plugins import load_plugins
 
@@ -60,7 +60,7 @@ def grip(state: GripState) -> GripReading:
 )
 def test_each_is_registered_and_watches_its_phases(kind, phases, reaction) -> None:
     assert load_plugins("mend.monitors")[kind.issue] is kind
-    monitor: Monitor = kind.create({})
+    monitor: AnyMonitor = kind.create({})
     watched = [phase for phase in Phase if monitor.watches("pick_and_place", phase)]
     assert watched == phases.split()
     assert monitor.reaction is reaction
@@ -69,19 +69,19 @@ def test_each_is_registered_and_watches_its_phases(kind, phases, reaction) -> No
 
 @pytest.mark.parametrize("kind", [Missed, Dropped, Positioning, Blocked])
 def test_what_pick_and_place_must_not_do_is_no_fault_of_another_behavior(kind) -> None:
-    monitor: Monitor = kind.create({})
+    monitor: AnyMonitor = kind.create({})
     assert not any(monitor.watches("push", phase) for phase in Phase)
 
 
 @pytest.mark.parametrize("kind", [Missing, Unreachable])
 def test_what_no_behavior_can_do_without_is_watched_before_any(kind) -> None:
-    monitor: Monitor = kind.create({})
+    monitor: AnyMonitor = kind.create({})
     assert [phase for phase in Phase if monitor.watches("push", phase)] == [Phase.PREPARE]
 
 
 @pytest.mark.parametrize("kind", [Missing, Unreachable, Missed, Dropped, Positioning, Blocked])
 def test_none_speaks_when_all_is_well(kind) -> None:
-    monitor: Monitor = kind.create({})
+    monitor: AnyMonitor = kind.create({})
     for step in range(9):
         held = grip(GripState.HELD) if step in (4, 5) else None
         assert monitor.check(replace(VIEW, step=step, grip=held, contact_forces_n=(2.0,))) is None

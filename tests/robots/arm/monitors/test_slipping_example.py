@@ -1,39 +1,32 @@
 """The example package: one more fault, by addition only."""
 
 import tomllib
+from collections.abc import Mapping
 from importlib import import_module
 from pathlib import Path
+from typing import Any
 
 import pytest
-from robot_bench import MODEL, RobotBench
-from scripted_body import catalogue
+from robot_bench import RobotBench
 from slipping.dialogue import script
 from slipping.monitor import Slipping
 
 from mend.dialogue.registry import make_script
+from mend.robots.execution.monitor import AnyMonitor
 from mend.robots.link.messages import Finished, IssueDetected
-from mend.robots.robot import Robot
-from mend.tasks.plugins import load_plugins
 
 PROJECT = Path(__file__).parents[4] / "examples" / "slipping" / "pyproject.toml"
 
 
-def bench_with_slipping(**parameters) -> RobotBench:
+def bench_with_slipping(**given: Any) -> RobotBench:
     """A bench whose robot has the monitor as if the package were installed."""
-    bench = RobotBench()
-    bench.robot = Robot(
-        "r1",
-        bench.body,
-        MODEL,
-        catalogue(),
-        load_plugins("mend.behaviors"),
-        {**load_plugins("mend.monitors"), Slipping.issue: Slipping},
-        {"slipping": parameters},
-    )
-    bench.robot.attach(
-        lambda body, time_s, _: bench.reports.append((time_s, body)), bench.pictures.append
-    )
-    return bench
+
+    class AsSet(Slipping):
+        @classmethod
+        def create(cls, _: Mapping[str, Any]) -> AnyMonitor:
+            return super().create(given)
+
+    return RobotBench(monitors={Slipping.issue: AsSet})
 
 
 def slip(bench: RobotBench, speed_m_s: float, longest_m: float) -> None:

@@ -7,10 +7,10 @@ import pytest
 from drawn_scene import TABLE_Z
 from monitor_view import BLOB, SEEN, VIEW
 
-from mend.robots.arm.behaviors.phase import Phase
 from mend.robots.arm.monitors.missing import Missing
-from mend.robots.arm.monitors.monitor import Monitor, Reaction
 from mend.robots.arm.monitors.undone import Undone
+from mend.robots.execution.monitor import AnyMonitor, Reaction
+from mend.robots.execution.phase import Phase
 from mend.robots.link.messages import Location
 from mend.robots.vision.presence import Presence
 from mend.tasks.plugins import load_plugins
@@ -23,7 +23,7 @@ AFTER = replace(
 
 def test_it_watches_before_the_first_step_and_after_the_last_of_any_behavior() -> None:
     assert load_plugins("mend.monitors")["undone"] is Undone
-    monitor: Monitor[Any] = Undone.create({})
+    monitor: AnyMonitor = Undone.create({})
     assert [phase for phase in Phase if monitor.watches("push", phase)] == [
         Phase.PREPARE,
         Phase.CONFIRM,

@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mend.errors import IllegalTransitionError
-from mend.robots.arm.behaviors.execution_state import (
+from mend.robots.execution.execution_state import (
     EXECUTION,
     ExecutionState,
 )

@@ -1,4 +1,4 @@
-"""What a robot shows of itself to people, for display only: its joints, its tool, what is where."""
+"""What an arm shows of itself to people, for display only: its joints, its tool, what is where."""
 
 from collections.abc import Mapping, Sequence
 from typing import Protocol, runtime_checkable
@@ -40,8 +40,8 @@ class JointedBody(Protocol):
         ...
 
 
-class PoseDisplay:
-    """What is shown of one robot: its joints and tool, and the parts where it located them."""
+class ShownArm:
+    """What is shown of one arm: its joints and tool, and the parts where it located them."""
 
     def __init__(self, body: ArmBody, catalogue: Catalogue, perception: Perception) -> None:
         self._body = body
@@ -50,26 +50,32 @@ class PoseDisplay:
         self._perception = perception
         self.located: Mapping[str, Sighting] = {}
 
-    def layout(self) -> PoseLayout:
-        """What `poses` holds: the body's joints, and every part of the catalogue."""
-        return PoseLayout(
-            model=self._jointed.model if self._jointed else None,
-            joints=list(self._jointed.joint_names) if self._jointed else [],
-            objects=[
-                ShownObject(name=part.name, size=part.size, knob=part.knob)
-                for part in self._catalogue.parts.values()
-            ],
+    def layout(self, layout: PoseLayout) -> PoseLayout:
+        """Add the body's joints, and every part of the catalogue."""
+        objects = [
+            ShownObject(name=part.name, size=part.size, knob=part.knob)
+            for part in self._catalogue.parts.values()
+        ]
+        jointed = self._jointed
+        return layout.model_copy(
+            update={
+                "model": jointed.model if jointed else layout.model,
+                "joints": [*layout.joints, *(jointed.joint_names if jointed else ())],
+                "objects": [*layout.objects, *objects],
+            }
         )
 
-    def poses(self) -> Poses:
-        """The joints and the tool now, and every part where it was located last."""
+    def poses(self, poses: Poses) -> Poses:
+        """Add the joints and the tool now, and every part where it was located last."""
         joints = self._jointed.joint_positions() if self._jointed else ()
-        return Poses(
-            time=self._body.time_s(),
-            joints=[float(each) for each in joints],
-            tool=pose_values(self._body.tool_pose()),
-            opening_m=float(self._body.gripper_opening_m()),
-            objects=[self._shown(part) for part in self._catalogue.parts.values()],
+        objects = [self._shown(part) for part in self._catalogue.parts.values()]
+        return poses.model_copy(
+            update={
+                "joints": [*poses.joints, *(float(each) for each in joints)],
+                "tool": pose_values(self._body.tool_pose()),
+                "opening_m": float(self._body.gripper_opening_m()),
+                "objects": [*poses.objects, *objects],
+            }
         )
 
     def _shown(self, part: Part) -> ShownPose:

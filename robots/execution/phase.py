@@ -8,6 +8,8 @@ class Phase(StrEnum):
 
     PREPARE = "prepare"
     """Before the first step: looking and planning."""
+    TRAVEL = "travel"
+    """The base drives."""
     APPROACH = "approach"
     GRASP = "grasp"
     LIFT = "lift"
