@@ -103,6 +103,7 @@ class Robot:
             executing=self._active_execution(),
             time=self.time_s(),
             room=next((each.room for each in subsystems if each.room is not None), None),
+            keeps_clear=all(each.keeps_clear for each in subsystems),
         )
 
     @property

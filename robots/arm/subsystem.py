@@ -69,6 +69,8 @@ class ArmSubsystem:
         self._films = films and FOREARM in body.cameras
         self._shown = ShownArm(body, catalogue, self._perception)
 
+    keeps_clear = False
+
     @property
     def behaviors(self) -> Collection[str]:
         return self._behaviors

@@ -40,6 +40,11 @@ class Subsystem(Protocol):
         """The room that it takes while it works; None if that is not known."""
         ...
 
+    @property
+    def keeps_clear(self) -> bool:
+        """Whether it keeps clear of other robots by what it senses, so that it needs no room."""
+        ...
+
     def execution_of(self, start: Start, report: Callable[[ReportBody], None]) -> Execution:
         """What a start command asks for, not begun. Raises `CommandError`."""
         ...

@@ -130,6 +130,9 @@ class Detection(Message):
     explanation: Sentence = ""
 
 
+LASER = "laser"
+"""What a `Detection` has for a camera where a laser saw what it is about."""
+
 PoseValues = tuple[
     Coordinate, Coordinate, Coordinate, Coordinate, Coordinate, Coordinate, Coordinate
 ]

@@ -10,6 +10,7 @@ from mend.robots.catalogue import Catalogue
 from mend.robots.robot import Robot
 from mend.robots.vision.color_model import ColorModel
 from mend.robots.vision.lookalikes import find_lookalikes
+from mend.sim.not_for_arms import not_for_arms
 from mend.sim.shared_world import SharedWorld
 from mend.sim.tabletop.body import StraightPlanner
 from mend.sim.tabletop.colors import learn_colors
@@ -56,6 +57,8 @@ class TabletopAdapter:
             planner = StraightPlanner(reach, own.table)
             return check_scene(own, nodes, planner, head_viewpoint(own.table))
 
+        if beyond := not_for_arms(scene, nodes):
+            return beyond
         reach = self.reach(scene)
         lookalikes = find_lookalikes(scene, nodes, learn_colors(scene, TabletopOptions()))
         return [*resting_together(scene), *check_for_each_robot(scene, nodes, check), *lookalikes]

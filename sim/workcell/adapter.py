@@ -9,6 +9,7 @@ from mend.robots.catalogue import Catalogue
 from mend.robots.robot import Robot
 from mend.robots.vision.color_model import ColorModel
 from mend.robots.vision.lookalikes import find_lookalikes
+from mend.sim.not_for_arms import not_for_arms
 from mend.sim.shared_world import SharedWorld
 from mend.sim.workcell.options import WorkcellOptions
 from mend.sim.workcell.robot_model import MODEL, check_installed, robot_urdf
@@ -86,6 +87,8 @@ class WorkcellAdapter:
         check_installed()
         if list(frames_of(scene).values()) != [Frame()]:
             return [SceneProblem(("robots",), ONE_ROBOT)]
+        if beyond := not_for_arms(scene, nodes):
+            return beyond
         from mend.sim.workcell.arm_planner import neutral_arm
         from mend.sim.workcell.cameras import head_viewpoint
         from mend.sim.workcell.colors import learn_colors

@@ -16,7 +16,7 @@ from mend.robots.arm.monitors.missed import Missed
 from mend.robots.arm.monitors.missing import Missing
 from mend.robots.arm.monitors.positioning import Positioning
 from mend.robots.arm.monitors.unreachable import Unreachable
-from mend.robots.execution.monitor import Reaction
+from mend.robots.execution.monitor import AnyMonitor, Reaction
 from mend.robots.execution.phase import Phase
 from mend.robots.vision.obstruction import Obstruction
 from mend.tasks.plugins import load_plugins
