@@ -10,8 +10,9 @@ from fault_trial import AFTER_DONE, LAST_STEP, NEVER, NotNowError, Said, Trial
 from plain_watch import PlainWatch, SharedSenses
 
 from mend.errors import WrongInputError
+from mend.robots.arm.grasp import grasp_of
+from mend.robots.arm.subsystem import ArmSubsystem
 from mend.robots.catalogue import Catalogue, Part
-from mend.robots.grasp import grasp_of
 from mend.robots.link.messages import (
     Finished,
     FinishedResult,
@@ -53,11 +54,16 @@ class Bench:
         self.robot = Robot(
             "r1",
             self.world.body,
-            model,
-            catalogue,
-            load_plugins("mend.behaviors"),
-            load_plugins("mend.monitors"),
-            perception=self.perception,
+            [
+                ArmSubsystem(
+                    self.world.body,
+                    model,
+                    catalogue,
+                    load_plugins("mend.behaviors"),
+                    load_plugins("mend.monitors"),
+                    perception=self.perception,
+                )
+            ],
         )
         self._trial: Trial | None = None
         self._looked: Looked | None = None

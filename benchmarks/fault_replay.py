@@ -8,7 +8,7 @@ from pathlib import Path
 import cv2
 from fault_bench import Bench
 
-from mend.robots.grip import GripReading
+from mend.robots.arm.grip import GripReading
 
 _MM = 1e3
 

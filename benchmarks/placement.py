@@ -20,6 +20,7 @@ from typing import Any
 
 import numpy as np
 
+from mend.robots.arm.subsystem import ArmSubsystem
 from mend.robots.catalogue import Catalogue
 from mend.robots.link.messages import IssueDetected, Look, Looked, ReportBody, Start
 from mend.robots.robot import Robot
@@ -72,14 +73,9 @@ def build(scene: Scene, seed: int, options: dict[str, Any], tally: Tally) -> Non
     world = WorkcellWorld(scene, seed, chosen)
     model = learn_colors(scene, chosen.camera_noise)
     catalogue = Catalogue.from_scene(scene)
-    robot = Robot(
-        "r1",
-        world.body,
-        model,
-        catalogue,
-        load_plugins("mend.behaviors"),
-        load_plugins("mend.monitors"),
-    )
+    behaviors, monitors = load_plugins("mend.behaviors"), load_plugins("mend.monitors")
+    arm = ArmSubsystem(world.body, model, catalogue, behaviors, monitors)
+    robot = Robot("r1", world.body, [arm])
     group = SharedWorld(world, [robot], speed=None)
     reports: list[ReportBody] = []
     group.agents[0].attach(lambda body, _time, _world: reports.append(body), lambda _picture: None)

@@ -4,11 +4,11 @@ from collections.abc import Callable
 
 import numpy as np
 
-from mend.robots.body import Body
+from mend.robots.arm.body import ArmBody
+from mend.robots.arm.grip import GripReading, GripState
+from mend.robots.arm.grip.watch import GripWatch
+from mend.robots.arm.perception import Perception
 from mend.robots.catalogue import Catalogue
-from mend.robots.grip import GripReading, GripState
-from mend.robots.grip.watch import GripWatch
-from mend.robots.perception import Perception
 from mend.robots.vision.color_model import ColorModel
 
 
@@ -49,7 +49,7 @@ class SharedSenses(Perception):
 
     plain: PlainWatch
 
-    def __init__(self, body: Body, model: ColorModel, catalogue: Catalogue) -> None:
+    def __init__(self, body: ArmBody, model: ColorModel, catalogue: Catalogue) -> None:
         super().__init__(body, model, catalogue)
         self.on_reading: Callable[[GripReading], None] | None = None
 

@@ -1,8 +1,10 @@
 """The scripts for `blocked`: clear the way or the place, and the robot goes on.
 
 What was seen in the way is gone once it is seen gone. What was felt no camera can clear: it takes a
-person's word and a look.
+person's word and a look. What a laser saw is in the way of a base, which has nothing to place.
 """
+
+from dataclasses import replace
 
 from mend.dialogue.offer import Offer, offer_script
 from mend.dialogue.script import Expectation, Help
@@ -10,8 +12,8 @@ from mend.tasks.issue import Sensed
 from mend.tasks.resolution import Resolution
 
 SEEN = Offer(
-    question="I cannot go on with the {object}.{why} Can you clear the way?",
-    failed="I have now been stopped {times} on my way with the {object}.",
+    question="I cannot go on{with_object}.{why} Can you clear the way?",
+    failed="I have now been stopped {times} on my way{with_object}.",
     yes_effect="You clear the way; I go on as soon as I see it free ({attempt}).",
     help=Help.CLEAR_WAY,
     request="Please clear the way. I wait until I see it free.",
@@ -25,7 +27,7 @@ SEEN = Offer(
 
 FELT = Offer(
     question="I felt something hold up my arm and stopped. Can you clear its way?",
-    failed="I have now been stopped {times} on my way with the {object}.",
+    failed="I have now been stopped {times} on my way{with_object}.",
     yes_effect="You clear the way of my arm; I go on as soon as I see nothing in it ({attempt}).",
     help=Help.CLEAR_WAY,
     request="Please clear the way of my arm. I look whether it is free.",
@@ -36,4 +38,6 @@ FELT = Offer(
     put_right={},
 )
 
-script = offer_script(SEEN, {Sensed.FELT: FELT})
+BY_LASER = replace(SEEN, placeable=False)
+
+script = offer_script(SEEN, {Sensed.FELT: FELT, Sensed.BY_LASER: BY_LASER})

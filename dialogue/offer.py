@@ -4,7 +4,7 @@ Source: Blankenburg et al. 2020, Figure 3.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from mend.dialogue import place_branch
 from mend.dialogue.place_branch import Patience
@@ -29,7 +29,8 @@ class Offer:
     `failed` says how often the robot has failed at this itself; it then no longer asks for `help`.
     `request` says what to do and `not_seen` asks for it again; once `help` is seen the robot says
     `thanks` (or `unchanged`, where it was so before) and the dialogue closes with `resolution`.
-    `put_right`, `denied` and `may_be_mistaken` are a script's.
+    `put_right`, `denied` and `may_be_mistaken` are a script's. `placeable`: there is an object
+    that a helper could place instead; else who refuses is only asked whether to leave it out.
     """
 
     question: str
@@ -44,6 +45,7 @@ class Offer:
     put_right: Mapping[Expectation, Resolution]
     denied: frozenset[Expectation] = frozenset()
     may_be_mistaken: bool = False
+    placeable: bool = True
 
 
 def offer_script(
@@ -64,6 +66,21 @@ def offer_script(
 
 
 def _script(offer: Offer, patience: Patience, variants: Mapping[Sensed, Script]) -> Script:
+    refused, refused_effect = place_branch.OPENING, place_branch.OPENING_EFFECT
+    last = AskState(
+        text=f"{offer.failed} Will you place the {{object}} yourself?",
+        yes="place",
+        yes_effect=place_branch.YES_EFFECT,
+        no="leave",
+        no_effect=place_branch.LEAVE_EFFECT,
+    )
+    branch = place_branch.STATES
+    if not offer.placeable:
+        refused, refused_effect = "leave", place_branch.LEAVE_EFFECT
+        leave = branch["leave"]
+        assert isinstance(leave, AskState), "the branch ends by asking whether to leave it out"
+        last = replace(leave, text=f"{offer.failed} {leave.text}", if_refused=False)
+        branch = {name: branch[name] for name in ("leave", "left_out", "later")}
     return Script(
         opening="question",
         failed_opening=FAILED,
@@ -72,8 +89,8 @@ def _script(offer: Offer, patience: Patience, variants: Mapping[Sensed, Script])
                 text=offer.question,
                 yes="request",
                 yes_effect=offer.yes_effect,
-                no=place_branch.OPENING,
-                no_effect=place_branch.OPENING_EFFECT,
+                no=refused,
+                no_effect=refused_effect,
             ),
             "request": HelpState(
                 text=offer.request,
@@ -82,17 +99,11 @@ def _script(offer: Offer, patience: Patience, variants: Mapping[Sensed, Script])
                 thanks=offer.thanks,
                 unchanged=offer.unchanged,
                 not_seen=offer.not_seen,
-                otherwise=place_branch.OPENING,
-                otherwise_effect=place_branch.OPENING_EFFECT,
+                otherwise=refused,
+                otherwise_effect=refused_effect,
             ),
-            FAILED: AskState(
-                text=f"{offer.failed} Will you place the {{object}} yourself?",
-                yes="place",
-                yes_effect=place_branch.YES_EFFECT,
-                no="leave",
-                no_effect=place_branch.LEAVE_EFFECT,
-            ),
-            **place_branch.STATES,
+            FAILED: last,
+            **branch,
         },
         put_right=offer.put_right,
         denied=offer.denied,

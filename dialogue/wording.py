@@ -8,9 +8,22 @@ from mend.dialogue.spoken import spoken
 from mend.tasks.issue import Issue
 
 FIELDS = frozenset(
-    {"object", "place", "name", "robot", "why", "attempt", "times", "again", "later", "go_on"}
+    {
+        "object",
+        "with_object",
+        "place",
+        "name",
+        "robot",
+        "why",
+        "attempt",
+        "times",
+        "again",
+        "later",
+        "go_on",
+    }
 )
-"""`why`: what the robot sensed, as a sentence with a blank before it, or nothing. `attempt`:
+"""`with_object`: ` with the cup` with a blank before it, or nothing where there is no object.
+`why`: what the robot sensed, as a sentence with a blank before it, or nothing. `attempt`:
 `attempt 1 of 3`. `times`: how often this has happened. `again`, `later`, `go_on`: what the robot
 does next after help, after a failed attempt, and if it need not begin anew."""
 
@@ -19,6 +32,7 @@ def word(text: str, issue: Issue, outlook: Outlook) -> str:
     """Fill in a sentence; a leaf without an object or place is spoken of by its own name."""
     return text.format(
         object=spoken(issue.object or issue.name),
+        with_object=f" with the {spoken(issue.object)}" if issue.object else "",
         place=spoken(issue.place or issue.name),
         name=spoken(issue.name),
         robot=spoken(issue.robot),

@@ -1,21 +1,20 @@
-"""One robot: takes commands, walks behaviors, looks, and reports, over any body."""
+"""One robot: takes commands, drives executions and looks, and reports, over any body."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from mend.robots.agent import Emit, EmitPicture
-from mend.robots.arm import Arm, Routine
-from mend.robots.behaviors.behavior import Behavior
-from mend.robots.behaviors.execution import Execution
-from mend.robots.behaviors.execution_state import ExecutionState
-from mend.robots.behaviors.progress import Progress
-from mend.robots.behaviors.work import Work
 from mend.robots.body import Body, CameraImage
-from mend.robots.catalogue import Catalogue
 from mend.robots.clip import encode_clip
-from mend.robots.command_resolver import CommandError, CommandResolver
+from mend.robots.execution.command_error import CommandError
+from mend.robots.execution.execution import Execution
+from mend.robots.execution.execution_state import ExecutionState
+from mend.robots.execution.monitor import BEFORE_FIRST_STEP
+from mend.robots.execution.routine import Routine
+from mend.robots.execution.subsystem import Subsystem
 from mend.robots.link.messages import (
+    IDENTITY,
     PROTOCOL_VERSION,
     ActiveExecution,
     ClipTaken,
@@ -30,31 +29,19 @@ from mend.robots.link.messages import (
     Picture,
     PoseLayout,
     Poses,
-    ReachLimits,
     Rejected,
     ReportBody,
     Resume,
-    RoomLimits,
     Shutdown,
     SlowDown,
     Start,
     TakePicture,
 )
-from mend.robots.looks import Looker, look_as_told
-from mend.robots.monitors.monitor import BEFORE_FIRST_STEP, Monitor
-from mend.robots.perception import FOREARM, Perception
-from mend.robots.result import JudgedResult
-from mend.robots.showing import PoseDisplay
 from mend.robots.task_progress import TaskProgress
-from mend.robots.vision.color_model import ColorModel
 from mend.robots.vision.drawing import encode_jpeg
-from mend.robots.vision.warming_up import warm_up
 
 _SEEN_AT_ONCE = (IssueDetected, Finished, Looked, Rejected)
 """Reports that the service must see before more time passes."""
-
-_EXPLAINING = frozenset({"missing", "undone", "unreachable"})
-"""Without these monitors an object that is not there would leave the service without a word."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,38 +55,23 @@ class _OwedClip:
 
 
 class Robot:
-    """An `AgentCore` over a body.
+    """An `AgentCore` over a body, with an arm, a base, or both.
 
     One activity is under way at a time: an execution or a look. A new command replaces a look
-    under way, which is then not reported. What comes while the arm retreats waits until it is
-    at neutral.
+    under way, which is then not reported. What comes while it retreats waits until it is at rest.
+    A behavior is done by the subsystem that has it; looks belong to that of the execution that
+    waits, or else to the first.
     """
 
-    def __init__(
-        self,
-        name: str,
-        body: Body,
-        model: ColorModel,
-        catalogue: Catalogue,
-        behaviors: Mapping[str, type[Behavior]],
-        monitors: Mapping[str, type[Monitor[Any]]],
-        monitor_parameters: Mapping[str, Mapping[str, Any]] | None = None,
-        perception: Perception | None = None,
-        *,
-        films: bool = True,
-    ) -> None:
-        """`films`: the forearm camera also takes pictures that only a clip before a fault needs."""
-        if not monitors.keys() >= _EXPLAINING:
-            raise ValueError(f"expected monitors for {sorted(_EXPLAINING)}, got {sorted(monitors)}")
-        warm_up()
+    def __init__(self, name: str, body: Body, subsystems: Sequence[Subsystem]) -> None:
+        """Raises `ValueError` without a subsystem, and where two have a behavior of one name."""
+        self._subsystem_of = {name: each for each in subsystems for name in each.behaviors}
+        if not subsystems or len(self._subsystem_of) < sum(len(e.behaviors) for e in subsystems):
+            raise ValueError("expected subsystems, of which no two have a behavior of one name")
         self._name = name
         self._body = body
-        self._behaviors = dict(behaviors)
-        self._monitors = dict(monitors)
-        self._monitor_parameters = dict(monitor_parameters or {})
-        self._arm = Arm(body)
-        self._perception = perception or Perception(body, model, catalogue)
-        self._resolver = CommandResolver(behaviors, catalogue, model.names)
+        self._subsystems = tuple(subsystems)
+        self._acting = subsystems[0]
         self._emit: Emit | None = None
         self._emit_picture: EmitPicture | None = None
         self._activity: Routine[None] | None = None
@@ -108,9 +80,7 @@ class Robot:
         self._execution: Execution | None = None
         self._attempts: dict[str, int] = {}
         self._waiting: list[tuple[str, CommandBody]] = []
-        self._films = films and FOREARM in body.cameras
         self._owed_clip: _OwedClip | None = None
-        self._display = PoseDisplay(body, catalogue, self._perception)
         self._reported = False
         self._shut_down = False
 
@@ -122,21 +92,18 @@ class Robot:
 
     def hello(self, boot: str) -> Hello:
         """What the robot is, and what it is doing now."""
-        reach, room = self._body.reach, self._body.room
+        subsystems = self._subsystems
         return Hello(
             protocol=PROTOCOL_VERSION,
             robot=self._name,
             boot=boot,
-            behaviors=sorted(self._behaviors),
+            behaviors=sorted(self._subsystem_of),
             cameras=sorted(self._body.cameras),
-            reach=ReachLimits(
-                x=reach.origin[0], y=reach.origin[1], min_m=reach.min_m, max_m=reach.max_m
-            ),
+            reach=next((each.reach for each in subsystems if each.reach is not None), None),
             executing=self._active_execution(),
             time=self.time_s(),
-            room=RoomLimits(
-                resting=list(room.resting), hand_over=room.hand_over, around_m=room.around_m
-            ),
+            room=next((each.room for each in subsystems if each.room is not None), None),
+            keeps_clear=all(each.keeps_clear for each in subsystems),
         )
 
     @property
@@ -164,18 +131,23 @@ class Robot:
         execution = self._execution
         if execution is None or execution.over:
             return None
-        name = None if execution.part is None else execution.part.name
-        between = not self._body.moving or execution.state is ExecutionState.CONFIRMING
-        fraction = 1.0 if between else self._body.progress
-        return TaskProgress(name, execution.step, fraction, self._attempts.get(name or "", 1))
+        name = execution.object
+        attempt = self._attempts.get(name or "", 1)
+        return TaskProgress(name, execution.step, execution.fraction, attempt)
 
     def pose_layout(self) -> PoseLayout:
-        """What `poses` holds: the body's joints, and every part of the catalogue."""
-        return self._display.layout()
+        """What `poses` holds: the body's joints, and all that is known of."""
+        layout = PoseLayout()
+        for each in self._subsystems:
+            layout = each.layout(layout)
+        return layout
 
     def poses(self) -> Poses:
-        """The joints and the tool now, and every part where it was located last."""
-        return self._display.poses()
+        """Where all of that is now."""
+        poses = Poses(time=self.time_s(), tool=IDENTITY, opening_m=0.0)
+        for each in self._subsystems:
+            poses = each.show(poses)
+        return poses
 
     def attach(self, emit: Emit, emit_picture: EmitPicture) -> None:
         """Say where reports and pictures go; called once, before anything else."""
@@ -211,8 +183,8 @@ class Robot:
         if self._activity is None:
             return
         self._decided = None
-        if self._films and self._walking:
-            self._perception.hand.film()
+        if self._walking:
+            self._acting.film()
 
     @property
     def active(self) -> bool:
@@ -269,7 +241,8 @@ class Robot:
             case Look():
                 self._look(command_id, body)
             case SlowDown():
-                self._arm.slow_down(body.factor)
+                for each in self._subsystems:
+                    each.effector.slow_down(body.factor)
             case TakePicture():
                 self._take_picture(command_id, body)
             case Shutdown():
@@ -282,26 +255,22 @@ class Robot:
             raise CommandError(
                 f"a behavior is still under way; interrupt it before starting '{start.behavior}'"
             )
-        assignment = self._resolver.assign(start)
+        subsystem = self._subsystem_of.get(start.behavior)
+        if subsystem is None:
+            known = ", ".join(sorted(self._subsystem_of))
+            raise CommandError(f"behavior '{start.behavior}' is unknown; this robot has {known}")
+        execution = subsystem.execution_of(start, self._report)
         self._drop_look()
         if self._execution is not None and not self._execution.over:
             self._execution.end()
-        if assignment.part is not None:
-            name = assignment.part.name
-            self._attempts[name] = self._attempts.get(name, 0) + 1
-        monitors = [
-            kind.create(self._monitor_parameters.get(name, {}))
-            for name, kind in self._monitors.items()
-        ]
-        self._perception.hand.clip.begin()
-        progress = Progress(assignment.was_done)
-        work = Work(assignment, progress, self._arm, self._perception, self._report)
-        self._execution = Execution(work, monitors)
-        self._activity = self._execution.run()
+        if execution.object is not None:
+            self._attempts[execution.object] = self._attempts.get(execution.object, 0) + 1
+        self._acting, self._execution = subsystem, execution
+        self._activity = execution.run()
 
     def _interrupt(self, interrupt: Interrupt) -> None:
         self._waiting.clear()
-        self._arm.stop()
+        self._acting.effector.stop()
         self._drop_look()
         execution = self._execution
         if execution is None or execution.over:
@@ -317,8 +286,8 @@ class Robot:
             self._report(Holding(execution=execution.id, at=self._where()))
 
     def _retreat_idle(self) -> Routine[None]:
-        yield from self._arm.open_gripper()
-        yield from self._arm.go_to_neutral()
+        for each in self._subsystems:
+            yield from each.retreat()
         self._report(Holding(execution=None, at="neutral"))
 
     def _resume(self, resume: Resume) -> None:
@@ -333,13 +302,14 @@ class Robot:
         self._activity = execution.resume()
 
     def _look(self, command_id: str, look: Look) -> None:
+        held = None if self._execution is None or self._execution.over else self._execution
+        subsystem = self._subsystems[0] if held is None else self._acting
         if self._executing:
             if look.expect is not None:
                 raise CommandError(f"cannot look for '{look.expect}' while a behavior is under way")
-            self._report(self._looker().answer(command_id, None))
+            self._report(subsystem.glance(command_id, held))
             return
-        results = self._resolver.results_of(look.finished)
-        routine = look_as_told(self._looker(results), command_id, look, self._resolver)
+        routine = subsystem.look(command_id, look, held, self._report)
         self._drop_look()
         self._activity, self._looking = self._report_look(routine), True
 
@@ -379,24 +349,11 @@ class Robot:
 
     def _drop_look(self) -> None:
         if self._looking:
-            self._arm.stop()
+            self._acting.effector.stop()
             self._activity, self._looking = None, False
 
-    def _looker(self, finished: Sequence[JudgedResult] = ()) -> Looker:
-        held = None if self._execution is None or self._execution.over else self._execution
-        # What is held in the middle of a step stays there: only a resume or a retreat moves it.
-        may_move = not self._executing and (held is None or held.step == 0)
-        return Looker(
-            arm=self._arm,
-            perception=self._perception,
-            report=self._report,
-            held=held,
-            may_move=may_move and not self._perception.hand.holds(),
-            finished=finished,
-        )
-
     def _where(self) -> Any:
-        return "neutral" if self._arm.at_neutral else "in_place"
+        return "neutral" if self._acting.effector.at_rest else "in_place"
 
     def _active_execution(self) -> ActiveExecution | None:
         execution = self._execution
@@ -413,10 +370,11 @@ class Robot:
         if isinstance(body, _SEEN_AT_ONCE):
             self._reported = True
         if isinstance(body, IssueDetected) and body.step > BEFORE_FIRST_STEP:
-            images = self._perception.hand.clip.images()
+            images = self._acting.clip
             if images:
                 self._owed_clip = _OwedClip(body.execution, body.issue, self.time_s(), images)
-        if isinstance(body, Looked) and body.blind is None:
-            self._display.located = dict(body.objects)
+        if isinstance(body, Looked):
+            for each in self._subsystems:
+                each.note(body)
         if self._emit is not None:
             self._emit(body, self.time_s(), None)

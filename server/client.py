@@ -38,7 +38,14 @@ from mend.server.journal.events import (
 )
 from mend.server.journal.trouble import Sleep
 from mend.server.runtime.requests import RunRequest
-from mend.server.runtime.views import DialogueView, RobotView, RunSummary, RunView, Snapshot
+from mend.server.runtime.views import (
+    DialogueView,
+    LeafSaid,
+    RobotView,
+    RunSummary,
+    RunView,
+    Snapshot,
+)
 from mend.server.sites.requests import SiteRequest
 from mend.server.sites.views import SiteView
 from mend.tasks.intervention import Intervention
@@ -199,6 +206,11 @@ class MendClient:
         """Have it be anybody's again."""
         body = {"node": node, "helper": helper}
         return await self._post(f"/api/runs/{run}/leaves/give_back", RunSummary, body)
+
+    async def say_of_leaf(self, run: UUID, words: str, helper: str) -> LeafSaid:
+        """Either of these in plain words: "I do the saucer", "I give the saucer back"."""
+        body = {"words": words, "helper": helper}
+        return await self._post(f"/api/runs/{run}/leaves/say", LeafSaid, body)
 
     async def intervene(self, run: UUID, intervention: Intervention) -> Intervention:
         """Have a person do something in a simulated world."""

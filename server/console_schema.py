@@ -5,9 +5,12 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
+from pydantic import TypeAdapter
+
 from mend.server.api import helper_messages, speech_messages
 from mend.server.journal.events import AnyEvent
 from mend.server.schemas import DIALECT, TO_HELPERS, Models, asyncapi, members_of, openapi
+from mend.server.transcript import Line
 
 
 def console() -> dict[str, Any]:
@@ -19,6 +22,8 @@ def console() -> dict[str, Any]:
         if prefix in ("helper", "speech"):
             definitions[model] = schema
     definitions["Event"] = _one_of(members_of(AnyEvent))
+    definitions["TranscriptLine"] = TypeAdapter(Line).json_schema(mode="serialization")
+    definitions |= definitions["TranscriptLine"].pop("$defs")
     definitions["FromHelper"] = _one_of(members_of(helper_messages.ClientMessage))
     definitions["ToHelper"] = _one_of(TO_HELPERS)
     definitions["FromSpeaker"] = _one_of(members_of(speech_messages.SpeechClientMessage))

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from mend.errors import NotFoundError, WrongInputError
-from mend.robots.feasibility.transfers import plan_transfers
+from mend.robots.arm.feasibility.transfers import plan_transfers
 from mend.server.behaviors import behavior_step_counts
 from mend.server.document_checks import Finder
 from mend.server.documents import SPOKEN, DocumentKind, FixedDocuments, Uploaded

@@ -160,6 +160,10 @@ HELPER_QUERY = {
     "properties": {
         "helper": HELPER_NAME,
         "after": {"type": "integer", "minimum": 0, "description": "The last event seen."},
+        "told": {
+            "type": "boolean",
+            "description": "Whether each event has `lines`: what the transcript tells of it.",
+        },
     },
 }
 

@@ -4,6 +4,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import singledispatchmethod
+from typing import Literal, Protocol
+from uuid import UUID
 
 from mend.dialogue.evidence import Change
 from mend.dialogue.script import CloseReason, Help
@@ -132,11 +134,12 @@ def why_aborted(event: ev.RunAborted) -> str:
 class Transcript:
     """Turns the events of one run, in order, into lines.
 
-    It remembers one thing: whether the run has several robots, which are then called by their ids.
+    It remembers one thing: whether the run has several robots, which are then called by their ids;
+    the first event says so, or whoever begins later.
     """
 
-    def __init__(self) -> None:
-        self._several_robots = False
+    def __init__(self, *, several_robots: bool = False) -> None:
+        self._several_robots = several_robots
 
     @singledispatchmethod
     def lines(self, event: ev.Event) -> list[Line]:
@@ -151,13 +154,7 @@ class Transcript:
     @lines.register
     def _(self, event: ev.RunStarted) -> list[Line]:
         self._several_robots = len(event.robots) > 1
-        scenario = f", scenario {event.scenario}" if event.scenario else ""
-        speed = event.speed if event.speed == "max" else f"{event.speed:g}"
-        text = (
-            f"run {event.run} of {event.tree_name} begins in {event.world} "
-            f"(seed {event.seed}, speed {speed}{scenario})"
-        )
-        return [_line(event, "", text, Tone.RUN)]
+        return [_line(event, "", told_start(event.run, event.tree_name, event), Tone.RUN)]
 
     @lines.register
     def _(self, event: ev.RunPaused) -> list[Line]:
@@ -207,7 +204,7 @@ class Transcript:
 
     @lines.register
     def _(self, event: ev.NodeTaken) -> list[Line]:
-        return [_line(event, event.helper, f"takes {event.name}, to do it", Tone.CHOICE)]
+        return [_line(event, event.helper, f"has taken {event.name}, to do it", Tone.CHOICE)]
 
     @lines.register
     def _(self, event: ev.StepStarted) -> list[Line]:
@@ -369,6 +366,32 @@ class Transcript:
     def _(self, event: ev.RobotResumed) -> list[Line]:
         text = f"moves again, at step {event.step}"
         return [_line(event, self._robot(event.robot), text, Tone.WATCHED)]
+
+
+class StartedRun(Protocol):
+    """How a run was begun."""
+
+    @property
+    def world(self) -> str: ...
+
+    @property
+    def seed(self) -> int: ...
+
+    @property
+    def speed(self) -> float | Literal["max"]: ...
+
+    @property
+    def scenario(self) -> str | None: ...
+
+
+def told_start(run: UUID, tree: str, started: StartedRun) -> str:
+    """That a run begins, of which tree, and how."""
+    scenario = f", scenario {started.scenario}" if started.scenario else ""
+    speed = started.speed if started.speed == "max" else f"{started.speed:g}"
+    return (
+        f"run {run} of {tree} begins in {started.world} "
+        f"(seed {started.seed}, speed {speed}{scenario})"
+    )
 
 
 def deed_text(intervention: Intervention) -> str:

@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from mend.robots.body import Matrix4, ToolPose
+from mend.robots.arm.body import ToolPose
+from mend.robots.body import Matrix4
 from mend.tasks.frames import Frame
 
 

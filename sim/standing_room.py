@@ -7,9 +7,9 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from mend.robots.arm.grasp import grasps_of
+from mend.robots.arm.gripper import ToolBox
 from mend.robots.catalogue import Part
-from mend.robots.grasp import grasps_of
-from mend.robots.gripper import ToolBox
 from mend.sim.workcell.gripper import PR2_GRIPPER
 from mend.tasks.footprint import TOUCH_M, Footprint
 

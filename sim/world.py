@@ -2,20 +2,22 @@
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Any, Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 from pydantic import BaseModel
 
 from mend.errors import UnavailableError
 from mend.robots.agent import AgentGroup
-from mend.robots.body import Reach
+from mend.robots.arm.body import Reach
 from mend.robots.link.messages import ShownObject, ShownPose
-from mend.robots.vision.color_model import ColorModel
 from mend.tasks.definition import BehaviorNode, GoalNode
 from mend.tasks.intervention import Intervention
 from mend.tasks.scenario import ScriptedIntervention
 from mend.tasks.scene import Scene, StrictModel
 from mend.tasks.scene_problem import SceneProblem
+
+if TYPE_CHECKING:
+    from mend.robots.vision.color_model import ColorModel
 
 
 class WorldSetup(StrictModel):
@@ -152,7 +154,7 @@ class ModelProvider(Protocol):
 class ColorTeacher(Protocol):
     """A world adapter whose pictures a colour model can be trained from."""
 
-    def train_colors(self, scene: Scene) -> ColorModel:
+    def train_colors(self, scene: Scene) -> "ColorModel":
         """Learn the colours of a scene's objects from rendered pictures of them.
 
         Raises `WrongInputError` for an object without a colour of its own, and

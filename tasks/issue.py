@@ -11,6 +11,8 @@ class Sensed(StrEnum):
     """It saw what is wrong, or does not say how it knows."""
     FELT = "felt"
     """By force, and not by a camera."""
+    BY_LASER = "by_laser"
+    """A laser saw something where the robot was to drive."""
     NOWHERE = "nowhere"
     """It looked for the object and saw it nowhere."""
 

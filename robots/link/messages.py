@@ -130,12 +130,15 @@ class Detection(Message):
     explanation: Sentence = ""
 
 
+LASER = "laser"
+"""What a `Detection` has for a camera where a laser saw what it is about."""
+
 PoseValues = tuple[
     Coordinate, Coordinate, Coordinate, Coordinate, Coordinate, Coordinate, Coordinate
 ]
 """x, y, z (m), qx, qy, qz, qw."""
 
-_IDENTITY: PoseValues = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
+IDENTITY: PoseValues = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
 
 
 class ShownObject(Message):
@@ -255,7 +258,8 @@ class FinishedResult(Message):
 class Looked(Message):
     """What a look saw, in answer to a `look` command.
 
-    `objects`: every object seen, by name. `gripper`: where the tool point is. `fulfilled`: whether
+    `objects`: every object seen, by name. `gripper`: where the tool point is; a robot without one
+    says where it is itself. `fulfilled`: whether
     what was expected came to be within the time given; None when nothing was expected.
     `there` and `gone`: of the command's `finished` results those that are seen to be so, and those
     whose place is seen without the object; what something hides is in neither. `held`: the object
@@ -448,8 +452,10 @@ class Hello(Message):
     """First message of a robot on every connection.
 
     `boot` is new at every start of the robot's program. `suitability`: per behavior, in (0, 1].
-    `executing`: what it is doing, if anything. `shows`: what its `poses` hold; None if it sends
-    none. `room`: without it no other robot of its run works while its arm does not rest.
+    `executing`: what it is doing, if anything. `reach`: None of a robot that takes hold of nothing.
+    `shows`: what its `poses` hold; None if it sends none. `room`: without it no other robot of its
+    run works while its arm does not rest. `keeps_clear`: it moves about and keeps clear of others
+    by what it senses itself, so that no space is kept for it.
     """
 
     type: Literal["hello"] = "hello"
@@ -458,13 +464,14 @@ class Hello(Message):
     boot: Identifier
     behaviors: Annotated[list[Word], Field(max_length=MOST)]
     cameras: Annotated[list[Word], Field(max_length=MOST)]
-    reach: ReachLimits
+    reach: ReachLimits | None = None
     suitability: dict[Word, Annotated[float, Field(ge=0, le=1)]] = {}
     executing: ActiveExecution | None = None
     time: Time
     simulated: bool = False
     shows: PoseLayout | None = None
     room: RoomLimits | None = None
+    keeps_clear: bool = False
 
 
 class Report(Message):
@@ -516,7 +523,7 @@ class Poses(Message):
     type: Literal["poses"] = "poses"
     time: Time
     joints: list[Coordinate] = []
-    base: PoseValues = _IDENTITY
+    base: PoseValues = IDENTITY
     tool: PoseValues
     opening_m: Coordinate
     objects: list[ShownPose] = []

@@ -3,8 +3,8 @@
 import math
 from dataclasses import dataclass
 
+from mend.robots.arm.grasp import half_turn
 from mend.robots.catalogue import Part
-from mend.robots.grasp import half_turn
 from mend.robots.link.messages import Sighting
 from mend.robots.vision.blob import Blob
 

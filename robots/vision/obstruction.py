@@ -8,7 +8,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from mend.robots.body import CameraImage, ToolPose
+from mend.robots.arm.body import ToolPose
+from mend.robots.body import CameraImage
 from mend.robots.vision.carriers import below
 from mend.robots.vision.head import HeadSighting
 from mend.robots.vision.projection import Points, pixels_covered, project

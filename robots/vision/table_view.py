@@ -9,9 +9,9 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from mend.robots.arm.grasp import half_turn
 from mend.robots.body import CameraImage
 from mend.robots.catalogue import Part
-from mend.robots.grasp import half_turn
 from mend.robots.link.messages import Location
 from mend.robots.vision.blob import Blob
 from mend.robots.vision.color_model import ColorModel

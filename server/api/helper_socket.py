@@ -32,6 +32,7 @@ from mend.server.api.services import MAX_SEQ
 from mend.server.journal.events import NO_RUN
 from mend.server.journal.journal import JournalClosedError
 from mend.server.journal.subscriptions import PrunedEventsError, SubscriptionOverflowError
+from mend.server.told_events import ToldEvents
 
 router = APIRouter()
 
@@ -42,9 +43,10 @@ MAX_MESSAGE_CHARS = 64 * 1024
 
 
 class EventsQuery(HelperQuery):
-    """The address's parameters: who it is, and the last event seen."""
+    """The address's parameters: who it is, the last event seen, and whether events have `lines`."""
 
     after: Annotated[int, Field(ge=0, le=MAX_SEQ)] | None = None
+    told: bool = False
 
 
 @router.websocket(HELPER_PATH)
@@ -63,21 +65,23 @@ class HelperSocket(HelperConnection[EventsQuery]):
         """Send a snapshot, then events while taking messages, until one of the two ends."""
         seq = await self._send_snapshot(query.after)
         await until_one_ends(
-            self._send_events(seq),
+            self._send_events(seq, told=query.told),
             self._send_trouble(),
             self._receive_messages(helper),
         )
 
     # --- to the helper ------------------------------------------------------------------------
 
-    async def _send_events(self, seq: int) -> None:
+    async def _send_events(self, seq: int, *, told: bool) -> None:
         capacity = self._parts.settings.subscriber_queue
+        telling = ToldEvents(self._parts.journal.index)
         with self._parts.journal.subscribe(seq, capacity) as subscription:
             try:
                 async for record in subscription:
                     # What is of no run is for admins, and comes over REST.
                     if not _is_of_no_run(record.text):
-                        await self._websocket.send_text(record.text)
+                        text = await telling.told(record) if told else record.text
+                        await self._websocket.send_text(text)
             except (SubscriptionOverflowError, PrunedEventsError) as error:
                 await self._websocket.close(TRY_AGAIN_LATER, str(error))
             except JournalClosedError:

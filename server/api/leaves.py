@@ -1,4 +1,4 @@
-"""Leaves that people do themselves, over REST: taking one, and giving it back."""
+"""Leaves that people do themselves, over REST: taking one, giving it back, and saying so."""
 
 from typing import Annotated
 
@@ -8,13 +8,14 @@ from pydantic import BaseModel, ConfigDict, Field
 from mend.server.api.problems import documented
 from mend.server.api.repeatable import RepeatableRoute
 from mend.server.api.services import HelperName, RunId, WithCaller, WithServices, helper_of
-from mend.server.runtime.views import RunSummary
+from mend.server.runtime.views import LeafSaid, RunSummary
 from mend.tasks.spellings import NODE
 
 router = APIRouter(prefix="/api/runs/{run}/leaves", tags=["runs"], route_class=RepeatableRoute)
 
 ANSWERS = documented(400, 401, 403, 404, 409, 413, 421, 422, 503)
 EXAMPLES = [{"node": "/0/1", "helper": "anna"}]
+WORDS = [{"words": "I do the saucer", "helper": "anna"}]
 
 
 class LeafRequest(BaseModel):
@@ -23,6 +24,15 @@ class LeafRequest(BaseModel):
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
 
     node: Annotated[str, Field(pattern=NODE, max_length=400)]
+    helper: HelperName | None = None
+
+
+class LeafWords(BaseModel):
+    """What somebody says that they do, or do not do after all."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+
+    words: Annotated[str, Field(min_length=1, max_length=200)]
     helper: HelperName | None = None
 
 
@@ -48,3 +58,15 @@ async def give_leaf_back(
     """Do not do it after all: it is anybody's again."""
     helper = helper_of(caller, body.helper)
     return await services.runs.give_leaf_back(run, body.node, helper)
+
+
+@router.post("/say", operation_id="say_of_leaf", responses=ANSWERS)
+async def say_of_leaf(
+    run: RunId,
+    body: Annotated[LeafWords, Body(examples=WORDS)],
+    services: WithServices,
+    caller: WithCaller,
+) -> LeafSaid:
+    """Take a leaf, or give it back, in plain words: "I do the saucer"."""
+    helper = helper_of(caller, body.helper)
+    return await services.runs.say_of_leaf(run, body.words, helper, caller.author)

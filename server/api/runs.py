@@ -13,6 +13,8 @@ from mend.server.journal.events import NO_RUN, AnyEvent
 from mend.server.journal.run_index import RunPage
 from mend.server.runtime.requests import RunRequest
 from mend.server.runtime.views import RunStatus, RunSummary, RunView
+from mend.server.told_events import ToldEvents
+from mend.server.turns import Turns
 from mend.tasks.intervention import Intervention
 from mend.tasks.spellings import CAMERA
 
@@ -25,6 +27,10 @@ Before = Annotated[
     UUID | None, Query(description="Only runs that began before this one: the cursor of a page.")
 ]
 Camera = Annotated[str, Path(pattern=CAMERA, examples=["head", "forearm"])]
+
+ToldQuery = Annotated[
+    bool, Query(description="With `lines`: what the transcript tells of each event.")
+]
 
 RUN_EXAMPLES = [
     {"tree": "eket", "world": "workcell", "speed": 1.0, "seed": 7, "scenario": "eket_paper"},
@@ -120,7 +126,11 @@ async def abort_run(
     responses=documented(401, 404, 421, 422, 500),
 )
 async def list_events(
-    run: RunId, services: WithServices, after: After = 0, limit: Limit = 100
+    run: RunId,
+    services: WithServices,
+    after: After = 0,
+    limit: Limit = 100,
+    told: ToldQuery = False,
 ) -> Response:
     """A run's events in order; go on with the last `seq` as `after`, until a page is empty."""
     # What belongs to no run is for admins, at another door.
@@ -128,7 +138,13 @@ async def list_events(
         await services.runs.run_summary(run)
     records = await services.journal.read_records(after, limit, run)
     # The journal holds the very JSON that clients get.
-    body = "[" + ",".join(record.text for record in records) + "]"
+    texts = [record.text for record in records]
+    if told:
+        telling, turns, texts = ToldEvents(services.journal.index), Turns(), []
+        for record in records:
+            texts.append(await telling.told(record))
+            await turns.pass_on()
+    body = "[" + ",".join(texts) + "]"
     return json_answer(body.encode())
 
 

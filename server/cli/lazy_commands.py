@@ -6,6 +6,9 @@ from typing import Any
 import typer
 from typer.core import TyperGroup
 
+from mend.server.cli.failures import CommandLineError
+from mend.tasks.plugins import called_of
+
 SUMMARIES = {
     "run": "Run a task tree and print what happens.",
     "serve": "Serve the API, the helper console, the robots.",
@@ -23,12 +26,36 @@ SUMMARIES = {
     "map": "Build and clean up vector maps.",
     "journal": "Check, prune, back up and restore a journal.",
     "scene": "Make up scenes.",
+    "site": "Open, list, show and close worlds that stay.",
 }
 """Each `some-name` is the group `app` of its module `some_name`, or its function `some_name`."""
 
 
+EXTRA_OF = {
+    "check": "scheduling",
+    "localize": "localization",
+    "map": "localization",
+    "schedule": "scheduling",
+    "train-colors": "tabletop",
+}
+"""Which of the distribution's extras a command needs beyond the service itself, if any."""
+
+
 class LazyGroup(TyperGroup):
     """Lists its commands by their summaries alone, and imports the one that is called."""
+
+    def invoke(self, ctx: Any) -> Any:
+        """Raises `CommandLineError` for what is not installed."""
+        try:
+            return super().invoke(ctx)
+        except ModuleNotFoundError as error:
+            extra, called = EXTRA_OF.get(ctx.invoked_subcommand), called_of(error)
+            if extra is None or called is None:
+                raise
+            command = f"'mend {ctx.invoked_subcommand}'"
+            raise CommandLineError(
+                f"{command} needs {called}: install Mend as 'mend-robots[{extra}]'"
+            ) from error
 
     def resolve_command(self, ctx: Any, args: list[str]) -> tuple[str | None, Any, list[str]]:
         name, listed, rest = super().resolve_command(ctx, args)

@@ -10,6 +10,7 @@ from uuid import UUID
 from mend.errors import ConflictError
 from mend.server.api.robot_socket import robots_url
 from mend.server.cli.local_user import local_user
+from mend.server.cli.site_names import find_site
 from mend.server.client import MendClient
 from mend.server.client_errors import RefusedError
 from mend.server.documents import DocumentKind
@@ -25,9 +26,13 @@ CONFLICT = 409
 
 @asynccontextmanager
 async def other_service(
-    url: str, token: str | None, given: GivenFiles
+    url: str, token: str | None, given: GivenFiles, site: str | None = None
 ) -> AsyncIterator["OtherService"]:
-    """Have the service at an address do a run; the files given for it are uploaded first."""
+    """Have the service at an address do a run; the files given for it are uploaded first.
+
+    `site`: what somebody calls the one where it is to be. Raises `CommandLineError` if there is
+    none.
+    """
     async with MendClient(url, token=token) as client:
         uploads = {
             DocumentKind.SCENE: client.upload_scene,
@@ -38,15 +43,17 @@ async def other_service(
         for kind, upload in uploads.items():
             for name, text in given.texts.get(kind, {}).items():
                 await upload(text, name)
-        yield OtherService(client, url.rstrip("/"))
+        at = None if site is None else (await find_site(client, site)).id
+        yield OtherService(client, url.rstrip("/"), at)
 
 
 class OtherService:
     """Implements `mend.server.cli.run_host.RunHost`; every method raises the client's errors."""
 
-    def __init__(self, client: MendClient, url: str) -> None:
+    def __init__(self, client: MendClient, url: str, site: UUID | None) -> None:
         self._client = client
         self._url = url
+        self._site = site
 
     @property
     def door(self) -> str:
@@ -60,6 +67,7 @@ class OtherService:
         return await self._client.robots()
 
     async def start(self, request: RunRequest) -> UUID:
+        request = request.model_copy(update={"site": self._site})
         try:
             return (await self._client.start_run(request)).id
         except RefusedError as error:

@@ -10,6 +10,7 @@ from typing import Annotated
 import typer
 
 from mend.server.cli.failures import INTERRUPTED, CommandLineError, told_plainly
+from mend.server.cli.site import SERVICE
 from mend.server.cli.talk import TOKEN_VARIABLE
 
 
@@ -37,6 +38,13 @@ def run(
     url: Annotated[
         str | None,
         typer.Option(help="Have the service at this address do it, and keep the files there."),
+    ] = None,
+    site: Annotated[
+        str | None,
+        typer.Option(
+            help="Do it at this site of the service (`mend site list`), which says the world, the "
+            f"scene, the speed and the seed. Without --url the service is at {SERVICE}."
+        ),
     ] = None,
     token: Annotated[
         str | None, typer.Option(help="That service's token; better given as MEND_TOKEN.")
@@ -108,8 +116,8 @@ def run(
     from mend.server.cli.run_host import OpenHost
     from mend.server.cli.run_request import (
         answers_given,
+        checked_request,
         read_options,
-        read_request,
         read_robots,
         read_speed,
         settings_of_its_own,
@@ -117,15 +125,19 @@ def run(
     from mend.server.composition import open_service
     from mend.server.errors import ImpossibleError
     from mend.server.runtime.ports import LIVE
+    from mend.server.runtime.requests import RunRequest
     from mend.tasks.scenario import Person
 
     with told_plainly():
+        if site is not None:
+            url = url or SERVICE
         files = read_run_files(tree, scene, scenario)
         given = answers_given(answers, files.scenario)
         asks_at_terminal = given is None and sys.stdin.isatty() and not json
         # Where others can come to the service, they may answer too.
         nobody_answers = not (asks_at_terminal or world == LIVE or url)
-        request = read_request(
+        request = checked_request(
+            RunRequest,
             tree=files.tree,
             world=world,
             scene=files.scene,
@@ -148,7 +160,7 @@ def run(
             open_host = partial(own_service, open_service, settings, files.given)
         elif journal is None:
             given_token = token or os.environ.get(TOKEN_VARIABLE)
-            open_host = partial(other_service, url, given_token, files.given)
+            open_host = partial(other_service, url, given_token, files.given, site)
         else:
             raise CommandLineError("--journal is for a run without --url: a service has its own")
         live_run = LiveRun(

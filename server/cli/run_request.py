@@ -3,9 +3,9 @@
 import secrets
 from json import loads
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
-from pydantic import SecretStr, ValidationError
+from pydantic import BaseModel, SecretStr, ValidationError
 from pydantic_core import ErrorDetails
 
 from mend.server.cli.answers import Answers, read_answers
@@ -14,8 +14,17 @@ from mend.server.cli.journals import new_run_journal
 from mend.server.cli.run_files import RunFiles
 from mend.server.runtime.requests import RunRequest
 from mend.server.settings import Settings, load_settings
+from mend.server.sites.requests import SiteRequest
 from mend.tasks.scenario import Scenario
 from mend.tasks.validation import what_is_right
+
+T = TypeVar("T", bound=BaseModel)
+
+ARGUMENTS: dict[type[BaseModel], tuple[str, ...]] = {
+    RunRequest: ("tree",),
+    SiteRequest: ("scene",),
+}
+"""What is no option of its command."""
 
 
 def settings_of_its_own(
@@ -89,17 +98,22 @@ def _read_value(text: str) -> Any:
     return value if isinstance(value, (bool, int, float)) else text
 
 
-def read_request(**fields: Any) -> RunRequest:
+def checked_request(kind: type[T], **fields: Any) -> T:
+    """A request of these fields. Raises `CommandLineError`: which option is wrong, and why."""
     try:
-        return RunRequest(**fields)
+        return kind(**fields)
     except ValidationError as error:
         wrong: dict[str, list[ErrorDetails]] = {}
         for each in error.errors():
             wrong.setdefault(str(each["loc"][0]), []).append(each)
         raise CommandLineError(
             "\n".join(
-                f"{'TREE' if name == 'tree' else '--' + name.replace('_', '-')} "
-                f"{what_is_right(mistakes, None)}"
+                f"{_option(name, kind)} {what_is_right(mistakes, None)}"
                 for name, mistakes in wrong.items()
             )
         ) from error
+
+
+def _option(name: str, kind: type[BaseModel]) -> str:
+    """How a field is called on the command line."""
+    return name.upper() if name in ARGUMENTS[kind] else f"--{name.replace('_', '-')}"

@@ -1,6 +1,5 @@
 """`mend schedule`: plan the deliveries of a file."""
 
-import importlib.util
 from pathlib import Path
 from typing import Annotated
 
@@ -37,10 +36,6 @@ def schedule(
 
     The exit code is 0 only if there is a schedule.
     """
-    if importlib.util.find_spec("ortools") is None:
-        raise CommandLineError(
-            "planning deliveries needs OR-Tools: install Mend as 'mend-robots[scheduling]'"
-        )
     # Imported only here: solvers would make every other command wait.
     from mend.fleet.scheduling.drawing.picture import picture
     from mend.fleet.scheduling.methods import METHODS

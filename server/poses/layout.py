@@ -63,7 +63,7 @@ class Layout(View):
     objects: list[ObjectLayout]
     places: list[PlaceLayout]
     table: TableLayout
-    reach: ReachLayout
+    reach: ReachLayout | None
     cameras: list[str]
     simulated: bool
     rate_hz: float = RATE_HZ
@@ -96,7 +96,7 @@ def lay_out(state: RunState, hello: Hello, shows: PoseLayout, model: str | None)
         table=TableLayout(
             center=scene.table.center, size_m=scene.table.size, height_m=scene.table.height
         ),
-        reach=ReachLayout(**hello.reach.model_dump()),
+        reach=ReachLayout(**hello.reach.model_dump()) if hello.reach else None,
         cameras=sorted(hello.cameras),
         simulated=hello.simulated,
     )

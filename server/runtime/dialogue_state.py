@@ -11,7 +11,7 @@ from mend.dialogue.conversation import Conversation
 from mend.dialogue.evidence import Change, PutRight
 from mend.dialogue.outlook import Outlook
 from mend.dialogue.script import CloseReason, Expectation, Script, Turn
-from mend.robots.link.messages import Detection
+from mend.robots.link.messages import LASER, Detection
 from mend.server.journal import events as ev
 from mend.tasks.issue import Issue, Sensed
 
@@ -230,4 +230,6 @@ def _sensed(detection: Detection | None) -> Sensed:
         return Sensed.SEEN
     if detection.felt:
         return Sensed.FELT
+    if detection.camera == LASER:
+        return Sensed.BY_LASER
     return Sensed.NOWHERE if detection.center is None else Sensed.SEEN

@@ -8,9 +8,11 @@ from mend.robots.link.messages import FinishedResult, Looked
 from mend.server.journal import events as ev
 from mend.server.runtime.clock import has_come
 from mend.server.runtime.context import RunContext
+from mend.server.runtime.leaf_words import LeafDeed, leaf_meant, understood
 from mend.server.runtime.report_events import ReportEvents
 from mend.server.runtime.robot_proxy import Purpose, RobotActivity, RobotProxy
 from mend.server.runtime.team import Team
+from mend.server.runtime.views import LeafSaid
 from mend.tasks.definition import BehaviorNode, NodeKind
 
 AS_FAST_AS_PEOPLE = 1.0
@@ -45,19 +47,20 @@ class People:
         state = self._context.state
         leaf = self._leaf(node)
         definition = state.tree.leaf_definition(leaf)
+        name = definition.name
         if definition.object is None or definition.place is None:
             raise WrongInputError(
-                f"'{node}' cannot be taken: nobody could see it done, as it names no object "
+                f"'{name}' cannot be taken: nobody could see it done, as it names no object "
                 "and place"
             )
         if not state.tree.eligible(leaf):
             owner = state.tree.owner(leaf)
             why = f"{owner} is at it" if owner else "it is done, or its turn has not come"
-            raise ConflictError(f"'{node}' cannot be taken now: {why}")
+            raise ConflictError(f"'{name}' cannot be taken now: {why}")
         busy = self._team.at_work_where(definition)
         if busy is not None:
             raise ConflictError(
-                f"'{node}' cannot be taken now: the robot '{busy}' is at work there, wait until "
+                f"'{name}' cannot be taken now: the robot '{busy}' is at work there, wait until "
                 "its arm rests"
             )
         taken = ev.NodeTaken(
@@ -75,8 +78,22 @@ class People:
         leaf = self._leaf(node)
         taken = self._context.state.people.get(leaf)
         if taken is None or taken.helper != helper:
-            raise ConflictError(f"'{node}' is not {helper}'s to give back")
+            name = self._context.state.tree.name_of(leaf)
+            raise ConflictError(f"'{name}' is not {helper}'s to give back")
         await self._context.commit([self._reset(leaf, f"{helper} gives it back")])
+
+    async def say(self, words: str, helper: str, author: ev.Author | None = None) -> LeafSaid:
+        """Take a leaf, or give it back, in plain words. Raises as `take` and `give_back`."""
+        said = understood(words)
+        state = self._context.state
+        node = state.tree.path_of(leaf_meant(said, helper, state.tree, state.people))
+        if said.deed is LeafDeed.TAKE:
+            await self.take(node, helper, author)
+        else:
+            await self.give_back(node, helper)
+        return LeafSaid(
+            deed=said.deed, node=node, name=state.tree.name_of(state.tree.index_of(node))
+        )
 
     def _leaf(self, node: str) -> int:
         tree = self._context.state.tree

@@ -119,6 +119,11 @@ class RobotProxy:
         return self.hello.room if self.hello is not None and self.stands_somewhere else None
 
     @property
+    def keeps_clear(self) -> bool:
+        """Whether it keeps clear of others itself, so that no space is reserved for it."""
+        return self.hello is not None and self.hello.keeps_clear
+
+    @property
     def free(self) -> bool:
         """Whether it may be told something new without cutting short what it does."""
         return self.doing is RobotActivity.IDLE

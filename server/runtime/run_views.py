@@ -209,7 +209,7 @@ def robot_view(
         simulated=bool(hello and hello.simulated),
         behaviors=hello.behaviors if hello else [],
         cameras=hello.cameras if hello else [],
-        reach=hello.reach.model_dump() if hello else None,
+        reach=hello.reach.model_dump() if hello and hello.reach else None,
         run=state_of_run.id if state_of_run else None,
         state=state,
     )

@@ -45,6 +45,7 @@ from mend.server.runtime.run_views import (
 )
 from mend.server.runtime.views import (
     DialogueView,
+    LeafSaid,
     RobotView,
     RunStatus,
     RunSummary,
@@ -361,6 +362,15 @@ class Runtime:
         running = await self._running(run)
         await running.request(lambda: running.people.give_back(node, helper))
         return self._summary(running.context.state)
+
+    async def say_of_leaf(
+        self, run: UUID, words: str, helper: str, author: ev.Author | None = None
+    ) -> LeafSaid:
+        """Take a leaf, or give it back, in plain words. Raises as `People.say`."""
+        running = await self._running(run)
+        said = await running.request(lambda: running.people.say(words, helper, author))
+        assert isinstance(said, LeafSaid), "it is what was asked for"
+        return said
 
     async def intervene(
         self, run: UUID, intervention: Intervention, author: ev.Author | None = None

@@ -9,6 +9,7 @@ from mend.server.journal.run_index import RunPage
 from mend.server.runtime.requests import RunRequest
 from mend.server.runtime.views import (
     DialogueView,
+    LeafSaid,
     RobotView,
     RunStatus,
     RunSummary,
@@ -62,6 +63,12 @@ class RunService(Protocol):
 
     async def give_leaf_back(self, run: UUID, node: str, helper: str) -> RunSummary:
         """They do not after all. Raises `ConflictError` if it is not theirs."""
+        ...
+
+    async def say_of_leaf(
+        self, run: UUID, words: str, helper: str, author: Author | None = None
+    ) -> LeafSaid:
+        """Either of these in plain words. Raises `WrongInputError` if they are not understood."""
         ...
 
     async def intervene(

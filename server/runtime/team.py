@@ -157,6 +157,8 @@ class Team:
         """Whether a leaf's object, where it was seen, and its place are in a robot's ring."""
         assert proxy.hello is not None
         reach = proxy.hello.reach
+        if reach is None:
+            return True
         middle = proxy.frame.to_scene(reach.x, reach.y)
         ends = self._ends(leaf)
         return all(reach.min_m <= dist(middle, each) <= reach.max_m for each in ends)
@@ -173,6 +175,8 @@ class Team:
     def _area(
         self, proxy: "RobotProxy", leaf: "BehaviorNode", handed_over: bool = False
     ) -> BaseGeometry:
+        if proxy.keeps_clear:
+            return Point()
         if proxy.room is None:
             return EVERYWHERE
         part = self._scene.objects.get(leaf.object or "")

@@ -10,6 +10,7 @@ from pydantic import BaseModel, ConfigDict
 from mend.dialogue.script import Help
 from mend.robots.link.messages import Detection
 from mend.server.journal.events import AnswerOption, ClipPicture, MissingPart, UnseenPart
+from mend.server.runtime.leaf_words import LeafDeed
 
 
 class View(BaseModel):
@@ -103,6 +104,14 @@ class RunResult(View):
     node: str | None = None
     missing: list[MissingPart] = []
     unseen: list[UnseenPart] = []
+
+
+class LeafSaid(View):
+    """What was understood, and done, of what somebody said of a leaf."""
+
+    deed: LeafDeed
+    node: str
+    name: str
 
 
 class RunSummary(View):

@@ -1,39 +1,23 @@
 """The tabletop as a kind of world that runs can name (entry point `mend.worlds`)."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
+from typing import ClassVar
 
-from mend.robots.body import Reach
-from mend.robots.catalogue import Catalogue
-from mend.robots.feasibility.check import check_scene
-from mend.robots.feasibility.robots import check_for_each_robot
-from mend.robots.robot import Robot
-from mend.robots.vision.color_model import ColorModel
-from mend.robots.vision.lookalikes import find_lookalikes
-from mend.sim.shared_world import SharedWorld
-from mend.sim.tabletop.body import StraightPlanner
-from mend.sim.tabletop.colors import learn_colors
+from mend.robots.arm.body import Reach
+from mend.sim.listed_world import ListedWorld
 from mend.sim.tabletop.layout import lay_out
-from mend.sim.tabletop.manipulator import resting_together
-from mend.sim.tabletop.scenery import head_viewpoint
-from mend.sim.tabletop.world import TabletopOptions, TabletopWorld, reach_for
-from mend.sim.world import WorldSetup
-from mend.sim.world_options import read_options
-from mend.tasks.definition import BehaviorNode, GoalNode
-from mend.tasks.frames import frames_of
-from mend.tasks.plugins import load_plugins
+from mend.sim.tabletop.options import TabletopOptions
 from mend.tasks.scene import Scene
-from mend.tasks.scene_problem import SceneProblem
 
 
-class TabletopAdapter:
-    """Makes tabletop worlds; they run anywhere and never block for long."""
+class TabletopAdapter(ListedWorld):
+    """Makes tabletop worlds; they never block for long."""
 
+    name: ClassVar[str] = "tabletop"
+    maker: ClassVar[tuple[str, str]] = ("mend.sim.tabletop.tabletops", "TABLETOPS")
     own_process = False
     lays_out_anything = True
     options = TabletopOptions
-
-    def check_available(self) -> None:
-        """Always passes: nothing but Mend itself is needed."""
 
     def lay_out(self, names: Iterable[tuple[str, str | None]], seed: int) -> Scene:
         """Make up a scene for the (object, place) names of a tree.
@@ -44,57 +28,8 @@ class TabletopAdapter:
 
     def reach(self, scene: Scene) -> Reach:
         """How far each robot reaches."""
-        return reach_for(scene, None)
-
-    def check_scene(
-        self, scene: Scene, nodes: Sequence[GoalNode | BehaviorNode]
-    ) -> list[SceneProblem]:
-        """What keeps all robots from doing the leaves among `nodes` in a scene."""
-
-        def check(own: Scene) -> list[SceneProblem]:
-            planner = StraightPlanner(reach, own.table)
-            return check_scene(own, nodes, planner, head_viewpoint(own.table))
-
-        reach = self.reach(scene)
-        lookalikes = find_lookalikes(scene, nodes, learn_colors(scene, TabletopOptions()))
-        return [*resting_together(scene), *check_for_each_robot(scene, nodes, check), *lookalikes]
-
-    def train_colors(self, scene: Scene) -> ColorModel:
-        """Learn the colours of a scene's objects from rendered pictures of them.
-
-        Raises `WrongInputError` for an object without a colour of its own.
-        """
-        return learn_colors(scene, TabletopOptions())
-
-    def create_agents(self, setup: WorldSetup) -> SharedWorld:
-        """Build the world and the robots in it.
-
-        Raises `WrongInputError` for options and `ValueError` for a snapshot that do not fit.
-        """
-        options = read_options(TabletopOptions, "tabletop", setup.options)
-        world = TabletopWorld(setup.scene, setup.seed, options)
-        colors = learn_colors(setup.scene, options)
-        frames = frames_of(setup.scene).values()
-        robots = [
-            Robot(
-                name,
-                body,
-                colors,
-                Catalogue.from_scene(frame.scene_to_robot(setup.scene)),
-                load_plugins("mend.behaviors"),
-                load_plugins("mend.monitors"),
-                # As fast as possible, nobody watches: what no monitor needs costs only time.
-                films=setup.speed is not None,
-            )
-            for name, frame, body in zip(setup.robots, frames, world.bodies, strict=True)
-        ]
-        return SharedWorld(
-            world,
-            robots,
-            speed=setup.speed,
-            interventions=setup.interventions,
-            snapshot=setup.snapshot,
-        )
+        reach: Reach = self._made_by().reach(scene)
+        return reach
 
 
 adapter = TabletopAdapter()

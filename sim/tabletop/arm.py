@@ -4,8 +4,8 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from mend.robots.body import ToolPose
-from mend.robots.gripper import GripperModel, Slab
+from mend.robots.arm.body import ToolPose
+from mend.robots.arm.gripper import GripperModel, Slab
 from mend.sim.tabletop.blocker import Blocker, between, shares_between
 
 SEGMENT_S = 0.5

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-from mend.robots.body import ToolPose
+from mend.robots.arm.body import ToolPose
 
 SIZE_M = (0.10, 0.10, 0.40)
 

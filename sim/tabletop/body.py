@@ -7,8 +7,9 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
-from mend.robots.body import ArmPath, ArmRoom, Camera, Leg, Matrix4, NoWay, Reach, ToolPose
-from mend.robots.gripper import GripperModel
+from mend.robots.arm.body import ArmPath, ArmRoom, Leg, NoWay, Reach, ToolPose
+from mend.robots.arm.gripper import GripperModel
+from mend.robots.body import Camera, Matrix4
 from mend.robots.vision.seen_box import SeenBox
 from mend.sim.base_frame import tool_in_base, tool_in_scene
 from mend.sim.tabletop.arm import GRIPPER, StraightPath

@@ -3,8 +3,8 @@
 from mend.robots.vision.color_model import ColorModel
 from mend.sim.color_lessons import Studio, teach_colors
 from mend.sim.raster import Light
+from mend.sim.tabletop.options import TabletopOptions
 from mend.sim.tabletop.scenery import TABLE_COLOR
-from mend.sim.tabletop.world import TabletopOptions
 from mend.tasks.scene import Scene
 
 

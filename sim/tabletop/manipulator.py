@@ -8,7 +8,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from mend.robots.body import ToolPose
+from mend.robots.arm.body import ToolPose
 from mend.sim.base_frame import tool_in_base, tool_in_scene
 from mend.sim.tabletop.arm import GRIPPER, CartesianArm, Gripper
 from mend.sim.tabletop.blocker import Blocker

@@ -8,7 +8,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from mend.robots.body import CameraImage, Matrix4, ToolPose
+from mend.robots.arm.body import ToolPose
+from mend.robots.body import CameraImage, Matrix4
 from mend.robots.vision.viewpoint import Viewpoint
 from mend.sim.base_frame import base_in_scene, tool_in_base
 from mend.sim.depth_noise import DepthNoise, PinholeOptics

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from mend.robots.body import ToolPose
+from mend.robots.arm.body import ToolPose
 from mend.sim.tabletop.blocker import SIZE_M, Blocker, on_the_way
 from mend.sim.tabletop.manipulator import Manipulator
 from mend.sim.tabletop.part import TablePart, UprightPose

@@ -4,12 +4,11 @@ import json
 import math
 from collections.abc import Sequence
 from dataclasses import astuple, dataclass
-from typing import Annotated, Any
+from typing import Any
 
 import numpy as np
-from pydantic import ConfigDict, Field
 
-from mend.robots.body import Reach
+from mend.robots.arm.body import Reach
 from mend.robots.link.messages import ShownObject, ShownPose
 from mend.sim.camera_cover import CoverableCamera
 from mend.sim.depth_noise import DepthNoise
@@ -18,33 +17,18 @@ from mend.sim.raster import Light
 from mend.sim.tabletop.blocker import SIZE_M as BLOCKER_SIZE_M
 from mend.sim.tabletop.blocker import Blocker
 from mend.sim.tabletop.body import TabletopBody
+from mend.sim.tabletop.options import REACH_MIN_M, TabletopOptions
 from mend.sim.tabletop.part import TablePart, UprightPose, Whereabouts
 from mend.sim.tabletop.person import TabletopPerson
 from mend.sim.tabletop.scenery import BLOCKER_COLOR, ForearmCamera, HeadCamera, Scenery
 from mend.sim.tabletop.snapshot import TabletopSnapshot, to_rest_pose
 from mend.sim.tabletop.state import TabletopState
 from mend.tasks.intervention import Intervention
-from mend.tasks.scene import Scene, StrictModel
+from mend.tasks.scene import Scene
 
 REACH_ORIGIN = (0.0, -0.19)
-REACH_MIN_M = 0.40
 REACH_MAX_M = 0.79
 """The graspable range of the workcell's robot, so that scenes mean the same in both worlds."""
-
-
-class TabletopOptions(StrictModel):
-    """What a run may choose about the world."""
-
-    model_config = ConfigDict(use_attribute_docstrings=True)
-
-    camera_noise: Annotated[float, Field(ge=0.0, le=30.0, strict=False)] = 0.0
-    """Standard deviation of each colour channel of the cameras, in grey levels of 255."""
-    light: Annotated[float, Field(ge=0.0, le=1.0, strict=False)] = 0.0
-    """How far light and exposure vary by the seed and with time, from 0 (not at all) to 1."""
-    depth_noise: Annotated[float, Field(ge=0.0, le=1.0, strict=False)] = 0.0
-    """How noisy the head camera's depth is, from 0 (not at all) to 1 (as a Kinect's)."""
-    reach_m: Annotated[float, Field(ge=REACH_MIN_M, le=10.0, strict=False)] | None = None
-    """How far from its base the robot can grasp, in metres; null: at least to every place."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,36 +1,21 @@
 """The workcell as a kind of world that runs can name (entry point `mend.worlds`)."""
 
-from collections.abc import Sequence
 from pathlib import Path
+from typing import ClassVar
 
-from mend.robots.catalogue import Catalogue
-from mend.robots.feasibility.check import check_scene
-from mend.robots.robot import Robot
-from mend.robots.vision.color_model import ColorModel
-from mend.robots.vision.lookalikes import find_lookalikes
-from mend.sim.shared_world import SharedWorld
+from mend.sim.listed_world import ListedWorld
 from mend.sim.workcell.options import WorkcellOptions
 from mend.sim.workcell.robot_model import MODEL, check_installed, robot_urdf
-from mend.sim.world import WorldSetup
-from mend.sim.world_options import read_options
-from mend.tasks.definition import BehaviorNode, GoalNode
-from mend.tasks.frames import Frame, frames_of
-from mend.tasks.plugins import load_plugins
-from mend.tasks.scene import Scene
-from mend.tasks.scene_problem import SceneProblem
-
-ONE_ROBOT = (
-    "the workcell has one robot, at (0, 0): leave out 'robots', or run the task in the tabletop"
-)
 
 
-class WorkcellAdapter:
+class WorkcellAdapter(ListedWorld):
     """Makes workcells; PyBullet blocks its whole process and may crash it."""
 
+    name: ClassVar[str] = "workcell"
+    maker: ClassVar[tuple[str, str]] = ("mend.sim.workcell.workcells", "WORKCELLS")
     own_process = True
     lays_out_anything = False
     options = WorkcellOptions
-
     model = MODEL
 
     def model_folder(self) -> Path:
@@ -39,60 +24,8 @@ class WorkcellAdapter:
 
     def check_available(self) -> None:
         """Raise `WorldUnavailableError` where PyBullet or the robot's description is missing."""
+        super().check_available()
         check_installed()
-
-    def create_agents(self, setup: WorldSetup) -> SharedWorld:
-        """Build the world and the robot in it.
-
-        Raises `WorldUnavailableError`, `WrongInputError` for options and `ValueError` for a
-        snapshot that do not fit.
-        """
-        check_installed()
-        # Only here, so that the world can be listed where the physics engine is not installed.
-        from mend.sim.workcell.colors import learn_colors
-        from mend.sim.workcell.world import WorkcellWorld
-
-        options = read_options(WorkcellOptions, "workcell", setup.options)
-        world = WorkcellWorld(setup.scene, setup.seed, options)
-        (name,) = setup.robots
-        robot = Robot(
-            name,
-            world.body,
-            learn_colors(setup.scene, options.camera_noise),
-            Catalogue.from_scene(setup.scene),
-            load_plugins("mend.behaviors"),
-            load_plugins("mend.monitors"),
-            # As fast as possible, nobody watches: a picture that no monitor needs costs only time.
-            films=setup.speed is not None,
-        )
-        return SharedWorld(
-            world,
-            [robot],
-            speed=setup.speed,
-            interventions=setup.interventions,
-            snapshot=setup.snapshot,
-        )
-
-    def check_scene(
-        self, scene: Scene, nodes: Sequence[GoalNode | BehaviorNode]
-    ) -> list[SceneProblem]:
-        """What keeps the robot from doing the leaves among `nodes` in a scene."""
-        check_installed()
-        if list(frames_of(scene).values()) != [Frame()]:
-            return [SceneProblem(("robots",), ONE_ROBOT)]
-        from mend.sim.workcell.arm_planner import neutral_arm
-        from mend.sim.workcell.cameras import head_viewpoint
-        from mend.sim.workcell.colors import learn_colors
-
-        lookalikes = find_lookalikes(scene, nodes, learn_colors(scene))
-        return [*check_scene(scene, nodes, neutral_arm(), head_viewpoint()), *lookalikes]
-
-    def train_colors(self, scene: Scene) -> ColorModel:
-        """Learn the colours of a scene's objects from rendered pictures of them."""
-        check_installed()
-        from mend.sim.workcell.colors import learn_colors
-
-        return learn_colors(scene, camera_noise=0.0)
 
 
 adapter = WorkcellAdapter()

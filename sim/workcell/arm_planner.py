@@ -6,12 +6,12 @@ from functools import cache
 
 import numpy as np
 
-from mend.robots.body import ArmPath, Leg, NoWay
-from mend.robots.gripper import GripperModel
-from mend.robots.motion.collision import CollisionModel, HandPosture
-from mend.robots.motion.kinematics import Joints, KinematicChain
-from mend.robots.motion.obstacles import PathObstacles
-from mend.robots.motion.planner import JointPath, PathPlanner
+from mend.robots.arm.body import ArmPath, Leg, NoWay
+from mend.robots.arm.gripper import GripperModel
+from mend.robots.arm.motion.collision import CollisionModel, HandPosture
+from mend.robots.arm.motion.kinematics import Joints, KinematicChain
+from mend.robots.arm.motion.obstacles import PathObstacles
+from mend.robots.arm.motion.planner import JointPath, PathPlanner
 from mend.robots.vision.seen_box import SeenBox
 from mend.sim.workcell.gripper import PR2_GRIPPER, finger_angle_rad
 from mend.sim.workcell.robot_model import (

@@ -5,13 +5,14 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from mend.robots.body import ArmPath, ArmRoom, Camera, Leg, Matrix4, NoWay, Reach, ToolPose
-from mend.robots.gripper import GripperModel
-from mend.robots.motion.curve import JointCurve
-from mend.robots.motion.kinematics import Joints
-from mend.robots.motion.limits import MotionLimits
-from mend.robots.motion.planner import JointPath, PathPlanner, PathSegment
-from mend.robots.motion.timing import TimedMotion
+from mend.robots.arm.body import ArmPath, ArmRoom, Leg, NoWay, Reach, ToolPose
+from mend.robots.arm.gripper import GripperModel
+from mend.robots.arm.motion.curve import JointCurve
+from mend.robots.arm.motion.kinematics import Joints
+from mend.robots.arm.motion.limits import MotionLimits
+from mend.robots.arm.motion.planner import JointPath, PathPlanner, PathSegment
+from mend.robots.arm.motion.timing import TimedMotion
+from mend.robots.body import Camera, Matrix4
 from mend.robots.vision.seen_box import SeenBox
 from mend.sim.workcell.arm_planner import plan_legs
 from mend.sim.workcell.effort_sensors import ENCODER_NOISE_M, FINGER_NOISE_N

@@ -7,8 +7,8 @@ from functools import cache
 
 import numpy as np
 
+from mend.robots.arm.motion.kinematics import KinematicChain
 from mend.robots.body import CameraImage, Matrix4
-from mend.robots.motion.kinematics import KinematicChain
 from mend.robots.vision.viewpoint import Viewpoint
 from mend.sim.depth_noise import DepthNoise, PinholeOptics
 from mend.sim.lighting import Lighting

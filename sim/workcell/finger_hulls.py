@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 from scipy.spatial.transform import Rotation
 
-from mend.robots.motion.kinematics import KinematicChain
+from mend.robots.arm.motion.kinematics import KinematicChain
 from mend.sim.workcell.mesh_repair import read_stl
 from mend.sim.workcell.robot_model import ARM_JOINTS, FINGER_JOINTS, TOOL_FRAME
 

@@ -2,7 +2,7 @@
 
 import math
 
-from mend.robots.gripper import GripperModel, Slab
+from mend.robots.arm.gripper import GripperModel, Slab
 
 _LINK_M = 0.09137
 _LINK_OFFSET_M = 0.00495

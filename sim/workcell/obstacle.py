@@ -4,10 +4,10 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
+from mend.robots.arm.motion.curve import JointCurve
+from mend.robots.arm.motion.kinematics import KinematicChain
 from mend.robots.body import Matrix4
 from mend.robots.link.messages import ShownObject, ShownPose
-from mend.robots.motion.curve import JointCurve
-from mend.robots.motion.kinematics import KinematicChain
 from mend.sim.workcell.physics import Client, Point
 
 _HALF_M = (0.05, 0.05, 0.05)

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from mend.robots.arm.grasp import can_grasp, grasp_of
 from mend.robots.catalogue import Part as CataloguePart
-from mend.robots.grasp import can_grasp, grasp_of
 from mend.sim.acts import PULL_M_PER_S, Acts, Impossible
 from mend.sim.workcell.bench import Bench
 from mend.sim.workcell.body import PERIOD_S, WorkcellBody

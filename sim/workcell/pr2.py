@@ -5,9 +5,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from mend.robots.arm.motion.collision import CollisionModel
+from mend.robots.arm.motion.kinematics import Joints, KinematicChain
 from mend.robots.body import Matrix4
-from mend.robots.motion.collision import CollisionModel
-from mend.robots.motion.kinematics import Joints, KinematicChain
 from mend.sim.workcell.arm_dynamics import LinkInertia, Pr2ArmDynamics
 from mend.sim.workcell.finger_hulls import FingerHulls, Hull
 from mend.sim.workcell.gripper import FINGERS_OPEN_RAD, inner_side_m

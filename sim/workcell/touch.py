@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from mend.robots.motion.momentum_observer import ArmDynamics, MomentumObserver, force_at_tool
+from mend.robots.arm.motion.momentum_observer import ArmDynamics, MomentumObserver, force_at_tool
 from mend.sim.workcell.effort_sensors import ARM_NOISE_NM, EffortSensors
 
 Vector = NDArray[np.float64]

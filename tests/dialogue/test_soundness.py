@@ -79,7 +79,7 @@ def test_a_field_that_no_sentence_has_is_refused() -> None:
     assert problems_of(states) == [
         "'text' of state 'first' has the field {colour}; "
         "there are only {again}, {attempt}, {go_on}, {later}, {name}, {object}, {place}, {robot}, "
-        "{times}, {why}"
+        "{times}, {why}, {with_object}"
     ]
 
 

@@ -5,9 +5,11 @@ from uuid import UUID
 
 from console_in_browser import OpenPage
 from playwright.async_api import Page, expect
+from two_boxes import BENCH, BOTH
 
 from mend.server.composition import Service
 from mend.server.runtime.requests import RunRequest
+from mend.server.sites.requests import SiteRequest
 from mend.tasks.intervention import Intervention
 from mend.tasks.scenario import Person
 
@@ -78,6 +80,28 @@ async def live_run(service: Service, open_page: OpenPage) -> Page:
     return page
 
 
+async def begin_two_boxes(service: Service) -> UUID:
+    """Start a run whose robot is at one box for a while, so that a person can take the other."""
+    await service.library.scenes.save("small_bench", BENCH)
+    await service.library.trees.save("both", BOTH)
+    request = RunRequest(tree="both", world="tabletop", speed=1.0, seed=2)
+    return (await service.runtime.start_run(request)).id
+
+
+async def taken_leaf(service: Service, open_page: OpenPage) -> Page:
+    """A person does one of the boxes, and has been told that the other is the robot's."""
+    page = await open_page(f"/runs/{await begin_two_boxes(service)}")
+    red_box = page.get_by_role("treeitem", name="red box")
+    await expect(red_box).to_have_attribute("data-state", "active", timeout=PATIENCE_MS)
+    words = page.get_by_label("Choose a leaf that waits, or say it")
+    for said in ("I do the blue box", "I do the red box"):
+        await words.fill(said)
+        await page.get_by_role("button", name="Say it").click()
+    await expect(page.get_by_text("'red_box' cannot be taken now")).to_be_visible()
+    await expect(page.get_by_text("You are doing blue box")).to_be_visible()
+    return page
+
+
 async def finished_run(service: Service, open_page: OpenPage) -> Page:
     request = RunRequest(tree="eket", world="tabletop", speed="max", scenario="eket_paper")
     run = await service.runtime.start_run(request)
@@ -115,7 +139,8 @@ async def delete_tree(service: Service, open_page: OpenPage) -> Page:
     return page
 
 
-async def start_run(_: Service, open_page: OpenPage) -> Page:
+async def start_run(service: Service, open_page: OpenPage) -> Page:
+    await service.sites.open_site(SiteRequest(scene="kit", world="tabletop"))
     page = await open_page("/start/eket")
     await page.get_by_role("spinbutton", name="Seed").fill("-1")
     await page.get_by_role("button", name="Start the run").click()
@@ -160,6 +185,7 @@ SITUATIONS: dict[str, Situation] = {
         no_runs,
         runs,
         live_run,
+        taken_leaf,
         finished_run,
         trees,
         wrong_tree,

@@ -13,9 +13,11 @@ from mend.server.errors import LostRaceError
 from mend.server.journal import events as ev
 from mend.server.journal.journal import Entry, Journal
 from mend.server.journal.run_index import RunPage
+from mend.server.runtime.leaf_words import understood
 from mend.server.runtime.requests import RunRequest
 from mend.server.runtime.views import (
     DialogueView,
+    LeafSaid,
     NodeView,
     PromptView,
     RobotView,
@@ -186,6 +188,17 @@ class FakeRuns:
     async def give_leaf_back(self, run: UUID, node: str, helper: str) -> RunSummary:  # noqa: ARG002
         self._expect(run, RunStatus.RUNNING, RunStatus.PAUSED)
         return self.run_now(run)
+
+    async def say_of_leaf(
+        self,
+        run: UUID,
+        words: str,
+        helper: str,
+        author: ev.Author | None = None,
+    ) -> LeafSaid:
+        said = understood(words)
+        await self.take_leaf(run, "/0", helper, author)
+        return LeafSaid(deed=said.deed, node="/0", name=said.part)
 
     async def intervene(
         self, run: UUID, intervention: Intervention, author: ev.Author | None = None

@@ -2,9 +2,9 @@
 
     python tests/doubles/folded_runs.py [SEED ...]
 
-One line of JSON per run: `events`, and as many `states` with the nodes, status and open
-dialogues. Leaf potentials are those of the last choice in which the leaf was a candidate: what a
-robot has seen since then is in no event.
+One line of JSON per run: `events` with their lines, and as many `states` with the nodes, status
+and open dialogues. Leaf potentials are those of the last choice in which the leaf was a candidate:
+what a robot has seen since then is in no event.
 """
 
 # ruff: noqa: T201
@@ -13,6 +13,7 @@ import asyncio
 import json
 import sys
 from collections.abc import Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -28,6 +29,7 @@ from mend.server.runtime.requests import RunRequest
 from mend.server.runtime.run_state import RunState
 from mend.server.runtime.run_views import RunViewing, dialogue_view
 from mend.server.settings import Settings
+from mend.server.transcript import Transcript
 from mend.tasks.scenario import Person
 
 LEAVES = 12
@@ -104,7 +106,14 @@ def main() -> None:
     """Print the recorded run of the paper's scenario, then one for each seed."""
     runs = [recorded_events(), *(asyncio.run(random_events(int(each))) for each in sys.argv[1:])]
     for events in runs:
-        told = [event.model_dump(mode="json") for event in events]
+        transcript = Transcript()
+        told = [
+            {
+                **event.model_dump(mode="json"),
+                "lines": [asdict(each) for each in transcript.lines(event)],
+            }
+            for event in events
+        ]
         print(json.dumps({"events": told, "states": states(events)}))
 
 

@@ -1,10 +1,13 @@
 """A robot over a scripted body, with what it reports kept for a test."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any, TypeVar
 
 from scripted_body import STARTS, ScriptedBody, catalogue, trained_model
 
+from mend.robots.arm.subsystem import ArmSubsystem
+from mend.robots.execution.behavior import Behavior
+from mend.robots.execution.monitor import AnyMonitor
 from mend.robots.link.messages import CommandBody, Look, Picture, ReportBody, Start
 from mend.robots.robot import Robot
 from mend.tasks.plugins import load_plugins
@@ -16,17 +19,31 @@ R = TypeVar("R")
 
 
 class RobotBench:
-    """Commands in, reports out; `at` scripts the world by task progress."""
+    """Commands in, reports out; `at` scripts the world by task progress.
 
-    def __init__(self, period_s: float = 1 / 30, body: ScriptedBody | None = None) -> None:
+    `behaviors` and `monitors` are in addition to those that are installed.
+    """
+
+    def __init__(
+        self,
+        period_s: float = 1 / 30,
+        body: ScriptedBody | None = None,
+        behaviors: Mapping[str, type[Behavior]] | None = None,
+        monitors: Mapping[str, type[AnyMonitor]] | None = None,
+    ) -> None:
         self.body = body or ScriptedBody(STARTS, period_s)
         self.robot = Robot(
             "r1",
             self.body,
-            MODEL,
-            catalogue(),
-            load_plugins("mend.behaviors"),
-            load_plugins("mend.monitors"),
+            [
+                ArmSubsystem(
+                    self.body,
+                    MODEL,
+                    catalogue(),
+                    {**load_plugins("mend.behaviors"), **(behaviors or {})},
+                    {**(monitors or {}), **load_plugins("mend.monitors")},
+                )
+            ],
         )
         self.reports: list[tuple[float, ReportBody]] = []
         self.pictures: list[Picture] = []

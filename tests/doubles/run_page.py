@@ -10,6 +10,7 @@ from mend.server.journal import events as ev
 from mend.server.runtime.run_state import RunState
 from mend.server.runtime.run_views import RunViewing
 from mend.server.runtime.views import NodeView
+from mend.server.transcript import Transcript
 
 SHOWN = """() => JSON.stringify([...document.querySelectorAll('[role=treeitem]')].map((node) => ({
     node: node.dataset.path,
@@ -59,11 +60,6 @@ async def wait_for_tree(page: Page, expected: list[dict[str, Any]]) -> None:
 
 
 def texts_in_order(events: Sequence[ev.Event]) -> list[str]:
-    """What was said and answered in a run."""
-    texts = []
-    for event in events:
-        if isinstance(event, ev.Prompt):
-            texts.append(event.text)
-        elif isinstance(event, ev.Answered):
-            texts.append("Yes." if event.answer == "yes" else "No.")
-    return texts
+    """What the service's transcript tells of a run, with names as people write them."""
+    transcript = Transcript()
+    return [line.text.replace("_", " ") for each in events for line in transcript.lines(each)]

@@ -8,10 +8,11 @@ from functools import cache
 import numpy as np
 from drawn_scene import HEAD_POSE, PARTS, TABLE_Z, DrawnScene, Resting
 
-from mend.robots.body import ArmRoom, CameraImage, NoWay, Reach, ToolPose
+from mend.robots.arm.body import ArmRoom, NoWay, Reach, ToolPose
+from mend.robots.arm.grasp import grasp_of
+from mend.robots.arm.gripper import GripperModel
+from mend.robots.body import CameraImage
 from mend.robots.catalogue import Catalogue, Part
-from mend.robots.grasp import grasp_of
-from mend.robots.gripper import GripperModel
 from mend.robots.link.messages import Location
 from mend.robots.vision.color_model import ColorModel, Sample
 from mend.robots.vision.projection import project

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from mend.robots.motion.kinematics import KinematicChain
+from mend.robots.arm.motion.kinematics import KinematicChain
 
 _LINKS = (
     ("z", 0.0),

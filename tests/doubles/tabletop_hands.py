@@ -2,7 +2,7 @@
 
 import math
 
-from mend.robots.body import ToolPose
+from mend.robots.arm.body import ToolPose
 from mend.sim.tabletop.world import TabletopWorld
 
 TABLE_M = 0.70

@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from mend.robots.body import ArmPath, ToolPose
+from mend.robots.arm.body import ArmPath, ToolPose
+from mend.robots.arm.grasp import RELEASE_CLEARANCE_M, grasp_of, half_turn
 from mend.robots.catalogue import Part
-from mend.robots.grasp import RELEASE_CLEARANCE_M, grasp_of, half_turn
 from mend.sim.workcell.parts import PartPose
 from mend.sim.workcell.world import WorkcellWorld
 from mend.tasks.intervention import Act, Intervention

@@ -129,7 +129,7 @@ async def test_candidates_behind_every_choice_are_shown(
         await expect(panel).to_contain_text("had the highest potential")
 
 
-async def test_transcript_has_all_that_was_said_in_order(
+async def test_transcript_has_every_line_of_the_service_in_order(
     service: Service, open_page: OpenPage
 ) -> None:
     shown = await replay(service, open_page)

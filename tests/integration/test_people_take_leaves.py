@@ -8,36 +8,18 @@ from uuid import UUID
 
 import pytest
 from broken_constraints import broken_constraints
+from two_boxes import BENCH, BLUE, BOTH, RED
 from untruths import kinds_of
 
 from mend.errors import ConflictError, NotFoundError
 from mend.server.composition import Service, open_service
 from mend.server.journal import events as ev
 from mend.server.journal.sqlite import IN_MEMORY
+from mend.server.runtime.leaf_words import LeafDeed
 from mend.server.runtime.requests import RunRequest
 from mend.server.runtime.views import RunStatus
 from mend.server.settings import Settings
 from mend.tasks.intervention import Act, Intervention
-
-BENCH = """
-name: small_bench
-objects:
-  red_box: {color: [0.9, 0.1, 0.1], size: [0.04, 0.05, 0.05], pose: {x: 0.55, y: -0.40}}
-  blue_box: {color: [0.1, 0.2, 0.9], size: [0.04, 0.05, 0.05], pose: {x: 0.45, y: 0.40}}
-places:
-  red_box: {pose: {x: 0.70, y: -0.40}}
-  blue_box: {pose: {x: 0.60, y: 0.40}}
-"""
-
-BOTH = """
-name: both
-scene: small_bench
-tree:
-  and:
-    - {behavior: pick_and_place, object: red_box, place: red_box}
-    - {behavior: pick_and_place, object: blue_box, place: blue_box}
-"""
-RED, BLUE = "/0", "/1"
 
 
 @asynccontextmanager
@@ -103,6 +85,21 @@ async def test_what_is_given_back_is_the_robots_again() -> None:
         with pytest.raises(ConflictError, match="is not bert's to give back"):
             await service.runtime.give_leaf_back(run, BLUE, "bert")
         await service.runtime.give_leaf_back(run, BLUE, "anna")
+        events = await to_the_end(service, run)
+    assert done_by(events) == {RED: "robot", BLUE: "robot"}
+
+
+async def test_plain_words_take_a_leaf_and_give_it_back() -> None:
+    async with bench() as service:
+        run = await begin(service)
+        said = await service.runtime.say_of_leaf(run, "I'll do the blue box.", "anna")
+        assert (said.deed, said.node) == (LeafDeed.TAKE, BLUE)
+        with pytest.raises(ConflictError, match="is not bert's to give back"):
+            await service.runtime.say_of_leaf(run, "I give the blue box back", "bert")
+        said = await service.runtime.say_of_leaf(run, "I give the blue box back", "anna")
+        assert (said.deed, said.node) == (LeafDeed.GIVE_BACK, BLUE)
+        with pytest.raises(NotFoundError, match="no part 'saucer'"):
+            await service.runtime.say_of_leaf(run, "I do the saucer", "anna")
         events = await to_the_end(service, run)
     assert done_by(events) == {RED: "robot", BLUE: "robot"}
 

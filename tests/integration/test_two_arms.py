@@ -16,7 +16,7 @@ from mend.server.journal.sqlite import IN_MEMORY
 from mend.server.journal.stored_event import read_event
 from mend.server.runtime.requests import RunRequest
 from mend.server.settings import Settings
-from mend.sim.workcell.adapter import ONE_ROBOT
+from mend.sim.workcell.workcells import ONE_ROBOT
 
 EXAMPLES = Path(__file__).parents[2] / "examples" / "two_arms"
 THERE_M = 0.005

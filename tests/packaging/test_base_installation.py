@@ -7,7 +7,19 @@ from pathlib import Path
 
 import pytest
 
-OF_EXTRAS = ("coal", "ortools", "pinocchio", "pocketsphinx", "pybullet", "ruckig", "sounddevice")
+OF_EXTRAS = (
+    "coal",
+    "cv2",
+    "numba",
+    "ortools",
+    "pinocchio",
+    "pocketsphinx",
+    "pybullet",
+    "ruckig",
+    "scipy",
+    "sounddevice",
+)
+EXAMPLES = Path(__file__).parents[2] / "examples"
 
 # What is None there cannot be imported; nor is it found by its name.
 WITHOUT = f"""
@@ -31,20 +43,41 @@ def mend(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
 
 
 @pytest.mark.slow
-def test_a_task_is_done_on_the_tabletop_without_any_extra(tmp_path: Path) -> None:
-    done = mend(
-        tmp_path, "run", "eket", "--world", "tabletop", "--answers", "yes", "--speed", "max"
-    )
-    assert done.returncode == 0, done.stderr
-    assert "the run has finished" in done.stdout
+@pytest.mark.parametrize("world", ["tabletop", "workcell"])
+def test_a_simulated_world_says_what_it_needs(tmp_path: Path, world: str) -> None:
+    done = mend(tmp_path, "run", "eket", "--world", world)
+    assert done.returncode == 2
+    assert f"the {world} world needs OpenCV: install Mend as 'mend-robots[{world}]'" in done.stderr
+    assert "Traceback" not in done.stderr
 
 
 @pytest.mark.slow
-def test_the_workcell_says_what_it_needs(tmp_path: Path) -> None:
-    done = mend(tmp_path, "run", "eket", "--world", "workcell")
+@pytest.mark.parametrize(
+    ("arguments", "extra"),
+    [
+        (("schedule", "deliveries/corridor.yaml"), "scheduling"),
+        (("check", "deliveries/corridor.yaml"), "scheduling"),
+        (
+            ("localize", "localization/drive.csv", "--map", "localization/floor.vectormap.txt"),
+            "localization",
+        ),
+        (("train-colors", "colors.npz", "--scene", "eket"), "tabletop"),
+    ],
+)
+def test_a_command_says_what_it_needs(
+    tmp_path: Path, arguments: tuple[str, ...], extra: str
+) -> None:
+    told = [str(EXAMPLES / each) if "/" in each else each for each in arguments]
+    done = mend(tmp_path, *told)
     assert done.returncode == 2
-    assert "mend-robots[workcell]" in done.stderr
+    assert f"install Mend as 'mend-robots[{extra}]'" in done.stderr
     assert "Traceback" not in done.stderr
+
+
+@pytest.mark.slow
+def test_a_task_for_live_robots_is_checked_without_any_extra(tmp_path: Path) -> None:
+    done = mend(tmp_path, "check", str(EXAMPLES / "tasks" / "shelf.yaml"))
+    assert (done.returncode, done.stderr) == (0, "")
 
 
 @pytest.mark.parametrize("command", ["trees", "scenes", "scenarios"])

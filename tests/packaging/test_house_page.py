@@ -10,9 +10,9 @@ PAGE = (ROOT / "docs" / "house.md").read_text("utf-8")
 FILES = sorted(set(re.findall(r"`((?:[a-z_]+/)+[a-z_]+\.py)`", PAGE)))
 
 
-def test_the_page_says_where_twenty_things_are() -> None:
+def test_the_page_says_where_twenty_things_or_more_are() -> None:
     table = PAGE.partition("## Where is it?")[2].partition("## ")[0]
-    assert len(re.findall(r"^\| [A-Z].*\?", table, re.MULTILINE)) == 20
+    assert len(re.findall(r"^\| [A-Z].*\?", table, re.MULTILINE)) >= 20
 
 
 @pytest.mark.parametrize("file", FILES)

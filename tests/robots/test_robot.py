@@ -13,7 +13,9 @@ from robot_bench import RobotBench
 from sampled import sample
 from scripted_body import STARTS, ScriptedBody, catalogue, trained_model
 
-from mend.robots.body import NoWay
+from mend.robots.arm.body import NoWay
+from mend.robots.arm.perception.head import HeadSense
+from mend.robots.arm.subsystem import ArmSubsystem
 from mend.robots.link.messages import (
     Finished,
     Hold,
@@ -32,8 +34,6 @@ from mend.robots.link.messages import (
     StepStarted,
     TakePicture,
 )
-from mend.robots.perception.head import HeadSense
-from mend.robots.robot import Robot
 from mend.robots.vision.obstruction import Obstruction
 from mend.tasks.plugins import load_plugins
 
@@ -582,8 +582,7 @@ def test_a_look_while_a_behavior_runs_disturbs_nothing() -> None:
 def test_a_robot_needs_the_monitors_that_explain_why_nothing_starts() -> None:
     monitors = {k: v for k, v in load_plugins("mend.monitors").items() if k != "missing"}
     with pytest.raises(ValueError, match="expected monitors for"):
-        Robot(
-            "r1",
+        ArmSubsystem(
             ScriptedBody(STARTS),
             trained_model(),
             catalogue(),

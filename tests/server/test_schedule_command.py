@@ -226,15 +226,6 @@ def test_schema_of_delivery_files_is_json(mend: Any) -> None:
     assert json.loads(out)["title"] == "DeliveryDocument"
 
 
-def test_without_or_tools_it_says_what_to_install(
-    mend: Any, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("importlib.util.find_spec", lambda _: None)
-    code, _, err = mend("schedule", CORRIDOR)
-    assert code == 2
-    assert "planning deliveries needs OR-Tools: install Mend as 'mend-robots[scheduling]'" in err
-
-
 def test_what_serves_and_checks_delivery_files_does_without_or_tools() -> None:
     program = (
         "import sys; sys.modules['ortools'] = None; import mend.server.composition; "

@@ -7,7 +7,7 @@ from counting_world import NoOptions
 from pydantic import BaseModel
 
 from mend.errors import WrongInputError
-from mend.sim.tabletop.world import TabletopOptions
+from mend.sim.tabletop.options import TabletopOptions
 from mend.sim.workcell.options import WorkcellOptions
 from mend.sim.world_options import read_options
 

@@ -1,4 +1,5 @@
-import type { DialogueView, Event, NodeView, RunResult, RunStatus } from "../src/wire/types";
+import type { Told } from "../src/wire/told";
+import type { DialogueView, NodeView, RunResult, RunStatus } from "../src/wire/types";
 
 /** What the service says of a run after one of its events. */
 export interface Said {
@@ -10,7 +11,7 @@ export interface Said {
 
 /** A run's events, and as many states. */
 export interface FoldedRun {
-  events: Event[];
+  events: Told[];
   states: Said[];
 }
 

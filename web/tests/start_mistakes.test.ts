@@ -15,6 +15,7 @@ describe("a refused start", () => {
     ["scenario 'eket_paper' is for the tree 'eket', not 'tea_table'", "scenario"],
     ["there is no scenario 'x'", "scenario"],
     ["there is no tree 'x'", "tree"],
+    ["there is no site 1a2b3c4d; it may have been closed", "world"],
     ["tree 'x' names no scene, and the world 'w' needs one", "tree"],
     ["the journal cannot be written", "form"],
     ["body.unknown: Extra inputs are not permitted", "form"],

@@ -4,10 +4,11 @@ from typing import ClassVar
 
 from pydantic import Field
 
-from mend.robots.behaviors import Phase
-from mend.robots.grip import GripState
+from mend.robots.arm.grip import GripState
+from mend.robots.arm.monitors import ArmMonitor, ArmView
+from mend.robots.execution.monitor import Reaction
+from mend.robots.execution.phase import Phase
 from mend.robots.link.messages import Detection
-from mend.robots.monitors import Monitor, MonitorView, Reaction
 from mend.tasks.scene import StrictModel
 
 
@@ -18,7 +19,7 @@ class SlippingParameters(StrictModel):
     pictures: int = Field(default=3, ge=1)
 
 
-class Slipping(Monitor[SlippingParameters]):
+class Slipping(ArmMonitor[SlippingParameters]):
     """Raises `slipping` while it is carried and placed; the robot goes on slowly."""
 
     issue: ClassVar[str] = "slipping"
@@ -32,7 +33,7 @@ class Slipping(Monitor[SlippingParameters]):
         super().__init__(settings)
         self._drifted = 0
 
-    def check(self, view: MonitorView) -> Detection | None:
+    def check(self, view: ArmView) -> Detection | None:
         grip = view.grip
         if grip is None or grip.state is not GripState.HELD or grip.overhang_px is None:
             return None

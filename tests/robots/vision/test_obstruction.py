@@ -5,7 +5,7 @@ import pytest
 from drawn_scene import TABLE_Z, DrawnScene, Resting
 from scripted_body import view_of
 
-from mend.robots.body import ToolPose
+from mend.robots.arm.body import ToolPose
 from mend.robots.vision.obstruction import Clearance, Obstruction, corridor, find_obstruction
 
 WAY = corridor([ToolPose(0.5, -0.4, TABLE_Z + 0.16, 0.0), ToolPose(0.5, 0.1, TABLE_Z + 0.16, 0.0)])

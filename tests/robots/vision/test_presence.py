@@ -8,8 +8,8 @@ from drawn_scene import PARTS, TABLE_Z, DrawnScene, Resting
 from monitor_view import SEEN
 from scripted_body import view_of
 
+from mend.robots.arm.grasp import half_turn
 from mend.robots.catalogue import Part
-from mend.robots.grasp import half_turn
 from mend.robots.link.messages import Location
 from mend.robots.vision.presence import Presence, is_at, judge_presence
 from mend.robots.vision.seen_box import SeenBox

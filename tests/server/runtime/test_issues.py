@@ -18,6 +18,7 @@ from mend.tasks.issue import Sensed
         (Detection(camera="head", center=(80.0, 60.0)), Sensed.SEEN),
         (Detection(camera="head"), Sensed.NOWHERE),
         (Detection(camera="head", felt=True), Sensed.FELT),
+        (Detection(camera="laser"), Sensed.BY_LASER),
     ],
 )
 def test_how_a_robot_came_to_know_is_told_by_its_detection(

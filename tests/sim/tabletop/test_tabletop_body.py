@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from tabletop_hands import TABLE_M, Hands
 
-from mend.robots.body import ToolPose
+from mend.robots.arm.body import ToolPose
 from mend.sim.tabletop.world import TabletopWorld
 from mend.tasks.scene import Scene
 

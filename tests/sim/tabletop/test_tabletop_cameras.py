@@ -5,7 +5,8 @@ import pytest
 from tabletop_hands import Hands
 
 from mend.robots.body import CameraImage
-from mend.sim.tabletop.world import TabletopOptions, TabletopWorld
+from mend.sim.tabletop.options import TabletopOptions
+from mend.sim.tabletop.world import TabletopWorld
 from mend.tasks.scene import Scene
 
 

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mend.errors import WrongInputError
-from mend.robots.body import ToolPose
+from mend.robots.arm.body import ToolPose
 from mend.sim.tabletop.adapter import adapter
 from mend.sim.tabletop.layout import MOST_OBJECTS, distinct_colors, lay_out
 from mend.sim.tabletop.world import TabletopWorld

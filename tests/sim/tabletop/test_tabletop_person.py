@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from tabletop_hands import TABLE_M, Hands
 
-from mend.robots.body import ToolPose
+from mend.robots.arm.body import ToolPose
 from mend.sim.acts import HAND_OVER_S
 from mend.sim.tabletop.world import TabletopWorld
 from mend.tasks.intervention import Act, Intervention

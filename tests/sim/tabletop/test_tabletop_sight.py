@@ -10,12 +10,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from sampled import sample
 
+from mend.robots.arm.perception import Perception
 from mend.robots.catalogue import Catalogue
 from mend.robots.link.messages import Location
-from mend.robots.perception import Perception
 from mend.robots.vision.presence import Presence
 from mend.sim.tabletop.colors import learn_colors
-from mend.sim.tabletop.world import TabletopOptions, TabletopWorld
+from mend.sim.tabletop.options import TabletopOptions
+from mend.sim.tabletop.world import TabletopWorld
 from mend.tasks.intervention import Act, Intervention
 from mend.tasks.scene import Pose, Scene, SceneObject
 from mend.tasks.scene_file import built_in_scene

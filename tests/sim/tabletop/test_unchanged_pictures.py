@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from mend.sim.tabletop.layout import lay_out
-from mend.sim.tabletop.world import TabletopOptions, TabletopWorld
+from mend.sim.tabletop.options import TabletopOptions
+from mend.sim.tabletop.world import TabletopWorld
 from mend.tasks.intervention import Act, Intervention
 
 SCENE = lay_out([("part_1", "spot_1"), ("part_2", "spot_2")], seed=3)

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from workcell_hands import TABLE_M, Hands, distance_m
 
-from mend.robots.body import Matrix4, ToolPose
+from mend.robots.arm.body import ToolPose
+from mend.robots.body import Matrix4
 from mend.sim.workcell.parts import PartPose
 from mend.sim.workcell.physics import to_matrix
 from mend.sim.workcell.world import WorkcellWorld

@@ -5,7 +5,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from mend.robots.gripper import ToolBox
+from mend.robots.arm.gripper import ToolBox
 from mend.sim.workcell.gripper import (
     FINGERS_OPEN_RAD,
     PR2_GRIPPER,

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from workcell_hands import TABLE_M, Hands
 
-from mend.robots.arm import Arm
-from mend.robots.behaviors.contact import Track
-from mend.robots.body import ToolPose
+from mend.robots.arm.arm import Arm
+from mend.robots.arm.behaviors.contact import Track
+from mend.robots.arm.body import ToolPose
 from mend.sim.workcell.world import WorkcellWorld
 
 HIGH = ToolPose(0.50, -0.35, TABLE_M + 0.25, 0.3)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from workcell_hands import TABLE_M, Hands, distance_m, do
 
-from mend.robots.body import ToolPose
+from mend.robots.arm.body import ToolPose
 from mend.sim.acts import HAND_OVER_S
 from mend.sim.workcell.parts import PartPose
 from mend.sim.workcell.world import WorkcellWorld

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mend.errors import WrongInputError
-from mend.robots.motion.kinematics import KinematicChain
+from mend.robots.arm.motion.kinematics import KinematicChain
 from mend.sim.workcell import robot_model
 from mend.sim.workcell.mesh_repair import read_stl, repair_stl
 from mend.sim.workcell.physics import Client, connect, to_matrix

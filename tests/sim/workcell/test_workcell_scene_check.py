@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from sampled import sample
 
-from mend.robots.behaviors.behavior import Situation, Step
-from mend.robots.behaviors.errand import Errand
-from mend.robots.behaviors.pick_and_place import PickAndPlace, PickAndPlaceParameters
-from mend.robots.behaviors.planning import Plan, at_once, plan_amid
-from mend.robots.feasibility.standing import Standing, at_place, starts
+from mend.robots.arm.behaviors.behavior import Situation, Step
+from mend.robots.arm.behaviors.errand import Errand
+from mend.robots.arm.behaviors.pick_and_place import PickAndPlace, PickAndPlaceParameters
+from mend.robots.arm.behaviors.planning import Plan, at_once, plan_amid
+from mend.robots.arm.feasibility.standing import Standing, at_place, starts
 from mend.robots.link.messages import Location
 from mend.server.behaviors import behavior_parameters
 from mend.sim.random_scene import random_scene

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from workcell_hands import Hands, do
 
+from mend.robots.arm.shown_arm import JointedBody
 from mend.robots.link.messages import ShownPose
-from mend.robots.showing import JointedBody
 from mend.server.models import RobotModels
 from mend.sim.workcell.adapter import adapter
 from mend.sim.workcell.world import WorkcellWorld

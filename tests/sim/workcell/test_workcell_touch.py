@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from workcell_hands import Hands
 
-from mend.robots.body import ToolPose
+from mend.robots.arm.body import ToolPose
 
 FREE_N = 5.0
 """Moving freely, with an empty gripper, it feels no more."""

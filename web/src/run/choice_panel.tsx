@@ -2,7 +2,7 @@
 import { KIND_MEANINGS, plain } from "../tree/words";
 import type { NodeStarted, NodeView } from "../wire/types";
 import { whyChosen } from "./choice";
-import { clock } from "./run_header";
+import { clock } from "./run_words";
 import "./choice_panel.css";
 
 const SHOWN_AT_MOST = 12;
@@ -21,7 +21,7 @@ export function ChoicePanel({ node, choices, onChoose }: ChoicePanelProps) {
     <section class="panel choice-panel" aria-label="Choice">
       <h2>{node === null ? "The last choice" : `${plain(node.name)} (${KIND_MEANINGS[node.kind]})`}</h2>
       {last === null ? (
-        <p class="quiet small">{node?.kind === "behavior" || node === null ? "Not started yet." : goalText(node)}</p>
+        <p class="quiet small">{node === null ? "Not started yet." : notChosen(node)}</p>
       ) : (
         <Choice choice={last} />
       )}
@@ -37,6 +37,13 @@ export function ChoicePanel({ node, choices, onChoose }: ChoicePanelProps) {
       )}
     </section>
   );
+}
+
+/** Of a node that no robot has started: a goal, or a leaf that waits or that a person does. */
+function notChosen(node: NodeView): string {
+  if (node.kind !== "behavior") return goalText(node);
+  if (node.owner !== null) return `${node.owner} has taken it.`;
+  return node.done ? "Done, and no robot has started it." : "Not started yet.";
 }
 
 function goalText(node: NodeView): string {

@@ -6,6 +6,7 @@ import type {
   HelpAwaited,
   IssueRaised,
   NodeStarted,
+  NodeTaken,
   NodeView,
   Prompt,
   Resolved,
@@ -13,8 +14,9 @@ import type {
   RunStarted,
   RunStatus,
 } from "../wire/types";
-import { finishedWords } from "./sentences";
+import type { Told } from "../wire/told";
 import { activationOf, type LeafStatus } from "./activation";
+import { lastOf } from "./transcript_lines";
 import { shapeOf, type TreeShape } from "./tree_shape";
 
 export interface LeafState {
@@ -61,6 +63,8 @@ export interface RunState {
   readonly potentials: ReadonlyMap<number, number>;
   readonly choice: NodeStarted | null;
   readonly executions: ReadonlyMap<string, Execution>;
+  /** The leaves that people do themselves, by path. */
+  readonly people: ReadonlyMap<string, NodeTaken>;
   readonly dialogues: ReadonlyMap<string, OpenDialogue>;
   readonly raised: IssueRaised | null;
   readonly resolutions: readonly Resolved[];
@@ -84,6 +88,7 @@ export function begin(started: RunStarted): RunState {
     potentials: new Map(),
     choice: null,
     executions: new Map(),
+    people: new Map(),
     dialogues: new Map(),
     raised: null,
     resolutions: [],
@@ -92,17 +97,20 @@ export function begin(started: RunStarted): RunState {
 }
 
 /** The state after one more event; events come in order of `seq`. */
-export function fold(state: RunState, event: Event): RunState {
+export function fold(state: RunState, event: Told): RunState {
   const seq = Math.max(state.seq, event.seq);
   return { ...applied(state, event), seq, time: Math.max(state.time, event.time) };
 }
 
-function applied(state: RunState, event: Event): RunState {
+function applied(state: RunState, event: Told): RunState {
   switch (event.type) {
     case "node_started":
       return start(state, event);
     case "node_taken":
-      return withLeaf(state, event.node, (leaf) => ({ ...leaf, status: "active", owner: event.helper }));
+      return {
+        ...withLeaf(state, event.node, (leaf) => ({ ...leaf, status: "active", owner: event.helper })),
+        people: new Map(state.people).set(event.node, event),
+      };
     case "step_started":
       return withExecution(state, event.robot, (execution) =>
         execution.id === event.execution
@@ -120,13 +128,13 @@ function applied(state: RunState, event: Event): RunState {
     }
     case "node_done":
     case "node_left_out":
-      return endExecution(withLeaf(state, event.node, (leaf) => ({ ...leaf, status: "done", owner: null })), event.node);
+      return endWork(withLeaf(state, event.node, (leaf) => ({ ...leaf, status: "done", owner: null })), event.node);
     case "node_undone":
       return withLeaf(state, event.node, (leaf) => ({ ...leaf, status: "idle", owner: null }));
     case "node_reset": {
       const failed = event.failed_attempt ? 1 : 0;
       const put = (leaf: LeafState): LeafState => ({ status: "idle", owner: null, attempts: leaf.attempts + failed });
-      return endExecution(withLeaf(state, event.node, put), event.node);
+      return endWork(withLeaf(state, event.node, put), event.node);
     }
     case "node_abandoned":
       return { ...state, abandoned: new Set(state.abandoned).add(indexOf(state, event.node)) };
@@ -136,7 +144,7 @@ function applied(state: RunState, event: Event): RunState {
       return { ...state, status: "running" };
     case "run_finished":
       return end(state, "finished", {
-        reason: finishedWords(event),
+        reason: lastOf(event),
         node: null,
         missing: event.missing,
         unseen: event.unseen,
@@ -185,9 +193,11 @@ function withExecution(state: RunState, robot: string, change: (execution: Execu
   return { ...state, executions: new Map(state.executions).set(robot, change(execution)) };
 }
 
-function endExecution(state: RunState, path: string): RunState {
+/** Nobody is at a leaf any more, neither a robot nor a person. */
+function endWork(state: RunState, path: string): RunState {
   const left = [...state.executions].filter(([, execution]) => execution.node !== path);
-  return { ...state, executions: new Map(left) };
+  const people = [...state.people].filter(([node]) => node !== path);
+  return { ...state, executions: new Map(left), people: new Map(people) };
 }
 
 function end(state: RunState, status: RunStatus, result: RunResult): RunState {

@@ -1,14 +1,14 @@
 // All known events of a run, and its state after any of them without folding from the beginning.
-import type { Event } from "../wire/types";
+import type { Told } from "../wire/told";
 import { begin, fold, type RunState } from "./fold";
 
 /** So far apart are the states that are kept; at most as many events are folded for one in between. */
 const CHECKPOINT_EVERY = 64;
 
 export interface History {
-  readonly events: readonly Event[];
+  readonly events: readonly Told[];
   /** Take events that follow; those that are known already are left out. Returns whether any was new. */
-  add(events: readonly Event[]): boolean;
+  add(events: readonly Told[]): boolean;
   /** How many events had happened at `time`; with `seq`, those up to that event alone. */
   countAt(time: number, seq?: number | null): number;
   /** The state after the first `count` events; null for none. */
@@ -16,12 +16,12 @@ export interface History {
 }
 
 export function createHistory(): History {
-  const events: Event[] = [];
+  const events: Told[] = [];
   const checkpoints: RunState[] = [];
   let newest: RunState | null = null;
   let latest: { count: number; state: RunState } | null = null;
 
-  const add = (more: readonly Event[]): boolean => {
+  const add = (more: readonly Told[]): boolean => {
     const before = events.length;
     for (const event of more) {
       if (event.seq <= (newest?.seq ?? -1)) continue;
@@ -39,7 +39,7 @@ export function createHistory(): History {
     let high = events.length;
     while (low < high) {
       const middle = (low + high) >> 1;
-      const event = events[middle] as Event;
+      const event = events[middle] as Told;
       const happened = seq === null ? event.time <= time : event.seq <= seq;
       if (happened) low = middle + 1;
       else high = middle;
@@ -55,7 +55,7 @@ export function createHistory(): History {
     const checkpoint = Math.floor((count - 1) / CHECKPOINT_EVERY);
     let state = onward && latest !== null ? latest.state : (checkpoints[checkpoint] as RunState);
     let folded = onward && latest !== null ? latest.count : checkpoint * CHECKPOINT_EVERY + 1;
-    for (; folded < count; folded++) state = fold(state, events[folded] as Event);
+    for (; folded < count; folded++) state = fold(state, events[folded] as Told);
     latest = { count, state };
     return state;
   };

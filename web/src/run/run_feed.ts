@@ -2,7 +2,7 @@
 import { type ReadonlySignal, signal } from "@preact/signals";
 import { onEvent, onSnapshot } from "../state/service";
 import * as rest from "../wire/rest";
-import type { Event } from "../wire/types";
+import type { Told } from "../wire/told";
 import { ended } from "./fold";
 import { createHistory, type History } from "./history";
 import { createMoment, type Moment } from "./moment";
@@ -23,11 +23,11 @@ export function openRun(run: string): RunFeed {
   const moment = createMoment();
   const version = signal(0);
   const failure = signal<string | null>(null);
-  let waiting: Event[] = [];
+  let waiting: Told[] = [];
   let reading = false;
   let frame = 0;
 
-  const take = (events: readonly Event[]) => {
+  const take = (events: readonly Told[]) => {
     if (!history.add(events)) return;
     const newest = history.stateAfter(history.events.length);
     if (newest === null) return;

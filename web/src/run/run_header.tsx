@@ -6,6 +6,7 @@ import { plain } from "../tree/words";
 import * as rest from "../wire/rest";
 import { ended, type RunState } from "./fold";
 import type { Moment } from "./moment";
+import { clock, sentence, siteName } from "./run_words";
 import "./run_header.css";
 
 const STATUS_WORDS = {
@@ -31,13 +32,14 @@ export function RunHeader({ newest, moment }: { newest: RunState; moment: Moment
           <span class="quiet">
             {started.robots.map((robot) => (newest.lost.has(robot) ? `${robot} (lost)` : robot)).join(", ")}
           </span>
+          {started.site != null && <span class="quiet">at the site {siteName({ id: started.site, scene: sceneOf(started) })}</span>}
           {started.scenario !== null && <span class="quiet">scenario {plain(started.scenario)}</span>}
         </p>
         {result !== null && (status !== "finished" || result.missing.length > 0) && (
-          <p class="mistake">{result.reason}</p>
+          <p class="mistake">{sentence(result.reason)}</p>
         )}
         {result !== null && status === "finished" && result.missing.length === 0 && result.unseen.length > 0 && (
-          <p class="quiet">{result.reason}</p>
+          <p class="quiet">{sentence(result.reason)}</p>
         )}
       </div>
       {!ended(status) && <RunControls run={started.run} paused={status === "paused"} />}
@@ -105,10 +107,6 @@ function RunControls({ run, paused }: { run: string; paused: boolean }) {
   );
 }
 
-/** A time of the run's clock as people read it: 7.4 s, 2:07.4. */
-export function clock(time: number): string {
-  const tenths = Math.round(time * 10);
-  if (tenths < 600) return `${(tenths / 10).toFixed(1)} s`;
-  const seconds = tenths % 600;
-  return `${Math.floor(tenths / 600)}:${(seconds / 10).toFixed(1).padStart(4, "0")}`;
+function sceneOf({ scene }: RunState["started"]): string {
+  return typeof scene.name === "string" ? scene.name : "";
 }

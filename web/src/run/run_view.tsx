@@ -7,11 +7,14 @@ import { awaitingHelp, questions, together } from "../state/questions";
 import { TreeDrawing } from "../tree/tree_drawing";
 import { nodesOfRun } from "../tree/tree_node";
 import { plain } from "../tree/words";
+import type { Told } from "../wire/told";
 import type { NodeStarted, NodeView } from "../wire/types";
 import { Cameras } from "./cameras";
 import { ChoicePanel } from "./choice_panel";
 import { DialogueNow } from "./dialogue_now";
 import { ended, nodeViews, type RunState } from "./fold";
+import { Leaves } from "./leaves";
+import { doersOf } from "./leaf_words";
 import { openRun, type RunFeed } from "./run_feed";
 import { RunHeader } from "./run_header";
 import { Scrubber } from "./scrubber";
@@ -108,19 +111,40 @@ function Shown({ feed, version, state, latest }: ShownProps) {
   const talkedAbout = useTalkedAbout(state);
   // Made anew only with what it shows: most events change neither the tree nor the selection.
   const tree = useMemo(
-    () => <TreePanel name={state.started.tree_name} views={views} talkedAbout={talkedAbout} selected={selected} onSelect={setSelected} />,
-    [views, talkedAbout, selected],
+    () => (
+      <TreePanel
+        name={state.started.tree_name}
+        views={views}
+        people={state.people}
+        talkedAbout={talkedAbout}
+        selected={selected}
+        onSelect={setSelected}
+      />
+    ),
+    [views, state.people, talkedAbout, selected],
   );
+  const chosen = views.find((view) => view.node === selected) ?? null;
   const choice = (
-    <ChoicePanel node={views.find((view) => view.node === selected) ?? null} choices={choices} onChoose={goToEvent} />
+    <div class="run-choice">
+      <ChoicePanel node={chosen} choices={choices} onChoose={goToEvent} />
+      {(state.people.size > 0 || !ended(latest.status)) && (
+        <Leaves
+          run={state.started.run}
+          people={state.people}
+          selected={chosen}
+          example={plain(views.find(({ object }) => object !== null)?.object ?? "part")}
+          going={newest && state.status === "running"}
+        />
+      )}
+    </div>
   );
   const timeline = useMemo(
     () => <TimelinePanel feed={feed} version={version} onSelect={setSelected} onGoTo={goToEvent} />,
     [feed, version, goToEvent],
   );
   const world = useMemo(
-    () => <ScenePanel run={state.started.run} moment={moment} />,
-    [state.started.run, moment],
+    () => <ScenePanel run={state.started.run} moment={moment} doers={doersOf(state)} />,
+    [state.started.run, moment, state.people],
   );
   const cameras = useMemo(
     () => <Cameras run={state.started.run} moment={moment} status={latest.status} />,
@@ -192,13 +216,14 @@ function useTalkedAbout(state: RunState): ReadonlySet<string> {
 interface TreePanelProps {
   name: string;
   views: readonly NodeView[];
+  people: RunState["people"];
   talkedAbout: ReadonlySet<string>;
   selected: string | null;
   onSelect: (path: string | null) => void;
 }
 
-function TreePanel({ name, views, talkedAbout, selected, onSelect }: TreePanelProps) {
-  const nodes = useMemo(() => nodesOfRun(views, talkedAbout), [views, talkedAbout]);
+function TreePanel({ name, views, people, talkedAbout, selected, onSelect }: TreePanelProps) {
+  const nodes = useMemo(() => nodesOfRun(views, talkedAbout, people), [views, talkedAbout, people]);
   const active = nodes.find((node) => node.kind === "behavior" && node.state === "active");
   const focus = nodes.find((node) => node.state === "in_dialogue") ?? active;
   return (
@@ -221,7 +246,7 @@ function useChoices(feed: RunFeed, state: RunState, selected: string | null): re
   return useMemo(() => {
     if (selected === null) return state.choice === null ? [] : [state.choice];
     return feed.history.events.filter(
-      (event): event is NodeStarted =>
+      (event): event is Extract<Told, NodeStarted> =>
         event.type === "node_started" && event.node === selected && event.seq <= state.seq,
     );
   }, [feed, state, selected]);

@@ -1,4 +1,5 @@
 // How the console says what state a run is in, and when something was.
+import { plain } from "../tree/words";
 import type { RunStatus, RunSummary } from "../wire/types";
 
 export const STATUS_WORDS: Readonly<Record<RunStatus, string>> = {
@@ -26,6 +27,11 @@ export function outcome({ result }: RunSummary): string {
   return result.reason.charAt(0).toUpperCase() + result.reason.slice(1);
 }
 
+/** A site as people call it: by its scene, and the beginning of its id. */
+export function siteName({ id, scene }: { id: string; scene: string }): string {
+  return `${plain(scene)} (${id.slice(0, 8)})`;
+}
+
 const UNITS: readonly (readonly [Intl.RelativeTimeFormatUnit, number])[] = [
   ["day", 86_400],
   ["hour", 3_600],
@@ -47,4 +53,18 @@ export function ago(then: number, now: number): string {
 /** "21 Nov 2026, 14:03" */
 export function moment(then: number): string {
   return MOMENT.format(then);
+}
+
+/** A time of the run's clock as people read it: 7.4 s, 2:07.4. */
+export function clock(time: number): string {
+  const tenths = Math.round(time * 10);
+  if (tenths < 600) return `${(tenths / 10).toFixed(1)} s`;
+  const seconds = tenths % 600;
+  return `${Math.floor(tenths / 600)}:${(seconds / 10).toFixed(1).padStart(4, "0")}`;
+}
+
+/** What the service says, as a sentence. */
+export function sentence(message: string): string {
+  const text = message.charAt(0).toUpperCase() + message.slice(1);
+  return /[.!?]$/.test(text) ? text : `${text}.`;
 }

@@ -1,5 +1,5 @@
 // The bar that moves the shown moment: a slider over the run's time, play, and the way back.
-import { clock } from "./run_header";
+import { clock } from "./run_words";
 import { type Moment, SPEEDS } from "./moment";
 import "./scrubber.css";
 

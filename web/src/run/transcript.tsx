@@ -1,15 +1,19 @@
 // The transcript: everything that was said and done, with the moment that is shown marked in it.
 import { useEffect, useMemo, useRef } from "preact/hooks";
-import type { Event } from "../wire/types";
-import { clock } from "./run_header";
-import { joined, type Line, linesOf } from "./sentences";
+import type { Told } from "../wire/told";
+import type { Tone } from "../wire/types";
+import { clock } from "./run_words";
+import { joined, type Line, linesOf } from "./transcript_lines";
 import "./transcript.css";
 
 /** So many lines are drawn together, and skipped together while nothing of them is in sight. */
 const PORTION = 40;
 
+/** What somebody says word for word. */
+const QUOTED: readonly Tone[] = ["said", "asked", "answered"];
+
 interface TranscriptProps {
-  events: readonly Event[];
+  events: readonly Told[];
   /** Counts up with `events`, which is the same array all along. */
   version: number;
   /** The last event that has happened at the moment shown; null follows the newest. */
@@ -44,14 +48,14 @@ export function Transcript({ events, version, until, onChoose }: TranscriptProps
 }
 
 /** The lines so far in portions; portions that are full stay the same arrays. */
-function usePortions(events: readonly Event[], version: number): readonly (readonly Line[])[] {
+function usePortions(events: readonly Told[], version: number): readonly (readonly Line[])[] {
   const kept = useRef<{ lines: Line[]; taken: number; portions: Line[][] }>({ lines: [], taken: 0, portions: [] });
   return useMemo(() => {
     const { lines, portions } = kept.current;
     // The last line may have grown, and the last portion with it.
     const changedFrom = Math.floor(Math.max(lines.length - 1, 0) / PORTION);
     for (; kept.current.taken < events.length; kept.current.taken++) {
-      for (const line of linesOf(events[kept.current.taken] as Event)) joined(lines, line);
+      for (const line of linesOf(events[kept.current.taken] as Told)) joined(lines, line);
     }
     for (let index = changedFrom; index * PORTION < lines.length; index++) {
       portions[index] = lines.slice(index * PORTION, (index + 1) * PORTION);
@@ -84,7 +88,7 @@ function Portion({ lines, until, marked, onChoose }: PortionProps) {
             </button>
             <p>
               {line.speaker !== "" && <b>{line.speaker} </b>}
-              {line.tone === "said" || line.tone === "asked" ? `“${line.text}”` : line.text}
+              {QUOTED.includes(line.tone) ? `“${line.text}”` : line.text}
             </p>
           </li>
         ))}

@@ -2,6 +2,7 @@
 import { signal } from "@preact/signals";
 import { type ConnectionState, HelperSocket } from "../wire/helper_socket";
 import * as rest from "../wire/rest";
+import type { Told } from "../wire/told";
 import type { Event, RunStatus, RunSummary, SnapshotMessage } from "../wire/types";
 import { principal, role } from "./access";
 import { helperName } from "./preferences";
@@ -28,12 +29,12 @@ const STATUS_AFTER: Readonly<Partial<Record<Event["type"], RunStatus>>> = {
   run_aborted: "aborted",
 };
 
-const listeners = new Set<(event: Event) => void>();
+const listeners = new Set<(event: Told) => void>();
 const snapshotListeners = new Set<() => void>();
 let socket: HelperSocket | null = null;
 
 /** Hear every event as it comes; returns how to stop. */
-export function onEvent(listener: (event: Event) => void): () => void {
+export function onEvent(listener: (event: Told) => void): () => void {
   listeners.add(listener);
   return () => listeners.delete(listener);
 }
@@ -131,7 +132,7 @@ function takeSnapshot(snapshot: SnapshotMessage): void {
   for (const listener of snapshotListeners) listener();
 }
 
-function takeEvent(event: Event): void {
+function takeEvent(event: Told): void {
   takeDialogueEvent(event, helperName.value);
   const run = runs.value.get(event.run);
   const status = STATUS_AFTER[event.type];

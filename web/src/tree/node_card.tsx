@@ -2,7 +2,7 @@
 import type { PlacedNode } from "./layout";
 import { KindSign, StateSign } from "./signs";
 import type { NodeKind, TreeNode } from "./tree_node";
-import { KIND_RULES, KIND_WORDS, plain, shortened, STATE_WORDS } from "./words";
+import { KIND_RULES, KIND_WORDS, plain, shortened, stateWord } from "./words";
 
 const NAME_PX = 7.6;
 const SMALL_PX = 6.6;
@@ -80,7 +80,7 @@ function LeafText({ node, width, compact }: { node: TreeNode; width: number; com
       )}
       {!compact && (
         <text class="word" x={left} y={44}>
-          {node.state === null ? plain(node.behavior ?? "") : STATE_WORDS[node.state]}
+          {node.state === null ? plain(node.behavior ?? "") : stateWord(node, node.state)}
         </text>
       )}
     </>

@@ -16,12 +16,18 @@ export interface TreeNode {
   level: number | null;
   potential: number | null;
   owner: string | null;
+  /** Whether the owner is a person, who does it themselves. */
+  byPerson: boolean;
   /** Attempts that have failed. */
   attempts: number;
 }
 
 /** The nodes of a run, from what the service or the fold says of them. */
-export function nodesOfRun(views: readonly NodeView[], inDialogue: ReadonlySet<string>): TreeNode[] {
+export function nodesOfRun(
+  views: readonly NodeView[],
+  inDialogue: ReadonlySet<string>,
+  people: ReadonlyMap<string, unknown> = new Map(),
+): TreeNode[] {
   return views.map((view) => ({
     path: view.node,
     kind: view.kind,
@@ -31,6 +37,7 @@ export function nodesOfRun(views: readonly NodeView[], inDialogue: ReadonlySet<s
     level: view.activation_level,
     potential: view.activation_potential,
     owner: view.owner,
+    byPerson: people.has(view.node),
     attempts: view.attempts,
   }));
 }
@@ -56,6 +63,7 @@ export function nodesOfDefinition(definition: Readonly<Record<string, unknown>>)
     level: null,
     potential: null,
     owner: null,
+    byPerson: false,
     attempts: 0,
   }));
 }

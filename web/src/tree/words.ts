@@ -31,6 +31,11 @@ export const STATE_WORDS: Readonly<Record<NodeState, string>> = {
   abandoned: "abandoned",
 };
 
+/** The word under a node: who does what is active, where that is a person. */
+export function stateWord(node: TreeNode, state: NodeState): string {
+  return node.byPerson ? "a person" : STATE_WORDS[state];
+}
+
 /** A name as people write it. */
 export function plain(name: string): string {
   return name.replaceAll("_", " ");
@@ -48,7 +53,7 @@ export function described(node: TreeNode, hidden: number, leftOut: number): stri
   const parts = [plain(node.name), KIND_MEANINGS[node.kind]];
   if (node.behavior !== null) parts[1] = plain(node.behavior);
   if (node.state !== null) parts.push(STATE_WORDS[node.state]);
-  if (node.owner !== null) parts.push(`held by ${node.owner}`);
+  if (node.owner !== null) parts.push(`${node.byPerson ? "being done" : "held"} by ${node.owner}`);
   if (node.level !== null) parts.push(`level ${node.level.toFixed(2)}`);
   if (node.potential !== null) parts.push(`potential ${node.potential.toFixed(2)}`);
   if (node.attempts > 0) parts.push(`${node.attempts} failed`);

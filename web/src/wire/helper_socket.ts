@@ -1,7 +1,8 @@
 // The helper's WebSocket: messages in order, commands with their results, and a connection that is
 // made again after the last event seen, so that nothing is missed.
 import { Refusal, Unreachable } from "./rest";
-import type { Event, FromHelper, SnapshotMessage, ToHelper } from "./types";
+import type { Told } from "./told";
+import type { FromHelper, SnapshotMessage, ToHelper } from "./types";
 
 const FIRST_PAUSE_MS = 300;
 const LONGEST_PAUSE_MS = 5_000;
@@ -12,7 +13,7 @@ export type ConnectionState = "connecting" | "connected" | "lost" | "closed";
 export interface Receiver {
   /** The service's state at once; everything known before is replaced. */
   snapshot(snapshot: SnapshotMessage): void;
-  event(event: Event): void;
+  event(event: Told): void;
   state(state: ConnectionState): void;
   /** Why the service cannot keep what happens, so that no run goes on; null once it can. */
   trouble(reason: string | null): void;
@@ -85,6 +86,7 @@ export class HelperSocket {
     const address = new URL("/ws/helper", location.href);
     address.protocol = address.protocol === "https:" ? "wss:" : "ws:";
     address.searchParams.set("helper", this.helper);
+    address.searchParams.set("told", "true");
     if (this.#seen !== null) address.searchParams.set("after", String(this.#seen));
     return address;
   }
@@ -111,7 +113,8 @@ export class HelperSocket {
         return;
       default:
         this.#seen = message.seq;
-        this.receiver.event(message);
+        // As was asked for in the address.
+        this.receiver.event(message as Told);
     }
   }
 

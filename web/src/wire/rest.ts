@@ -2,9 +2,9 @@
 import type {
   Answered,
   DialogueView,
-  Event,
   Intervention,
   Layout,
+  LeafSaid,
   Problem as ProblemDocument,
   RobotView,
   RunRequest,
@@ -13,12 +13,14 @@ import type {
   RunView,
   ScenarioSummary,
   SessionView,
+  SiteView,
   SpeechView,
   DocumentCheck,
   DocumentSummary,
   DocumentView,
   WorldView,
 } from "./types";
+import type { Told } from "./told";
 
 /** The service refused: what it said in its problem document (RFC 9457). */
 export class Refusal extends Error {
@@ -103,14 +105,21 @@ export const abortRun = (id: string) => call<RunSummary>("POST", `/api/runs/${se
 export const intervene = (id: string, intervention: Intervention) =>
   call<Intervention>("POST", `/api/runs/${segment(id)}/interventions`, intervention);
 
+const leaf = <T>(id: string, what: "take" | "give_back" | "say", body: object) =>
+  call<T>("POST", `/api/runs/${segment(id)}/leaves/${what}`, body);
+export const takeLeaf = (id: string, node: string, helper: string) => leaf<RunSummary>(id, "take", { node, helper });
+export const giveLeafBack = (id: string, node: string, helper: string) =>
+  leaf<RunSummary>(id, "give_back", { node, helper });
+export const sayOfLeaf = (id: string, words: string, helper: string) => leaf<LeafSaid>(id, "say", { words, helper });
+
 const EVENTS_AT_ONCE = 1000;
 
 /** All events of a run after `after`, in order. */
-export async function events(id: string, after = 0): Promise<Event[]> {
-  const all: Event[] = [];
+export async function events(id: string, after = 0): Promise<Told[]> {
+  const all: Told[] = [];
   for (;;) {
-    const path = `/api/runs/${segment(id)}/events?after=${after}&limit=${EVENTS_AT_ONCE}`;
-    const some = await call<Event[]>("GET", path);
+    const path = `/api/runs/${segment(id)}/events?after=${after}&limit=${EVENTS_AT_ONCE}&told=true`;
+    const some = await call<Told[]>("GET", path);
     all.push(...some);
     const last = some.at(-1);
     // A page of long events holds fewer than were asked for.
@@ -140,6 +149,7 @@ export const promptSoundPath = (id: string, prompt: string) =>
 export const phraseSoundPath = (name: string) => `/api/speech/phrases/${segment(name)}`;
 
 export const robots = () => call<RobotView[]>("GET", "/api/robots");
+export const sites = () => call<SiteView[]>("GET", "/api/sites");
 export const worlds = () => call<WorldView[]>("GET", "/api/worlds");
 export const scenarios = () => call<ScenarioSummary[]>("GET", "/api/scenarios");
 export const trees = () => call<DocumentSummary[]>("GET", "/api/trees");

@@ -1,11 +1,10 @@
 // The objects' names over the 3-D picture, each at its object; moved with every drawing.
-import { plain } from "./interventions";
 import { type Area, type NameBox, placeNames } from "./name_places";
 import type { Spot } from "./scene_view";
 
 export interface Names {
-  /** Put names to those spots for which `wanted` is true. */
-  show(spots: readonly Spot[], wanted: (name: string) => boolean): void;
+  /** Put to each spot what `shown` says of its name; nothing where that is null. */
+  show(spots: readonly Spot[], shown: (name: string) => string | null): void;
 }
 
 interface Mark {
@@ -24,7 +23,6 @@ export function createNames(host: HTMLElement, over: () => readonly HTMLElement[
     if (known !== undefined) return known;
     const [spot, text] = [document.createElement("span"), document.createElement("span")];
     spot.className = "scene-name";
-    text.textContent = plain(name);
     spot.append(text);
     host.append(spot);
     const mark: Mark = { spot, text, size: null };
@@ -32,21 +30,26 @@ export function createNames(host: HTMLElement, over: () => readonly HTMLElement[
     return mark;
   };
   return {
-    show(spots, wanted) {
-      const shown = spots.filter(({ name }) => wanted(name));
-      const names = new Set(shown.map(({ name }) => name));
-      for (const [name, { spot }] of marks) spot.hidden = !names.has(name);
+    show(spots, textOf) {
+      const texts = new Map(spots.map(({ name }) => [name, textOf(name)] as const));
+      const shown = spots.filter(({ name }) => texts.get(name) !== null);
+      for (const [name, { spot }] of marks) spot.hidden = (texts.get(name) ?? null) === null;
       if (shown.length === 0) return;
       // Before anything is moved: else the page would have to be laid out to answer.
       const picture = { left: 0, top: 0, right: host.clientWidth, bottom: host.clientHeight };
       const taken = over().map(areaOf);
       const boxes = shown.map(({ name, x, y, rise, held }): NameBox => {
         const mark = markOf(name);
+        const text = texts.get(name) ?? "";
+        if (mark.text.textContent !== text) {
+          mark.text.textContent = text;
+          mark.size = null;
+        }
         mark.spot.style.left = `${x.toFixed(1)}px`;
         mark.spot.style.top = `${y.toFixed(1)}px`;
         mark.spot.style.setProperty("--rise", `${rise.toFixed(0)}px`);
         mark.spot.classList.toggle("held", held);
-        // Once: to measure it with every drawing would lay out the page each time.
+        // Once for a text: to measure it with every drawing would lay out the page each time.
         mark.size ??= { width: mark.text.offsetWidth, height: mark.text.offsetHeight };
         return { name, x, y: y - rise, held, ...mark.size };
       });

@@ -7,13 +7,14 @@ import type { Whereabouts } from "./pose_source";
 interface Props {
   whereabouts: readonly Whereabouts[];
   places: readonly string[];
+  doers: ReadonlyMap<string, string>;
   /** Whether anything can be done now. */
   offered: boolean;
   onChoose(offer: Offer, target: Target): void;
   onPoint(name: string | null): void;
 }
 
-export function ObjectList({ whereabouts, places, offered, onChoose, onPoint }: Props) {
+export function ObjectList({ whereabouts, places, doers, offered, onChoose, onPoint }: Props) {
   const [open, setOpen] = useState<string | null>(null);
   const row = (key: string, title: string, where: string, target: Target) => (
     <li key={key} class="scene-row" onPointerEnter={() => onPoint(key)} onPointerLeave={() => onPoint(null)}>
@@ -50,7 +51,7 @@ export function ObjectList({ whereabouts, places, offered, onChoose, onPoint }: 
     <ul class="scene-list" aria-label="Objects, the arm and the camera">
       {whereabouts
         .filter((each) => each.kind === "object")
-        .map((each) => row(each.name, plain(each.name), wordsFor(each), { ...each, kind: "object" }))}
+        .map((each) => row(each.name, plain(each.name), wordsFor(each, doers.get(each.name)), { ...each, kind: "object" }))}
       {row(ARM, "the arm’s way", armIsBlocked(whereabouts) ? "blocked" : "free", armTarget(whereabouts))}
       {row(HEAD, "the head camera", "", { kind: "head" })}
     </ul>
@@ -61,7 +62,8 @@ export function ObjectList({ whereabouts, places, offered, onChoose, onPoint }: 
 const ARM = "*arm";
 const HEAD = "*head";
 
-function wordsFor({ held, gone, hidden }: Whereabouts): string {
+function wordsFor({ held, gone, hidden }: Whereabouts, doer?: string): string {
+  if (doer !== undefined) return `${doer} has taken it`;
   if (gone) return "taken away";
   if (held) return "held by the robot";
   if (hidden) return "not to be seen now";

@@ -5,6 +5,7 @@ import type { Layout } from "../../wire/types";
 import { theme } from "../../state/preferences";
 import { CameraButtons } from "./camera_buttons";
 import { createNames } from "./names";
+import { plain } from "./interventions";
 import { handlePointer } from "./pointer";
 import type { Poses, Pointed, SceneView } from "./scene_view";
 
@@ -15,6 +16,8 @@ interface Props {
   pointed: string | null;
   /** Whether a click chooses a spot on the table. */
   choosing: boolean;
+  /** Who of the people is doing something with an object: named beside it. */
+  doers: ReadonlyMap<string, string>;
   onPoint(name: string | null): void;
   /** Somebody clicked, tapped or pressed Enter on something, at a spot of the picture. */
   onChoose(pointed: Pointed, at: { x: number; y: number }): void;
@@ -43,6 +46,12 @@ export function SceneCanvas(props: Props) {
     let gone = false;
     const host = overlay.current as HTMLElement;
     const marks = createNames(host, () => [...(host.parentElement?.querySelectorAll<HTMLElement>(".scene-tools") ?? [])]);
+    const shownName = (name: string) => {
+      const { doers, pointed } = latest.current;
+      const doer = doers.get(name);
+      if (doer !== undefined) return `${plain(name)} · ${doer}`;
+      return named.current || name === pointed ? plain(name) : null;
+    };
     const make = async () => {
       const { createSceneView } = await import("./scene_view");
       if (gone || canvas.current === null) return;
@@ -53,7 +62,7 @@ export function SceneCanvas(props: Props) {
         canvas.current,
         layout,
         poses,
-        (spots) => marks.show(spots, (name) => named.current || name === latest.current.pointed),
+        (spots) => marks.show(spots, shownName),
         modelMissing,
       );
       poses.onChange(made.invalidate);
@@ -71,7 +80,7 @@ export function SceneCanvas(props: Props) {
   }, [props.layout]);
 
   useEffect(() => view?.highlight(props.pointed), [view, props.pointed]);
-  useEffect(() => view?.invalidate(), [view, names]);
+  useEffect(() => view?.invalidate(), [view, names, props.doers]);
   useEffect(() => {
     if (view === null) return;
     const dark = matchMedia("(prefers-color-scheme: dark)");

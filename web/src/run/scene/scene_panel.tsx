@@ -19,9 +19,11 @@ const ROOM_BELOW = "(720px <= width < 1200px)";
 interface ScenePanelProps {
   run: string;
   moment: Moment;
+  /** Who of the people is doing something with an object, by its name. */
+  doers: ReadonlyMap<string, string>;
 }
 
-export function ScenePanel({ run, moment }: ScenePanelProps) {
+export function ScenePanel({ run, moment, doers }: ScenePanelProps) {
   const source = useMemo(() => createPoseSource(run, helperName.peek(), moment), [run, moment]);
   useEffect(() => () => source.close(), [source]);
   const [pointed, setPointed] = useState<string | null>(null);
@@ -54,6 +56,7 @@ export function ScenePanel({ run, moment }: ScenePanelProps) {
           poses={source}
           pointed={pointed}
           choosing={putting !== null}
+          doers={doers}
           onPoint={setPointed}
           onChoose={doing.choose}
           onFailure={setFailure}
@@ -91,6 +94,7 @@ export function ScenePanel({ run, moment }: ScenePanelProps) {
           <ObjectList
             whereabouts={source.whereabouts.value}
             places={places}
+            doers={doers}
             offered={offered}
             onChoose={doing.take}
             onPoint={setPointed}

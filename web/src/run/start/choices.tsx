@@ -1,6 +1,9 @@
 // The choices that say what they mean: in which world, and who answers.
+import { plain } from "../../tree/words";
+import type { SiteView } from "../../wire/types";
+import { siteName } from "../run_words";
 import { Mistake } from "./field";
-import type { Choices, Filled } from "./filled";
+import { type Choices, type Filled, isLive } from "./filled";
 import { LiveRobots } from "./live_robots";
 import type { StartMistakes } from "./start_mistakes";
 
@@ -17,19 +20,35 @@ export function WorldChoice({ choices, filled, fill, mistakes }: PartProps & { c
       <div class="choices">
         {choices.worlds.map(({ name, available, reason }) => (
           <label key={name} class="choice">
-            <input type="radio" name="world" disabled={!available} checked={filled.world === name} onChange={() => fill({ world: name })} />
+            <input type="radio" name="world" disabled={!available} checked={filled.site === "" && filled.world === name} onChange={() => fill({ world: name, site: "" })} />
             <span>
               <strong>{name}</strong>
               <span class="small quiet">{reason ?? WORLDS[name] ?? "A world of its own."}</span>
             </span>
           </label>
         ))}
+        {choices.sites.map((site) => (
+          <label key={site.id} class="choice">
+            <input type="radio" name="world" checked={filled.site === site.id} onChange={() => fill({ site: site.id })} />
+            <span>
+              <strong>site {siteName(site)}</strong>
+              <span class="small quiet">{siteWords(site)}</span>
+            </span>
+          </label>
+        ))}
       </div>
       <Mistake field="world" mistakes={mistakes} />
-      {filled.world === "live" && <LiveRobots known={choices.robots} filled={filled} fill={fill} />}
+      {isLive(filled) && <LiveRobots known={choices.robots} filled={filled} fill={fill} />}
       <Mistake field="robots" mistakes={mistakes} />
     </fieldset>
   );
+}
+
+/** What is told of a site: where it is, and whether a run could have its robots now. */
+export function siteWords({ world, robots }: SiteView): string {
+  const free = robots.filter(({ run }) => run === null).length;
+  const whose = free === robots.length ? "no run uses it" : `${free} of its ${robots.length} robots are free`;
+  return `A ${plain(world)} that stays: ${whose}. It says its scene, speed and seed.`;
 }
 
 /** What the worlds that come with Mend are; others say nothing of themselves. */

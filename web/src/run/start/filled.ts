@@ -1,6 +1,6 @@
 // What can be chosen for a new run, what is filled in, and the request that it makes.
 import * as rest from "../../wire/rest";
-import type { RobotView, RunRequest, ScenarioSummary, DocumentSummary, WorldView } from "../../wire/types";
+import type { RobotView, RunRequest, ScenarioSummary, DocumentSummary, SiteView, WorldView } from "../../wire/types";
 import { robotsOfRequest } from "./standing";
 
 const LARGEST_SEED = 2 ** 31;
@@ -9,6 +9,7 @@ const PREFERRED_WORLD = "workcell";
 export interface Choices {
   trees: readonly DocumentSummary[];
   worlds: readonly WorldView[];
+  sites: readonly SiteView[];
   scenarios: readonly ScenarioSummary[];
   robots: readonly RobotView[];
 }
@@ -17,6 +18,8 @@ export interface Choices {
 export interface Filled {
   tree: string;
   world: string;
+  /** The id of a site where it is to be; empty for a world of its own. */
+  site: string;
   robots: readonly string[];
   /** The robots of the tree's own scene, and which connected one each of them is to be. */
   places: readonly string[];
@@ -31,13 +34,14 @@ export interface Filled {
 
 /** Read what can be chosen. */
 export async function readChoices(): Promise<Choices> {
-  const [trees, worlds, scenarios, robots] = await Promise.all([
+  const [trees, worlds, sites, scenarios, robots] = await Promise.all([
     rest.trees(),
     rest.worlds(),
+    rest.sites(),
     rest.scenarios(),
     rest.robots(),
   ]);
-  return { trees, worlds: worlds.toSorted((a, b) => rank(a) - rank(b)), scenarios, robots };
+  return { trees, worlds: worlds.toSorted((a, b) => rank(a) - rank(b)), sites, scenarios, robots };
 }
 
 /** Simulated worlds first, and of these the fullest. */
@@ -53,6 +57,7 @@ export function firstFilled(tree: string | null, { trees, worlds }: Choices): Fi
   return {
     tree: tree ?? trees[0]?.name ?? "",
     world: world?.name ?? "",
+    site: "",
     robots: [],
     places: [],
     standing: {},
@@ -67,7 +72,8 @@ export function firstFilled(tree: string | null, { trees, worlds }: Choices): Fi
 
 /** What no longer goes together after a change is let go. */
 export function settled(filled: Filled, { scenarios }: Choices): Filled {
-  const scenario = scenarios.find((each) => each.name === filled.scenario && each.tree === filled.tree);
+  const fits = (each: ScenarioSummary) => each.name === filled.scenario && each.tree === filled.tree;
+  const scenario = filled.site === "" ? scenarios.find(fits) : undefined;
   const scripted = (scenario?.answers.length ?? 0) > 0;
   return {
     ...filled,
@@ -76,19 +82,27 @@ export function settled(filled: Filled, { scenarios }: Choices): Filled {
   };
 }
 
+/** Whether it is to be done by real robots. */
+export const isLive = ({ site, world }: Filled): boolean => site === "" && world === "live";
+
 /** The request for what is filled in. */
 export function request(filled: Filled): RunRequest {
-  return {
+  const everywhere = {
     tree: filled.tree,
-    world: filled.world,
-    robots: filled.world === "live" ? robotsOfRequest(filled.robots, filled.standing, filled.places) : [],
-    scenario: filled.scenario || null,
-    speed: filled.speed === "max" ? "max" : Number(filled.speed),
     // An empty field is no number: the service says so at it.
-    seed: Number.parseFloat(filled.seed),
     max_attempts: Number.parseFloat(filled.maxAttempts),
     answers: filled.answers === "scenario" ? null : filled.answers,
-    interventions: filled.interventions && filled.world !== "live" ? "random" : null,
+  };
+  // A site says the rest itself.
+  if (filled.site !== "") return { ...everywhere, site: filled.site };
+  return {
+    ...everywhere,
+    world: filled.world,
+    robots: isLive(filled) ? robotsOfRequest(filled.robots, filled.standing, filled.places) : [],
+    scenario: filled.scenario || null,
+    speed: filled.speed === "max" ? "max" : Number(filled.speed),
+    seed: Number.parseFloat(filled.seed),
+    interventions: filled.interventions && !isLive(filled) ? "random" : null,
   };
 }
 

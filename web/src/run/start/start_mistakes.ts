@@ -30,6 +30,7 @@ const FIELDS: ReadonlySet<string> = new Set<StartField>([
 const ABOUT: readonly (readonly [RegExp, StartField])[] = [
   [/'robots'|\brobot '/, "robots"],
   [/\bscenario '/, "scenario"],
+  [/\bsite\b/, "world"],
   [/\btree '/, "tree"],
   [/\bworld\b/, "world"],
 ];

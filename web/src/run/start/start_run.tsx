@@ -6,7 +6,7 @@ import { connection } from "../../state/service";
 import * as rest from "../../wire/rest";
 import { AnswerChoice, WorldChoice } from "./choices";
 import { Field, Mistake, told } from "./field";
-import { type Choices, type Filled, firstFilled, readChoices, request, settled, withChosen } from "./filled";
+import { type Choices, type Filled, firstFilled, isLive, readChoices, request, settled, withChosen } from "./filled";
 import { atTheirFields, type StartMistakes } from "./start_mistakes";
 import "./start_run.css";
 
@@ -55,6 +55,7 @@ function StartForm({ tree, choices }: { tree: string | null; choices: Choices })
       setStarting(false);
     }
   };
+  const atSite = filled.site !== "";
   const scenarios = choices.scenarios.filter((each) => each.tree === filled.tree);
   const scenario = scenarios.find((each) => each.name === filled.scenario);
   const number = (name: "seed" | "maxAttempts") => (event: Event) =>
@@ -70,37 +71,43 @@ function StartForm({ tree, choices }: { tree: string | null; choices: Choices })
             ))}
           </select>
         </Field>
-        <Field field="scenario" label="Scenario" mistakes={mistakes} hint={scenario?.description ?? "A script of what goes wrong on the way."}>
-          <select id="start-scenario" {...told("scenario", mistakes)} value={filled.scenario} onChange={(event) => fill({ scenario: event.currentTarget.value })}>
-            <option value="">None</option>
-            {scenarios.map(({ name }) => (
-              <option key={name}>{name}</option>
-            ))}
-          </select>
-        </Field>
+        {!atSite && (
+          <Field field="scenario" label="Scenario" mistakes={mistakes} hint={scenario?.description ?? "A script of what goes wrong on the way."}>
+            <select id="start-scenario" {...told("scenario", mistakes)} value={filled.scenario} onChange={(event) => fill({ scenario: event.currentTarget.value })}>
+              <option value="">None</option>
+              {scenarios.map(({ name }) => (
+                <option key={name}>{name}</option>
+              ))}
+            </select>
+          </Field>
+        )}
       </fieldset>
       <WorldChoice choices={choices} filled={filled} fill={fill} mistakes={mistakes} />
       <AnswerChoice scripted={(scenario?.answers.length ?? 0) > 0} filled={filled} fill={fill} mistakes={mistakes} />
       <fieldset class="panel">
         <legend>How it goes</legend>
         <div class="start-row">
-          <Field field="speed" label="Speed" mistakes={mistakes}>
-            <select id="start-speed" {...told("speed", mistakes)} value={filled.speed} onChange={(event) => fill({ speed: event.currentTarget.value })}>
-              {SPEEDS.map(([value, text]) => (
-                <option key={value} value={value}>
-                  {text}
-                </option>
-              ))}
-            </select>
-          </Field>
-          <Field field="seed" label="Seed" mistakes={mistakes} hint="The same seed gives the same chances again.">
-            <input id="start-seed" {...told("seed", mistakes)} type="number" inputMode="numeric" value={filled.seed} onInput={number("seed")} />
-          </Field>
+          {!atSite && (
+            <>
+              <Field field="speed" label="Speed" mistakes={mistakes}>
+                <select id="start-speed" {...told("speed", mistakes)} value={filled.speed} onChange={(event) => fill({ speed: event.currentTarget.value })}>
+                  {SPEEDS.map(([value, text]) => (
+                    <option key={value} value={value}>
+                      {text}
+                    </option>
+                  ))}
+                </select>
+              </Field>
+              <Field field="seed" label="Seed" mistakes={mistakes} hint="The same seed gives the same chances again.">
+                <input id="start-seed" {...told("seed", mistakes)} type="number" inputMode="numeric" value={filled.seed} onInput={number("seed")} />
+              </Field>
+            </>
+          )}
           <Field field="max_attempts" label="Attempts" mistakes={mistakes} hint="After so many failed ones a behavior is given up.">
             <input id="start-max_attempts" {...told("max_attempts", mistakes)} type="number" inputMode="numeric" value={filled.maxAttempts} onInput={number("maxAttempts")} />
           </Field>
         </div>
-        {filled.world !== "live" && (
+        {!atSite && !isLive(filled) && (
           <label class="choice">
             <input type="checkbox" checked={filled.interventions} onChange={(event) => fill({ interventions: event.currentTarget.checked })} />
             <span>

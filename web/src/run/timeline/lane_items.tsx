@@ -1,5 +1,5 @@
 // The things on one lane: bars for what takes time, marks for what happens at once.
-import { clock } from "../run_header";
+import { clock } from "../run_words";
 import type { Lane, TimelineItem } from "./lanes";
 import type { Scale } from "./span";
 import type { Walk } from "./walk";

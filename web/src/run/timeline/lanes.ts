@@ -1,7 +1,8 @@
 // What stands on the lanes of a run's timeline.
 import { plain } from "../../tree/words";
 import type { DialogueClosed, Event, NodeDone, NodeLeftOut, NodeReset, Resolution } from "../../wire/types";
-import { deed } from "../sentences";
+import type { Told } from "../../wire/told";
+import { lastOf } from "../transcript_lines";
 
 export type LaneKind = "steps" | "faults" | "dialogues" | "people" | "resolutions";
 
@@ -44,7 +45,7 @@ interface Growing extends TimelineItem {
 }
 
 /** The lanes of a run's first `count` events; what goes on still ends at `now`. */
-export function lanesOf(events: readonly Event[], now: number): Lane[] {
+export function lanesOf(events: readonly Told[], now: number): Lane[] {
   const started = events[0];
   if (started?.type !== "run_started") return [];
   const steps = new Map<string, Growing[]>(started.robots.map((robot) => [robot, []]));
@@ -98,7 +99,7 @@ export function lanesOf(events: readonly Event[], now: number): Lane[] {
           point(
             event,
             plain(event.act),
-            `${event.by}: ${deed(event.intervention)}${event.ok ? "" : ", in vain"}`,
+            `${event.by}: ${lastOf(event)}`,
             event.ok ? "deed" : "deed vain",
             null,
           ),

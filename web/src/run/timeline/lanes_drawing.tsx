@@ -1,7 +1,7 @@
 // The lanes of a timeline as a drawing over the run's clock.
 import { useLayoutEffect, useRef, useState } from "preact/hooks";
 import type { Moment } from "../moment";
-import { clock } from "../run_header";
+import { clock } from "../run_words";
 import { LaneItems } from "./lane_items";
 import { type Lane, ticksOf, type TimelineItem } from "./lanes";
 import { AXIS_PX, usePointer, useWheel } from "./pointer";

@@ -1,7 +1,7 @@
 // The timeline as a list, for those who hear it or would rather read.
 import { useState } from "preact/hooks";
 import type { Moment } from "../moment";
-import { clock } from "../run_header";
+import { clock } from "../run_words";
 import type { Lane, LaneKind, TimelineItem } from "./lanes";
 
 const AT_ONCE = 200;

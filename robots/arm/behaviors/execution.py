@@ -1,0 +1,130 @@
+"""The execution of one behavior of an arm: what is looked for, planned, walked and confirmed."""
+
+from collections.abc import Sequence
+
+from mend.robots.arm.behaviors.confirmation import look_at_outcome
+from mend.robots.arm.behaviors.covering import CoveredResultGone
+from mend.robots.arm.behaviors.preparation import prepare
+from mend.robots.arm.behaviors.put_down import put_down
+from mend.robots.arm.behaviors.step_walk import StepWalk
+from mend.robots.arm.behaviors.watch import ArmWatch
+from mend.robots.arm.behaviors.work import Work
+from mend.robots.arm.body import ToolPose
+from mend.robots.catalogue import Part
+from mend.robots.execution.execution import Execution
+from mend.robots.execution.execution_state import ExecutionState
+from mend.robots.execution.monitor import AnyMonitor, Reaction
+from mend.robots.execution.routine import Routine
+from mend.robots.execution.watch import Interruption
+from mend.robots.link.messages import Location, Resumed
+from mend.robots.vision.obstruction import Obstruction
+from mend.robots.vision.presence import Presence
+
+
+class ArmExecution(Execution):
+    """Walks one behavior of an arm."""
+
+    def __init__(self, work: Work, monitors: Sequence[AnyMonitor]) -> None:
+        super().__init__(work.assignment.execution, work.progress, work.arm, work.report)
+        self._work, self._assignment = work, work.assignment
+        self._arm, self._perception = work.arm, work.perception
+        self._watch = ArmWatch(work, monitors)
+        self._steps = StepWalk(work, self._watch)
+
+    @property
+    def object(self) -> str | None:
+        part = self._assignment.part
+        return None if part is None else part.name
+
+    @property
+    def way(self) -> list[ToolPose]:
+        """The poses that the steps still to come lead through."""
+        return self._work.progress.way
+
+    @property
+    def obstruction(self) -> Obstruction | None:
+        """What was last seen to be in that way."""
+        return self._work.progress.seen.obstruction
+
+    @property
+    def destination(self) -> tuple[Part, Location | None] | None:
+        """The object and where it goes; None for a behavior without."""
+        part = self._assignment.part
+        return None if part is None else (part, self._assignment.target)
+
+    @property
+    def unconfirmed(self) -> tuple[Part, Location] | None:
+        """The object and its place, if it was placed there and that could not be seen."""
+        return self._work.unconfirmed
+
+    # --- What it does -------------------------------------------------------------------------
+
+    def _walk(self, *, resumed: bool) -> Routine[bool]:
+        """Look, plan, walk all steps and look again. Raises `Interruption`."""
+        progress = self._work.progress
+        progress.felt, progress.inexact = None, False
+        progress.regrasps = 0
+        progress.as_found &= not resumed
+        there = False
+        while not there:
+            plan = yield from prepare(self._work, self._watch)
+            if plan is None:
+                own = not progress.as_found and (progress.inexact or progress.unconfirmed)
+                return not own
+            progress.unconfirmed = progress.as_found = False
+            progress.move_to(ExecutionState.RUNNING)
+            if resumed:
+                self._report(Resumed(execution=self.id, step=plan.first))
+                resumed = False
+            there = (yield from self._steps.take_all(plan)) and (yield from self._confirm())
+        return False
+
+    def _go_to_rest(self) -> Routine[None]:
+        """Put down or let go what is held, and move to neutral."""
+        yield from put_down(self._arm, self._perception, self._work.progress.picked_at)
+        yield from self._arm.go_to_neutral()
+
+    def _react(self, interruption: Interruption) -> Routine[None]:
+        if isinstance(interruption, CoveredResultGone):
+            # The service has every result looked at before it lets this go on.
+            yield from self.retreat(end=False)
+            return
+        if interruption.reaction is Reaction.GO_TO_NEUTRAL:
+            # The arm is to put nowhere what the fingers may still touch.
+            self._perception.let_go()
+        yield from super()._react(interruption)
+
+    def _confirm(self) -> Routine[bool]:
+        """Whether the object is at its place, as far as is seen; if not, it is to be placed again.
+
+        Raises `Interruption`.
+        """
+        part, target = self._assignment.part, self._assignment.target
+        if part is None or target is None:
+            return True
+        self._progress.move_to(ExecutionState.CONFIRMING)
+        self._arm.be_careful(1.0)
+        self._expect_change()
+        outcome = yield from look_at_outcome(part, target, self._arm, self._perception)
+        self._work.progress.outcome = outcome
+        self._work.progress.unconfirmed = outcome.blind is not None
+        self._watch.check(None)
+        if outcome.presence is not Presence.GONE:
+            if self._work.progress.inexact or not outcome.is_inexact(part, target):
+                return True
+            self._work.progress.inexact = True
+        else:
+            self._work.progress.inexact = False
+        self._watch.start_again()
+        self._progress.move_to(ExecutionState.PREPARING)
+        return False
+
+    def _expect_change(self) -> None:
+        """What was seen where it started, and was carried away, cannot be seen there any more."""
+        before = self._work.progress.seen
+        if (
+            before.image is not None
+            and before.sighting is not None
+            and self._work.progress.picked_at
+        ):
+            self._perception.head.expect_change(before.image)

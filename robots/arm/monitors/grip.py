@@ -1,0 +1,38 @@
+"""What `missed` and `dropped` share: the fingers do not hold the object."""
+
+from typing import ClassVar
+
+from mend.robots.arm.grip import GripState
+from mend.robots.arm.monitors.monitor import ArmMonitor, ArmView
+from mend.robots.execution.monitor import NoParameters, Reaction
+from mend.robots.link.messages import Detection
+from mend.tasks.scene import StrictModel
+
+
+class GripMonitor(ArmMonitor[NoParameters]):
+    """Raises its issue once opening, effort and picture together say that the grip is `state`."""
+
+    state: ClassVar[GripState]
+    reaction: ClassVar[Reaction] = Reaction.GO_TO_NEUTRAL
+    camera: ClassVar[str | None] = "forearm"
+    parameters: ClassVar[type[StrictModel]] = NoParameters
+
+    def check(self, view: ArmView) -> Detection | None:
+        grip = view.grip
+        if grip is None or grip.state is not self.state:
+            return None
+        sure = 1.0 - grip.probability
+        return Detection(
+            camera="forearm",
+            center=None if grip.blob is None else grip.blob.center,
+            expected=grip.expected,
+            tolerance_px=grip.tolerance_px,
+            area_px=0 if grip.blob is None else grip.blob.area_px,
+            probability=sure,
+            explanation=f"{grip.reason} ({_percent(sure)} % sure)",
+        )
+
+
+def _percent(probability: float) -> int:
+    """Never 100: nothing is quite sure."""
+    return min(99, round(100 * probability))

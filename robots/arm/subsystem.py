@@ -1,0 +1,165 @@
+"""An arm with its gripper and cameras, as a subsystem of a robot."""
+
+from collections.abc import Callable, Collection, Mapping, Sequence
+from typing import Any
+
+from mend.robots.arm.arm import Arm
+from mend.robots.arm.behaviors.behavior import ArmBehavior
+from mend.robots.arm.behaviors.execution import ArmExecution
+from mend.robots.arm.behaviors.progress import ArmProgress
+from mend.robots.arm.behaviors.work import Work
+from mend.robots.arm.body import ArmBody
+from mend.robots.arm.command_resolver import CommandResolver
+from mend.robots.arm.looks import Looker, look_as_told
+from mend.robots.arm.monitors.monitor import ArmView
+from mend.robots.arm.perception import FOREARM, Perception
+from mend.robots.arm.result import JudgedResult
+from mend.robots.arm.shown_arm import ShownArm
+from mend.robots.body import CameraImage
+from mend.robots.catalogue import Catalogue
+from mend.robots.execution.behavior import Behavior, of_kind
+from mend.robots.execution.execution import Execution
+from mend.robots.execution.monitor import AnyMonitor, for_view
+from mend.robots.execution.routine import Routine
+from mend.robots.link.messages import (
+    Look,
+    Looked,
+    PoseLayout,
+    Poses,
+    ReachLimits,
+    ReportBody,
+    RoomLimits,
+    Start,
+)
+from mend.robots.vision.color_model import ColorModel
+from mend.robots.vision.warming_up import warm_up
+
+_EXPLAINING = frozenset({"missing", "undone", "unreachable"})
+"""Without these monitors an object that is not there would leave the service without a word."""
+
+
+class ArmSubsystem:
+    """A `Subsystem`: what an arm does with the parts of a table, as its cameras see them."""
+
+    def __init__(
+        self,
+        body: ArmBody,
+        model: ColorModel,
+        catalogue: Catalogue,
+        behaviors: Mapping[str, type[Behavior]],
+        monitors: Mapping[str, type[AnyMonitor]],
+        perception: Perception | None = None,
+        *,
+        films: bool = True,
+    ) -> None:
+        """Of `behaviors` and `monitors` it takes those of arms.
+
+        `films`: the forearm camera also takes pictures that only a clip before a fault needs.
+        Raises `ValueError` without monitors that tell of a part that is not there.
+        """
+        if not monitors.keys() >= _EXPLAINING:
+            raise ValueError(f"expected monitors for {sorted(_EXPLAINING)}, got {sorted(monitors)}")
+        warm_up()
+        self.effector = Arm(body)
+        self._body = body
+        self._behaviors = of_kind(behaviors, ArmBehavior)  # type: ignore[type-abstract]
+        self._monitors = for_view(monitors.values(), ArmView)
+        self._perception = perception or Perception(body, model, catalogue)
+        self._resolver = CommandResolver(self._behaviors, catalogue, model.names)
+        self._films = films and FOREARM in body.cameras
+        self._shown = ShownArm(body, catalogue, self._perception)
+
+    keeps_clear = False
+
+    @property
+    def behaviors(self) -> Collection[str]:
+        return self._behaviors
+
+    @property
+    def reach(self) -> ReachLimits:
+        reach = self._body.reach
+        return ReachLimits(
+            x=reach.origin[0], y=reach.origin[1], min_m=reach.min_m, max_m=reach.max_m
+        )
+
+    @property
+    def room(self) -> RoomLimits:
+        room = self._body.room
+        return RoomLimits(
+            resting=list(room.resting), hand_over=room.hand_over, around_m=room.around_m
+        )
+
+    def execution_of(self, start: Start, report: Callable[[ReportBody], None]) -> ArmExecution:
+        """What a start command asks for, not begun. Raises `CommandError`."""
+        assignment = self._resolver.assign(start)
+        self._perception.hand.clip.begin()
+        progress = ArmProgress(was_done=assignment.was_done)
+        work = Work(assignment, progress, self.effector, self._perception, report)
+        return ArmExecution(work, [each.create({}) for each in self._monitors])
+
+    def look(
+        self,
+        command: str,
+        look: Look,
+        held: Execution | None,
+        report: Callable[[ReportBody], None],
+    ) -> Routine[Looked]:
+        """The routine of a look. Raises `CommandError`."""
+        results = self._resolver.results_of(look.finished)
+        # What is held in the middle of a step stays there: only a resume or a retreat moves it.
+        may_move = (held is None or held.step == 0) and not self._perception.hand.holds()
+        looker = self._looker(held, report, may_move=may_move, finished=results)
+        return look_as_told(looker, command, look, self._resolver)
+
+    def glance(self, command: str, held: Execution | None) -> Looked:
+        """What the head camera sees now; it judges no results."""
+        return self._looker(held, _unheard, may_move=False).answer(command, None)
+
+    def retreat(self) -> Routine[None]:
+        """Open the gripper and go to neutral."""
+        yield from self.effector.open_gripper()
+        yield from self.effector.go_to_neutral()
+
+    def film(self) -> None:
+        """Take a picture for the clip if one is due."""
+        if self._films:
+            self._perception.hand.film()
+
+    @property
+    def clip(self) -> Sequence[CameraImage]:
+        """What the forearm camera saw in the last seconds, oldest first."""
+        return self._perception.hand.clip.images()
+
+    def layout(self, layout: PoseLayout) -> PoseLayout:
+        """Add the arm's joints, and every part of the catalogue."""
+        return self._shown.layout(layout)
+
+    def show(self, poses: Poses) -> Poses:
+        """Add the joints and the tool now, and every part where it was located last."""
+        return self._shown.poses(poses)
+
+    def note(self, looked: Looked) -> None:
+        """What was located is shown there from now on."""
+        if looked.blind is None:
+            self._shown.located = dict(looked.objects)
+
+    def _looker(
+        self,
+        held: Execution | None,
+        report: Callable[[ReportBody], None],
+        *,
+        may_move: bool,
+        finished: Sequence[JudgedResult] = (),
+    ) -> Looker:
+        return Looker(
+            arm=self.effector,
+            perception=self._perception,
+            report=report,
+            held=held if isinstance(held, ArmExecution) else None,
+            may_move=may_move,
+            finished=finished,
+        )
+
+
+def _unheard(_: Any) -> None:
+    """A glance moves nothing, so that it has nothing to report."""

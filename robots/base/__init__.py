@@ -1,0 +1,1 @@
+"""What belongs to a base that drives: its body, behaviors, monitors and looks."""

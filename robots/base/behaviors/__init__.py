@@ -1,0 +1,5 @@
+"""What a base can do: behaviors as lists of drives, and the execution that drives them."""
+
+from mend.robots.base.behaviors.behavior import BaseBehavior, BaseSituation, Drive
+
+__all__ = ["BaseBehavior", "BaseSituation", "Drive"]

@@ -1,0 +1,53 @@
+"""The monitors of a base's execution: when they check, and what they are shown."""
+
+import math
+from collections.abc import Callable, Sequence
+
+from mend.robots.base.base import Base
+from mend.robots.base.behaviors.progress import BaseProgress
+from mend.robots.base.monitors.monitor import BaseView
+from mend.robots.execution.monitor import AnyMonitor
+from mend.robots.execution.watch import Watch
+from mend.robots.link.messages import ReportBody
+
+
+class BaseWatch(Watch[BaseView]):
+    """Lets the monitors of the step under way judge what the base senses."""
+
+    def __init__(
+        self,
+        execution: str,
+        behavior: str,
+        progress: BaseProgress,
+        base: Base,
+        monitors: Sequence[AnyMonitor],
+        report: Callable[[ReportBody], None],
+    ) -> None:
+        """`behavior`: the name by which monitors know the one that is executed."""
+        super().__init__(execution, behavior, progress, base, monitors, report)
+        self._base, self._base_progress = base, progress
+        self._next_check_s = -math.inf
+
+    def check_if_due(self) -> None:
+        """Check at the laser's period. Raises `Interruption`."""
+        now = self._base.body.time_s()
+        if now >= self._next_check_s - 1e-9:
+            self._next_check_s = now + self._base.body.scan_period_s
+            self.check()
+
+    def check(self) -> None:
+        """Let the monitors of this step judge. Raises `Interruption` for the first that must."""
+        progress, now = self._base_progress, self._base.body.time_s()
+        drive, since_s = progress.drive, progress.waits_since_s
+        self.show(
+            BaseView(
+                time_s=now,
+                step=progress.step,
+                phase=progress.phase,
+                pose=self._base.body.pose(),
+                goal=None if drive is None else drive.to,
+                in_the_way_m=None if drive is None else self._base.in_the_way_m(drive.to),
+                waited_s=0.0 if since_s is None else now - since_s,
+                scan=self._base.body.scan(),
+            )
+        )

@@ -1,0 +1,38 @@
+"""The looks of a base: where it is, and whether its way is free."""
+
+from mend.robots.base.base import Base
+from mend.robots.base.behaviors.execution import BaseExecution
+from mend.robots.execution.command_error import CommandError
+from mend.robots.execution.execution import Execution
+from mend.robots.execution.routine import Routine
+from mend.robots.link.messages import Look, Looked, Position
+
+_PERIOD_S = 0.5
+
+
+def answer(base: Base, command: str, fulfilled: bool | None) -> Looked:
+    """Where the base is; it sees no objects, and judges no results."""
+    here = base.body.pose()
+    at = Position(x=here.x, y=here.y, z=0.0)
+    return Looked(command=command, objects={}, gripper=at, fulfilled=fulfilled)
+
+
+def look_as_told(base: Base, command: str, look: Look, held: Execution | None) -> Routine[Looked]:
+    """The routine of a `look` command. Raises `CommandError` for what no base can see."""
+    if look.expect not in (None, "way_clear"):
+        raise CommandError(f"a base that drives cannot look for '{look.expect}'")
+    goal = held.goal if isinstance(held, BaseExecution) else None
+
+    def way_is_clear() -> bool:
+        return goal is None or base.in_the_way_m(goal) is None
+
+    def routine() -> Routine[Looked]:
+        end_s = base.body.time_s() + look.within_s
+        while look.expect is not None and not way_is_clear():
+            left_s = end_s - base.body.time_s()
+            if left_s <= 1e-9:
+                return answer(base, command, fulfilled=False)
+            yield from base.wait(min(_PERIOD_S, left_s))
+        return answer(base, command, None if look.expect is None else True)
+
+    return routine()

@@ -1,0 +1,32 @@
+"""What a fault monitor of a base is, and all that it may look at."""
+
+from dataclasses import dataclass
+from typing import ClassVar, TypeVar
+
+from mend.robots.base.body import BasePose, RangeScan
+from mend.robots.execution.monitor import Monitor, MonitorView
+from mend.tasks.scene import StrictModel
+
+P = TypeVar("P", bound=StrictModel)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BaseView(MonitorView):
+    """What a base senses at one moment.
+
+    `pose` is where it is and `goal` where the step under way leads, None before the first.
+    `in_the_way_m` is how far what stands in the straight way there is from its rim, None where that
+    is free; `waited_s` how long it has stood before it.
+    """
+
+    pose: BasePose
+    goal: BasePose | None
+    in_the_way_m: float | None
+    waited_s: float
+    scan: RangeScan
+
+
+class BaseMonitor(Monitor[P, BaseView]):
+    """A monitor of a base's behaviors; it checks at the laser's period."""
+
+    view: ClassVar[type[MonitorView]] = BaseView

@@ -1,0 +1,124 @@
+"""A base that drives, as a subsystem of a robot."""
+
+import math
+from collections.abc import Callable, Collection, Mapping, Sequence
+
+from mend.robots.base.base import Base
+from mend.robots.base.behaviors.behavior import BaseBehavior, BaseSituation
+from mend.robots.base.behaviors.execution import BaseExecution
+from mend.robots.base.body import BaseBody, BasePose
+from mend.robots.base.looks import answer, look_as_told
+from mend.robots.base.monitors.monitor import BaseView
+from mend.robots.body import CameraImage
+from mend.robots.catalogue import Catalogue
+from mend.robots.execution.behavior import Behavior, of_kind, read_parameters
+from mend.robots.execution.command_error import CommandError
+from mend.robots.execution.execution import Execution
+from mend.robots.execution.monitor import AnyMonitor, for_view
+from mend.robots.execution.routine import Routine
+from mend.robots.link.messages import (
+    Location,
+    Look,
+    Looked,
+    PoseLayout,
+    Poses,
+    ReportBody,
+    Start,
+)
+
+
+class BaseSubsystem:
+    """A `Subsystem`: what a base does on a floor, as its laser senses it."""
+
+    reach = None
+    room = None
+    keeps_clear = True
+
+    def __init__(
+        self,
+        body: BaseBody,
+        catalogue: Catalogue,
+        behaviors: Mapping[str, type[Behavior]],
+        monitors: Mapping[str, type[AnyMonitor]],
+    ) -> None:
+        """Of `behaviors` and `monitors` it takes those of bases."""
+        self.effector = Base(body)
+        self._places = {name: _pose(each) for name, each in catalogue.places.items()}
+        self._behaviors = of_kind(behaviors, BaseBehavior)  # type: ignore[type-abstract]
+        self._monitors = for_view(monitors.values(), BaseView)
+
+    @property
+    def behaviors(self) -> Collection[str]:
+        return self._behaviors
+
+    def execution_of(self, start: Start, report: Callable[[ReportBody], None]) -> BaseExecution:
+        """What a start command asks for, not begun. Raises `CommandError`."""
+        behavior = self._behaviors[start.behavior]()
+        parameters = read_parameters(type(behavior), start)
+        situation = BaseSituation(
+            here=self.effector.body.pose(),
+            places=self._places,
+            target=self._target(getattr(parameters, "place", None), start.target),
+        )
+        return BaseExecution(
+            start.execution,
+            behavior.monitored_as,
+            behavior.drives(parameters, situation),
+            self.effector,
+            [each.create({}) for each in self._monitors],
+            report,
+        )
+
+    def look(
+        self,
+        command: str,
+        look: Look,
+        held: Execution | None,
+        report: Callable[[ReportBody], None],  # noqa: ARG002
+    ) -> Routine[Looked]:
+        """The routine of a look. Raises `CommandError`."""
+        return look_as_told(self.effector, command, look, held)
+
+    def glance(self, command: str, held: Execution | None) -> Looked:  # noqa: ARG002
+        """Where it is now."""
+        return answer(self.effector, command, None)
+
+    def retreat(self) -> Routine[None]:
+        """A base rests where it stands."""
+        self.effector.stop()
+        yield from self.effector.settle()
+
+    def film(self) -> None:
+        """It has no camera that looks at what it does."""
+
+    @property
+    def clip(self) -> Sequence[CameraImage]:
+        """Nothing."""
+        return ()
+
+    def layout(self, layout: PoseLayout) -> PoseLayout:
+        """Nothing but the base frame moves."""
+        return layout
+
+    def show(self, poses: Poses) -> Poses:
+        """Where the base frame is."""
+        here = self.effector.body.pose()
+        half = here.yaw / 2
+        base = (here.x, here.y, 0.0, 0.0, 0.0, math.sin(half), math.cos(half))
+        return poses.model_copy(update={"base": base})
+
+    def note(self, looked: Looked) -> None:
+        """What others located does not concern it."""
+
+    def _target(self, place: str | None, told: Location | None) -> BasePose | None:
+        if told is not None:
+            return _pose(told)
+        if place is None:
+            return None
+        if place not in self._places:
+            raise CommandError(f"place '{place}' is unknown, and the command gives no target")
+        return self._places[place]
+
+
+def _pose(location: Location) -> BasePose:
+    return BasePose(location.x, location.y, location.yaw)

@@ -1,0 +1,21 @@
+"""The phases of a behavior, by which monitors name what they watch."""
+
+from enum import StrEnum
+
+
+class Phase(StrEnum):
+    """What a step is for, in any behavior."""
+
+    PREPARE = "prepare"
+    """Before the first step: looking and planning."""
+    TRAVEL = "travel"
+    """The base drives."""
+    APPROACH = "approach"
+    GRASP = "grasp"
+    LIFT = "lift"
+    CARRY = "carry"
+    PLACE = "place"
+    RELEASE = "release"
+    RETREAT = "retreat"
+    CONFIRM = "confirm"
+    """After the last step: looking whether the result is there."""

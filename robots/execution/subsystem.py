@@ -1,0 +1,91 @@
+"""A subsystem of a robot: one effector, the behaviors that it can do, and the looks of its own."""
+
+from collections.abc import Callable, Collection, Sequence
+from typing import Any, Protocol
+
+from mend.robots.body import CameraImage
+from mend.robots.execution.effector import Effector
+from mend.robots.execution.execution import Execution
+from mend.robots.execution.routine import Routine
+from mend.robots.link.messages import (
+    Look,
+    Looked,
+    PoseLayout,
+    Poses,
+    ReachLimits,
+    ReportBody,
+    RoomLimits,
+    Start,
+)
+
+
+class Subsystem(Protocol):
+    """What a robot does with an arm, or with a base; a robot may have both."""
+
+    @property
+    def behaviors(self) -> Collection[str]:
+        """The names of the behaviors that it can do."""
+        ...
+
+    @property
+    def effector(self) -> Effector[Any]: ...
+
+    @property
+    def reach(self) -> ReachLimits | None:
+        """From where to where it can take things; None if it takes nothing."""
+        ...
+
+    @property
+    def room(self) -> RoomLimits | None:
+        """The room that it takes while it works; None if that is not known."""
+        ...
+
+    @property
+    def keeps_clear(self) -> bool:
+        """Whether it keeps clear of other robots by what it senses, so that it needs no room."""
+        ...
+
+    def execution_of(self, start: Start, report: Callable[[ReportBody], None]) -> Execution:
+        """What a start command asks for, not begun. Raises `CommandError`."""
+        ...
+
+    def look(
+        self,
+        command: str,
+        look: Look,
+        held: Execution | None,
+        report: Callable[[ReportBody], None],
+    ) -> Routine[Looked]:
+        """The routine of a look; `held` is the execution that waits. Raises `CommandError`."""
+        ...
+
+    def glance(self, command: str, held: Execution | None) -> Looked:
+        """What is seen now, without moving anything; it judges no results."""
+        ...
+
+    def retreat(self) -> Routine[None]:
+        """Go to rest while nothing is executed."""
+        ...
+
+    # --- For people who watch -------------------------------------------------------------------
+
+    def film(self) -> None:
+        """A control cycle of an execution has passed: take a picture for the clip if one is due."""
+        ...
+
+    @property
+    def clip(self) -> Sequence[CameraImage]:
+        """What was seen in the last seconds, oldest first."""
+        ...
+
+    def layout(self, layout: PoseLayout) -> PoseLayout:
+        """What it adds to what the robot shows."""
+        ...
+
+    def show(self, poses: Poses) -> Poses:
+        """Where that is now."""
+        ...
+
+    def note(self, looked: Looked) -> None:
+        """This was reported: what was located is shown there."""
+        ...

@@ -1,5 +1,0 @@
-"""Fault monitors: each watches for one kind of issue in some phases of some behaviors."""
-
-from mend.robots.monitors.monitor import Monitor, MonitorView, Reaction
-
-__all__ = ["Monitor", "MonitorView", "Reaction"]
