@@ -1,7 +1,7 @@
 """Random scenarios: does every run end, and is what it says at the end true?
 
     python benchmarks/random_scenarios.py [--runs 1000] [--world tabletop|workcell] [--seed 0]
-        [--robots 2] [--jobs 2] [--quick] [--replay SEED]
+        [--robots 1|2|3] [--person] [--jobs 2] [--quick] [--replay SEED]
 
 Half of the runs are random trees over random scenes, the others random trees with OR over made-up
 scenes (tabletop) or over the EKET base (workcell); with random interventions, and helpers that
@@ -9,8 +9,9 @@ answer at random, never, or always yes. Every run's events are audited; its end 
 of its dialogues are compared with its events and with where the simulated world's parts really are.
 The exit code is 1 if any run broke a constraint, hung or told an untruth, or if one with a willing
 helper did not finish.
-With `--robots 2` every run is about a random scene with a second robot across the table: then no
-two robots may ever touch, be it with what they hold. `--replay` prints one run's events. Tables of
+With `--robots 2` every run is about a random scene with a second robot across the table, with 3
+another one at its end: then no two robots may ever touch, be it with what they hold. With
+`--person` somebody does leaves themselves, gives some back and forgets others. `--replay` prints one run's events. Tables of
 up to 60 parts are worked off here only; the tests take six runs of up to 12.
 """
 
@@ -22,6 +23,7 @@ import faulthandler
 import json
 import logging
 import os
+import random
 import sys
 import time
 from collections import Counter
@@ -39,6 +41,7 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "doubles"))
 import numpy as np
 from broken_constraints import broken_constraints
 from dialogue_judge import DialogueJudge
+from leaf_taker import LeafTaker
 from random_task import random_nesting, random_task
 from touching_robots import touching_robots
 from untruths import Rest, find_untruths, kinds_of
@@ -89,6 +92,7 @@ class Outcome:
     wall_s: float
     simulated_s: float
     missing: int = 0
+    taken: int = 0
     violations: list[str] = field(default_factory=list)
     untruths: list[str] = field(default_factory=list)
 
@@ -136,23 +140,28 @@ def _random_scene(world: str, seed: int, most_parts: int, robots: int) -> Drawn:
     assert isinstance(adapter, SceneChecker)
 
     def check(scene: Scene, nodes: Sequence[GoalNode | BehaviorNode]) -> list[SceneProblem]:
-        return adapter.check_scene(_shared(scene) if robots > 1 else scene, nodes)
+        return adapter.check_scene(_shared(scene, robots) if robots > 1 else scene, nodes)
 
     parts = int(np.random.default_rng(seed).integers(1, most_parts + 1))
     drawn = random_scene(seed, parts, check)
     tree = {**drawn.tree, "name": "random", "scene": "random"}
     scene = {**scene_document(drawn.scene), "name": "random"}
     if robots > 1:
-        bases = _shared(drawn.scene).robots
+        bases = _shared(drawn.scene, robots).robots
         scene["robots"] = {name: base.model_dump() for name, base in bases.items()}
     return Drawn(json.dumps(tree), parts, json.dumps(scene))
 
 
-def _shared(scene: Scene) -> Scene:
-    """The scene with a second robot, which faces the first across the table."""
+def _shared(scene: Scene, robots: int) -> Scene:
+    """The scene with a second robot across the table from the first, and a third at its end."""
     x, y = scene.table.center
-    across = Base(x=2 * x, y=2 * y, yaw=np.pi)
-    return scene.model_copy(update={"robots": {"here": Base(x=0.0, y=0.0), "across": across}})
+    end_m = y + scene.table.size[1] / 2 + x - scene.table.size[0] / 2
+    bases = {
+        "here": Base(x=0.0, y=0.0),
+        "across": Base(x=2 * x, y=2 * y, yaw=np.pi),
+        "end": Base(x=x, y=end_m, yaw=-np.pi / 2),
+    }
+    return scene.model_copy(update={"robots": dict(list(bases.items())[:robots])})
 
 
 def _possible_base(rng: np.random.Generator) -> Drawn:
@@ -213,7 +222,13 @@ def request(world: str, seed: int, answers: Answers) -> RunRequest:
 
 
 async def run_once(
-    world: str, seed: int, *, robots: int = 1, most_leaves: int | None = None, show: bool = False
+    world: str,
+    seed: int,
+    *,
+    robots: int = 1,
+    person: bool = False,
+    most_leaves: int | None = None,
+    show: bool = False,
 ) -> Outcome:
     """One random scenario on a service of its own, judged."""
     # Only here, so that a worker's limits on threads come before the libraries that heed them.
@@ -230,7 +245,11 @@ async def run_once(
             await service.library.trees.save("random", drawn.tree)
             watched = WatchedWorld(service.journal)
             run = (await service.runtime.start_run(request(world, seed, answers))).id
+            taker = LeafTaker(service, run, random.Random(seed))
+            accompanied = asyncio.create_task(taker.accompany()) if person else None
             view = await _ended_or_hung(service, run, QUIET_S[world])
+            if accompanied is not None:
+                accompanied.cancel()
             wall_s = time.perf_counter() - began
             events = await service.journal.read(0, 1_000_000, run)
             snapshot = await service.journal.world(run)
@@ -246,6 +265,7 @@ async def run_once(
         reason=view.result.reason if view.result else "",
         wall_s=wall_s,
         simulated_s=view.time,
+        taken=taker.taken,
         missing=len(view.result.missing) if view.result else 0,
         violations=[*broken_constraints(events, kinds_of(started)), *touched[:3]],
         untruths=_untruths(events, watched, where_parts_rest(started, snapshot))
@@ -292,12 +312,12 @@ async def _ended_or_hung(service: "Service", run: UUID, quiet_s: float) -> RunVi
     return await service.runtime.run(run)
 
 
-def _work(world: str, seed: int, robots: int) -> Outcome:
+def _work(world: str, seed: int, robots: int, person: bool) -> Outcome:
     """One run in a worker; a run that blocks its process for good takes the process with it."""
     logging.basicConfig(level=logging.ERROR)
     faulthandler.dump_traceback_later(20 * QUIET_S[world], exit=True)
     try:
-        return asyncio.run(run_once(world, seed, robots=robots))
+        return asyncio.run(run_once(world, seed, robots=robots, person=person))
     except Exception as error:
         # Not every error can be sent to the process that waits; one that cannot breaks the pool.
         raise RuntimeError(f"seed {seed}: {type(error).__name__}: {error}") from None
@@ -305,12 +325,14 @@ def _work(world: str, seed: int, robots: int) -> Outcome:
         faulthandler.cancel_dump_traceback_later()
 
 
-def run_all(world: str, seeds: list[int], jobs: int, robots: int = 1) -> Iterator[Outcome]:
+def run_all(
+    world: str, seeds: list[int], jobs: int, robots: int = 1, *, person: bool = False
+) -> Iterator[Outcome]:
     """The outcomes of all runs as they come in."""
     for name in THREAD_LIMITS:
         os.environ[name] = "1"
     with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
-        futures = {pool.submit(_work, world, seed, robots): seed for seed in seeds}
+        futures = {pool.submit(_work, world, seed, robots, person): seed for seed in seeds}
         for future in as_completed(futures):
             try:
                 yield future.result()
@@ -343,6 +365,8 @@ def print_table(outcomes: list[Outcome]) -> None:
     )
     for reason, count_of in reasons.most_common():
         print(f"failed {count_of} times: {reason}")
+    if taken := sum(each.taken for each in outcomes):
+        print(f"people took {taken} leaves themselves")
     walls = np.array([each.wall_s for each in outcomes])
     simulated_s = sum(each.simulated_s for each in outcomes)
     print(
@@ -356,14 +380,21 @@ def main() -> int:
     parser.add_argument("--runs", type=int, help="how many (1,000 in tabletop, 50 in workcell)")
     parser.add_argument("--world", choices=sorted(MOST_LEAVES), default="tabletop")
     parser.add_argument("--seed", type=int, default=0, help="the first run's seed")
-    parser.add_argument("--robots", type=int, choices=(1, 2), default=1, help="2: in tabletop only")
+    parser.add_argument("--robots", type=int, choices=(1, 2, 3), default=1, help="in tabletop")
+    parser.add_argument("--person", action="store_true", help="somebody does leaves themselves")
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--quick", action="store_true", help="a few runs, as a smoke test")
     parser.add_argument("--replay", type=int, metavar="SEED", help="print one run's events")
     arguments = parser.parse_args()
     if arguments.replay is not None:
         outcome = asyncio.run(
-            run_once(arguments.world, arguments.replay, robots=arguments.robots, show=True)
+            run_once(
+                arguments.world,
+                arguments.replay,
+                robots=arguments.robots,
+                person=arguments.person,
+                show=True,
+            )
         )
         print(outcome)
         return 1 if outcome.wrong else 0
@@ -373,7 +404,9 @@ def main() -> int:
     began = time.perf_counter()
     outcomes: list[Outcome] = []
     seeds = list(range(arguments.seed, arguments.seed + runs))
-    for outcome in run_all(arguments.world, seeds, arguments.jobs, arguments.robots):
+    for outcome in run_all(
+        arguments.world, seeds, arguments.jobs, arguments.robots, person=arguments.person
+    ):
         outcomes.append(outcome)
         for sentence in outcome.wrong:
             print(f"seed {outcome.seed} ({outcome.answers}): {sentence}", flush=True)

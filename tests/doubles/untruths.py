@@ -224,7 +224,7 @@ def _was_gone(events: Sequence[ev.Event], end: ev.RunFailed) -> bool:
 def _way_out(started: ev.RunStarted, events: Sequence[ev.Event], node: str) -> str | None:
     """An alternative above (or at) a leaf that could still have been given up."""
     definition = TaskTreeDefinition.model_validate(started.tree)
-    paths = _paths(definition)
+    paths = paths_of(definition)
     kinds = {path: each.kind for path, each in zip(paths, definition.nodes, strict=True)}
     done = [each.node for each in _done_at_the_end(events)]
     abandoned = {each.node for each in events if isinstance(each, ev.NodeAbandoned)}
@@ -246,18 +246,18 @@ def _way_out(started: ev.RunStarted, events: Sequence[ev.Event], node: str) -> s
 def leaves_of(started: ev.RunStarted) -> dict[str, BehaviorNode]:
     """Every leaf by its path."""
     definition = TaskTreeDefinition.model_validate(started.tree)
-    pairs = zip(_paths(definition), definition.nodes, strict=True)
+    pairs = zip(paths_of(definition), definition.nodes, strict=True)
     return {path: each for path, each in pairs if isinstance(each, BehaviorNode)}
 
 
 def kinds_of(started: ev.RunStarted) -> dict[str, str]:
     """Every node's kind by its path, as `broken_constraints` wants them."""
     definition = TaskTreeDefinition.model_validate(started.tree)
-    pairs = zip(_paths(definition), definition.nodes, strict=True)
+    pairs = zip(paths_of(definition), definition.nodes, strict=True)
     return {path: str(each.kind) for path, each in pairs}
 
 
-def _paths(definition: TaskTreeDefinition) -> list[str]:
+def paths_of(definition: TaskTreeDefinition) -> list[str]:
     """The path of every node, in the definition's order."""
     paths: list[str] = []
     children = [0] * len(definition.nodes)
