@@ -53,11 +53,16 @@ class Watched(asyncio.Protocol):
     def __init__(self, *args: Any, **options: Any) -> None:
         super().__init__(*args, **options)
         self.connection: asyncio.WriteTransport | None = None
+        self.lost = asyncio.Event()
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         assert isinstance(transport, asyncio.WriteTransport)
         self.connection = transport
         super().connection_made(transport)
+
+    def connection_lost(self, error: Exception | None) -> None:
+        super().connection_lost(error)
+        self.lost.set()
 
 
 class WatchedSMTP(Watched, SMTP):
@@ -82,7 +87,12 @@ async def listening(
         server.close()
         for each in served:
             if each.connection is not None:
-                each.connection.abort()
+                try:
+                    each.connection.abort()
+                except AttributeError:
+                    # Early Pythons 3.11 cannot abort what was closed twice; it ends by itself.
+                    async with asyncio.timeout(20):
+                        await each.lost.wait()
 
 
 def smtp_server(inbox: Inbox) -> AbstractAsyncContextManager[int]:
