@@ -74,6 +74,9 @@ QUIET_S = {"tabletop": 120.0, "workcell": 300.0}
 MOST_EVENTS = 50_000
 """A run with more events than this goes round in circles."""
 
+FORGOTTEN_S = 5.0
+"""What people take and forget is anybody's again after that; meanwhile clocks run as theirs do."""
+
 UNRELIABLE = Person(late=0.2, wrong_object=0.15, wrong_place=0.15, never=0.15)
 MOST_ASKS = 2000
 
@@ -236,7 +239,13 @@ async def run_once(
 
     answers = KINDS[seed % len(KINDS)]
     drawn = draw(world, seed, most_leaves or MOST_LEAVES[world], robots)
-    settings = Settings(port=0, journal=Path(IN_MEMORY), log_level="error", speech_voice="none")
+    settings = Settings(
+        port=0,
+        journal=Path(IN_MEMORY),
+        log_level="error",
+        speech_voice="none",
+        person_leaf_s=FORGOTTEN_S,
+    )
     began = time.perf_counter()
     with touching_robots() as touched:
         async with open_service(settings) as service:

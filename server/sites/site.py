@@ -101,6 +101,9 @@ class Site:
     async def _restart(self, robot: str, reason: str) -> None:
         proxy = self._resting.get(robot)
         if proxy is None:
+            # A run has borrowed it since then: it is that which starts the world again.
+            if (run := self.run_of(robot)) is not None:
+                self._runs[run].tell_lost(robot, reason)
             return
         proxy.disconnect()
         proxy.area = None

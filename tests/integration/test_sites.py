@@ -24,6 +24,7 @@ from mend.server.journal.journal import Document, Entry
 from mend.server.journal.run_index import RunPage
 from mend.server.robots.process import WorldProcess
 from mend.server.runtime.requests import RunRequest
+from mend.server.runtime.run import Run
 from mend.server.runtime.views import RunStatus
 from mend.server.settings import Settings
 from mend.server.sites.requests import SiteRequest
@@ -206,6 +207,25 @@ async def test_a_world_that_ends_while_nobody_uses_it_is_started_again(tmp_path:
         await until_told(found, site.id, "site_restarted")
         events = await done(found, await begin(found, "red_near", site.id))
     assert not [each for each in events if isinstance(each, ev.StepStarted)]
+
+
+async def test_a_world_that_ends_just_before_a_run_borrows_its_robots_is_started_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async with service(tmp_path) as found:
+        view = await open_bench(found)
+        site = found.sites._sites[view.id]
+        lend = site.lend
+
+        def lend_what_has_just_ended(run: Run) -> None:
+            site.world._ended(site.world._life, "its process was killed")
+            lend(run)
+
+        monkeypatch.setattr(site, "lend", lend_what_has_just_ended)
+        assert site.world._handle is not None
+        await site.world._handle.stop()
+        async with asyncio.timeout(30.0):
+            await done(found, await begin(found, "red_near", view.id))
 
 
 @pytest.mark.slow(20)
