@@ -11,8 +11,9 @@ The exit code is 1 if any run broke a constraint, hung or told an untruth, or if
 helper did not finish.
 With `--robots 2` every run is about a random scene with a second robot across the table, with 3
 another one at its end: then no two robots may ever touch, be it with what they hold. With
-`--person` somebody does leaves themselves, gives some back and forgets others. `--replay` prints one run's events. Tables of
-up to 60 parts are worked off here only; the tests take six runs of up to 12.
+`--person` somebody does leaves themselves, gives some back and forgets others. `--replay` prints
+one run's events. Tables of up to 60 parts are worked off here only; the tests take six runs of up
+to 12.
 """
 
 # ruff: noqa: T201
