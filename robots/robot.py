@@ -8,7 +8,7 @@ from mend.robots.agent import Emit, EmitPicture
 from mend.robots.body import Body, CameraImage
 from mend.robots.clip import encode_clip
 from mend.robots.execution.command_error import CommandError
-from mend.robots.execution.execution import Execution
+from mend.robots.execution.execution import AnyExecution
 from mend.robots.execution.execution_state import ExecutionState
 from mend.robots.execution.monitor import BEFORE_FIRST_STEP
 from mend.robots.execution.routine import Routine
@@ -77,7 +77,7 @@ class Robot:
         self._activity: Routine[None] | None = None
         self._decided: Routine[None] | None = None
         self._looking = False
-        self._execution: Execution | None = None
+        self._execution: AnyExecution | None = None
         self._attempts: dict[str, int] = {}
         self._waiting: list[tuple[str, CommandBody]] = []
         self._owed_clip: _OwedClip | None = None

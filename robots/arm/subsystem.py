@@ -18,7 +18,7 @@ from mend.robots.arm.shown_arm import ShownArm
 from mend.robots.body import CameraImage
 from mend.robots.catalogue import Catalogue
 from mend.robots.execution.behavior import Behavior, of_kind
-from mend.robots.execution.execution import Execution
+from mend.robots.execution.execution import AnyExecution
 from mend.robots.execution.monitor import AnyMonitor, for_view
 from mend.robots.execution.routine import Routine
 from mend.robots.link.messages import (
@@ -101,7 +101,7 @@ class ArmSubsystem:
         self,
         command: str,
         look: Look,
-        held: Execution | None,
+        held: AnyExecution | None,
         report: Callable[[ReportBody], None],
     ) -> Routine[Looked]:
         """The routine of a look. Raises `CommandError`."""
@@ -111,7 +111,7 @@ class ArmSubsystem:
         looker = self._looker(held, report, may_move=may_move, finished=results)
         return look_as_told(looker, command, look, self._resolver)
 
-    def glance(self, command: str, held: Execution | None) -> Looked:
+    def glance(self, command: str, held: AnyExecution | None) -> Looked:
         """What the head camera sees now; it judges no results."""
         return self._looker(held, _unheard, may_move=False).answer(command, None)
 
@@ -145,7 +145,7 @@ class ArmSubsystem:
 
     def _looker(
         self,
-        held: Execution | None,
+        held: AnyExecution | None,
         report: Callable[[ReportBody], None],
         *,
         may_move: bool,

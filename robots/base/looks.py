@@ -3,7 +3,7 @@
 from mend.robots.base.base import Base
 from mend.robots.base.behaviors.execution import BaseExecution
 from mend.robots.execution.command_error import CommandError
-from mend.robots.execution.execution import Execution
+from mend.robots.execution.execution import AnyExecution
 from mend.robots.execution.routine import Routine
 from mend.robots.link.messages import Look, Looked, Position
 
@@ -17,7 +17,9 @@ def answer(base: Base, command: str, fulfilled: bool | None) -> Looked:
     return Looked(command=command, objects={}, gripper=at, fulfilled=fulfilled)
 
 
-def look_as_told(base: Base, command: str, look: Look, held: Execution | None) -> Routine[Looked]:
+def look_as_told(
+    base: Base, command: str, look: Look, held: AnyExecution | None
+) -> Routine[Looked]:
     """The routine of a `look` command. Raises `CommandError` for what no base can see."""
     if look.expect not in (None, "way_clear"):
         raise CommandError(f"a base that drives cannot look for '{look.expect}'")

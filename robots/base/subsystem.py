@@ -13,7 +13,7 @@ from mend.robots.body import CameraImage
 from mend.robots.catalogue import Catalogue
 from mend.robots.execution.behavior import Behavior, of_kind, read_parameters
 from mend.robots.execution.command_error import CommandError
-from mend.robots.execution.execution import Execution
+from mend.robots.execution.execution import AnyExecution
 from mend.robots.execution.monitor import AnyMonitor, for_view
 from mend.robots.execution.routine import Routine
 from mend.robots.link.messages import (
@@ -73,13 +73,13 @@ class BaseSubsystem:
         self,
         command: str,
         look: Look,
-        held: Execution | None,
+        held: AnyExecution | None,
         report: Callable[[ReportBody], None],  # noqa: ARG002
     ) -> Routine[Looked]:
         """The routine of a look. Raises `CommandError`."""
         return look_as_told(self.effector, command, look, held)
 
-    def glance(self, command: str, held: Execution | None) -> Looked:  # noqa: ARG002
+    def glance(self, command: str, held: AnyExecution | None) -> Looked:  # noqa: ARG002
         """Where it is now."""
         return answer(self.effector, command, None)
 

@@ -2,18 +2,18 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Generic
 
 from mend.robots.execution.effector import Effector
 from mend.robots.execution.execution_state import EXECUTION, ExecutionState
 from mend.robots.execution.monitor import BEFORE_FIRST_STEP, Reaction
-from mend.robots.execution.progress import Progress
+from mend.robots.execution.progress import G
 from mend.robots.execution.routine import Routine
 from mend.robots.execution.watch import Interruption
 from mend.robots.link.messages import Finished, Holding, ReportBody
 
 
-class Execution(ABC):
+class Execution(ABC, Generic[G]):
     """Walks one behavior's steps; `run`, `resume` and `retreat` give the routines to drive.
 
     Only one of them may be under way.
@@ -22,7 +22,7 @@ class Execution(ABC):
     def __init__(
         self,
         id: str,  # noqa: A002 - the protocol's word
-        progress: Progress,
+        progress: G,
         effector: Effector[Any],
         report: Callable[[ReportBody], None],
     ) -> None:
@@ -121,3 +121,6 @@ class Execution(ABC):
         self._progress.step = BEFORE_FIRST_STEP
         self._progress.move_to(ExecutionState.ENDED if end else ExecutionState.HOLDING)
         self._report(Holding(execution=self.id, at="neutral"))
+
+
+AnyExecution = Execution[Any]

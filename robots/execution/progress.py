@@ -2,6 +2,7 @@
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
+from typing import TypeVar
 
 from mend.robots.execution.execution_state import EXECUTION, ExecutionState
 from mend.robots.execution.monitor import BEFORE_FIRST_STEP
@@ -26,3 +27,6 @@ class Progress(ABC):
     @abstractmethod
     def phase(self) -> Phase:
         """What the step under way is for."""
+
+
+G = TypeVar("G", bound=Progress)

@@ -5,7 +5,7 @@ from typing import Any, Protocol
 
 from mend.robots.body import CameraImage
 from mend.robots.execution.effector import Effector
-from mend.robots.execution.execution import Execution
+from mend.robots.execution.execution import AnyExecution
 from mend.robots.execution.routine import Routine
 from mend.robots.link.messages import (
     Look,
@@ -45,7 +45,7 @@ class Subsystem(Protocol):
         """Whether it keeps clear of other robots by what it senses, so that it needs no room."""
         ...
 
-    def execution_of(self, start: Start, report: Callable[[ReportBody], None]) -> Execution:
+    def execution_of(self, start: Start, report: Callable[[ReportBody], None]) -> AnyExecution:
         """What a start command asks for, not begun. Raises `CommandError`."""
         ...
 
@@ -53,13 +53,13 @@ class Subsystem(Protocol):
         self,
         command: str,
         look: Look,
-        held: Execution | None,
+        held: AnyExecution | None,
         report: Callable[[ReportBody], None],
     ) -> Routine[Looked]:
         """The routine of a look; `held` is the execution that waits. Raises `CommandError`."""
         ...
 
-    def glance(self, command: str, held: Execution | None) -> Looked:
+    def glance(self, command: str, held: AnyExecution | None) -> Looked:
         """What is seen now, without moving anything; it judges no results."""
         ...
 

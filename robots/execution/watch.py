@@ -8,7 +8,7 @@ from mend.robots.body import CameraImage
 from mend.robots.execution.effector import Effector
 from mend.robots.execution.monitor import AnyMonitor, MonitorView, Reaction
 from mend.robots.execution.phase import Phase
-from mend.robots.execution.progress import Progress
+from mend.robots.execution.progress import G
 from mend.robots.link.messages import Detection, IssueDetected, ReportBody
 from mend.robots.vision.drawing import draw_detection, encode_jpeg
 
@@ -26,14 +26,14 @@ class Interruption(Exception):  # noqa: N818 - control flow, not an error
         self.reaction = reaction
 
 
-class Watch(ABC, Generic[V]):
+class Watch(ABC, Generic[V, G]):
     """Lets the monitors of the step under way judge what is sensed."""
 
     def __init__(
         self,
         execution: str,
         behavior: str,
-        progress: Progress,
+        progress: G,
         effector: Effector[Any],
         monitors: Sequence[AnyMonitor],
         report: Callable[[ReportBody], None],

@@ -1,13 +1,22 @@
 """A package beside Mend adds a world of robots that drive: runs go on there as anywhere."""
 
 import asyncio
+import json
+import random
 from collections.abc import AsyncIterator, Iterator
 from contextlib import asynccontextmanager
+from itertools import combinations
 from pathlib import Path
+from typing import Any
 
+import courtyard.adapter
+import numpy as np
 import pytest
 from broken_constraints import broken_constraints
+from courtyard.cart import RADIUS_M
+from courtyard.world import Courtyard
 from installed_example import EXAMPLES, install
+from random_task import random_nesting
 from untruths import kinds_of
 
 from mend.server.composition import Service, open_service
@@ -108,3 +117,59 @@ async def test_what_a_world_of_arms_cannot_do_is_told_before_a_run(tmp_path: Pat
     async with service(tmp_path) as found:
         with pytest.raises(ImpossibleError, match="cannot do the tree 'rounds'"):
             await found.runtime.start_run(RunRequest(tree="rounds", world="tabletop"))
+
+
+def drawn(seed: int) -> tuple[str, str]:
+    """A scene with one to three carts, and a tree of errands in it."""
+    rng = random.Random(seed)
+    spots = rng.sample([(x, y) for x in (-4.0, -1.5, 1.5, 4.0) for y in (-4.0, -1.5, 1.5, 4.0)], 10)
+    carts = spots[: rng.randint(1, 3)]
+    scene = {
+        "name": "drawn",
+        "objects": {},
+        "robots": {
+            f"cart_{n}": {"x": x, "y": y, "yaw": rng.randrange(4) * 1.570796}
+            for n, (x, y) in enumerate(carts)
+        },
+        "places": {
+            f"spot_{n}": {"pose": {"x": x, "y": y, "z": 0.0, "yaw": rng.uniform(-3.0, 3.0)}}
+            for n, (x, y) in enumerate(spots[3:])
+        },
+    }
+    leaves: list[Any] = [{"behavior": "go_to", "place": name} for name in scene["places"]]
+    tree = {
+        "name": "drawn",
+        "scene": "drawn",
+        "tree": random_nesting(np.random.default_rng(seed), leaves),
+    }
+    return json.dumps(scene), json.dumps(tree)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(6))
+async def test_drawn_errands_all_end_and_no_two_carts_ever_touch(
+    tmp_path: Path, seed: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    gaps_m: list[float] = []
+
+    class Watched(Courtyard):
+        def advance_cycle(self) -> None:
+            super().advance_cycle()
+            gaps_m.extend(a.place.distance_m(b.place) for a, b in combinations(self.carts, 2))
+
+    monkeypatch.setattr(courtyard.adapter, "Courtyard", Watched)
+    scene, tree = drawn(seed)
+    async with service(tmp_path) as found:
+        await found.library.scenes.save("drawn", scene)
+        await found.library.trees.save("drawn", tree)
+        answers = "none" if seed % 2 else ["yes"] * 200
+        request = RunRequest(tree="drawn", world="courtyard", speed="max", answers=answers)
+        run = await found.runtime.start_run(request)
+        async with asyncio.timeout(PATIENCE_S):
+            view = await found.runtime.wait_for_end(run.id)
+        events = await found.journal.read(0, 100_000, run.id)
+    started = events[0]
+    assert isinstance(started, ev.RunStarted)
+    assert view.status in (RunStatus.FINISHED, RunStatus.FAILED)
+    assert broken_constraints(events, kinds_of(started)) == []
+    assert min(gaps_m, default=1.0) > 2 * RADIUS_M

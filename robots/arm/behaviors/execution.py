@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from mend.robots.arm.behaviors.confirmation import look_at_outcome
 from mend.robots.arm.behaviors.covering import CoveredResultGone
 from mend.robots.arm.behaviors.preparation import prepare
+from mend.robots.arm.behaviors.progress import ArmProgress
 from mend.robots.arm.behaviors.put_down import put_down
 from mend.robots.arm.behaviors.step_walk import StepWalk
 from mend.robots.arm.behaviors.watch import ArmWatch
@@ -21,7 +22,7 @@ from mend.robots.vision.obstruction import Obstruction
 from mend.robots.vision.presence import Presence
 
 
-class ArmExecution(Execution):
+class ArmExecution(Execution[ArmProgress]):
     """Walks one behavior of an arm."""
 
     def __init__(self, work: Work, monitors: Sequence[AnyMonitor]) -> None:
@@ -39,12 +40,12 @@ class ArmExecution(Execution):
     @property
     def way(self) -> list[ToolPose]:
         """The poses that the steps still to come lead through."""
-        return self._work.progress.way
+        return self._progress.way
 
     @property
     def obstruction(self) -> Obstruction | None:
         """What was last seen to be in that way."""
-        return self._work.progress.seen.obstruction
+        return self._progress.seen.obstruction
 
     @property
     def destination(self) -> tuple[Part, Location | None] | None:
@@ -61,7 +62,7 @@ class ArmExecution(Execution):
 
     def _walk(self, *, resumed: bool) -> Routine[bool]:
         """Look, plan, walk all steps and look again. Raises `Interruption`."""
-        progress = self._work.progress
+        progress = self._progress
         progress.felt, progress.inexact = None, False
         progress.regrasps = 0
         progress.as_found &= not resumed
@@ -81,7 +82,7 @@ class ArmExecution(Execution):
 
     def _go_to_rest(self) -> Routine[None]:
         """Put down or let go what is held, and move to neutral."""
-        yield from put_down(self._arm, self._perception, self._work.progress.picked_at)
+        yield from put_down(self._arm, self._perception, self._progress.picked_at)
         yield from self._arm.go_to_neutral()
 
     def _react(self, interruption: Interruption) -> Routine[None]:
@@ -106,25 +107,21 @@ class ArmExecution(Execution):
         self._arm.be_careful(1.0)
         self._expect_change()
         outcome = yield from look_at_outcome(part, target, self._arm, self._perception)
-        self._work.progress.outcome = outcome
-        self._work.progress.unconfirmed = outcome.blind is not None
+        self._progress.outcome = outcome
+        self._progress.unconfirmed = outcome.blind is not None
         self._watch.check(None)
         if outcome.presence is not Presence.GONE:
-            if self._work.progress.inexact or not outcome.is_inexact(part, target):
+            if self._progress.inexact or not outcome.is_inexact(part, target):
                 return True
-            self._work.progress.inexact = True
+            self._progress.inexact = True
         else:
-            self._work.progress.inexact = False
+            self._progress.inexact = False
         self._watch.start_again()
         self._progress.move_to(ExecutionState.PREPARING)
         return False
 
     def _expect_change(self) -> None:
         """What was seen where it started, and was carried away, cannot be seen there any more."""
-        before = self._work.progress.seen
-        if (
-            before.image is not None
-            and before.sighting is not None
-            and self._work.progress.picked_at
-        ):
+        before = self._progress.seen
+        if before.image is not None and before.sighting is not None and self._progress.picked_at:
             self._perception.head.expect_change(before.image)

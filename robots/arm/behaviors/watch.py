@@ -7,6 +7,7 @@ from typing import NoReturn
 from mend.errors import IllegalTransitionError
 from mend.robots.arm.behaviors.behavior import SetGripper
 from mend.robots.arm.behaviors.contact import Contact, Try
+from mend.robots.arm.behaviors.progress import ArmProgress
 from mend.robots.arm.behaviors.work import Work
 from mend.robots.arm.grip import GripReading
 from mend.robots.arm.monitors.monitor import ArmMonitor, ArmView
@@ -17,7 +18,7 @@ from mend.robots.execution.phase import Phase
 from mend.robots.execution.watch import Watch
 
 
-class ArmWatch(Watch[ArmView]):
+class ArmWatch(Watch[ArmView, ArmProgress]):
     """Lets the monitors of the step under way judge what is seen and felt."""
 
     def __init__(self, work: Work, monitors: Sequence[AnyMonitor]) -> None:
@@ -30,7 +31,7 @@ class ArmWatch(Watch[ArmView]):
             monitors,
             work.report,
         )
-        self._work, self._arm_progress = work, work.progress
+        self._work = work
         self._forces_n: list[float] = []
         self._next_check_s = -math.inf
         self._read_s = -math.inf
@@ -50,7 +51,7 @@ class ArmWatch(Watch[ArmView]):
         if now < self._next_check_s - 1e-9:
             return
         self._next_check_s = now + self._work.perception.hand.period_s
-        looking = self._judges_grip(self._arm_progress.phase) and not self._closing()
+        looking = self._judges_grip(self._progress.phase) and not self._closing()
         self._read_s = now if looking else self._read_s
         self.check(self._work.perception.read_grip() if looking else None)
 
@@ -62,20 +63,20 @@ class ArmWatch(Watch[ArmView]):
 
     def judge(self, contact: Contact) -> NoReturn:
         """Let the monitors judge what was felt. Raises `Interruption`."""
-        self._arm_progress.contact = contact
+        self._progress.contact = contact
         self.check(None)
         expected = f"an issue of {contact.force_n:.0f} N against the arm"
-        raise IllegalTransitionError("the execution", self._arm_progress.state, "none", expected)
+        raise IllegalTransitionError("the execution", self._progress.state, "none", expected)
 
     def grip_is_open_question(self, arrived_s: float) -> bool:
         """Whether the pictures have yet to show what the gripper holds.
 
         The last step in which they are looked at ends with one taken after the arm has arrived.
         """
-        grip, plan = self._work.perception.hand.grip, self._arm_progress.plan
-        if grip is None or plan is None or not self._judges_grip(self._arm_progress.phase):
+        grip, plan = self._work.perception.hand.grip, self._progress.plan
+        if grip is None or plan is None or not self._judges_grip(self._progress.phase):
             return False
-        following = plan.steps[self._arm_progress.step : self._arm_progress.step + 1]
+        following = plan.steps[self._progress.step : self._progress.step + 1]
         if following and self._judges_grip(following[0].phase):
             return grip.in_doubt
         return grip.in_doubt or self._read_s < arrived_s
@@ -85,13 +86,13 @@ class ArmWatch(Watch[ArmView]):
 
     def _closing(self) -> bool:
         """Whether the fingers are still on their way together."""
-        plan = self._arm_progress.plan
+        plan = self._progress.plan
         if plan is None or not self._work.arm.body.moving:
             return False
-        return plan.steps[self._arm_progress.step - 1].action == SetGripper("closed")
+        return plan.steps[self._progress.step - 1].action == SetGripper("closed")
 
     def _view(self, grip: GripReading | None) -> ArmView:
-        progress = self._arm_progress
+        progress = self._progress
         pictures, outcome = {}, progress.outcome
         seen = progress.seen if outcome is None else outcome
         if seen.image is not None:

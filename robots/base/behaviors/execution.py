@@ -18,7 +18,7 @@ TURNED_RAD = 0.09
 """A base is where it was to go when it is so near and turned no farther."""
 
 
-class BaseExecution(Execution):
+class BaseExecution(Execution[BaseProgress]):
     """Drives one behavior of a base. What was driven before a hold is not driven again."""
 
     def __init__(
@@ -31,20 +31,20 @@ class BaseExecution(Execution):
         report: Callable[[ReportBody], None],
     ) -> None:
         """`behavior`: the name by which monitors know it."""
-        self._drives = BaseProgress(drives=drives)
-        super().__init__(id, self._drives, base, report)
+        progress = BaseProgress(drives=drives)
+        super().__init__(id, progress, base, report)
         self._base = base
-        self._watch = BaseWatch(id, behavior, self._drives, base, monitors, report)
+        self._watch = BaseWatch(id, behavior, progress, base, monitors, report)
         self._driven = 0
 
     @property
     def goal(self) -> BasePose | None:
         """Where the step under way, or else the next, leads; None if there is none."""
-        left = self._drives.drives[self._driven :]
+        left = self._progress.drives[self._driven :]
         return left[0].to if left else None
 
     def _walk(self, *, resumed: bool) -> Routine[bool]:
-        progress = self._drives
+        progress = self._progress
         progress.step, progress.waits_since_s = BEFORE_FIRST_STEP, None
         self._watch.check()
         if self._driven == 0 and all(self._is_at(each.to) for each in progress.drives):
@@ -63,8 +63,8 @@ class BaseExecution(Execution):
 
     def _take(self, drive: Drive) -> Routine[None]:
         """One drive, begun again wherever it had to stop. Raises `Interruption`."""
-        step = StepStarted(execution=self.id, step=self.step, name=drive.name)
-        self._report(step)
+        self._progress.fell_short, self._progress.driving = 0, False
+        self._report(StepStarted(execution=self.id, step=self.step, name=drive.name))
         self._watch.check()
         while not self._is_at(drive.to):
             self._look_out(drive)
@@ -75,19 +75,21 @@ class BaseExecution(Execution):
 
     def _look_out(self, drive: Drive) -> None:
         """Drive while nothing is in the way; stand still before what is."""
-        progress, base = self._drives, self._base
+        progress, base = self._progress, self._base
         in_the_way_m = base.in_the_way_m(drive.to)
         if in_the_way_m is not None and in_the_way_m < self._needed_m():
             if progress.waits_since_s is None:
-                progress.waits_since_s = base.body.time_s()
+                progress.waits_since_s, progress.driving = base.body.time_s(), False
                 base.stop()
         elif not base.body.moving:
-            progress.waits_since_s = None
+            if progress.waits_since_s is None and progress.driving:
+                progress.fell_short += 1
+            progress.waits_since_s, progress.driving = None, True
             base.start(drive.to, drive.speed)
 
     def _needed_m(self) -> float:
         """Who stands before something needs a little more room to start than who drives on."""
-        return SPARE_M if self._drives.waits_since_s is None else 2 * SPARE_M
+        return SPARE_M if self._progress.waits_since_s is None else 2 * SPARE_M
 
     def _watched(self, routine: Routine[None]) -> Routine[None]:
         for _ in routine:

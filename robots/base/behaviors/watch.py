@@ -11,7 +11,7 @@ from mend.robots.execution.watch import Watch
 from mend.robots.link.messages import ReportBody
 
 
-class BaseWatch(Watch[BaseView]):
+class BaseWatch(Watch[BaseView, BaseProgress]):
     """Lets the monitors of the step under way judge what the base senses."""
 
     def __init__(
@@ -25,7 +25,7 @@ class BaseWatch(Watch[BaseView]):
     ) -> None:
         """`behavior`: the name by which monitors know the one that is executed."""
         super().__init__(execution, behavior, progress, base, monitors, report)
-        self._base, self._base_progress = base, progress
+        self._base = base
         self._next_check_s = -math.inf
 
     def check_if_due(self) -> None:
@@ -37,7 +37,7 @@ class BaseWatch(Watch[BaseView]):
 
     def check(self) -> None:
         """Let the monitors of this step judge. Raises `Interruption` for the first that must."""
-        progress, now = self._base_progress, self._base.body.time_s()
+        progress, now = self._progress, self._base.body.time_s()
         drive, since_s = progress.drive, progress.waits_since_s
         self.show(
             BaseView(
@@ -47,6 +47,7 @@ class BaseWatch(Watch[BaseView]):
                 pose=self._base.body.pose(),
                 goal=None if drive is None else drive.to,
                 in_the_way_m=None if drive is None else self._base.in_the_way_m(drive.to),
+                fell_short=progress.fell_short,
                 waited_s=0.0 if since_s is None else now - since_s,
                 scan=self._base.body.scan(),
             )

@@ -16,13 +16,15 @@ class BaseView(MonitorView):
 
     `pose` is where it is and `goal` where the step under way leads, None before the first.
     `in_the_way_m` is how far what stands in the straight way there is from its rim, None where that
-    is free; `waited_s` how long it has stood before it.
+    is free; `waited_s` how long it has stood before it. `fell_short`: so often a drive of this step
+    has ended though the goal was not reached.
     """
 
     pose: BasePose
     goal: BasePose | None
     in_the_way_m: float | None
     waited_s: float
+    fell_short: int
     scan: RangeScan
 
 

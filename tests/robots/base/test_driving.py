@@ -1,10 +1,11 @@
 """A robot that drives: goes to places, stops before what is in its way, says so, and goes on."""
 
 import math
+from dataclasses import replace
 
 import pytest
 from cart_bench import PLACES, CartBench
-from courtyard.cart import RADIUS_M
+from courtyard.cart import RADIUS_M, Cart
 from courtyard.crowded import Crowded
 from courtyard.patrol import Patrol
 from hypothesis import given, settings
@@ -17,6 +18,7 @@ from mend.robots.base.behaviors.execution import NEAR_M, TURNED_RAD
 from mend.robots.base.body import BasePose
 from mend.robots.base.monitors import BaseView
 from mend.robots.base.subsystem import BaseSubsystem
+from mend.robots.catalogue import Catalogue
 from mend.robots.execution.monitor import for_view
 from mend.robots.link.messages import (
     Finished,
@@ -35,7 +37,9 @@ from mend.robots.link.messages import (
     TakePicture,
 )
 from mend.robots.robot import Robot
+from mend.tasks.frames import Frame
 from mend.tasks.plugins import load_plugins
+from mend.tasks.scene import Table
 
 VISITOR_M = 0.25
 
@@ -110,6 +114,24 @@ def test_it_stops_before_what_stands_in_its_way_and_tells_of_it_after_a_while() 
     bench.run()
     assert bench.of(Holding) == [Holding(execution="e1", at="neutral")]
     assert 0.0 < gap_m(bench) < 0.3
+
+
+def test_a_base_that_never_quite_arrives_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    bench = CartBench()
+    drive = bench.cart.drive
+
+    def drive_short(to: BasePose, speed: float) -> None:
+        drive(replace(to, x=to.x - 0.2), speed)
+
+    monkeypatch.setattr(bench.cart, "drive", drive_short)
+    bench.start(place="near")
+    issue = bench.run_until(IssueDetected)
+    assert (issue.issue, issue.interrupts) == ("blocked", True)
+    assert issue.detection is not None
+    short = "I am still 0.20 m off and turned by 0 degrees after 3 drives there"
+    assert issue.detection.explanation == short
+    bench.run()
+    assert not bench.of(Finished)
 
 
 def test_who_passes_by_is_waited_for_and_not_told_of() -> None:
@@ -261,16 +283,52 @@ def test_each_kind_of_body_has_its_own_monitors() -> None:
     assert not of_bases & {"missed", "dropped", "missing", "undone", "unreachable", "blind"}
 
 
-def test_a_robot_may_have_an_arm_and_a_base() -> None:
+class Wagon(ScriptedBody):
+    """An arm on a cart: one body, one clock."""
+
+    def __init__(self) -> None:
+        super().__init__(STARTS)
+        self.cart = Cart(Frame(-4.0, -3.0), self.time_s, lambda _: [], self.advance_cycle)
+
+    def advance_cycle(self) -> None:
+        super().advance_cycle()
+        self.cart.move()
+
+
+def test_a_robot_with_an_arm_and_a_base_does_what_either_can_in_turn() -> None:
     behaviors, monitors = load_plugins("mend.behaviors"), load_plugins("mend.monitors")
-    bench, body = CartBench(), ScriptedBody(STARTS)
+    body, reports = Wagon(), []
     arm = ArmSubsystem(body, MODEL, catalogue(), behaviors, monitors)
-    base = BaseSubsystem(bench.cart, catalogue(), behaviors, monitors)
+    base = BaseSubsystem(body.cart, Catalogue({}, PLACES, Table()), behaviors, monitors)
     robot = Robot("both", body, [arm, base])
+    robot.attach(lambda report, *_: reports.append(report), lambda _: None)
     hello = robot.hello("1")
     assert {"go_to", "pick_and_place"} <= set(hello.behaviors)
     assert hello.reach is not None
     assert not hello.keeps_clear
+    told = {
+        "go_to": {"place": "near"},
+        "pick_and_place": {"object": "pink_bar", "place": "left"},
+    }
+    for number, behavior in enumerate(["go_to", "pick_and_place", "go_to"]):
+        start = Start(
+            execution=f"e{number}", node="/0", behavior=behavior, parameters=told[behavior]
+        )
+        robot.handle(f"c{number}", start)
+        while robot.advance(1.0):
+            pass
+    finished = [each for each in reports if isinstance(each, Finished)]
+    assert [(each.execution, each.found_in_place) for each in finished] == [
+        ("e0", False),
+        ("e1", False),
+        ("e2", True),
+    ]
+    robot.handle("look", Look())
+    while robot.advance(1.0):
+        pass
+    assert "pink_bar" in reports[-1].objects
+    assert robot.poses().base[:2] == pytest.approx((2.0, 0.0), abs=NEAR_M)
+    assert len(robot.pose_layout().objects) == len(catalogue().parts)
 
 
 def test_two_subsystems_with_one_behavior_are_refused() -> None:
