@@ -5,11 +5,15 @@ Tracking" (3DIMPVT 2012), section 3: axial and lateral noise by distance and ang
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
+
+from mend.maps.compiled import compiled
 
 Depth = NDArray[np.float32]
 
@@ -26,6 +30,8 @@ _BLACK, _BRIGHT = 8.0, 24.0
 all of it."""
 _AGREE_M = 0.010
 """Exposures that are farther from their median have hit another surface."""
+_HEAD_ON_PX = 0.8
+"""The lateral noise of a surface that is seen head-on, the sharpest that there is."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,106 +49,42 @@ class DepthNoise:
         self._scale = scale
         self._rng = rng
         self._exposures = exposures
+        if scale > 0.0:
+            _warm_up()
 
     def measure(self, depth_m: Depth, bgr: NDArray[np.uint8], optics: PinholeOptics) -> Depth:
         """What the camera gives for a rendered picture: NaN where no depth is measured."""
         if self._scale == 0.0:
             return depth_m
-        slope = _slope(depth_m)
-        angle = _incidence(depth_m, slope, optics)
-        axial_m = self._scale * _axial_sigma_m(depth_m, angle)
-        lateral_px = self._scale * _lateral_sigma_px(angle)
-        measured = self._fuse_smooth(depth_m, np.hypot(*slope), axial_m, lateral_px)
         edges = _edges(depth_m)
+        measured = self._rng.standard_normal(depth_m.shape, dtype=np.float32)
+        lens = np.array([optics.focal_px, *optics.center_px])
+        _fuse_smooth(depth_m, _slope(depth_m), lens, self._scale, self._exposures, measured)
         rows, columns = np.nonzero(edges)
-        measured[rows, columns] = self._fuse_edges(depth_m, rows, columns)
-        measured[self._lost(depth_m, bgr, angle, edges)] = np.nan
+        noise = self._rng.standard_normal((len(rows), 3, self._exposures), dtype=np.float32)
+        _fuse_edges(depth_m, rows, columns, self._scale, noise, measured)
+        measured[self._lost(bgr, edges)] = np.nan
         return measured
 
-    def _fuse_smooth(
-        self, depth_m: Depth, slope: Depth, axial_m: Depth, lateral_px: Depth
-    ) -> Depth:
-        """The mean of all exposures, drawn at once.
-
-        On a smooth surface a lateral error reads the depth of a point beside.
-        """
-        variance = axial_m**2 + (slope * lateral_px) ** 2
-        sigma = np.sqrt(variance / np.float32(self._exposures))
-        noise = self._rng.standard_normal(depth_m.shape, dtype=np.float32)
-        return np.asarray(depth_m + sigma * noise, np.float32)
-
-    def _fuse_edges(
-        self, depth_m: Depth, rows: NDArray[np.intp], columns: NDArray[np.intp]
-    ) -> Depth:
-        """The mean of those exposures that agree with their median: no depth between surfaces."""
-        shape = (self._exposures, len(rows))
-        # At an edge the surface's own angle is unknown; head-on is the sharpest that there is.
-        sigma_px = self._scale * 0.8
-        shift_v, shift_u = (
-            np.rint(sigma_px * self._rng.standard_normal(shape, dtype=np.float32)).astype(np.intp)
-            for _ in range(2)
-        )
-        height, width = depth_m.shape
-        hit = (np.clip(rows + shift_v, 0, height - 1), np.clip(columns + shift_u, 0, width - 1))
-        read = depth_m[hit] + _axial_sigma_m(depth_m[hit], np.zeros(1, np.float32)) * (
-            self._scale * self._rng.standard_normal(shape, dtype=np.float32)
-        )
-        agreeing = np.abs(read - np.median(read, axis=0)) <= _AGREE_M
-        total = np.where(agreeing, read, 0.0).sum(axis=0)
-        fused: Depth = (total / np.maximum(agreeing.sum(axis=0), 1)).astype(np.float32)
-        return fused
-
     def _lost(
-        self, depth_m: Depth, bgr: NDArray[np.uint8], angle: Depth, edges: NDArray[np.bool_]
-    ) -> NDArray[np.bool_]:
-        chance = np.where(edges, np.float32(_LOST_AT_EDGES * min(self._scale, 1.0)), np.float32(0))
+        self, bgr: NDArray[np.uint8], edges: NDArray[np.bool_]
+    ) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+        """The rows and columns of what is lost on dark things and at edges."""
         blue, green, red = cv2.split(bgr)
-        brightest = np.asarray(cv2.max(cv2.max(blue, green), red), np.float32)
-        dark = np.clip((_BRIGHT - brightest) / (_BRIGHT - _BLACK), 0.0, 1.0)
-        lost = self._rng.random(depth_m.shape, dtype=np.float32) < np.maximum(chance, dark)
-        steep = (angle > _STEEPEST_RAD) & ~edges
-        out_of_range = (depth_m < _NEAREST_M) | (depth_m > _FARTHEST_M)
-        found: NDArray[np.bool_] = lost | steep | out_of_range
-        return found
+        brightest = np.asarray(cv2.max(cv2.max(blue, green), red))
+        rows, columns = np.nonzero((brightest < _BRIGHT) | edges)
+        dark = (_BRIGHT - brightest[rows, columns]) / (_BRIGHT - _BLACK)
+        at_edge = np.where(edges[rows, columns], _LOST_AT_EDGES * min(self._scale, 1.0), 0.0)
+        lost = self._rng.random(len(rows)) < np.maximum(dark, at_edge)
+        return rows[lost], columns[lost]
 
 
-def _axial_sigma_m(depth_m: Depth, angle: Depth) -> Depth:
-    """Nguyen et al., equation 4: grows with the distance and towards grazing angles."""
-    grazing = angle**2 / np.square(np.float32(math.pi / 2) - angle)
-    sigma: Depth = (
-        np.float32(0.0012)
-        + np.float32(0.0019) * np.square(depth_m - np.float32(0.4))
-        + np.float32(0.0001) / np.sqrt(depth_m) * grazing
-    )
-    return sigma
-
-
-def _lateral_sigma_px(angle: Depth) -> Depth:
-    """Nguyen et al., equation 2."""
-    sigma: Depth = np.float32(0.8) + np.float32(0.035) * angle / (np.float32(math.pi / 2) - angle)
-    return sigma
-
-
-def _slope(depth_m: Depth) -> tuple[Depth, Depth]:
-    """How depth changes per pixel, to the right and down."""
+def _slope(depth_m: Depth) -> Depth:
+    """How depth changes per pixel, to the right and down (h, w, 2)."""
     right, down = (
-        np.asarray(cv2.Sobel(depth_m, cv2.CV_32F, *axes, ksize=3, scale=0.125), np.float32)
-        for axes in ((1, 0), (0, 1))
+        cv2.Sobel(depth_m, cv2.CV_32F, *axes, ksize=3, scale=0.125) for axes in ((1, 0), (0, 1))
     )
-    return right, down
-
-
-def _incidence(depth_m: Depth, slope: tuple[Depth, Depth], optics: PinholeOptics) -> Depth:
-    """The angle between each pixel's ray and the normal of the surface that it hits."""
-    rows, columns = depth_m.shape
-    across = (np.arange(columns, dtype=np.float32) - np.float32(optics.center_px[0]))[None, :]
-    down = (np.arange(rows, dtype=np.float32) - np.float32(optics.center_px[1]))[:, None]
-    focal = np.float32(optics.focal_px)
-    ray = np.sqrt(across**2 + down**2 + focal**2) / focal
-    ahead = depth_m + across * slope[0] + down * slope[1]
-    normal = np.sqrt((focal * slope[0]) ** 2 + (focal * slope[1]) ** 2 + ahead**2)
-    angle: Depth = np.arccos(np.clip(depth_m / (normal * ray), 0.0, np.float32(0.9999)))
-    return angle
+    return np.asarray(cv2.merge([right, down]), np.float32)
 
 
 def _edges(depth_m: Depth) -> NDArray[np.bool_]:
@@ -150,3 +92,99 @@ def _edges(depth_m: Depth) -> NDArray[np.bool_]:
     near, far = cv2.erode(depth_m, kernel), cv2.dilate(depth_m, kernel)
     bend: NDArray[np.bool_] = np.abs(np.asarray(near) + np.asarray(far) - 2 * depth_m) > _STEP_M
     return bend
+
+
+def _measuring(function: Callable[..., Any]) -> Any:
+    """Compile what every pixel is measured by: others may work meanwhile."""
+    return compiled(function, nogil=True)
+
+
+@_measuring
+def _axial_sigma_m(depth_m, angle_rad):  # type: ignore[no-untyped-def]
+    """Nguyen et al., equation 4: grows with the distance and towards grazing angles."""
+    grazing = (angle_rad / (math.pi / 2 - angle_rad)) ** 2
+    return 0.0012 + 0.0019 * (depth_m - 0.4) ** 2 + 0.0001 / math.sqrt(depth_m) * grazing
+
+
+@_measuring
+def _lateral_sigma_px(angle_rad):  # type: ignore[no-untyped-def]
+    """Nguyen et al., equation 2."""
+    return _HEAD_ON_PX + 0.035 * angle_rad / (math.pi / 2 - angle_rad)
+
+
+@_measuring
+def _incidence_rad(depth_m, right, down, across_px, below_px, focal_px):  # type: ignore[no-untyped-def]
+    """The angle between a pixel's ray and the normal of the surface that it hits."""
+    ahead = depth_m + across_px * right + below_px * down
+    normal = math.sqrt((focal_px * right) ** 2 + (focal_px * down) ** 2 + ahead**2)
+    ray = math.sqrt(across_px**2 + below_px**2 + focal_px**2) / focal_px
+    return math.acos(min(max(depth_m / (normal * ray), 0.0), 0.9999))
+
+
+@_measuring
+def _fuse_smooth(depth_m, slope, lens, scale, exposures, measured):  # type: ignore[no-untyped-def]
+    """Turn standard noise into the mean of all exposures; NaN where it is too steep, near or far.
+
+    On a smooth surface a lateral error reads the depth of a point beside.
+    """
+    focal_px, center_u, center_v = lens
+    rows, columns = depth_m.shape
+    for row in range(rows):
+        for column in range(columns):
+            depth, (right, down) = depth_m[row, column], slope[row, column]
+            angle = _incidence_rad(depth, right, down, column - center_u, row - center_v, focal_px)
+            beside_m = math.sqrt(right**2 + down**2) * _lateral_sigma_px(angle)
+            sigma_m = math.sqrt((_axial_sigma_m(depth, angle) ** 2 + beside_m**2) / exposures)
+            if angle > _STEEPEST_RAD or depth < _NEAREST_M or depth > _FARTHEST_M:
+                measured[row, column] = np.nan
+            else:
+                measured[row, column] = depth + scale * sigma_m * measured[row, column]
+
+
+@_measuring
+def _fuse_edges(depth_m, rows, columns, scale, noise, measured):  # type: ignore[no-untyped-def]
+    """The mean of those exposures that agree with their median: no depth between surfaces.
+
+    At an edge the surface's own angle is unknown.
+    """
+    height, width = depth_m.shape
+    exposures = noise.shape[2]
+    read = np.empty(exposures)
+    for index in range(len(rows)):
+        for each in range(exposures):
+            shift_v = int(np.rint(scale * _HEAD_ON_PX * noise[index, 0, each]))
+            shift_u = int(np.rint(scale * _HEAD_ON_PX * noise[index, 1, each]))
+            row = min(max(rows[index] + shift_v, 0), height - 1)
+            hit_m = depth_m[row, min(max(columns[index] + shift_u, 0), width - 1)]
+            read[each] = hit_m + scale * _axial_sigma_m(hit_m, 0.0) * noise[index, 2, each]
+        at = depth_m[rows[index], columns[index]]
+        if at < _NEAREST_M or at > _FARTHEST_M:
+            measured[rows[index], columns[index]] = np.nan
+        else:
+            measured[rows[index], columns[index]] = _agreed_m(read)
+
+
+@_measuring
+def _agreed_m(read_m):  # type: ignore[no-untyped-def]
+    for index in range(1, len(read_m)):
+        each, before = read_m[index], index - 1
+        while before >= 0 and read_m[before] > each:
+            read_m[before + 1] = read_m[before]
+            before -= 1
+        read_m[before + 1] = each
+    middle = len(read_m) // 2
+    median = read_m[middle] if len(read_m) % 2 else (read_m[middle - 1] + read_m[middle]) / 2
+    total, agreeing = 0.0, 0
+    for each in read_m:
+        if abs(each - median) <= _AGREE_M:
+            total += each
+            agreeing += 1
+    return total / max(agreeing, 1)
+
+
+def _warm_up() -> None:
+    """Compiling amid a run would stop a robot for seconds."""
+    depth_m, slope = np.ones((2, 2), np.float32), np.zeros((2, 2, 2), np.float32)
+    noise, spot = np.zeros((1, 3, EXPOSURES), np.float32), np.zeros(1, np.intp)
+    _fuse_smooth(depth_m, slope, np.ones(3), 1.0, EXPOSURES, depth_m.copy())
+    _fuse_edges(depth_m, spot, spot, 1.0, noise, depth_m.copy())

@@ -99,29 +99,28 @@ def _equally_exposed(before: CameraImage, now: CameraImage) -> tuple[Picture, Pi
 def _differ(before: Picture, now: Picture, least: float) -> bool:
     """Whether a patch differs by more than noise and by more than `least`."""
     # What is missing in either says nothing.
-    difference = cv2.patchNaNs(cv2.subtract(now, before), 0.0)
-    smooth = np.abs(cv2.blur(difference, _WINDOW))
-    sigma = _MAD_TO_SIGMA * float(np.median(smooth[::_SPARSE, ::_SPARSE]))
+    difference = cv2.blur(cv2.patchNaNs(cv2.subtract(now, before), 0.0), _WINDOW)
+    size = np.abs(difference)
+    sigma = _MAD_TO_SIGMA * float(np.median(size[::_SPARSE, ::_SPARSE]))
     limit = max(_SIGMAS * sigma, least)
     fewest_px = max(_FEWEST_PX, _LEAST_SHARE * before.shape[0] * before.shape[1])
-    if np.count_nonzero(smooth > limit) < fewest_px:
+    if np.count_nonzero(size > limit) < fewest_px:
         return False
-    smooth_before, smooth_now = (cv2.blur(each, _WINDOW) for each in _both_known(before, now))
+    smooth = cv2.blur(_filled(before, now), _WINDOW)
+    smooth_now = cv2.add(smooth, difference)
     # At an edge any value between those of its two sides may come.
-    highest, lowest = cv2.dilate(smooth_before, _NEIGHBORS), cv2.erode(smooth_before, _NEIGHBORS)
+    highest, lowest = cv2.dilate(smooth, _NEIGHBORS), cv2.erode(smooth, _NEIGHBORS)
     beyond = cv2.max(cv2.subtract(smooth_now, highest), cv2.subtract(lowest, smooth_now))
     changed = np.asarray(np.asarray(beyond) > limit, np.uint8)
     if changed.ndim == 3:
         changed = changed.max(axis=2)
+    if np.count_nonzero(changed) < fewest_px:
+        return False
     _, _, stats, _ = cv2.connectedComponentsWithStats(changed)
     return bool(stats[1:, cv2.CC_STAT_AREA].max(initial=0) >= fewest_px)
 
 
-def _both_known(before: Picture, now: Picture) -> tuple[Picture, Picture]:
-    """Two pictures that are equal where either is NaN: what is missing says nothing."""
-    before, now = before.copy(), now.copy()
-    np.copyto(before, now, where=np.isnan(before))
-    np.copyto(now, before, where=np.isnan(now))
-    for each in (before, now):
-        cv2.patchNaNs(each, 0.0)
-    return before, now
+def _filled(before: Picture, now: Picture) -> Picture:
+    """The earlier picture, with what the later one shows where it shows nothing."""
+    filled = np.where(np.isnan(before), now, before)
+    return np.asarray(cv2.patchNaNs(filled, 0.0))

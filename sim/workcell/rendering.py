@@ -93,7 +93,8 @@ class FastRenderer:
             for shape in client.getVisualShapeData(body):
                 self._shapes.append((body, shape[1]))
                 meshes.append(Mesh(_triangles(client, shape), tuple(shape[7][:3])))
-        self._bodies = np.array([body for body, _ in self._shapes], dtype=np.int32)
+        # Where nothing is drawn the index is -1.
+        self._bodies = np.array([*(body for body, _ in self._shapes), -1], dtype=np.int32)
         self._rasterizer = Rasterizer(meshes)
         self._links = {
             body: sorted({link for each, link in self._shapes if each == body and link >= 0})
@@ -112,8 +113,7 @@ class FastRenderer:
             near_m=view.near_m,
             far_m=_FAR_M,
         )
-        bodies = np.where(rendered.ids >= 0, self._bodies[rendered.ids], -1)
-        return Rendering(rendered.bgr, rendered.depth_m, bodies.astype(np.int32))
+        return Rendering(rendered.bgr, rendered.depth_m, self._bodies[rendered.ids])
 
     def _transforms(self) -> NDArray[np.float64]:
         poses: dict[tuple[int, int], Matrix4] = {}

@@ -17,6 +17,7 @@ from mend.robots.arm.behaviors.grasp_choice import (
 )
 from mend.robots.arm.behaviors.legs import legs_of, table_box
 from mend.robots.arm.body import ArmPath, Leg, NoWay, ToolPose
+from mend.robots.arm.clearance import ROOM_M
 from mend.robots.arm.grasp import Grasp
 from mend.robots.arm.gripper import GripperModel
 from mend.robots.execution.routine import Routine, T
@@ -134,9 +135,9 @@ def plan_amid(
     """
     obstacles = [table_box(table), *boxes]
     refusals: list[NoWay | Crowding] = []
-    ways = _lay_out(errand, planner.gripper, table, boxes, spare)
-    ways.sort(key=lambda each: -roominess_m(each.tight))
-    for way in ways:
+    best: _WayToDo | None = None
+    for way in _roomiest_first(errand, planner.gripper, table, boxes, spare):
+        best = best or way
         if way.tight is not None and not spare.is_left(way.tight):
             refusals.append(way.tight)
             continue
@@ -146,7 +147,7 @@ def plan_amid(
             return Plan(way.steps, way.first, path, way.grasp)
         refusals.append(path)
         yield
-    return Barred(waypoints_of(ways[0].left), refusals)
+    return Barred([] if best is None else waypoints_of(best.left), refusals)
 
 
 def bar_of(
@@ -189,20 +190,21 @@ def waypoints_of(steps: Sequence[Step]) -> list[ToolPose]:
     return [each.action.to for each in steps if isinstance(each.action, Move)]
 
 
-def _lay_out(
+def _roomiest_first(
     errand: Errand,
     gripper: GripperModel,
     table: Table,
     boxes: Sequence[SeenBox],
     spare: Spare,
-) -> list[_WayToDo]:
-    """All ways, in their order; those that differ in nothing once."""
-    ways: list[_WayToDo] = []
+) -> Iterator[_WayToDo]:
+    """All ways, in their order where they have as much room; those that differ in nothing once.
+
+    To find all of them takes long: one that has room enough is told before the next is laid out.
+    """
+    tight: list[_WayToDo] = []
     laid_out: set[tuple[Grasp | None, tuple[Step, ...]]] = set()
     known: dict[Sequence[Grip], Crowding | None] = {}
     for turned in (False, True):
-        if turned and (not spare.turns or any(spare.is_left(way.tight) for way in ways)):
-            break
         for situation in ways_to_grasp(errand, gripper, table.height, boxes, turned=turned):
             steps, grasp = errand.lay_out(situation), situation.grasp
             if (grasp, tuple(steps)) in laid_out:
@@ -213,5 +215,11 @@ def _lay_out(
             closings = grips(steps[first - 1 :], grasp, gripper)
             if closings not in known:
                 known[closings] = crowding(closings, gripper, boxes, spare.stray_m)
-            ways.append(_WayToDo(steps, first, grasp, known[closings]))
-    return ways
+            way = _WayToDo(steps, first, grasp, known[closings])
+            if roominess_m(way.tight) >= ROOM_M:
+                yield way
+            else:
+                tight.append(way)
+        if not spare.turns or any(spare.is_left(each) for each in known.values()):
+            break
+    yield from sorted(tight, key=lambda each: -roominess_m(each.tight))
